@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The `aphotic` command: a table of subcommands, and what each kind of failure exits with.
+#include "cli/command.h"
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+namespace {
+
+using aphotic::cli::Action;
+using aphotic::cli::Command;
+using aphotic::cli::ExitStatus;
+
+constexpr std::array kCommands{
+    Command{"render",
+            "plan, write the scenes, run POV-Ray, integrate: rig to image",
+            aphotic::cli::configure_render},
+    Command{"plan",
+            "which wavelengths, frames and exposures a render would take",
+            aphotic::cli::configure_plan},
+    Command{"generate", "write the POV-Ray scenes alone", aphotic::cli::configure_generate},
+    Command{"integrate", "frames and manifest to images", aphotic::cli::configure_integrate},
+    Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
+};
+
+ExitStatus run(const Action& action) {
+    try {
+        const ExitStatus status = action();
+        // What was said must have arrived: a full disk behind a redirection is a failure.
+        if (std::fflush(stdout) != 0)
+            throw aphotic::RunError("standard output: cannot be written to");
+        return status;
+    } catch (const aphotic::InputError& error) {
+        fmt::print(stderr, "aphotic: {}\n", error.what());
+        return aphotic::cli::kBadInput;
+    } catch (const aphotic::RunError& error) {
+        fmt::print(stderr, "aphotic: {}\n", error.what());
+        return aphotic::cli::kRunFailed;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "aphotic: there is not enough memory for this\n");
+        return aphotic::cli::kRunFailed;
+    } catch (const std::exception& error) {
+        // The file system's own words, mostly.
+        fmt::print(stderr, "aphotic: {}\n", error.what());
+        return aphotic::cli::kRunFailed;
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"What an underwater camera sled sees by the light of its own strobes."};
+    app.set_version_flag("--version", "aphotic " APHOTIC_VERSION);
+    app.require_subcommand(1);
+    app.footer(
+        "Exit status: 0 done; 1 it ran and the answer is no; 2 the command line or an input\n"
+        "file is wrong; 3 POV-Ray or the file system failed.");
+
+    Action chosen;
+    for (const Command& command : kCommands) {
+        CLI::App* sub = app.add_subcommand(command.name, command.summary);
+        sub->callback([&chosen, action = command.configure(*sub)] { chosen = action; });
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? aphotic::cli::kDone : aphotic::cli::kBadInput;
+    }
+    return run(chosen);
+}

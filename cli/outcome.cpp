@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/outcome.h"
+
+#include "cli/progress.h"
+#include "spectral/exr.h"
+#include "spectral/integrator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <numeric>
+#include <thread>
+
+namespace aphotic::cli {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+void add_preview_options(CLI::App& app, PreviewOptions& options) {
+    static const std::map<std::string, PreviewWhite> kWhites{
+        {"lamp", PreviewWhite::Lamp}, {"image", PreviewWhite::Image}, {"none", PreviewWhite::None}};
+    constexpr double kMostStops = 20.0;
+    app.add_option("--preview-white",
+                   options.white,
+                   "what the preview shows as grey: the lamp's own light (lamp, the default), the "
+                   "image's mean (image), or equal signals (none)")
+        ->transform(CLI::CheckedTransformer(kWhites))
+        ->option_text("lamp|image|none");
+    app.add_option("--preview-stops", options.stops, "the preview brighter by 2^STOPS")
+        ->check(CLI::Range(-kMostStops, kMostStops))
+        ->capture_default_str();
+}
+
+Json integrate_folder(const fs::path& folder,
+                      const Manifest& manifest,
+                      const PreviewOptions& preview) {
+    const auto start = std::chrono::steady_clock::now();
+    set_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+    ProgressLine line;
+    const CameraImage image =
+        integrate(folder, manifest, [&](double share) { line.show("integrating", share); });
+    write_preview(image, manifest.lamp_signal, preview, folder / "preview.png");
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+
+    Json channels;
+    const auto plane = static_cast<std::ptrdiff_t>(image.samples.size() / kChannels);
+    for (int c = 0; c < kChannels; ++c) {
+        const auto first = image.samples.begin() + c * plane;
+        const auto [least, most] = std::minmax_element(first, first + plane);
+        const double mean = std::accumulate(first, first + plane, 0.0) / static_cast<double>(plane);
+        channels[std::string(kChannelNames[static_cast<std::size_t>(c)])] = {
+            {"least", *least}, {"mean", mean}, {"most", *most}};
+    }
+    return {{"folder", folder.string()},
+            {"width_px", image.width_px},
+            {"height_px", image.height_px},
+            {"wavelengths", manifest.wavelengths.size()},
+            {"frames", manifest.frames.size()},
+            {"signal", channels},
+            {"integration_s", elapsed.count()}};
+}
+
+void print_outcome(const Json& outcome) {
+    const auto folder = outcome["folder"].get<std::string>();
+    fmt::print("{}: {} x {} pixels from {} wavelengths in {} frames, integrated in {:.1f} s\n",
+               outcome["title"].get<std::string>(),
+               outcome["width_px"].get<int>(),
+               outcome["height_px"].get<int>(),
+               outcome["wavelengths"].get<int>(),
+               outcome["frames"].get<int>(),
+               outcome["integration_s"].get<double>());
+    for (const auto& [channel, signal] : outcome["signal"].items()) {
+        fmt::print("  {}  {:.6g} to {:.6g}, mean {:.6g}\n",
+                   channel,
+                   signal["least"].get<double>(),
+                   signal["most"].get<double>(),
+                   signal["mean"].get<double>());
+    }
+    fmt::print(
+        "  {}/preview.png   to look at\n"
+        "  {}/image.exr     the camera's signal, linear R, G, B\n"
+        "  {}/spectral.exr  the radiance at each wavelength\n",
+        folder,
+        folder,
+        folder);
+}
+
+}  // namespace aphotic::cli

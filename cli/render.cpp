@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic render RIG -o DIR: the main job, from a rig file to a camera image through POV-Ray.
+#include "plugin/render.h"
+#include "cli/command.h"
+#include "cli/outcome.h"
+#include "cli/planning.h"
+#include "cli/progress.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+namespace aphotic::cli {
+namespace {
+
+struct Options {
+    PlanningOptions planning;
+    std::string folder;
+    std::string povray;
+    int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    PreviewOptions preview;
+    bool json = false;
+};
+
+ExitStatus render_rig(const Options& options) {
+    const PlannedRender planned = plan_render(options.planning);
+    const PovRay povray = find_povray(options.povray);
+
+    const auto start = std::chrono::steady_clock::now();
+    RenderResult result;
+    {
+        ProgressLine line;
+        const auto report = [&](const FrameProgress& progress) {
+            line.show(
+                fmt::format("rendering: {} of {} frames", progress.frames_done, progress.frames),
+                progress.share);
+        };
+        result = render(
+            povray, options.folder, planned.scenes, {.jobs = options.jobs, .report = report});
+    }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+
+    auto outcome = integrate_folder(options.folder, result.manifest, options.preview);
+    outcome["title"] = planned.rig.title;
+    outcome["povray_version"] = povray.version;
+    outcome["jobs"] = options.jobs;
+    outcome["frames_rendered"] = result.rendered;
+    outcome["frames_kept"] = result.kept;
+    outcome["povray_s"] = elapsed.count();
+    if (options.json) {
+        fmt::print("{}\n", outcome.dump(2));
+        return kDone;
+    }
+    fmt::print("POV-Ray {}: {} frames rendered, {} kept, in {:.1f} s with {} jobs\n",
+               povray.version,
+               result.rendered,
+               result.kept,
+               elapsed.count(),
+               options.jobs);
+    print_outcome(outcome);
+    return kDone;
+}
+
+}  // namespace
+
+Action configure_render(CLI::App& app) {
+    constexpr int kMostJobs = 1024;
+    const auto options = std::make_shared<Options>();
+    add_planning_options(app, options->planning);
+    app.add_option("-o,--output", options->folder, "the folder to write to")
+        ->required()
+        ->type_name("DIR");
+    app.add_option("--jobs", options->jobs, "frames at a time; by default the cores")
+        ->check(CLI::Range(1, kMostJobs))
+        ->capture_default_str();
+    app.add_option(
+           "--povray", options->povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
+        ->type_name("PROGRAM");
+    add_preview_options(app, options->preview);
+    app.add_flag("--json", options->json, "say what was done as JSON");
+    return [options] { return render_rig(*options); };
+}
+
+}  // namespace aphotic::cli

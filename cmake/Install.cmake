@@ -1,0 +1,24 @@
+# cmake --install: the command, the libraries with a CMake package, scenes, manual.
+# Each library installs itself and its headers (Library.cmake).
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/aphotic)
+
+install(TARGETS aphotic)
+install(EXPORT aphotic
+    NAMESPACE aphotic::
+    FILE aphoticTargets.cmake
+    DESTINATION ${package_dir})
+configure_package_config_file(cmake/aphoticConfig.cmake.in aphoticConfig.cmake
+    INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(aphoticConfigVersion.cmake
+    COMPATIBILITY SameMinorVersion)
+install(FILES
+        ${PROJECT_BINARY_DIR}/aphoticConfig.cmake
+        ${PROJECT_BINARY_DIR}/aphoticConfigVersion.cmake
+    DESTINATION ${package_dir})
+
+install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/aphotic/scenes)
+install(FILES docs/aphotic.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN aphotic.1 EXCLUDE)

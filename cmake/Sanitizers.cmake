@@ -1,0 +1,13 @@
+# For the whole tree, since instrumented and plain objects in one program report faults that
+# are none. A finding ends the program, so that no test passes over it.
+# Every program of ours links to aphotic_sanitizers, which names the leaks that are not ours.
+add_library(aphotic_sanitizers INTERFACE)
+
+if(APHOTIC_SANITIZE)
+    add_compile_options(-fsanitize=${APHOTIC_SANITIZE} -fno-sanitize-recover=all
+                        -fno-omit-frame-pointer)
+    add_link_options(-fsanitize=${APHOTIC_SANITIZE})
+
+    add_library(aphotic_known_leaks OBJECT cmake/known_leaks.cpp)
+    target_sources(aphotic_sanitizers INTERFACE $<TARGET_OBJECTS:aphotic_known_leaks>)
+endif()

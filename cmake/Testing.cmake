@@ -1,0 +1,41 @@
+# aphotic_tests(LABEL folder/name ...)
+#
+# Builds each tests/folder/name_test.cpp into a test program and gives its tests to CTest as
+# folder/Suite.Case, under a label:
+#
+#   unit    no other program needed; milliseconds each
+#   povray  runs POV-Ray, which takes every core: CTest counts such a test as two
+#   cli     runs the command as a user would
+include(GoogleTest)
+
+function(aphotic_tests label)
+    if(label STREQUAL "povray")
+        set(limits TIMEOUT 300 PROCESSORS 2)
+    else()
+        set(limits TIMEOUT 120)
+    endif()
+
+    foreach(name IN LISTS ARGN)
+        get_filename_component(folder ${name} DIRECTORY)
+        string(REPLACE "/" "_" target ${name}_test)
+
+        add_executable(${target} ${name}_test.cpp)
+        target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}
+                                                     ${PROJECT_SOURCE_DIR}/tests)
+        target_compile_definitions(${target} PRIVATE
+            APHOTIC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+            APHOTIC_COMMAND="$<TARGET_FILE:aphotic>")
+        target_link_libraries(${target} PRIVATE
+            aphotic::plugin aphotic::scene_gen aphotic::spectral
+            fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR GTest::gtest_main
+            aphotic_sanitizers aphotic_warnings)
+        add_dependencies(${target} aphotic)
+
+        # Discovered when CTest starts, so that a test program that crashes fails as a test
+        # and not as a build.
+        gtest_discover_tests(${target}
+            DISCOVERY_MODE PRE_TEST
+            TEST_PREFIX ${folder}/
+            PROPERTIES LABELS ${label} ${limits})
+    endforeach()
+endfunction()

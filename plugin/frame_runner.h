@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Runs POV-Ray on the scenes of a folder, several at a time.
+//
+// POV-Ray runs inside DIR/povray, so that its restrictions on files never bite, with our
+// render.ini as its only settings file. Each frame is rendered beside its place, checked
+// (spectral/frame_check.h) and then renamed into it. POV-Ray's own words go to
+// DIR/povray/logs/NAME.log.
+//
+// Frames are files, not an animation of one scene: a process costs 0.45 s more than a further
+// frame of an animation, half of it asleep, against seconds for a frame of useful size; and a
+// scene by itself can be read, rendered again, and sent elsewhere.
+#pragma once
+
+#include "plugin/povray.h"
+#include "spectral/integrator.h"
+#include "spectral/manifest.h"
+
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+namespace aphotic {
+
+struct FrameProgress {
+    std::size_t frames = 0;
+    std::size_t frames_done = 0;
+    double share = 0.0;  // of all the work, 0 to 1
+};
+
+struct RunOptions {
+    // Frames at a time; the threads of each, so that they use as many cores together.
+    int jobs = 1;
+    std::function<void(const FrameProgress&)> report;
+};
+
+// Renders the frames, and calls `arrived` for each when its image stands checked in its place,
+// in the order in which they end. When one fails the others are stopped, and a RunError quotes
+// POV-Ray. Images do not depend on jobs.
+void run_frames(const PovRay& povray,
+                const std::filesystem::path& folder,
+                const std::vector<ManifestFrame>& frames,
+                int width_px,
+                int height_px,
+                const RunOptions& options,
+                const std::function<void(const ManifestFrame&)>& arrived);
+
+// What POV-Ray says went wrong, from its log: the error with its file and line, unwrapped.
+[[nodiscard]] std::string error_in_log(const std::string& log);
+
+}  // namespace aphotic

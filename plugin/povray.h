@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Finding POV-Ray, and making sure that it is one that can do the work: version 3.7 or later,
+// built with OpenEXR.
+//
+// Looked for in this order: what the caller names, the environment variable APHOTIC_POVRAY, and
+// `povray` on PATH. The first that is given counts; it is an error when it does not serve.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace aphotic {
+
+struct PovRay {
+    std::filesystem::path executable;
+    std::string version;  // such as 3.7.0.10.unofficial
+};
+
+// named: a path or a command's name, "" for none. Throws RunError, which says where was looked.
+[[nodiscard]] PovRay find_povray(const std::string& named);
+
+// What is wrong with a POV-Ray that prints this for --version, or its version number.
+[[nodiscard]] std::string version_from(std::string_view printed);
+
+}  // namespace aphotic

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugin/render.h"
+
+#include "spectral/atomic_file.h"
+#include "spectral/digest.h"
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::optional<ManifestFrame> frame_named(const Manifest& manifest, const std::string& name) {
+    const auto found = std::find_if(manifest.frames.begin(),
+                                    manifest.frames.end(),
+                                    [&](const ManifestFrame& frame) { return frame.name == name; });
+    return found == manifest.frames.end() ? std::nullopt : std::optional(*found);
+}
+
+std::optional<Manifest> earlier_manifest(const fs::path& folder) {
+    if (!fs::exists(manifest_path(folder))) return std::nullopt;
+    return read_manifest(folder);
+}
+
+// The same scene, drawn before, its image as it was noted.
+bool still_holds(const fs::path& folder,
+                 const ManifestFrame& earlier,
+                 const ManifestFrame& wanted) {
+    return earlier.done() && earlier.scene_sha256 == wanted.scene_sha256 &&
+           fs::exists(image_path(folder, earlier)) &&
+           sha256_of_file(image_path(folder, earlier)) == earlier.image_sha256;
+}
+
+void take_away(const fs::path& image) {
+    std::error_code error;
+    fs::remove(image, error);
+    if (error) {
+        throw RunError(fmt::format("{}: cannot be removed: {}", image.string(), error.message()));
+    }
+}
+
+}  // namespace
+
+RenderResult render(const PovRay& povray,
+                    const fs::path& folder,
+                    const SceneSet& set,
+                    const RunOptions& options) {
+    make_folder(folder);
+    RenderResult result{.manifest = set.manifest, .rendered = 0, .kept = 0};
+    result.manifest.povray_version = povray.version;
+
+    const std::optional<Manifest> earlier = earlier_manifest(folder);
+    std::vector<ManifestFrame> missing;
+    for (ManifestFrame& frame : result.manifest.frames) {
+        std::optional<ManifestFrame> before;
+        if (earlier && earlier->povray_version == povray.version) {
+            before = frame_named(*earlier, frame.name);
+        }
+        if (before && still_holds(folder, *before, frame)) {
+            frame.image_sha256 = before->image_sha256;
+        } else {
+            missing.push_back(frame);
+        }
+    }
+    result.rendered = missing.size();
+    result.kept = set.scenes.size() - missing.size();
+    write_scenes(folder, set);
+    write_manifest(folder, result.manifest);
+
+    run_frames(povray,
+               folder,
+               missing,
+               set.manifest.width_px,
+               set.manifest.height_px,
+               options,
+               [&](const ManifestFrame& frame) {
+                   for (ManifestFrame& noted : result.manifest.frames) {
+                       if (noted.name != frame.name) continue;
+                       noted.image_sha256 = sha256_of_file(image_path(folder, frame));
+                   }
+                   write_manifest(folder, result.manifest);
+               });
+    return result;
+}
+
+Manifest generate(const fs::path& folder, const SceneSet& set) {
+    make_folder(folder);
+    Manifest manifest = set.manifest;
+    const std::optional<Manifest> earlier = earlier_manifest(folder);
+    if (earlier) manifest.povray_version = earlier->povray_version;
+    for (ManifestFrame& frame : manifest.frames) {
+        std::optional<ManifestFrame> before;
+        if (earlier) before = frame_named(*earlier, frame.name);
+        if (before && still_holds(folder, *before, frame)) {
+            frame.image_sha256 = before->image_sha256;
+        } else if (!before || before->done() || before->scene_sha256 != frame.scene_sha256) {
+            take_away(image_path(folder, frame));
+        }
+    }
+    write_scenes(folder, set);
+    write_manifest(folder, manifest);
+    return manifest;
+}
+
+}  // namespace aphotic

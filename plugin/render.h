@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Renders a set of scenes into a folder, and goes on where an earlier run stopped.
+//
+// A frame of an earlier run is kept when its scene and settings are the same to the bit, the
+// same version of POV-Ray made it, and its image is the one that was noted; all others are
+// rendered. The manifest is written anew after each frame, so that whatever interrupts a render
+// costs the frames under way and nothing else.
+#pragma once
+
+#include "plugin/frame_runner.h"
+#include "plugin/povray.h"
+#include "scene_gen/scene_set.h"
+
+#include <filesystem>
+
+namespace aphotic {
+
+struct RenderResult {
+    Manifest manifest;  // every frame done
+    std::size_t rendered = 0;
+    std::size_t kept = 0;
+};
+
+RenderResult render(const PovRay& povray,
+                    const std::filesystem::path& folder,
+                    const SceneSet& set,
+                    const RunOptions& options);
+
+// Writes scenes and manifest without rendering. Images of earlier scenes are taken away, so that
+// they cannot be taken for images of these.
+Manifest generate(const std::filesystem::path& folder, const SceneSet& set);
+
+}  // namespace aphotic

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How bright a frame will be, and by which power of two its light is scaled for it.
+//
+// POV-Ray's EXR holds half floats: relative step 2^-11 from 2^-14 to 65504, coarser below, inf
+// above. The light of each wavelength is multiplied by 2^e, chosen so that no pixel can exceed
+// 2^kTargetLog2 and the brightest comes close to it; the integrator divides it out again,
+// exactly. So a dark red wavelength uses the same digits as a bright blue one.
+//
+//   e = floor(kTargetLog2 - log2 L_max)
+//
+// L_max  upper bound of the radiance in view at power-of-two scale 0, from the rig's closed
+//        form on a coarse grid of the image, with every cone widened by the grid's step
+//        [unit of the lamp's spectrum / (m^2 sr)]
+//
+// The factor of four between 2^kTargetLog2 and the largest half float is the grid's margin.
+#pragma once
+
+#include "scene_gen/rig.h"
+
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr int kTargetLog2 = 14;
+
+// Upper bound of the radiance that the camera can see, per wavelength.
+class RadianceBound {
+  public:
+    explicit RadianceBound(const Rig& rig);
+
+    // Zero when no strobe lights anything in view at this wavelength.
+    [[nodiscard]] double at(double lambda_nm) const;
+
+  private:
+    // One strobe's light on one point: path length, and the two reflections' factors.
+    struct Lit {
+        std::size_t strobe;
+        double path_m;
+        double diffuse_per_m2;
+        double specular_per_m2;
+    };
+    using LitPoint = std::vector<Lit>;
+
+    void add_point(const Eigen::Vector3d& point_m, double camera_leg_m, double cone_margin_rad);
+
+    const Rig& rig_;
+    std::vector<LitPoint> points_;
+};
+
+// e for a bound; brightest_colour is the largest colour value that the scene would hold at
+// e = 0, kept under POV-Ray's single-precision range. 0 for a bound of 0.
+[[nodiscard]] int exposure_log2(double radiance_bound, double brightest_colour);
+
+}  // namespace aphotic

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/geometry.h"
+
+#include "spectral/refraction.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace aphotic {
+
+using Eigen::Vector3d;
+
+Plane floor_plane(const Sled& sled) {
+    const double sin_pitch = std::sin(sled.pitch_rad);
+    const double cos_pitch = std::cos(sled.pitch_rad);
+    const Vector3d down(
+        -sin_pitch, cos_pitch * std::sin(sled.roll_rad), cos_pitch * std::cos(sled.roll_rad));
+    return {.point_m = {0.0, 0.0, sled.altitude_m}, .normal = -down.normalized()};
+}
+
+double height_above(const Plane& floor, const Vector3d& point_m) {
+    return floor.normal.dot(point_m - floor.point_m);
+}
+
+WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm) {
+    const Camera& camera = rig.camera;
+    const Vector3d toward((0.5 * camera.height_px - row) * camera.pixel_pitch_m,
+                          (column - 0.5 * camera.width_px) * camera.pixel_pitch_m,
+                          camera.focal_length_m);
+    const Vector3d in_air = toward.normalized();
+    if (!camera.port) return {.origin_m = Vector3d::Zero(), .direction = in_air};
+
+    const Eigen::Vector2d sin_air = in_air.head<2>();
+    const double n_glass = builtin_glass(camera.port->glass).index(lambda_nm);
+    const double n_water =
+        seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
+    const Eigen::Vector2d sin_glass = sin_air / n_glass;
+    const Eigen::Vector2d sin_water = sin_air / n_water;
+    const double cos_glass = std::sqrt(1.0 - sin_glass.squaredNorm());
+    const double cos_water = std::sqrt(1.0 - sin_water.squaredNorm());
+
+    WaterRay ray;
+    ray.origin_m.head<2>() = camera.port->distance_m * sin_air / in_air.z() +
+                             camera.port->thickness_m * sin_glass / cos_glass;
+    ray.origin_m.z() = camera.port->distance_m + camera.port->thickness_m;
+    ray.direction << sin_water, cos_water;
+    return ray;
+}
+
+std::optional<double> distance_to(const Plane& plane, const WaterRay& ray) {
+    const double approach = -plane.normal.dot(ray.direction);
+    if (approach <= 0.0) return std::nullopt;
+    const double distance_m = height_above(plane, ray.origin_m) / approach;
+    return distance_m > 0.0 ? std::optional(distance_m) : std::nullopt;
+}
+
+LampGrid lamp_grid(const Rig& rig, const Strobe& strobe) {
+    if (!strobe.emitter) return {};
+    const double spacing_m = kLampSpacing * height_above(floor_plane(rig.sled), strobe.position_m);
+    const auto lamps = [&](double size_m) {
+        return std::clamp(static_cast<int>(std::ceil(size_m / spacing_m)), 1, 64);
+    };
+    return {.across = lamps(strobe.emitter->across_m), .along = lamps(strobe.emitter->along_m)};
+}
+
+std::vector<Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid) {
+    if (!strobe.emitter) return {strobe.position_m};
+    const bool is_fore_and_aft = std::abs(strobe.axis.x()) > 1.0 - 1e-9;
+    const Vector3d reference = is_fore_and_aft ? Vector3d::UnitZ() : Vector3d::UnitX();
+    const Vector3d along = (reference - reference.dot(strobe.axis) * strobe.axis).normalized();
+    const Vector3d across = strobe.axis.cross(along);
+
+    std::vector<Vector3d> positions_m;
+    for (int i = 0; i < grid.across; ++i) {
+        for (int j = 0; j < grid.along; ++j) {
+            const double u = (i + 0.5) / grid.across - 0.5;
+            const double v = (j + 0.5) / grid.along - 0.5;
+            positions_m.emplace_back(strobe.position_m + u * strobe.emitter->across_m * across +
+                                     v * strobe.emitter->along_m * along);
+        }
+    }
+    return positions_m;
+}
+
+double axial_intensity(const Cone& cone, ConeWeights weights) {
+    if (weights == ConeWeights::Literal) return cone.weight;
+    const double sin_gamma = std::sin(cone.half_angle_rad);
+    return cone.weight / (std::numbers::pi * sin_gamma * sin_gamma);
+}
+
+}  // namespace aphotic

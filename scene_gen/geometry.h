@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Geometry of a rig as the scene generator needs it: the floor, the rays that the pixels look
+// along, the lamps that an emitter is made of, and the way into POV-Ray's frame.
+//
+// Sled frame: x forward, y starboard, z down, origin at the entrance pupil, metres. The world's
+// downward direction, seen from a sled with pitch p (bow up) and roll q (starboard down), is
+//
+//   down = (-sin p, cos p sin q, cos p cos q)
+//
+// and the floor is the plane through (0, 0, altitude) perpendicular to it. With p > 0 the floor
+// falls away forward; with q > 0 it rises to starboard.
+//
+// POV-Ray is left-handed: its (x, y, z) is our (starboard, forward, down).
+#pragma once
+
+#include "scene_gen/rig.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+
+struct Plane {
+    Eigen::Vector3d point_m;
+    Eigen::Vector3d normal;  // unit, on the side of the water
+};
+
+[[nodiscard]] Plane floor_plane(const Sled& sled);
+
+// Height of a point above the floor, measured along its normal [m].
+[[nodiscard]] double height_above(const Plane& floor, const Eigen::Vector3d& point_m);
+
+// Where light enters the water on its way to a pixel, reversed: origin and unit direction.
+struct WaterRay {
+    Eigen::Vector3d origin_m;
+    Eigen::Vector3d direction;
+};
+
+// The ray of the point (column, row) of the image; pixel (0, 0)'s centre is (0.5, 0.5).
+// Without a port it starts at the pupil. Through a flat port it obeys Snell at both faces:
+//
+//   sin(air) = n_glass sin(glass) = n_water sin(water)
+//
+// with both indices relative to air and taken at lambda_nm.
+[[nodiscard]] WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm);
+
+// Distance along the ray to the plane [m], or nothing when the ray does not come down on it.
+[[nodiscard]] std::optional<double> distance_to(const Plane& plane, const WaterRay& ray);
+
+// How many lamps an emitter is made of, across x along.
+struct LampGrid {
+    int across = 1;
+    int along = 1;
+};
+
+// The coarsest grid whose lamps are closer together than kLampSpacing times the distance from
+// the emitter to the floor below it. A midpoint rule of spacing h errs on a smooth integrand
+// by h^2 f''/24, and f''/f of the light on a plane is at most about 20/d^2, so this spacing
+// keeps the error under 1e-4; shadows and cone edges turn from one step into as many as lamps.
+[[nodiscard]] LampGrid lamp_grid(const Rig& rig, const Strobe& strobe);
+inline constexpr double kLampSpacing = 0.011;
+
+// Centres of the grid's cells [m]. `along` is the sled's forward direction as the emitter's
+// plane sees it (down, for a strobe that shines fore or aft), `across` completes it.
+[[nodiscard]] std::vector<Eigen::Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid);
+
+// A_k of the cone: its intensity on the axis per unit of lamp power [1/sr].
+//
+//   flux:     A_k = alpha_k / (pi sin^2 gamma_k), so that the cone carries alpha_k of the flux
+//   literal:  A_k = alpha_k, as the source paper prints it
+[[nodiscard]] double axial_intensity(const Cone& cone, ConeWeights weights);
+
+[[nodiscard]] inline Eigen::Vector3d to_povray(const Eigen::Vector3d& sled) {
+    return {sled.y(), sled.x(), sled.z()};
+}
+
+}  // namespace aphotic

@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/pov_scene.h"
+
+#include "scene_gen/exposure.h"
+#include "spectral/error.h"
+#include "spectral/refraction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+namespace aphotic {
+
+using Eigen::Vector3d;
+
+namespace {
+
+// POV-Ray's law 2/(1 + (d/f)^2) is 2 f^2/d^2 (1 - (f/d)^2 + ...): with f under a thousandth of
+// the least distance the inverse square holds to 1e-6.
+constexpr double kFadeShare = 1e-3;
+
+using Channels = std::array<double, 3>;
+
+// Seventeen significant digits carry a double through text unchanged.
+std::string number(double value) {
+    return fmt::format("{:.17g}", value);
+}
+
+std::string vector(const Channels& v) {
+    return fmt::format("<{}, {}, {}>", number(v[0]), number(v[1]), number(v[2]));
+}
+
+// In POV-Ray's frame.
+std::string point(const Vector3d& sled) {
+    const Vector3d pov = to_povray(sled);
+    return vector({pov.x(), pov.y(), pov.z()});
+}
+
+// What a rig says in words may hold anything; in a comment it must stay on its line.
+std::string comment_text(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+    return text;
+}
+
+// Wavelengths as they stand in file names: with as few decimals as tell all of them apart.
+std::vector<std::string> wavelength_labels(std::span<const double> lambda_nm) {
+    constexpr int kMostDecimals = 6;
+    const std::set<double> distinct(lambda_nm.begin(), lambda_nm.end());
+    std::vector<std::string> labels;
+    for (int decimals = 0; decimals <= kMostDecimals; ++decimals) {
+        labels.clear();
+        for (const double l : lambda_nm) labels.push_back(fmt::format("{:.{}f}", l, decimals));
+        if (std::set(labels.begin(), labels.end()).size() == distinct.size()) break;
+    }
+    return labels;
+}
+
+// Fade distance: a power of two, so that 1/(2 f^2) scales the light without rounding it.
+double fade_distance_m(const Rig& rig) {
+    const Plane floor = floor_plane(rig.sled);
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const Strobe& strobe : rig.strobes) {
+        for (const Vector3d& lamp_m : lamp_positions_m(strobe, {.across = 2, .along = 2})) {
+            least_m = std::min(least_m, height_above(floor, lamp_m));
+        }
+    }
+    return std::exp2(std::floor(std::log2(kFadeShare * least_m)));
+}
+
+// Half sizes of the glass block and of the air cavity in it, across the camera's axis.
+struct Housing {
+    double cavity_x_m, cavity_y_m, block_x_m, block_y_m;  // x, y of POV-Ray
+    double back_m;                                        // behind the pupil, of the cavity
+};
+
+Housing housing(const Camera& camera) {
+    // Wider than any ray can be at the faces: in glass, rays run steeper than in air.
+    constexpr double kRoom = 1.25;
+    const FlatPort& port = *camera.port;
+    const double front_m = port.distance_m + port.thickness_m;
+    const double half_pixel = 0.5 * camera.pixel_pitch_m / camera.focal_length_m;
+    Housing h{};
+    h.cavity_x_m = kRoom * port.distance_m * half_pixel * camera.width_px + port.thickness_m;
+    h.cavity_y_m = kRoom * port.distance_m * half_pixel * camera.height_px + port.thickness_m;
+    h.block_x_m = kRoom * front_m * half_pixel * camera.width_px + 2.0 * port.thickness_m;
+    h.block_y_m = kRoom * front_m * half_pixel * camera.height_px + 2.0 * port.thickness_m;
+    h.back_m = port.distance_m;
+    return h;
+}
+
+void require_lamps_outside_housing(const Rig& rig, const Strobe& strobe, LampGrid grid) {
+    if (!rig.camera.port) return;
+    const Housing h = housing(rig.camera);
+    const FlatPort& port = *rig.camera.port;
+    for (const Vector3d& lamp_m : lamp_positions_m(strobe, grid)) {
+        const Vector3d at = to_povray(lamp_m);
+        if (std::abs(at.x()) <= h.block_x_m && std::abs(at.y()) <= h.block_y_m &&
+            at.z() >= -(h.back_m + port.thickness_m) &&
+            at.z() <= port.distance_m + port.thickness_m) {
+            throw InputError(
+                fmt::format("strobe '{}' stands inside the camera's housing, which reaches {:.3f} "
+                            "m to the side, "
+                            "{:.3f} m fore and aft and from {:.3f} to {:.3f} m in depth",
+                            strobe.name,
+                            h.block_x_m,
+                            h.block_y_m,
+                            -(h.back_m + port.thickness_m),
+                            port.distance_m + port.thickness_m));
+        }
+    }
+}
+
+// One scene's text, written part by part.
+class SceneWriter {
+  public:
+    SceneWriter(const Rig& rig,
+                const RadianceBound& bound,
+                const SceneOptions& options,
+                std::string name,
+                std::vector<double> lambda_nm)
+        : rig_(rig),
+          options_(options),
+          fade_m_(fade_distance_m(rig)),
+          lambda_nm_(std::move(lambda_nm)) {
+        scene_.name = std::move(name);
+        for (const double l : lambda_nm_) {
+            scene_.wavelengths.push_back(
+                {.lambda_nm = l, .exposure_log2 = exposure_log2(bound.at(l), brightest_colour(l))});
+        }
+    }
+
+    FrameScene write() {
+        write_header();
+        write_camera();
+        write_port();
+        write_water();
+        write_floor();
+        write_strobes();
+        return std::move(scene_);
+    }
+
+  private:
+    // A frame of fewer than three wavelengths repeats its last one.
+    [[nodiscard]] std::size_t wavelength_of(std::size_t channel) const {
+        return std::min(channel, lambda_nm_.size() - 1);
+    }
+
+    template <typename Function>
+    [[nodiscard]] Channels per_channel(Function function) const {
+        Channels values{};
+        for (std::size_t c = 0; c < 3; ++c) values[c] = function(lambda_nm_[wavelength_of(c)]);
+        return values;
+    }
+
+    [[nodiscard]] LampGrid grid_of(const Strobe& strobe) const {
+        return options_.emitter_lamps.value_or(lamp_grid(rig_, strobe));
+    }
+
+    [[nodiscard]] bool shines(const Strobe& strobe) const {
+        const Channels flux = per_channel([&](double l) { return strobe.spectrum.at(l); });
+        return strobe.power > 0.0 &&
+               std::any_of(flux.begin(), flux.end(), [](double f) { return f > 0.0; });
+    }
+
+    // The largest component of any light's colour, at exposure 0.
+    [[nodiscard]] double brightest_colour(double lambda_nm) const {
+        double brightest = 0.0;
+        for (const Strobe& strobe : rig_.strobes) {
+            for (const Cone& cone : strobe.beam.cones) {
+                brightest = std::max(brightest,
+                                     strobe.spectrum.at(lambda_nm) * strobe.power *
+                                         axial_intensity(cone, strobe.beam.weights));
+            }
+        }
+        return brightest / (2.0 * std::numbers::pi * fade_m_ * fade_m_);
+    }
+
+    void line(std::string_view text = "") {
+        scene_.sdl += text;
+        scene_.sdl += '\n';
+    }
+
+    void write_header() {
+        constexpr std::array kChannelWord{"red  ", "green", "blue "};
+        line("// Persistence of Vision Ray Tracer Scene Description File");
+        line(fmt::format("// File: {}.pov", scene_.name));
+        line(fmt::format("// Description: {}", comment_text(rig_.title)));
+        line("//");
+        line(
+            "// Written by aphotic. Each channel of the image is one wavelength's radiance, times "
+            "the");
+        line("// power of two with which the frame is exposed:");
+        for (std::size_t c = 0; c < 3; ++c) {
+            const FrameWavelength& w = scene_.wavelengths[wavelength_of(c)];
+            line(fmt::format(
+                "//   {}  {} nm, times 2^{}", kChannelWord[c], w.lambda_nm, w.exposure_log2));
+        }
+        line("//");
+        line(fmt::format("// Render in this folder with: povray render.ini +I{}.pov", scene_.name));
+        line("//");
+        line(
+            "// Metres. x starboard, y forward, z down; the camera's entrance pupil is the "
+            "origin.");
+        line();
+        line("#version 3.7;");
+        line(
+            "global_settings { assumed_gamma 1.0  adc_bailout 0  ambient_light rgb 0  "
+            "max_trace_level 20 }");
+        line("#default { finish { ambient 0  emission 0  diffuse 1 } }");
+        line("background { rgb 0 }");
+        line();
+    }
+
+    void write_camera() {
+        const Camera& camera = rig_.camera;
+        line("// Top row forward, right column starboard.");
+        line("camera {");
+        line("   perspective  location <0, 0, 0>");
+        line(fmt::format("   direction z * {}   // focal length", number(camera.focal_length_m)));
+        line(fmt::format("   right x * {}", number(camera.width_px * camera.pixel_pitch_m)));
+        line(fmt::format("   up y * {}", number(camera.height_px * camera.pixel_pitch_m)));
+        line("}");
+        line();
+    }
+
+    void write_port() {
+        if (!rig_.camera.port) return;
+        const FlatPort& port = *rig_.camera.port;
+        const double lambda_nm = lambda_nm_.front();
+        const double n_water =
+            seawater_index(lambda_nm, rig_.water.salinity_psu, rig_.water.temperature_c);
+        const double n_glass = builtin_glass(port.glass).index(lambda_nm);
+        const Housing h = housing(rig_.camera);
+        line(
+            "// Flat port: a block of glass and, strictly inside it, the air that holds the "
+            "camera.");
+        line(
+            "// The water around is index 1 to POV-Ray, so indices are relative to it. Neither "
+            "block is");
+        line("// hollow, so neither holds water; no_shadow, so the lamps' light takes no notice.");
+        line(fmt::format("#declare N_Water = {};", number(n_water)));
+        line(fmt::format("#declare N_Glass = {};   // {}", number(n_glass), port.glass));
+        const auto block =
+            [&](double x, double y, double back, double front, std::string_view ior) {
+                line(fmt::format("box {{ <{}, {}, {}>, <{}, {}, {}>",
+                                 number(-x),
+                                 number(-y),
+                                 number(-back),
+                                 number(x),
+                                 number(y),
+                                 number(front)));
+                line(
+                    fmt::format("   pigment {{ rgbt 1 }}  finish {{ ambient 0  diffuse 0 }}  "
+                                "interior {{ ior {} }}  no_shadow }}",
+                                ior));
+            };
+        block(h.block_x_m,
+              h.block_y_m,
+              h.back_m + port.thickness_m,
+              port.distance_m + port.thickness_m,
+              "N_Glass / N_Water");
+        block(h.cavity_x_m, h.cavity_y_m, h.back_m, port.distance_m, "1 / N_Water");
+        line();
+    }
+
+    void write_water() {
+        if (rig_.water.is_clear()) return;
+        const Channels k = per_channel([&](double l) { return rig_.water.attenuation_per_m(l); });
+        line(
+            "// Water: one absorbing medium everywhere. A constant medium is evaluated in closed "
+            "form,");
+        line("// so one sample is exact.");
+        line(fmt::format("media {{ method 1  intervals 1  samples 1, 1  absorption rgb {} }}",
+                         vector(k)));
+        line();
+    }
+
+    void write_floor() {
+        const Plane floor = floor_plane(rig_.sled);
+        const Channels rho = per_channel([&](double l) { return rig_.seafloor.reflectance.at(l); });
+        line(fmt::format(
+            "plane {{ {}, {}", point(floor.normal), number(floor.normal.dot(floor.point_m))));
+        line(fmt::format("   pigment {{ rgb {} }}", vector(rho)));
+        if (rig_.seafloor.phong > 0.0) {
+            line(fmt::format("   finish {{ phong {}  phong_size {} }}",
+                             number(rig_.seafloor.phong),
+                             number(rig_.seafloor.phong_size)));
+        }
+        line("}");
+        line();
+    }
+
+    void write_strobes() {
+        line(
+            "// A cone shines Flux * Axial_Intensity * cos(theta) within Half_Angle degrees of its "
+            "axis.");
+        line(
+            "// fade_power 2 with a fade_distance far below all distances is the inverse square "
+            "law;");
+        line("// the 1/pi turns irradiance into the radiance of a white floor.");
+        line(fmt::format("#declare Fade_Distance = {};", number(fade_m_)));
+        line("#macro Cone_Lamp (Position, Axis, Half_Angle, Axial_Intensity, Flux)");
+        line("   light_source {");
+        line(
+            "      Position, rgb Flux * Axial_Intensity / (2 * pi * Fade_Distance * "
+            "Fade_Distance)");
+        line("      spotlight  point_at Position + Axis");
+        line("      radius Half_Angle  falloff Half_Angle  tightness 1");
+        line("      fade_distance Fade_Distance  fade_power 2");
+        line(rig_.water.is_clear()
+                 ? "      shadowless   // nothing stands in the way, and the water is clear"
+                 : "      media_attenuation on");
+        line("   }");
+        line("#end");
+        for (const Strobe& strobe : rig_.strobes) write_strobe(strobe);
+    }
+
+    void write_strobe(const Strobe& strobe) {
+        line();
+        line(fmt::format("// Strobe: {}", comment_text(strobe.name)));
+        if (!shines(strobe)) {
+            line("// shines nothing at these wavelengths");
+            return;
+        }
+        const LampGrid grid = grid_of(strobe);
+        require_lamps_outside_housing(rig_, strobe, grid);
+        const auto lamps_m = lamp_positions_m(strobe, grid);
+        const auto share = 1.0 / static_cast<double>(lamps_m.size());
+        Channels flux{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const FrameWavelength& w = scene_.wavelengths[wavelength_of(c)];
+            flux[c] =
+                std::ldexp(strobe.spectrum.at(w.lambda_nm) * strobe.power * share, w.exposure_log2);
+        }
+        line(fmt::format("#declare Flux = {};", vector(flux)));
+        line(fmt::format("#declare Axis = {};", point(strobe.axis)));
+        for (const Cone& cone : strobe.beam.cones) {
+            if (cone.weight == 0.0) continue;
+            const double half_angle_deg = cone.half_angle_rad * 180.0 / std::numbers::pi;
+            for (const Vector3d& lamp_m : lamps_m) {
+                line(fmt::format("Cone_Lamp ({}, Axis, {}, {}, Flux)   // {}",
+                                 point(lamp_m),
+                                 number(half_angle_deg),
+                                 number(axial_intensity(cone, strobe.beam.weights)),
+                                 comment_text(cone.part)));
+            }
+        }
+    }
+
+    const Rig& rig_;
+    const SceneOptions& options_;
+    double fade_m_;
+    std::vector<double> lambda_nm_;
+    FrameScene scene_;
+};
+
+}  // namespace
+
+std::vector<FrameScene> make_scenes(const Rig& rig,
+                                    std::span<const double> lambda_nm,
+                                    const SceneOptions& options) {
+    const auto per_frame =
+        static_cast<std::size_t>(rig.camera.port ? 1 : options.wavelengths_per_frame);
+    const RadianceBound bound(rig);
+    const std::vector<std::string> labels = wavelength_labels(lambda_nm);
+    std::vector<FrameScene> scenes;
+    for (std::size_t first = 0; first < lambda_nm.size(); first += per_frame) {
+        const std::size_t count = std::min(per_frame, lambda_nm.size() - first);
+        const std::string name =
+            fmt::format("band_{}nm",
+                        fmt::join(labels.begin() + static_cast<std::ptrdiff_t>(first),
+                                  labels.begin() + static_cast<std::ptrdiff_t>(first + count),
+                                  "_"));
+        const auto part = lambda_nm.subspan(first, count);
+        scenes.push_back(
+            SceneWriter(rig, bound, options, name, {part.begin(), part.end()}).write());
+    }
+    return scenes;
+}
+
+std::string render_ini(const Rig& rig) {
+    return fmt::format(
+        "; POV-Ray's settings for the scenes of this folder: povray render.ini +I<scene>.pov\n"
+        "; Every option that changes pixels is set here, none is left to the user's own ini.\n"
+        "Width={}\n"
+        "Height={}\n"
+        "; OpenEXR: half floats, linear, unclipped.\n"
+        "Output_To_File=on\n"
+        "Output_File_Type=E\n"
+        "Output_File_Name=frames/\n"
+        "Output_Alpha=off\n"
+        "File_Gamma=1.0\n"
+        "; One ray through each pixel's centre.\n"
+        "Antialias=off\n"
+        "; Media need full quality.\n"
+        "Quality=9\n"
+        "Start_Row=0\n"
+        "Start_Column=0\n"
+        "Display=off\n"
+        "Pause_When_Done=off\n"
+        "Continue_Trace=off\n"
+        "Verbose=on\n"
+        "Render_Console=off\n"
+        "Statistic_Console=off\n",
+        rig.camera.width_px,
+        rig.camera.height_px);
+}
+
+}  // namespace aphotic

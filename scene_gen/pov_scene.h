@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Writes a rig as POV-Ray scenes, one a frame, that plain `povray` renders.
+//
+// A frame carries up to three wavelengths, one in each of the image's channels red, green and
+// blue: POV-Ray never mixes them. A pixel of the frame is, in the channel of lambda,
+//
+//   2^e Phi power A_k cos(theta) / (pi d^2) (rho cos(i) + phong max(0, r.l)^phong_size)
+//       exp(-K (d + r))                           summed over strobes, cones and lamps
+//
+// the radiance L(lambda) of docs/physics.md times 2^e, the frame's exposure (exposure.h).
+//
+// Behind a port each wavelength has a frame of its own, the same in all three channels: the
+// refractive index is one number a frame, and water and glass bend each wavelength differently.
+//
+// What a scene does not hold is not in it: no media in clear water, no port, no lamp of weight
+// or power 0, no highlight of strength 0, no shadow rays in clear water.
+#pragma once
+
+#include "scene_gen/geometry.h"
+#include "scene_gen/rig.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct FrameWavelength {
+    double lambda_nm = 0.0;
+    int exposure_log2 = 0;  // e: the frame holds 2^e L(lambda)
+};
+
+struct FrameScene {
+    std::string name;                          // such as band_478_576_638nm
+    std::vector<FrameWavelength> wavelengths;  // by channel: red, green, blue; one to three
+    std::string sdl;
+};
+
+struct SceneOptions {
+    int wavelengths_per_frame = 3;          // 1 to 3; a port makes it 1
+    std::optional<LampGrid> emitter_lamps;  // none: lamp_grid() chooses per strobe
+};
+
+// The frames for these wavelengths, in their order. Throws InputError when a strobe stands
+// where POV-Ray cannot light from: inside the camera's housing.
+[[nodiscard]] std::vector<FrameScene> make_scenes(const Rig& rig,
+                                                  std::span<const double> lambda_nm,
+                                                  const SceneOptions& options = {});
+
+// The settings under which every scene of the rig renders, as a POV-Ray INI file.
+[[nodiscard]] std::string render_ini(const Rig& rig);
+
+}  // namespace aphotic

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/scene_set.h"
+
+#include "spectral/atomic_file.h"
+#include "spectral/digest.h"
+
+namespace aphotic {
+namespace {
+
+std::array<double, kChannels> lamp_signal(const Rig& rig,
+                                          std::span<const WeightedWavelength> wavelengths) {
+    std::array<double, kChannels> signal{};
+    for (const WeightedWavelength& w : wavelengths) {
+        for (const Strobe& strobe : rig.strobes) {
+            const double flux = strobe.power * strobe.spectrum.at(w.lambda_nm);
+            for (std::size_t c = 0; c < kChannels; ++c) signal[c] += flux * w.weight[c];
+        }
+    }
+    return signal;
+}
+
+}  // namespace
+
+SceneSet make_scene_set(const Rig& rig,
+                        std::span<const WeightedWavelength> wavelengths,
+                        const SceneOptions& options) {
+    std::vector<double> lambda_nm;
+    for (const WeightedWavelength& w : wavelengths) lambda_nm.push_back(w.lambda_nm);
+
+    SceneSet set;
+    set.scenes = make_scenes(rig, lambda_nm, options);
+    set.ini = render_ini(rig);
+    Manifest& manifest = set.manifest;
+    manifest.aphotic_version = APHOTIC_VERSION;
+    manifest.rig_title = rig.title;
+    manifest.rig_sha256 = rig.digest;
+    manifest.width_px = rig.camera.width_px;
+    manifest.height_px = rig.camera.height_px;
+    manifest.lamp_signal = lamp_signal(rig, wavelengths);
+    for (std::size_t f = 0; f < set.scenes.size(); ++f) {
+        const FrameScene& scene = set.scenes[f];
+        // The settings change pixels as much as the scene does: both make the checksum.
+        manifest.frames.push_back({.name = scene.name,
+                                   .scene_sha256 = sha256_of_text(scene.sdl + set.ini),
+                                   .image_sha256 = ""});
+        for (std::size_t c = 0; c < scene.wavelengths.size(); ++c) {
+            const WeightedWavelength& weighted = wavelengths[manifest.wavelengths.size()];
+            manifest.wavelengths.push_back({.lambda_nm = weighted.lambda_nm,
+                                            .weight = weighted.weight,
+                                            .frame = f,
+                                            .channel = std::string(kChannelNames[c]),
+                                            .exposure_log2 = scene.wavelengths[c].exposure_log2});
+        }
+    }
+    return set;
+}
+
+void write_scenes(const std::filesystem::path& folder, const SceneSet& set) {
+    make_folder(folder / "povray" / "frames");
+    write_text_file(folder / "povray" / "render.ini", set.ini);
+    for (std::size_t f = 0; f < set.scenes.size(); ++f) {
+        write_text_file(scene_path(folder, set.manifest.frames[f]), set.scenes[f].sdl);
+    }
+}
+
+}  // namespace aphotic

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Everything that a render of a rig consists of before POV-Ray runs: the scenes and the manifest
+// that says how their frames become images. Written to a folder DIR:
+//
+//   DIR/manifest.json
+//   DIR/povray/render.ini, DIR/povray/band_*.pov, DIR/povray/frames/
+#pragma once
+
+#include "scene_gen/pov_scene.h"
+#include "scene_gen/rig.h"
+#include "spectral/bands.h"
+#include "spectral/manifest.h"
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+struct SceneSet {
+    std::vector<FrameScene> scenes;  // in the order of manifest.frames
+    Manifest manifest;               // nothing rendered yet
+    std::string ini;
+};
+
+[[nodiscard]] SceneSet make_scene_set(const Rig& rig,
+                                      std::span<const WeightedWavelength> wavelengths,
+                                      const SceneOptions& options = {});
+
+// Scenes, settings and an empty folder for the frames; not the manifest, in which whoever
+// renders first notes what is there already.
+void write_scenes(const std::filesystem::path& folder, const SceneSet& set);
+
+}  // namespace aphotic

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/bands.h"
+
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+
+namespace aphotic {
+namespace {
+
+WeightedWavelength weighted(const Sensor& sensor, double lambda_nm, double width_nm) {
+    WeightedWavelength w{.lambda_nm = lambda_nm, .weight = {}};
+    for (int c = 0; c < kChannels; ++c) {
+        w.weight[static_cast<std::size_t>(c)] = width_nm * sensor.response(c, lambda_nm);
+    }
+    return w;
+}
+
+}  // namespace
+
+std::vector<WeightedWavelength> equal_bands(const Sensor& sensor,
+                                            WavelengthRange range,
+                                            int count) {
+    const double width_nm = (range.last_nm - range.first_nm) / count;
+    std::vector<WeightedWavelength> bands;
+    for (int j = 0; j < count; ++j) {
+        bands.push_back(weighted(sensor, range.first_nm + (j + 0.5) * width_nm, width_nm));
+    }
+    return bands;
+}
+
+std::vector<WeightedWavelength> listed_wavelengths(const Sensor& sensor,
+                                                   WavelengthRange range,
+                                                   std::span<const double> lambda_nm) {
+    std::vector<WeightedWavelength> bands;
+    for (std::size_t j = 0; j < lambda_nm.size(); ++j) {
+        const bool increases = j == 0 || lambda_nm[j] > lambda_nm[j - 1];
+        if (!increases || !range.contains(lambda_nm[j])) {
+            throw InputError(
+                fmt::format("wavelengths: found {} nm in place {}; allowed: increasing "
+                            "wavelengths from {} to {} nm",
+                            lambda_nm[j],
+                            j + 1,
+                            range.first_nm,
+                            range.last_nm));
+        }
+        const double from_nm = j == 0 ? range.first_nm : 0.5 * (lambda_nm[j - 1] + lambda_nm[j]);
+        const double to_nm =
+            j + 1 == lambda_nm.size() ? range.last_nm : 0.5 * (lambda_nm[j] + lambda_nm[j + 1]);
+        bands.push_back(weighted(sensor, lambda_nm[j], to_nm - from_nm));
+    }
+    return bands;
+}
+
+}  // namespace aphotic

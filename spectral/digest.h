@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// SHA-256 (FIPS 180-4) in lower-case hexadecimal, by which frames, scenes and rigs are known
+// again.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace aphotic {
+
+[[nodiscard]] std::string sha256_of_text(std::string_view text);
+
+// Throws RunError when the file cannot be read.
+[[nodiscard]] std::string sha256_of_file(const std::filesystem::path& file);
+
+}  // namespace aphotic

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/integrator.h"
+
+#include "spectral/digest.h"
+#include "spectral/error.h"
+#include "spectral/exr.h"
+#include "spectral/frame_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A block holds this many samples of spectral radiance at most (64 MiB of floats), and whole
+// blocks of OpenEXR's ZIP, which compresses 16 rows at a time.
+constexpr std::size_t kBlockSamples = std::size_t{1} << 24;
+constexpr int kRowsOfZip = 16;
+constexpr int kMostRows = 64;
+
+struct Block {
+    int first_row = 0;
+    int rows = 0;
+    std::size_t plane = 0;        // samples of one channel
+    std::vector<float> radiance;  // one plane a wavelength
+    std::vector<float> signal;    // R, G, B planes
+};
+
+int rows_per_block(const Manifest& manifest) {
+    const std::size_t row =
+        static_cast<std::size_t>(manifest.width_px) * manifest.wavelengths.size();
+    const int rows = static_cast<int>(std::min<std::size_t>(kBlockSamples / row, kMostRows));
+    return std::max(kRowsOfZip, rows / kRowsOfZip * kRowsOfZip);
+}
+
+// Reads every frame's rows, checks them, and takes the exposures out.
+void read_radiance(const fs::path& folder, const Manifest& manifest, Block& block) {
+    const auto plane_of = [&](std::size_t j) {
+        return std::span(block.radiance).subspan(j * block.plane, block.plane);
+    };
+    for (std::size_t f = 0; f < manifest.frames.size(); ++f) {
+        const fs::path file = image_path(folder, manifest.frames[f]);
+        ExrReader reader(file);
+        check_size(
+            file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
+        for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
+            const ManifestWavelength& w = manifest.wavelengths[j];
+            if (w.frame != f) continue;
+            const auto samples = plane_of(j);
+            reader.read_rows(block.first_row, block.rows, std::span(&w.channel, 1), samples);
+            check_samples(file, w.channel, samples, manifest.width_px, block.first_row);
+            const float scale = std::ldexp(1.0F, -w.exposure_log2);
+            for (float& sample : samples) sample *= scale;
+        }
+    }
+}
+
+void sum_signals(const Manifest& manifest, Block& block) {
+    std::vector<double> sum(block.plane);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        std::fill(sum.begin(), sum.end(), 0.0);
+        for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
+            const double weight = manifest.wavelengths[j].weight[c];
+            const float* radiance = block.radiance.data() + j * block.plane;
+            for (std::size_t i = 0; i < block.plane; ++i) sum[i] += weight * radiance[i];
+        }
+        std::transform(sum.begin(),
+                       sum.end(),
+                       block.signal.begin() + static_cast<std::ptrdiff_t>(c * block.plane),
+                       [](double value) { return static_cast<float>(value); });
+    }
+}
+
+void require_noted_frames(const fs::path& folder, const Manifest& manifest) {
+    for (const ManifestFrame& frame : manifest.frames) {
+        const fs::path file = image_path(folder, frame);
+        if (!fs::exists(file)) {
+            throw RunError(
+                fmt::format("{}: this frame is missing; render it first", file.string()));
+        }
+        if (frame.done() && sha256_of_file(file) != frame.image_sha256) {
+            throw RunError(
+                fmt::format("{}: is not the image that the manifest notes", file.string()));
+        }
+    }
+}
+
+ExrAttributes attributes_of(const Manifest& manifest) {
+    std::vector<double> lambda_nm;
+    for (const ManifestWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
+    return {{"aphotic:version", manifest.aphotic_version},
+            {"aphotic:rig_title", manifest.rig_title},
+            {"aphotic:rig_sha256", manifest.rig_sha256},
+            {"aphotic:wavelengths_nm", fmt::format("{}", fmt::join(lambda_nm, " "))}};
+}
+
+}  // namespace
+
+std::string spectral_channel(double lambda_nm) {
+    std::string number = fmt::format("{:.6f}", lambda_nm);
+    std::replace(number.begin(), number.end(), '.', ',');
+    return fmt::format("S0.{}nm", number);
+}
+
+CameraImage integrate(const fs::path& folder,
+                      const Manifest& manifest,
+                      const ProgressReport& report) {
+    require_noted_frames(folder, manifest);
+    const int width_px = manifest.width_px;
+    const int height_px = manifest.height_px;
+
+    const ExrAttributes attributes = attributes_of(manifest);
+    const std::vector<std::string> rgb(kChannelNames.begin(), kChannelNames.end());
+    ExrWriter image_file(folder / "image.exr", width_px, height_px, rgb, attributes);
+
+    std::vector<std::string> spectral_channels = rgb;
+    for (const ManifestWavelength& w : manifest.wavelengths) {
+        spectral_channels.push_back(spectral_channel(w.lambda_nm));
+    }
+    ExrAttributes spectral_attributes = attributes;
+    spectral_attributes.emplace_back("spectralLayoutVersion", "1.0");
+    spectral_attributes.emplace_back("emissiveUnits", "W.m^-2.sr^-1");
+    ExrWriter spectral_file(
+        folder / "spectral.exr", width_px, height_px, spectral_channels, spectral_attributes);
+
+    CameraImage image{.width_px = width_px, .height_px = height_px, .samples = {}};
+    const auto image_plane =
+        static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
+    image.samples.resize(kChannels * image_plane);
+
+    const int block_rows = rows_per_block(manifest);
+    std::vector<float> spectral_rows;
+    for (int row = 0; row < height_px; row += block_rows) {
+        Block block;
+        block.first_row = row;
+        block.rows = std::min(block_rows, height_px - row);
+        block.plane = static_cast<std::size_t>(block.rows) * static_cast<std::size_t>(width_px);
+        block.radiance.resize(block.plane * manifest.wavelengths.size());
+        block.signal.resize(block.plane * kChannels);
+        read_radiance(folder, manifest, block);
+        sum_signals(manifest, block);
+
+        image_file.write_rows(block.rows, block.signal);
+        spectral_rows = block.signal;
+        spectral_rows.insert(spectral_rows.end(), block.radiance.begin(), block.radiance.end());
+        spectral_file.write_rows(block.rows, spectral_rows);
+        const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            std::copy_n(
+                block.signal.begin() + static_cast<std::ptrdiff_t>(c * block.plane),
+                block.plane,
+                image.samples.begin() + static_cast<std::ptrdiff_t>(c * image_plane + first));
+        }
+        if (report) report(static_cast<double>(row + block.rows) / height_px);
+    }
+    image_file.finish();
+    spectral_file.finish();
+    return image;
+}
+
+}  // namespace aphotic

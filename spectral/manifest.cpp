@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/manifest.h"
+
+#include "spectral/atomic_file.h"
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kFormat = "aphotic-manifest-1";
+constexpr int kLargestImagePx = 16384;
+constexpr int kLargestExposureLog2 = 1000;
+
+// Reads keys of one JSON object, and says which one is wrong.
+class Reader {
+  public:
+    Reader(const Json& object, std::string where) : object_(object), where_(std::move(where)) {
+        if (!object.is_object()) fail("", "an object");
+    }
+
+    [[nodiscard]] const Json& at(const std::string& key, std::string_view allowed) const {
+        if (!object_.contains(key)) fail(key, allowed);
+        return object_.at(key);
+    }
+
+    [[nodiscard]] std::string text(const std::string& key) const {
+        const Json& value = at(key, "a text");
+        if (!value.is_string()) fail(key, "a text");
+        return value.get<std::string>();
+    }
+
+    [[nodiscard]] int integer(const std::string& key, int least, int most) const {
+        const std::string allowed = fmt::format("a whole number from {} to {}", least, most);
+        const Json& value = at(key, allowed);
+        if (!value.is_number_integer() || value.get<double>() < least ||
+            value.get<double>() > most) {
+            fail(key, allowed);
+        }
+        return value.get<int>();
+    }
+
+    [[nodiscard]] double number(const std::string& key) const {
+        const Json& value = at(key, "a number");
+        if (!value.is_number()) fail(key, "a number");
+        return value.get<double>();
+    }
+
+    [[nodiscard]] std::array<double, kChannels> channels(const std::string& key) const {
+        const Json& value = at(key, "three numbers");
+        const auto is_number = [](const Json& item) { return item.is_number(); };
+        if (!value.is_array() || value.size() != kChannels ||
+            !std::all_of(value.begin(), value.end(), is_number)) {
+            fail(key, "three numbers");
+        }
+        return value.get<std::array<double, kChannels>>();
+    }
+
+    [[nodiscard]] std::vector<Reader> objects(const std::string& key) const {
+        const Json& value = at(key, "a list of objects");
+        if (!value.is_array()) fail(key, "a list of objects");
+        std::vector<Reader> all;
+        for (const Json& item : value) {
+            all.emplace_back(item, fmt::format("{}: {}[{}]", where_, key, all.size()));
+        }
+        return all;
+    }
+
+    [[noreturn]] void fail(const std::string& key, std::string_view allowed) const {
+        const std::string found = key.empty()             ? object_.dump()
+                                  : object_.contains(key) ? object_.at(key).dump()
+                                                          : "nothing";
+        throw InputError(fmt::format("{}: {}: found {}; allowed: {}",
+                                     where_,
+                                     key.empty() ? "value" : key,
+                                     found.substr(0, 80),
+                                     allowed));
+    }
+
+  private:
+    const Json& object_;
+    std::string where_;
+};
+
+// A frame's name becomes a file's name: nothing in it may lead out of the folder.
+bool is_plain_name(std::string_view name) {
+    const auto is_plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '.' || c == '-';
+    };
+    return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), is_plain);
+}
+
+ManifestFrame frame_of(const Reader& reader) {
+    ManifestFrame frame{.name = reader.text("name"),
+                        .scene_sha256 = reader.text("scene_sha256"),
+                        .image_sha256 = ""};
+    if (!is_plain_name(frame.name)) {
+        reader.fail("name", "letters, digits, '_', '-' and '.', not first");
+    }
+    const std::string state = reader.text("state");
+    if (state != "done" && state != "pending") reader.fail("state", "\"done\" or \"pending\"");
+    if (state == "done") frame.image_sha256 = reader.text("image_sha256");
+    if (state == "done" && !frame.done()) reader.fail("image_sha256", "a checksum");
+    return frame;
+}
+
+ManifestWavelength wavelength_of(const Reader& reader, const Manifest& manifest) {
+    ManifestWavelength w;
+    w.lambda_nm = reader.number("lambda_nm");
+    const double previous_nm =
+        manifest.wavelengths.empty() ? 0.0 : manifest.wavelengths.back().lambda_nm;
+    if (!(w.lambda_nm > previous_nm)) reader.fail("lambda_nm", "increasing wavelengths over 0");
+    w.weight = reader.channels("weight");
+    w.exposure_log2 = reader.integer("exposure_log2", -kLargestExposureLog2, kLargestExposureLog2);
+    w.channel = reader.text("channel");
+    if (w.channel != "R" && w.channel != "G" && w.channel != "B") {
+        reader.fail("channel", "\"R\", \"G\" or \"B\"");
+    }
+    const std::string frame = reader.text("frame");
+    const auto found = std::find_if(manifest.frames.begin(),
+                                    manifest.frames.end(),
+                                    [&](const auto& f) { return f.name == frame; });
+    if (found == manifest.frames.end()) reader.fail("frame", "the name of one of the frames");
+    w.frame = static_cast<std::size_t>(found - manifest.frames.begin());
+    return w;
+}
+
+}  // namespace
+
+fs::path manifest_path(const fs::path& folder) {
+    return folder / "manifest.json";
+}
+
+fs::path scene_path(const fs::path& folder, const ManifestFrame& frame) {
+    return folder / "povray" / (frame.name + ".pov");
+}
+
+fs::path image_path(const fs::path& folder, const ManifestFrame& frame) {
+    return folder / "povray" / "frames" / (frame.name + ".exr");
+}
+
+void write_manifest(const fs::path& folder, const Manifest& manifest) {
+    Json json;
+    json["format"] = kFormat;
+    json["aphotic_version"] = manifest.aphotic_version;
+    json["povray_version"] = manifest.povray_version;
+    json["rig_title"] = manifest.rig_title;
+    json["rig_sha256"] = manifest.rig_sha256;
+    json["width_px"] = manifest.width_px;
+    json["height_px"] = manifest.height_px;
+    json["lamp_signal"] = manifest.lamp_signal;
+    json["frames"] = Json::array();
+    for (const ManifestFrame& frame : manifest.frames) {
+        json["frames"].push_back({{"name", frame.name},
+                                  {"state", frame.done() ? "done" : "pending"},
+                                  {"scene_sha256", frame.scene_sha256},
+                                  {"image_sha256", frame.image_sha256}});
+    }
+    json["wavelengths"] = Json::array();
+    for (const ManifestWavelength& w : manifest.wavelengths) {
+        json["wavelengths"].push_back({{"lambda_nm", w.lambda_nm},
+                                       {"weight", w.weight},
+                                       {"frame", manifest.frames[w.frame].name},
+                                       {"channel", w.channel},
+                                       {"exposure_log2", w.exposure_log2}});
+    }
+    // Titles are the user's: bytes that are no UTF-8 are replaced, not refused.
+    constexpr int kIndent = 2;
+    const std::string text = json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
+    write_text_file(manifest_path(folder), text + "\n");
+}
+
+Manifest read_manifest(const fs::path& folder) {
+    const std::string where = manifest_path(folder).string();
+    const Json json = Json::parse(read_text_file(where), nullptr, false);
+    if (json.is_discarded()) throw InputError(where + ": is not JSON");
+    const Reader reader(json, where);
+    if (reader.text("format") != kFormat) reader.fail("format", fmt::format("\"{}\"", kFormat));
+
+    Manifest manifest;
+    manifest.aphotic_version = reader.text("aphotic_version");
+    manifest.povray_version = reader.text("povray_version");
+    manifest.rig_title = reader.text("rig_title");
+    manifest.rig_sha256 = reader.text("rig_sha256");
+    manifest.width_px = reader.integer("width_px", 1, kLargestImagePx);
+    manifest.height_px = reader.integer("height_px", 1, kLargestImagePx);
+    manifest.lamp_signal = reader.channels("lamp_signal");
+    for (const Reader& frame : reader.objects("frames")) manifest.frames.push_back(frame_of(frame));
+    for (const Reader& w : reader.objects("wavelengths")) {
+        manifest.wavelengths.push_back(wavelength_of(w, manifest));
+    }
+    if (manifest.wavelengths.empty()) reader.fail("wavelengths", "at least one");
+    return manifest;
+}
+
+}  // namespace aphotic

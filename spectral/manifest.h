@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The manifest of a render: which frames there are, which wavelengths they hold, how they are
+// exposed and weighted, and which of them are done. It is all that the integrator needs, so
+// frames may be rendered elsewhere.
+//
+// In a render's folder DIR:
+//
+//   DIR/manifest.json
+//   DIR/povray/NAME.pov            the scene of frame NAME
+//   DIR/povray/frames/NAME.exr     its image
+//
+// A frame is done when its image was checked and its checksum noted; it belongs to the scene
+// whose checksum stands beside it.
+#pragma once
+
+#include "spectral/sensor.h"
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct ManifestFrame {
+    std::string name;
+    std::string scene_sha256;
+    std::string image_sha256;  // empty: not rendered yet
+
+    [[nodiscard]] bool done() const { return !image_sha256.empty(); }
+};
+
+struct ManifestWavelength {
+    double lambda_nm = 0.0;
+    std::array<double, kChannels> weight{};  // of L(lambda) in the signals of R, G, B
+    std::size_t frame = 0;                   // index into Manifest::frames
+    std::string channel;                     // of the frame: R, G or B
+    int exposure_log2 = 0;                   // the frame holds 2^exposure_log2 L(lambda)
+};
+
+struct Manifest {
+    std::string aphotic_version;
+    std::string povray_version;  // empty: not rendered by us
+    std::string rig_title;
+    std::string rig_sha256;
+    int width_px = 0;
+    int height_px = 0;
+    // What the lamps themselves would signal: the sum over strobes of int Phi Q_c dlambda. The
+    // preview's white.
+    std::array<double, kChannels> lamp_signal{};
+    std::vector<ManifestWavelength> wavelengths;  // increasing
+    std::vector<ManifestFrame> frames;
+};
+
+[[nodiscard]] std::filesystem::path manifest_path(const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path scene_path(const std::filesystem::path& folder,
+                                               const ManifestFrame& frame);
+[[nodiscard]] std::filesystem::path image_path(const std::filesystem::path& folder,
+                                               const ManifestFrame& frame);
+
+void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
+
+// Every value is checked; an InputError names the file and the key.
+[[nodiscard]] Manifest read_manifest(const std::filesystem::path& folder);
+
+}  // namespace aphotic

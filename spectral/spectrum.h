@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A tabulated curve over wavelength, linear between its knots and undefined outside them.
+//
+//   f(lambda) = f_i + (f_{i+1} - f_i) (lambda - lambda_i) / (lambda_{i+1} - lambda_i)
+//
+// lambda  wavelength [nm], lambda_i strictly increasing
+// f       any quantity; its unit belongs to whoever owns the curve
+//
+// f(lambda_i) = f_i exactly. Nothing is extrapolated: asking outside [first_nm, last_nm] is an
+// InputError that names the curve.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+// A closed interval of wavelengths.
+struct WavelengthRange {
+    double first_nm = 0.0;
+    double last_nm = 0.0;
+
+    [[nodiscard]] bool contains(double lambda_nm) const {
+        return first_nm <= lambda_nm && lambda_nm <= last_nm;
+    }
+};
+
+class Spectrum {
+  public:
+    // name says in messages whose curve this is, such as "water absorption 'pope-fry-1997'".
+    // Throws InputError unless there are at least two knots, all finite and increasing.
+    Spectrum(std::string name, std::vector<double> lambda_nm, std::vector<double> values);
+
+    [[nodiscard]] double at(double lambda_nm) const;
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] WavelengthRange range() const;
+    [[nodiscard]] std::span<const double> lambda_nm() const { return lambda_nm_; }
+    [[nodiscard]] std::span<const double> values() const { return values_; }
+
+  private:
+    std::string name_;
+    std::vector<double> lambda_nm_;
+    std::vector<double> values_;
+};
+
+// The range that all curves cover; first_nm > last_nm when there is none.
+[[nodiscard]] WavelengthRange common_range(std::span<const Spectrum* const> curves);
+
+// Throws InputError unless every curve covers range. The message names each curve that does
+// not, the part that it lacks, and the range_nm that would do.
+void require_cover(std::span<const Spectrum* const> curves, WavelengthRange range);
+
+// The wavelengths at which any of the curves bends, with the ends of range, sorted, without
+// repeats: between neighbours every curve is a straight line.
+[[nodiscard]] std::vector<double> union_of_knots(std::span<const Spectrum* const> curves,
+                                                 WavelengthRange range);
+
+}  // namespace aphotic

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/table.h"
+
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace aphotic {
+
+namespace {
+
+constexpr std::size_t kMaxTableBytes = 64U << 20U;
+constexpr double kNoUpperBound = std::numeric_limits<double>::infinity();
+
+struct RoleRule {
+    CurveRole role;
+    std::string_view name;
+    std::vector<std::vector<std::string>> headers;
+    double max_value;
+};
+
+const std::vector<RoleRule>& role_rules() {
+    const std::string nm = "wavelength_nm";
+    static const std::vector<RoleRule> rules{
+        {CurveRole::WaterAbsorption, "water absorption", {{nm, "absorption_per_m"}}, kNoUpperBound},
+        {CurveRole::LampSpectrum,
+         "lamp spectrum",
+         {{nm, "relative_power"}, {nm, "radiant_flux_w_per_nm"}},
+         kNoUpperBound},
+        {CurveRole::Reflectance, "reflectance", {{nm, "reflectance"}}, 1.0},
+        {CurveRole::SensorResponse,
+         "sensor response",
+         {{nm, "red", "green", "blue"}},
+         kNoUpperBound},
+        {CurveRole::FilterTransmittance,
+         "filter transmittance",
+         {{nm, "red", "green", "blue"}},
+         1.0},
+        {CurveRole::QuantumEfficiency, "quantum efficiency", {{nm, "quantum_efficiency"}}, 1.0},
+        {CurveRole::ColourMatching,
+         "colour matching",
+         {{nm, "xbar", "ybar", "zbar"}},
+         kNoUpperBound},
+    };
+    return rules;
+}
+
+const RoleRule& rule_of(CurveRole role) {
+    return *std::find_if(role_rules().begin(), role_rules().end(), [role](const RoleRule& rule) {
+        return rule.role == role;
+    });
+}
+
+[[noreturn]] void fail(const std::string& name, std::size_t line, const std::string& what) {
+    throw InputError(fmt::format("{}:{}: {}", name, line, what));
+}
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t\r";
+    const std::size_t first = text.find_first_not_of(kBlanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+// The continuation bytes that follow this first byte of a UTF-8 character; -1 if it is none.
+int continuation_bytes(unsigned char byte) {
+    if (byte < 0x80) return 0;
+    if (byte >= 0xC2 && byte < 0xE0) return 1;
+    if (byte >= 0xE0 && byte < 0xF0) return 2;
+    if (byte >= 0xF0 && byte < 0xF5) return 3;
+    return -1;
+}
+
+bool is_utf8_text(std::string_view line) {
+    int expected = 0;
+    for (const char c : line) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (expected > 0) {
+            if ((byte & 0xC0U) != 0x80) return false;
+            --expected;
+            continue;
+        }
+        if (byte < 0x20 && c != '\t' && c != '\r') return false;
+        expected = continuation_bytes(byte);
+        if (expected < 0) return false;
+    }
+    return expected == 0;
+}
+
+std::vector<std::string_view> split(std::string_view line) {
+    std::vector<std::string_view> fields;
+    for (std::size_t start = 0; start <= line.size();) {
+        const std::size_t end = std::min(line.find(',', start), line.size());
+        fields.push_back(trimmed(line.substr(start, end - start)));
+        start = end + 1;
+    }
+    return fields;
+}
+
+double parse_field(const Table& table,
+                   std::size_t line,
+                   const std::string& column,
+                   std::string_view field) {
+    double number = 0.0;
+    const char* end = field.data() + field.size();
+    const auto [stop, error] = std::from_chars(field.data(), end, number);
+    if (error != std::errc() || stop != end || !std::isfinite(number)) {
+        fail(table.name,
+             line,
+             fmt::format("{}: found '{}'; allowed: a finite decimal number", column, field));
+    }
+    return number;
+}
+
+void take_comment(Table& table, std::string_view comment) {
+    const std::size_t colon = comment.find(':');
+    if (colon == std::string_view::npos) return;
+    const std::string_view key = trimmed(comment.substr(0, colon));
+    const std::string_view text = trimmed(comment.substr(colon + 1));
+    if (!key.empty()) table.metadata.emplace(key, text);
+}
+
+void take_header(Table& table, std::size_t line, const std::vector<std::string_view>& fields) {
+    table.header_line = line;
+    table.columns.assign(fields.begin(), fields.end());
+    std::set<std::string> seen;
+    for (const std::string& column : table.columns) {
+        if (column.empty()) fail(table.name, line, "found a column without a name");
+        const bool starts_like_a_name = std::isalpha(static_cast<unsigned char>(column[0])) != 0;
+        if (!starts_like_a_name) {
+            fail(table.name,
+                 line,
+                 fmt::format("found '{}' where a header row such as "
+                             "wavelength_nm,reflectance is expected",
+                             column));
+        }
+        if (!seen.insert(column).second) {
+            fail(table.name, line, fmt::format("the column '{}' stands twice", column));
+        }
+    }
+}
+
+void take_row(Table& table, std::size_t line, const std::vector<std::string_view>& fields) {
+    if (fields.size() != table.columns.size()) {
+        fail(table.name,
+             line,
+             fmt::format("found {} fields; allowed: {}, as in the header row",
+                         fields.size(),
+                         table.columns.size()));
+    }
+    TableRow row{line, {}};
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        row.fields.push_back(parse_field(table, line, table.columns[i], fields[i]));
+    }
+    table.rows.push_back(std::move(row));
+}
+
+void take_line(Table& table, std::size_t line, std::string_view text) {
+    if (!is_utf8_text(text)) {
+        fail(table.name, line, "found bytes that are not text; allowed: UTF-8");
+    }
+    const std::string_view content = trimmed(text);
+    if (content.empty()) return;
+    if (content.front() == '#') {
+        take_comment(table, content.substr(1));
+    } else if (table.columns.empty()) {
+        take_header(table, line, split(content));
+    } else {
+        take_row(table, line, split(content));
+    }
+}
+
+bool header_fits(const Table& table, const RoleRule& rule) {
+    return std::count(rule.headers.begin(), rule.headers.end(), table.columns) > 0;
+}
+
+void check_header(const Table& table, const RoleRule& rule) {
+    if (header_fits(table, rule)) return;
+    std::vector<std::string> allowed;
+    for (const auto& header : rule.headers) {
+        allowed.push_back(fmt::format("{}", fmt::join(header, ",")));
+    }
+    fail(table.name,
+         table.header_line,
+         fmt::format("found the header row {}; allowed for {}: {}",
+                     fmt::join(table.columns, ","),
+                     rule.name,
+                     fmt::join(allowed, " or ")));
+}
+
+void check_wavelengths(const Table& table) {
+    double last_nm = 0.0;
+    for (const TableRow& row : table.rows) {
+        const double lambda_nm = row.fields[0];
+        if (!(lambda_nm > last_nm)) {
+            fail(table.name,
+                 row.line,
+                 fmt::format("wavelength_nm: found {}; allowed: above {}, for wavelengths must "
+                             "increase",
+                             lambda_nm,
+                             last_nm));
+        }
+        last_nm = lambda_nm;
+    }
+}
+
+void check_values(const Table& table, const RoleRule& rule) {
+    for (const TableRow& row : table.rows) {
+        for (std::size_t i = 1; i < row.fields.size(); ++i) {
+            const double value = row.fields[i];
+            if (value >= 0.0 && value <= rule.max_value) continue;
+            const bool bounded = rule.max_value != kNoUpperBound;
+            fail(table.name,
+                 row.line,
+                 fmt::format("{}: found {}; allowed: {}",
+                             table.columns[i],
+                             value,
+                             bounded ? fmt::format("0 to {}", rule.max_value) : "0 or more"));
+        }
+    }
+}
+
+std::vector<double> column_of(const Table& table, std::size_t column) {
+    std::vector<double> numbers;
+    for (const TableRow& row : table.rows) numbers.push_back(row.fields[column]);
+    return numbers;
+}
+
+}  // namespace
+
+std::string Table::text_of(const std::string& key) const {
+    const auto found = metadata.find(key);
+    return found == metadata.end() ? std::string() : found->second;
+}
+
+Table parse_table(const std::string& name, std::string_view text) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    Table table;
+    table.name = name;
+    std::size_t line = 0;
+    for (std::size_t start = 0; start < text.size();) {
+        const std::size_t end = std::min(text.find('\n', start), text.size());
+        take_line(table, ++line, text.substr(start, end - start));
+        start = end + 1;
+    }
+    if (table.columns.empty()) fail(name, line + 1, "the file ends without a header row");
+    if (table.rows.empty()) fail(name, line + 1, "the file ends without a row of numbers");
+    return table;
+}
+
+Table read_table(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) {
+        throw InputError(
+            fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+    }
+    if (std::filesystem::is_directory(file)) {
+        throw InputError(fmt::format("{}: cannot be read: it is a folder", file.string()));
+    }
+    // Counted while reading, so that pipes are bounded too.
+    std::string text;
+    std::vector<char> chunk(1U << 16U);
+    while (in.read(chunk.data(), std::ssize(chunk)), in.gcount() > 0) {
+        text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
+        if (text.size() > kMaxTableBytes) {
+            throw InputError(
+                fmt::format("{}: found more than 64 MiB; allowed: 64 MiB or less", file.string()));
+        }
+    }
+    if (in.bad()) throw InputError(fmt::format("{}: cannot be read", file.string()));
+    return parse_table(file.string(), text);
+}
+
+std::string_view role_name(CurveRole role) {
+    return rule_of(role).name;
+}
+
+std::optional<CurveRole> role_named(std::string_view name) {
+    for (const RoleRule& rule : role_rules()) {
+        if (rule.name == name) return rule.role;
+    }
+    return std::nullopt;
+}
+
+std::vector<Spectrum> curves_of(const Table& table, CurveRole role) {
+    const RoleRule& rule = rule_of(role);
+    check_header(table, rule);
+    check_wavelengths(table);
+    check_values(table, rule);
+    if (table.rows.size() < 2) {
+        fail(table.name, table.rows.back().line, "found 1 row; a curve needs 2 or more");
+    }
+    const std::vector<double> lambda_nm = column_of(table, 0);
+    std::vector<Spectrum> curves;
+    for (std::size_t i = 1; i < table.columns.size(); ++i) {
+        std::string name = fmt::format("{} '{}'", rule.name, table.name);
+        if (table.columns.size() > 2) name += fmt::format(" ({})", table.columns[i]);
+        curves.emplace_back(std::move(name), lambda_nm, column_of(table, i));
+    }
+    return curves;
+}
+
+std::vector<CurveRole> roles_of(const Table& table) {
+    std::vector<CurveRole> roles;
+    std::vector<std::string> headers;
+    std::optional<InputError> fault;
+    for (const RoleRule& rule : role_rules()) {
+        for (const auto& header : rule.headers) {
+            headers.push_back(fmt::format("{} ({})", fmt::join(header, ","), rule.name));
+        }
+        if (!header_fits(table, rule)) continue;
+        try {
+            static_cast<void>(curves_of(table, rule.role));
+            roles.push_back(rule.role);
+        } catch (const InputError& error) {
+            if (!fault) fault = error;
+        }
+    }
+    if (!roles.empty()) return roles;
+    if (fault) throw *fault;
+    fail(table.name,
+         table.header_line,
+         fmt::format("found the header row {}; allowed: {}",
+                     fmt::join(table.columns, ","),
+                     fmt::join(headers, ", ")));
+}
+
+}  // namespace aphotic
