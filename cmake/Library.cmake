@@ -16,6 +16,7 @@ function(aphotic_library name)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:aphotic_warnings>)
     set_target_properties(${target} PROPERTIES
         EXPORT_NAME ${name}
+        INSTALL_RPATH $ORIGIN
         VERSION ${PROJECT_VERSION}
         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})  # before 1.0, minors break
 

@@ -27,7 +27,8 @@ function(aphotic_tests label)
             APHOTIC_COMMAND="$<TARGET_FILE:aphotic>")
         target_link_libraries(${target} PRIVATE
             aphotic::plugin aphotic::scene_gen aphotic::spectral
-            fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR GTest::gtest_main
+            fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR PkgConfig::cairo
+            GTest::gtest_main
             aphotic_sanitizers aphotic_warnings)
         add_dependencies(${target} aphotic)
 

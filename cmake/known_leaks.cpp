@@ -4,7 +4,7 @@
 // next text, and fontconfig offers no way to free them that is safe while Cairo is in use.
 
 // The name is the sanitizer's.
-// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
+// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libfontconfig";
 }

@@ -34,7 +34,7 @@ WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm) 
     if (!camera.port) return {.origin_m = Vector3d::Zero(), .direction = in_air};
 
     const Eigen::Vector2d sin_air = in_air.head<2>();
-    const double n_glass = builtin_glass(camera.port->glass).index(lambda_nm);
+    const double n_glass = camera.port->glass.index(lambda_nm);
     const double n_water =
         seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
     const Eigen::Vector2d sin_glass = sin_air / n_glass;

@@ -95,25 +95,34 @@ Housing housing(const Camera& camera) {
     return h;
 }
 
-void require_lamps_outside_housing(const Rig& rig, const Strobe& strobe, LampGrid grid) {
+void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid) {
+    const Plane floor = floor_plane(rig.sled);
+    const std::vector<Vector3d> lamps_m = lamp_positions_m(strobe, grid);
+    for (const Vector3d& lamp_m : lamps_m) {
+        if (height_above(floor, lamp_m) > 0.0) continue;
+        throw InputError(
+            fmt::format("strobe '{}' has a lamp at or under the sea floor, {:.4f} m below it",
+                        strobe.name,
+                        -height_above(floor, lamp_m)));
+    }
     if (!rig.camera.port) return;
     const Housing h = housing(rig.camera);
-    const FlatPort& port = *rig.camera.port;
-    for (const Vector3d& lamp_m : lamp_positions_m(strobe, grid)) {
+    const double front_m = rig.camera.port->distance_m + rig.camera.port->thickness_m;
+    const double behind_m = h.back_m + rig.camera.port->thickness_m;
+    for (const Vector3d& lamp_m : lamps_m) {
         const Vector3d at = to_povray(lamp_m);
-        if (std::abs(at.x()) <= h.block_x_m && std::abs(at.y()) <= h.block_y_m &&
-            at.z() >= -(h.back_m + port.thickness_m) &&
-            at.z() <= port.distance_m + port.thickness_m) {
-            throw InputError(
-                fmt::format("strobe '{}' stands inside the camera's housing, which reaches {:.3f} "
-                            "m to the side, "
-                            "{:.3f} m fore and aft and from {:.3f} to {:.3f} m in depth",
-                            strobe.name,
-                            h.block_x_m,
-                            h.block_y_m,
-                            -(h.back_m + port.thickness_m),
-                            port.distance_m + port.thickness_m));
-        }
+        const bool is_inside = std::abs(at.x()) <= h.block_x_m && std::abs(at.y()) <= h.block_y_m &&
+                               at.z() >= -behind_m && at.z() <= front_m;
+        if (!is_inside) continue;
+        throw InputError(
+            fmt::format("strobe '{}' has a lamp inside the camera's housing, which reaches "
+                        "{:.3f} m to the side, {:.3f} m fore and aft, and from {:.3f} m above "
+                        "the pupil to {:.3f} m below it",
+                        strobe.name,
+                        h.block_x_m,
+                        h.block_y_m,
+                        behind_m,
+                        front_m));
     }
 }
 
@@ -236,7 +245,7 @@ class SceneWriter {
         const double lambda_nm = lambda_nm_.front();
         const double n_water =
             seawater_index(lambda_nm, rig_.water.salinity_psu, rig_.water.temperature_c);
-        const double n_glass = builtin_glass(port.glass).index(lambda_nm);
+        const double n_glass = port.glass.index(lambda_nm);
         const Housing h = housing(rig_.camera);
         line(
             "// Flat port: a block of glass and, strictly inside it, the air that holds the "
@@ -246,7 +255,7 @@ class SceneWriter {
             "block is");
         line("// hollow, so neither holds water; no_shadow, so the lamps' light takes no notice.");
         line(fmt::format("#declare N_Water = {};", number(n_water)));
-        line(fmt::format("#declare N_Glass = {};   // {}", number(n_glass), port.glass));
+        line(fmt::format("#declare N_Glass = {};   // {}", number(n_glass), port.glass.name()));
         const auto block =
             [&](double x, double y, double back, double front, std::string_view ior) {
                 line(fmt::format("box {{ <{}, {}, {}>, <{}, {}, {}>",
@@ -314,9 +323,9 @@ class SceneWriter {
         line("      spotlight  point_at Position + Axis");
         line("      radius Half_Angle  falloff Half_Angle  tightness 1");
         line("      fade_distance Fade_Distance  fade_power 2");
-        line(rig_.water.is_clear()
-                 ? "      shadowless   // nothing stands in the way, and the water is clear"
-                 : "      media_attenuation on");
+        // shadowless would spare clear water its shadow rays, but it makes a point light of a
+        // spotlight: POV-Ray knows one type a light.
+        if (!rig_.water.is_clear()) line("      media_attenuation on");
         line("   }");
         line("#end");
         for (const Strobe& strobe : rig_.strobes) write_strobe(strobe);
@@ -329,9 +338,7 @@ class SceneWriter {
             line("// shines nothing at these wavelengths");
             return;
         }
-        const LampGrid grid = grid_of(strobe);
-        require_lamps_outside_housing(rig_, strobe, grid);
-        const auto lamps_m = lamp_positions_m(strobe, grid);
+        const auto lamps_m = lamp_positions_m(strobe, grid_of(strobe));
         const auto share = 1.0 / static_cast<double>(lamps_m.size());
         Channels flux{};
         for (std::size_t c = 0; c < 3; ++c) {
@@ -368,6 +375,10 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
                                     const SceneOptions& options) {
     const auto per_frame =
         static_cast<std::size_t>(rig.camera.port ? 1 : options.wavelengths_per_frame);
+    for (const Strobe& strobe : rig.strobes) {
+        require_place_for_lamps(
+            rig, strobe, options.emitter_lamps.value_or(lamp_grid(rig, strobe)));
+    }
     const RadianceBound bound(rig);
     const std::vector<std::string> labels = wavelength_labels(lambda_nm);
     std::vector<FrameScene> scenes;

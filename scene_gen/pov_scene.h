@@ -14,7 +14,7 @@
 // refractive index is one number a frame, and water and glass bend each wavelength differently.
 //
 // What a scene does not hold is not in it: no media in clear water, no port, no lamp of weight
-// or power 0, no highlight of strength 0, no shadow rays in clear water.
+// or power 0, no highlight of strength 0.
 #pragma once
 
 #include "scene_gen/geometry.h"
@@ -44,7 +44,7 @@ struct SceneOptions {
 };
 
 // The frames for these wavelengths, in their order. Throws InputError when a strobe stands
-// where POV-Ray cannot light from: inside the camera's housing.
+// where it cannot light from: at or under the floor, or inside the camera's housing.
 [[nodiscard]] std::vector<FrameScene> make_scenes(const Rig& rig,
                                                   std::span<const double> lambda_nm,
                                                   const SceneOptions& options = {});

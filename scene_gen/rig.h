@@ -9,6 +9,7 @@
 // Both renderers start from this struct and share nothing else of geometry or light.
 #pragma once
 
+#include "spectral/refraction.h"
 #include "spectral/sensor.h"
 #include "spectral/spectrum.h"
 #include "spectral/water.h"
@@ -34,7 +35,7 @@ struct Sled {
 struct FlatPort {
     double distance_m = 0.0;  // pupil to the inner face
     double thickness_m = 0.0;
-    std::string glass;  // a built-in glass
+    Glass glass;
 };
 
 struct Camera {

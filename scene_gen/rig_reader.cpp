@@ -46,7 +46,7 @@ constexpr Bounds kPortThicknessMm{1.0, 1000.0};
 constexpr Bounds kMultiple{0.0, 1e6};
 constexpr Bounds kLossPerM{0.0, 1e6};
 constexpr Bounds kSalinityPsu{0.0, 40.0};
-constexpr Bounds kTemperatureC{-2.0, 40.0};
+constexpr Bounds kTemperatureC{-2.0, 35.0};
 constexpr Bounds kPhong{0.0, 1e6};
 constexpr Bounds kPhongSize{0.0, 1e6};
 constexpr Bounds kHalfAngleDeg{0.001, 90.0};
@@ -231,6 +231,7 @@ class RigReader {
     static Eigen::Vector3d read_axis(Section& strobe, const Eigen::Vector3d& position_m);
     static Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m);
     static FlatPort read_port(Section section);
+    static Glass read_glass(Section& port);
 
     Camera read_camera(Section section);
     Sensor read_response(Section& camera);
@@ -275,13 +276,17 @@ Sled RigReader::read_sled(Section section) {
     return sled;
 }
 
+Glass RigReader::read_glass(Section& port) {
+    const std::string name = port.text("glass", "a built-in glass");
+    return port.at_key("glass", [&] { return builtin_glass(name); });
+}
+
 FlatPort RigReader::read_port(Section section) {
     (void)section.word("shape", {"flat"});
     FlatPort port{
         .distance_m = section.number("distance_mm", kPortDistanceMm) * kMetresPerMillimetre,
         .thickness_m = section.number("thickness_mm", kPortThicknessMm) * kMetresPerMillimetre,
-        .glass = section.text("glass", "a built-in glass")};
-    section.at_key("glass", [&] { return builtin_glass(port.glass); });
+        .glass = read_glass(section)};
     section.refuse_unknown_keys();
     return port;
 }
@@ -433,19 +438,27 @@ Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, c
     return strobe;
 }
 
+// A refractive index stands in the list as the line between its range's ends: only the range
+// counts there.
+Spectrum range_of_index(const std::string& what, WavelengthRange range) {
+    return {
+        fmt::format("refractive index of {}", what), {range.first_nm, range.last_nm}, {1.0, 1.0}};
+}
+
 // Every curve that the images need, over the range that they integrate.
 void require_tables_to_cover_the_range(const Rig& rig) {
     std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
     curves.push_back(&rig.seafloor.reflectance);
     if (rig.water.multiple != 0.0) curves.push_back(&rig.water.absorption_per_m);
     for (const Strobe& strobe : rig.strobes) curves.push_back(&strobe.spectrum);
-    require_cover(curves, rig.camera.range);
-    if (!rig.camera.port) return;
-    const Glass glass = builtin_glass(rig.camera.port->glass);
-    for (const double lambda_nm : {rig.camera.range.first_nm, rig.camera.range.last_nm}) {
-        (void)glass.index(lambda_nm);
-        (void)seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
+    std::vector<Spectrum> indices;
+    if (rig.camera.port) {
+        const Glass& glass = rig.camera.port->glass;
+        indices.push_back(range_of_index(fmt::format("'{}'", glass.name()), glass.range()));
+        indices.push_back(range_of_index("seawater", kSeawaterIndexRange));
     }
+    for (const Spectrum& index : indices) curves.push_back(&index);
+    require_cover(curves, rig.camera.range);
 }
 
 Rig RigReader::read(Section top) {

@@ -40,22 +40,29 @@ int rows_per_block(const Manifest& manifest) {
 
 // Reads every frame's rows, checks them, and takes the exposures out.
 void read_radiance(const fs::path& folder, const Manifest& manifest, Block& block) {
-    const auto plane_of = [&](std::size_t j) {
-        return std::span(block.radiance).subspan(j * block.plane, block.plane);
-    };
+    static const std::vector<std::string> kFrameChannels{"R", "G", "B"};
+    // All channels at once: OpenEXR unpacks them together, whichever are asked for.
+    std::vector<float> samples(kFrameChannels.size() * block.plane);
     for (std::size_t f = 0; f < manifest.frames.size(); ++f) {
         const fs::path file = image_path(folder, manifest.frames[f]);
         ExrReader reader(file);
         check_size(
             file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
+        reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
         for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
             const ManifestWavelength& w = manifest.wavelengths[j];
             if (w.frame != f) continue;
-            const auto samples = plane_of(j);
-            reader.read_rows(block.first_row, block.rows, std::span(&w.channel, 1), samples);
-            check_samples(file, w.channel, samples, manifest.width_px, block.first_row);
-            const float scale = std::ldexp(1.0F, -w.exposure_log2);
-            for (float& sample : samples) sample *= scale;
+            const auto channel =
+                std::find(kFrameChannels.begin(), kFrameChannels.end(), w.channel) -
+                kFrameChannels.begin();
+            const auto from = std::span<const float>(samples).subspan(
+                static_cast<std::size_t>(channel) * block.plane, block.plane);
+            check_samples(file, w.channel, from, manifest.width_px, block.first_row);
+            const double scale = std::ldexp(1.0, -w.exposure_log2);
+            std::transform(from.begin(),
+                           from.end(),
+                           block.radiance.begin() + static_cast<std::ptrdiff_t>(j * block.plane),
+                           [scale](float sample) { return static_cast<float>(scale * sample); });
         }
     }
 }

@@ -37,6 +37,7 @@ class Glass {
     explicit Glass(const Table& table);
 
     [[nodiscard]] double index(double lambda_nm) const;
+    [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] WavelengthRange range() const { return range_; }
 
   private:

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/bands.h"
+
+#include "spectral/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace aphotic {
+namespace {
+
+// Sums of some dozen products of numbers near 1.
+constexpr double kRounding = 1e-13;
+
+// Responses 1, 2 and a straight line: 0 at 400 nm, 3 at 700 nm.
+Sensor simple_sensor() {
+    return {{Spectrum("red", {400.0, 700.0}, {1.0, 1.0}),
+             Spectrum("green", {400.0, 700.0}, {2.0, 2.0}),
+             Spectrum("blue", {400.0, 700.0}, {0.0, 3.0})},
+            ResponseKind::Energy};
+}
+
+constexpr WavelengthRange kRange{400.0, 700.0};
+
+std::string listed_error(const std::vector<double>& lambda_nm) {
+    try {
+        static_cast<void>(listed_wavelengths(simple_sensor(), kRange, lambda_nm));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+void expect_band(const WeightedWavelength& band, double lambda_nm, double width_nm) {
+    const double blue = 3.0 * (lambda_nm - 400.0) / 300.0;
+    EXPECT_NEAR(band.lambda_nm, lambda_nm, kRounding * lambda_nm);
+    EXPECT_NEAR(band.weight[0], width_nm, kRounding * 300.0) << lambda_nm << " nm";
+    EXPECT_NEAR(band.weight[1], 2.0 * width_nm, kRounding * 300.0) << lambda_nm << " nm";
+    EXPECT_NEAR(band.weight[2], blue * width_nm, kRounding * 300.0) << lambda_nm << " nm";
+}
+
+TEST(EqualBands, StandInTheMiddleOfEqualParts) {
+    const auto bands = equal_bands(simple_sensor(), kRange, 3);
+    ASSERT_EQ(bands.size(), 3U);
+    expect_band(bands[0], 450.0, 100.0);
+    expect_band(bands[1], 550.0, 100.0);
+    expect_band(bands[2], 650.0, 100.0);
+}
+
+TEST(EqualBands, OneBandIsTheWholeRange) {
+    const auto bands = equal_bands(simple_sensor(), kRange, 1);
+    ASSERT_EQ(bands.size(), 1U);
+    expect_band(bands[0], 550.0, 300.0);
+}
+
+// The midpoint rule is exact for straight lines: the integral of Q over the range.
+TEST(EqualBands, IntegrateAStraightLineExactly) {
+    for (const int count : {1, 2, 7, 64}) {
+        double sum = 0.0;
+        for (const auto& band : equal_bands(simple_sensor(), kRange, count)) sum += band.weight[2];
+        EXPECT_NEAR(sum, 0.5 * 300.0 * 3.0, kRounding * 450.0) << count << " bands";
+    }
+}
+
+// S = int Q L with Q = 3 t, L = t^2, t = (lambda - 400) / 300: 300 * 3/4 = 225 nm.
+double cubic_error(int count) {
+    double sum = 0.0;
+    for (const auto& band : equal_bands(simple_sensor(), kRange, count)) {
+        const double t = (band.lambda_nm - 400.0) / 300.0;
+        sum += band.weight[2] * t * t;
+    }
+    return sum - 225.0;
+}
+
+TEST(EqualBands, ErrFourTimesLessAtHalfTheWidth) {
+    // The midpoint rule's error on a cubic is C / n^2 and nothing else.
+    constexpr double kRatioRounding = 1e-6;
+    const double coarse = cubic_error(8);
+    const double fine = cubic_error(16);
+    EXPECT_NEAR(coarse / fine, 4.0, kRatioRounding) << coarse << " and " << fine;
+}
+
+TEST(ListedWavelengths, ReachHalfwayToTheirNeighbours) {
+    const auto bands =
+        listed_wavelengths(simple_sensor(), kRange, std::vector{420.0, 500.0, 540.0});
+    ASSERT_EQ(bands.size(), 3U);
+    expect_band(bands[0], 420.0, 460.0 - 400.0);
+    expect_band(bands[1], 500.0, 520.0 - 460.0);
+    expect_band(bands[2], 540.0, 700.0 - 520.0);
+}
+
+TEST(ListedWavelengths, AddUpToTheRange) {
+    double sum_nm = 0.0;
+    const std::vector lambda_nm{400.0, 433.3, 512.0, 700.0};
+    for (const auto& band : listed_wavelengths(simple_sensor(), kRange, lambda_nm)) {
+        sum_nm += band.weight[0];
+    }
+    EXPECT_NEAR(sum_nm, 300.0, kRounding * 300.0);
+}
+
+TEST(ListedWavelengths, InTheMiddlesOfEqualBandsAreEqualBands) {
+    const auto equal = equal_bands(simple_sensor(), kRange, 3);
+    const auto listed =
+        listed_wavelengths(simple_sensor(), kRange, std::vector{450.0, 550.0, 650.0});
+    ASSERT_EQ(listed.size(), equal.size());
+    for (std::size_t j = 0; j < equal.size(); ++j) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            EXPECT_NEAR(listed[j].weight[c], equal[j].weight[c], kRounding * 300.0) << j;
+        }
+    }
+}
+
+TEST(ListedWavelengths, MustIncreaseWithinTheRange) {
+    const std::string allowed = "; allowed: increasing wavelengths from 400 to 700 nm";
+    EXPECT_EQ(listed_error({399.9}), "wavelengths: found 399.9 nm in place 1" + allowed);
+    EXPECT_EQ(listed_error({500.0, 700.1}), "wavelengths: found 700.1 nm in place 2" + allowed);
+    EXPECT_EQ(listed_error({500.0, 500.0}), "wavelengths: found 500 nm in place 2" + allowed);
+    EXPECT_EQ(listed_error({500.0, 600.0, 550.0}),
+              "wavelengths: found 550 nm in place 3" + allowed);
+    EXPECT_EQ(listed_error({std::nan("")}), "wavelengths: found nan nm in place 1" + allowed);
+    EXPECT_EQ(listed_error({400.0, 700.0}), "no error");
+}
+
+}  // namespace
+}  // namespace aphotic
