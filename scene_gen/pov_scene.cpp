@@ -294,6 +294,7 @@ class SceneWriter {
     void write_floor() {
         const Plane floor = floor_plane(rig_.sled);
         const Channels rho = per_channel([&](double l) { return rig_.seafloor.reflectance.at(l); });
+        line("// Floor: level in the world, so tilted as the sled sees it.");
         line(fmt::format(
             "plane {{ {}, {}", point(floor.normal), number(floor.normal.dot(floor.point_m))));
         line(fmt::format("   pigment {{ rgb {} }}", vector(rho)));

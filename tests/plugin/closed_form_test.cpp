@@ -142,7 +142,7 @@ TEST(ClosedForm, DarkRedKeepsItsDigits) {
     rig.sled.altitude_m = 4.0;
     rig.water.multiple = 2.0;
     const Difference found = against_closed_form(rig, scenes_of(rig, {450.0, 720.0}));
-    EXPECT_LE(found.worst, kHalfFloatError) << testing::PrintToString(found);
+    EXPECT_LE(found.worst_of_lit, kHalfFloatError) << testing::PrintToString(found);
     EXPECT_GT(found.darkest_sample, kSmallestNormalHalf);
     const double blue = closed_form::radiance(rig, 30, 20, 450.0).radiance;
     const double red = closed_form::radiance(rig, 30, 20, 720.0).radiance;

@@ -50,10 +50,11 @@ inline SceneSet scenes_of(const Rig& rig,
 }
 
 struct Difference {
-    double worst = 0.0;       // relative, over all wavelengths and pixels off the edges
-    double worst_nm = 0.0;    // its wavelength
-    int column = 0, row = 0;  // its pixel
-    int on_edges = 0;         // pixels left out
+    double worst_of_lit = 0.0;  // relative, over those that are to be lit, however dark
+    double worst = 0.0;         // relative, over all wavelengths and pixels off the edges
+    double worst_nm = 0.0;      // its wavelength
+    int column = 0, row = 0;    // its pixel
+    int on_edges = 0;           // pixels left out
     int compared = 0;
     double brightest_sample = 0.0;  // of all frames
     double darkest_sample = 0.0;    // of those that are to be lit
@@ -89,6 +90,8 @@ inline Difference against_closed_form(const Rig& rig,
             difference.brightest_sample = std::max(difference.brightest_sample, sample);
             if (expected > 0.0) {
                 difference.darkest_sample = std::min(difference.darkest_sample, sample);
+                difference.worst_of_lit =
+                    std::max(difference.worst_of_lit, std::abs(sample - expected) / expected);
             }
             // Where nothing shines both must be black; the floor below which half floats grow
             // coarse only keeps this from dividing by zero there.

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/manifest.h"
+
+#include "spectral/atomic_file.h"
+#include "spectral/error.h"
+#include "tests/support/temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <functional>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Manifest some_manifest() {
+    Manifest manifest;
+    manifest.aphotic_version = "0.1.0";
+    manifest.povray_version = "3.7.0.10";
+    manifest.rig_title = "A \"quoted\" title, in Kiel\n";
+    manifest.rig_sha256 = "ab12";
+    manifest.width_px = 1360;
+    manifest.height_px = 1024;
+    manifest.lamp_signal = {0.1, 1.0 / 3.0, 1e-300};
+    manifest.frames = {
+        {.name = "band_450_550nm", .scene_sha256 = "s0", .image_sha256 = "i0"},
+        {.name = "band_650.5nm", .scene_sha256 = "s1", .image_sha256 = ""},
+    };
+    manifest.wavelengths = {
+        {.lambda_nm = 450.0,
+         .weight = {0.1, -0.2, 1e17},
+         .frame = 0,
+         .channel = "R",
+         .exposure_log2 = 12},
+        {.lambda_nm = 550.1, .weight = {}, .frame = 0, .channel = "G", .exposure_log2 = -1000},
+        {.lambda_nm = 650.5, .weight = {}, .frame = 1, .channel = "B", .exposure_log2 = 1000},
+    };
+    return manifest;
+}
+
+Json some_json() {
+    const TempFolder folder;
+    write_manifest(folder.path(), some_manifest());
+    return Json::parse(read_text_file(folder.path() / "manifest.json"));
+}
+
+// What reading says of the manifest that change makes of a good one, after the file's name.
+std::string error_after(const std::function<void(Json&)>& change) {
+    Json json = some_json();
+    change(json);
+    const TempFolder folder;
+    const fs::path file = folder.path() / "manifest.json";
+    write_file(file, json.dump());
+    try {
+        static_cast<void>(read_manifest(folder.path()));
+    } catch (const InputError& error) {
+        const std::string message = error.what();
+        const std::string where = file.string() + ": ";
+        return message.starts_with(where) ? message.substr(where.size()) : "elsewhere: " + message;
+    }
+    return "no error";
+}
+
+std::string error_with(const std::string& key, const Json& value) {
+    return error_after([&](Json& json) { json[key] = value; });
+}
+
+std::string frame_error(const std::string& key, const Json& value) {
+    return error_after([&](Json& json) { json["frames"][1][key] = value; });
+}
+
+std::string wavelength_error(const std::string& key, const Json& value) {
+    return error_after([&](Json& json) { json["wavelengths"][1][key] = value; });
+}
+
+TEST(Manifest, ComesBackWhole) {
+    const TempFolder folder;
+    const Manifest written = some_manifest();
+    write_manifest(folder.path(), written);
+    const Manifest read = read_manifest(folder.path());
+    EXPECT_EQ(read.aphotic_version, written.aphotic_version);
+    EXPECT_EQ(read.povray_version, written.povray_version);
+    EXPECT_EQ(read.rig_title, written.rig_title);
+    EXPECT_EQ(read.rig_sha256, written.rig_sha256);
+    EXPECT_EQ(read.width_px, written.width_px);
+    EXPECT_EQ(read.height_px, written.height_px);
+    EXPECT_EQ(read.lamp_signal, written.lamp_signal);
+    ASSERT_EQ(read.frames.size(), written.frames.size());
+    for (std::size_t f = 0; f < read.frames.size(); ++f) {
+        EXPECT_EQ(read.frames[f].name, written.frames[f].name);
+        EXPECT_EQ(read.frames[f].scene_sha256, written.frames[f].scene_sha256);
+        EXPECT_EQ(read.frames[f].image_sha256, written.frames[f].image_sha256);
+    }
+    EXPECT_TRUE(read.frames[0].done());
+    EXPECT_FALSE(read.frames[1].done());
+    ASSERT_EQ(read.wavelengths.size(), written.wavelengths.size());
+    for (std::size_t j = 0; j < read.wavelengths.size(); ++j) {
+        EXPECT_EQ(read.wavelengths[j].lambda_nm, written.wavelengths[j].lambda_nm);
+        EXPECT_EQ(read.wavelengths[j].weight, written.wavelengths[j].weight);
+        EXPECT_EQ(read.wavelengths[j].frame, written.wavelengths[j].frame);
+        EXPECT_EQ(read.wavelengths[j].channel, written.wavelengths[j].channel);
+        EXPECT_EQ(read.wavelengths[j].exposure_log2, written.wavelengths[j].exposure_log2);
+    }
+}
+
+TEST(Manifest, ReplacesBytesOfATitleThatAreNoText) {
+    const TempFolder folder;
+    Manifest manifest = some_manifest();
+    manifest.rig_title = "Kiel \xFF";
+    write_manifest(folder.path(), manifest);
+    EXPECT_EQ(read_manifest(folder.path()).rig_title, "Kiel \xEF\xBF\xBD");
+}
+
+TEST(Manifest, KnowsWhereEverythingStands) {
+    const ManifestFrame frame{.name = "band_450nm", .scene_sha256 = "", .image_sha256 = ""};
+    EXPECT_EQ(manifest_path("out"), "out/manifest.json");
+    EXPECT_EQ(scene_path("out", frame), "out/povray/band_450nm.pov");
+    EXPECT_EQ(image_path("out", frame), "out/povray/frames/band_450nm.exr");
+}
+
+TEST(Manifest, ThatIsMissingIsAnInputErrorThatNamesIt) {
+    const TempFolder folder;
+    try {
+        static_cast<void>(read_manifest(folder.path()));
+        FAIL() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.what(),
+                  (folder.path() / "manifest.json").string() +
+                      ": cannot be read: No such file or directory");
+    }
+}
+
+TEST(Manifest, ThatIsNoJsonIsRefused) {
+    for (const std::string text : {"", "{", "{\"format\":", "{\"width_px\": 1e999}"}) {
+        const TempFolder folder;
+        write_file(folder.path() / "manifest.json", text);
+        try {
+            static_cast<void>(read_manifest(folder.path()));
+            FAIL() << "no error for " << text;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.what(), (folder.path() / "manifest.json").string() + ": is not JSON");
+        }
+    }
+    EXPECT_EQ(error_after([](Json& json) { json = Json::array(); }),
+              "value: found []; allowed: an object");
+}
+
+TEST(Manifest, NamesEachKeyThatIsMissing) {
+    EXPECT_EQ(error_after([](Json&) {}), "no error");
+    const Json whole = some_json();
+    for (const auto& [key, value] : whole.items()) {
+        const std::string message = error_after([&](Json& json) { json.erase(key); });
+        EXPECT_TRUE(message.starts_with(key + ": found nothing; allowed: ")) << message;
+    }
+    for (const auto& [key, value] : whole["wavelengths"][1].items()) {
+        const std::string message =
+            error_after([&](Json& json) { json["wavelengths"][1].erase(key); });
+        EXPECT_TRUE(message.starts_with("wavelengths[1]: " + key + ": found nothing; allowed: "))
+            << message;
+    }
+    for (const auto& [key, value] : whole["frames"][0].items()) {
+        const std::string message = error_after([&](Json& json) { json["frames"][0].erase(key); });
+        EXPECT_TRUE(message.starts_with("frames[0]: " + key + ": found nothing; allowed: "))
+            << message;
+    }
+}
+
+TEST(Manifest, OfAnotherFormatIsRefused) {
+    EXPECT_EQ(error_with("format", "aphotic-manifest-2"),
+              "format: found \"aphotic-manifest-2\"; allowed: \"aphotic-manifest-1\"");
+}
+
+TEST(Manifest, NamesEachKeyOfTheWrongType) {
+    for (const std::string key :
+         {"format", "aphotic_version", "povray_version", "rig_title", "rig_sha256"}) {
+        EXPECT_EQ(error_with(key, 7), key + ": found 7; allowed: a text");
+    }
+    for (const std::string key : {"width_px", "height_px"}) {
+        const std::string allowed = "; allowed: a whole number from 1 to 16384";
+        for (const Json& value : {Json("7"), Json(7.5), Json(0), Json(16385), Json(true)}) {
+            EXPECT_EQ(error_with(key, value), key + ": found " + value.dump() + allowed);
+        }
+    }
+    for (const Json& value :
+         {Json(1.0), Json({1, 2}), Json({1, 2, 3, 4}), Json({1, 2, "3"}), Json({1, 2, nullptr})}) {
+        EXPECT_EQ(error_with("lamp_signal", value),
+                  "lamp_signal: found " + value.dump() + "; allowed: three numbers");
+        EXPECT_EQ(wavelength_error("weight", value),
+                  "wavelengths[1]: weight: found " + value.dump() + "; allowed: three numbers");
+    }
+    for (const std::string key : {"frames", "wavelengths"}) {
+        EXPECT_EQ(error_with(key, 7), key + ": found 7; allowed: a list of objects");
+        EXPECT_EQ(error_with(key, Json::array({7})),
+                  key + "[0]: value: found 7; allowed: an object");
+    }
+}
+
+TEST(Manifest, WithoutWavelengthsIsRefused) {
+    EXPECT_EQ(error_with("wavelengths", Json::array()),
+              "wavelengths: found []; allowed: at least one");
+}
+
+// A name becomes part of a path.
+TEST(Manifest, RefusesFrameNamesThatLeadElsewhere) {
+    for (const std::string name :
+         {"../frame", "..", "a/b", "/etc", "a\\b", "", ".hidden", "a b", "a\n", "\xC3\xA4"}) {
+        EXPECT_EQ(frame_error("name", name),
+                  "frames[1]: name: found " + Json(name).dump() +
+                      "; allowed: letters, digits, '_', '-' and '.', not first");
+    }
+}
+
+TEST(Manifest, WantsADoneFrameToHaveAChecksum) {
+    EXPECT_EQ(frame_error("state", "broken"),
+              "frames[1]: state: found \"broken\"; allowed: \"done\" or \"pending\"");
+    EXPECT_EQ(frame_error("state", "done"),
+              "frames[1]: image_sha256: found \"\"; allowed: a checksum");
+}
+
+TEST(Manifest, WantsIncreasingWavelengths) {
+    const std::string allowed = "; allowed: increasing wavelengths over 0";
+    EXPECT_EQ(wavelength_error("lambda_nm", 450.0),
+              "wavelengths[1]: lambda_nm: found 450.0" + allowed);
+    EXPECT_EQ(wavelength_error("lambda_nm", -5), "wavelengths[1]: lambda_nm: found -5" + allowed);
+    EXPECT_EQ(wavelength_error("lambda_nm", "550"),
+              "wavelengths[1]: lambda_nm: found \"550\"; allowed: a number");
+    EXPECT_EQ(error_after([](Json& json) { json["wavelengths"][0]["lambda_nm"] = 0; }),
+              "wavelengths[0]: lambda_nm: found 0" + allowed);
+}
+
+TEST(Manifest, WantsWavelengthsInAKnownFrameAndChannel) {
+    EXPECT_EQ(wavelength_error("channel", "A"),
+              "wavelengths[1]: channel: found \"A\"; allowed: \"R\", \"G\" or \"B\"");
+    EXPECT_EQ(wavelength_error("frame", "other"),
+              "wavelengths[1]: frame: found \"other\"; allowed: the name of one of the frames");
+}
+
+TEST(Manifest, WantsExposuresThatADoubleCanHold) {
+    const std::string allowed = "; allowed: a whole number from -1000 to 1000";
+    for (const Json& value : {Json(1001), Json(-1001), Json(0.5), Json("1"), Json(1e300)}) {
+        EXPECT_EQ(wavelength_error("exposure_log2", value),
+                  "wavelengths[1]: exposure_log2: found " + value.dump() + allowed);
+    }
+}
+
+}  // namespace
+}  // namespace aphotic
