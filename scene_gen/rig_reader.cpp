@@ -58,14 +58,17 @@ constexpr Bounds kPower{0.0, 1e12};
 constexpr Bounds kEmitterMm{0.0, 10000.0};
 constexpr double kLeastHeightM = 0.001;
 
+// As the user wrote it: 0.1 and not 0.10000000000000001, and on one line.
 std::string shown(const toml::node& node) {
-    std::ostringstream text;
     if (node.is_table()) return "a table";
     if (const auto* array = node.as_array()) {
-        text << *array;
-    } else {
-        node.visit([&](const auto& leaf) { text << leaf; });
+        std::vector<std::string> items;
+        for (const toml::node& item : *array) items.push_back(shown(item));
+        return fmt::format("[{}]", fmt::join(items, ", "));
     }
+    if (const auto real = node.value_exact<double>()) return fmt::format("{}", *real);
+    std::ostringstream text;
+    node.visit([&](const auto& leaf) { text << leaf; });
     return text.str();
 }
 
@@ -91,13 +94,19 @@ class Section {
     }
 
     [[nodiscard]] bool has(std::string_view key) {
-        known_.emplace_back(key);
+        if (!is_known(key)) known_.emplace_back(key);
         return table_.contains(key);
     }
 
     [[nodiscard]] const toml::node& required(std::string_view key, const std::string& allowed) {
-        if (!has(key)) fail(table_, key, "is missing; allowed: " + allowed);
-        return *table_.get(key);
+        if (has(key)) return *table_.get(key);
+        // Most often it is there, misspelt.
+        for (const auto& [name, node] : table_) {
+            if (is_known(name.str())) continue;
+            if (nearest_name(name.str(), std::array{std::string(key)}).empty()) continue;
+            fail(node, name.str(), fmt::format("is no known key; did you mean '{}'?", key));
+        }
+        fail(table_, key, "is missing; allowed: " + allowed);
     }
 
     [[nodiscard]] double number(std::string_view key, Bounds bounds) {
@@ -173,7 +182,7 @@ class Section {
     void refuse_unknown_keys() const {
         for (const auto& [key, node] : table_) {
             const std::string_view name = key.str();
-            if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+            if (is_known(name)) continue;
             const std::string nearest = nearest_name(name, known_);
             const std::string hint =
                 nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
@@ -199,8 +208,12 @@ class Section {
   private:
     static bool is_within(const toml::node& node, Bounds bounds) {
         if (!node.is_number()) return false;
-        const double value = *node.value<double>();
-        return value >= bounds.least && value <= bounds.most;  // false for NaN
+        const auto value = node.value<double>();  // nothing: an integer that no double holds
+        return value && *value >= bounds.least && *value <= bounds.most;  // false for NaN
+    }
+
+    [[nodiscard]] bool is_known(std::string_view key) const {
+        return std::find(known_.begin(), known_.end(), key) != known_.end();
     }
 
     static std::size_t line(const toml::node& node) {

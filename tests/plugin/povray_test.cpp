@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugin/povray.h"
+
+#include "spectral/error.h"
+#include "support/run_command.h"
+#include "support/temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace aphotic {
+namespace {
+
+// As Debian's povray prints it, in part.
+constexpr const char* kPrinted =
+    "POV-Ray 3.7.0.10.unofficial\n\nBuilt-in features:\n  I/O restrictions:          enabled\n"
+    "  Supported image formats:   gif tga iff ppm pgm hdr png jpeg tiff openexr\n"
+    "  Unsupported image formats: -\n";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+}
+
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const RunError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+// Sets a variable for the length of a test.
+class Variable {
+  public:
+    Variable(const char* name, const std::string& value) : name_(name) {
+        const char* before = std::getenv(name);
+        if (before != nullptr) before_ = before;
+        ::setenv(name, value.c_str(), 1);
+    }
+    ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+  private:
+    const char* name_;
+    std::optional<std::string> before_;
+};
+
+TEST(PovRay, VersionIsReadFromWhatItPrints) {
+    EXPECT_EQ(version_from(kPrinted), "3.7.0.10.unofficial");
+    EXPECT_EQ(version_from(replaced(kPrinted, "3.7.0.10.unofficial", "3.8.0-beta.2")),
+              "3.8.0-beta.2");
+}
+
+TEST(PovRay, OldVersionIsRefused) {
+    const std::string old = replaced(kPrinted, "3.7.0.10", "3.6.1");
+    EXPECT_EQ(message_of([&] { (void)version_from(old); }),
+              "found version 3.6; allowed: 3.7 or later");
+}
+
+TEST(PovRay, BuildWithoutOpenExrIsRefused) {
+    // "Unsupported: openexr" must not be taken for support.
+    std::string without = replaced(kPrinted, " openexr", "");
+    without = replaced(without, "formats: -", "formats: openexr");
+    EXPECT_NE(message_of([&] { (void)version_from(without); }).find("without OpenEXR"),
+              std::string::npos);
+}
+
+TEST(PovRay, OtherProgramIsRefused) {
+    const std::string message = message_of([] { (void)find_povray("/bin/true"); });
+    EXPECT_NE(message.find("/bin/true"), std::string::npos) << message;
+    EXPECT_NE(message.find("does not introduce itself"), std::string::npos) << message;
+}
+
+TEST(PovRay, TheOneOnPathServes) {
+    const PovRay povray = find_povray("");
+    EXPECT_TRUE(povray.executable.is_absolute());
+    EXPECT_TRUE(povray.version.starts_with("3.")) << povray.version;
+}
+
+TEST(PovRay, OptionComesBeforeVariableAndVariableBeforePath) {
+    const TempFolder folder;
+    const auto script = [&](const std::string& version) {
+        return write_script(
+                   folder.path() / version,
+                   "echo 'POV-Ray " + version + "'\necho '  Supported image formats:   openexr'\n")
+            .string();
+    };
+    const Variable variable("APHOTIC_POVRAY", script("3.71.1"));
+    EXPECT_EQ(find_povray("").version, "3.71.1");
+    EXPECT_EQ(find_povray(script("3.72.2")).version, "3.72.2");
+}
+
+TEST(PovRay, MissingOneSaysWhereItWasLookedFor) {
+    EXPECT_NE(message_of([] { (void)find_povray("/no/such/povray"); }).find("/no/such/povray"),
+              std::string::npos);
+    const Variable path("PATH", "/nowhere");
+    const Variable variable("APHOTIC_POVRAY", "");
+    const std::string message = message_of([] { (void)find_povray(""); });
+    EXPECT_NE(message.find("PATH"), std::string::npos) << message;
+    EXPECT_NE(message.find("install povray"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace aphotic
