@@ -278,7 +278,7 @@ TEST(RigReader, NamesFileLineKeyWhatWasFoundAndWhatIsAllowed) {
         {6, "focal_length_mm = -inf", focal + "-inf" + allowed},
         {6, "focal_length_mm = true", focal + "true" + allowed},
         {6, "focal_length_mm = \"12\"", focal + "'12'" + allowed},
-        {6, "focal_length_mm = [12]", focal + "[ 12]" + allowed},
+        {6, "focal_length_mm = [12]", focal + "[12]" + allowed},
         {6, "focal_length_mm = { mm = 12 }", focal + "a table" + allowed},
         {6, "focal_length_mm = 1979-05-27", focal + "1979-05-27" + allowed},
         // More digits than a double holds.
@@ -515,8 +515,8 @@ TEST(RigReader, MisspeltRequiredKeyIsNamed) {
               "rig.toml:2: sled.altitud_m: is no known key; did you mean 'altitude_m'?");
     EXPECT_EQ(error_of(with(1, "[sledd]")),
               "rig.toml:1: sledd: is no known key; did you mean 'sled'?");
-    EXPECT_EQ(error_of(with(16, "aim = { tilt = 26, toward = \"axis\" }")),
-              "rig.toml:16: strobe[0].aim.tilt: is no known key; did you mean 'tilt_deg'?");
+    EXPECT_EQ(error_of(with(16, "aim = { tilt_de = 26, toward = \"axis\" }")),
+              "rig.toml:16: strobe[0].aim.tilt_de: is no known key; did you mean 'tilt_deg'?");
 }
 
 TEST(RigReader, UnknownBeamNamesTheBeamsThereAre) {

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What goes wrong for users: one clear message, the right exit status, nothing half written.
+#include "support/run_command.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <regex>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBadInput = 2;
+constexpr int kRunFailed = 3;
+
+class CommandErrors : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+        text = std::regex_replace(
+            text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [16, 12]");
+        write_file(folder_.path() / "rig.toml", text);
+    }
+
+    [[nodiscard]] CommandResult render(
+        const std::map<std::string, std::string>& environment = {}) const {
+        return run_aphotic(folder_.path(),
+                           {"render", "rig.toml", "-o", "out", "--wavelengths", "478,576,638"},
+                           environment);
+    }
+
+    void change_rig(const std::string& from, const std::string& to) const {
+        std::string text = read_text_file(folder_.path() / "rig.toml");
+        ASSERT_NE(text.find(from), std::string::npos) << from;
+        write_file(folder_.path() / "rig.toml", text.replace(text.find(from), from.size(), to));
+    }
+
+    static void expect_one_message(const CommandResult& run, int status, const std::string& part) {
+        EXPECT_EQ(run.status, status) << run.err;
+        EXPECT_EQ(run.out, "");
+        EXPECT_TRUE(run.err.starts_with("aphotic: ")) << run.err;
+        EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+    }
+
+    TempFolder folder_;
+};
+
+TEST_F(CommandErrors, UnknownKeyNamesFileLineAndTheNearestKey) {
+    change_rig("altitude_m = 2.0", "altitude = 2.0");
+    expect_one_message(render(), kBadInput, "altitude");
+    EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+}
+
+TEST_F(CommandErrors, RigThatIsNotThere) {
+    const CommandResult run = run_aphotic(folder_.path(), {"plan", "no-such.toml"});
+    expect_one_message(run, kBadInput, "no-such.toml: cannot be read: No such file or directory");
+}
+
+TEST_F(CommandErrors, TableWithAGapNamesTheRangeThatWouldDo) {
+    change_rig("range_nm        = [400, 720]", "range_nm = [400, 760]");
+    expect_one_message(render(), kBadInput, "range_nm = [400, 727.5] would do");
+}
+
+TEST_F(CommandErrors, UserTableWithAHoleNamesFileAndLine) {
+    write_file(folder_.path() / "lamp.csv", "wavelength_nm,relative_power\n400,1\n500,\n720,1\n");
+    change_rig("spectrum   = \"xenon-flash\"", "spectrum = \"lamp.csv\"");
+    expect_one_message(render(), kBadInput, "lamp.csv:3:");
+}
+
+TEST_F(CommandErrors, WavelengthsOutsideTheRange) {
+    const CommandResult run =
+        run_aphotic(folder_.path(), {"plan", "rig.toml", "--wavelengths", "390,500"});
+    expect_one_message(run, kBadInput, "390");
+}
+
+TEST_F(CommandErrors, CommandLineMistakesAreBadInput) {
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {},
+             {"rendr", "rig.toml"},
+             {"render", "rig.toml"},
+             {"render", "rig.toml", "-o", "out", "--bands", "0"},
+             {"render", "rig.toml", "-o", "out", "--bands", "many"},
+             {"render", "rig.toml", "-o", "out", "--bands", "3", "--wavelengths", "500"},
+             {"plan", "rig.toml", "--jbos", "2"},
+             {"data", "--csv"}}) {
+        const CommandResult run = run_aphotic(folder_.path(), arguments);
+        EXPECT_EQ(run.status, kBadInput) << testing::PrintToString(arguments);
+        EXPECT_NE(run.err, "") << testing::PrintToString(arguments);
+        EXPECT_EQ(run.out, "") << testing::PrintToString(arguments);
+    }
+}
+
+TEST_F(CommandErrors, HelpAndVersionAreNoErrors) {
+    for (const char* command : {"render", "plan", "generate", "integrate", "data"}) {
+        const CommandResult run = run_aphotic(folder_.path(), {command, "--help"});
+        EXPECT_EQ(run.status, 0);
+        EXPECT_NE(run.out.find("--json"), std::string::npos) << command;
+        EXPECT_EQ(run.err, "");
+    }
+    EXPECT_TRUE(run_aphotic(folder_.path(), {"--version"}).out.starts_with("aphotic "));
+}
+
+TEST_F(CommandErrors, MissingPovRay) {
+    expect_one_message(render({{"APHOTIC_POVRAY", "/no/povray"}}), kRunFailed, "/no/povray");
+    EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+}
+
+TEST_F(CommandErrors, PovRayKilledMidway) {
+    write_script(folder_.path() / "povray",
+                 "[ \"$1\" = --version ] && echo 'POV-Ray 3.7.0' && echo ' Supported image "
+                 "formats: openexr' "
+                 "&& exit\nkill -9 $$\n");
+    expect_one_message(render({{"APHOTIC_POVRAY", (folder_.path() / "povray").string()}}),
+                       kRunFailed,
+                       "killed by signal 9");
+    EXPECT_FALSE(fs::exists(folder_.path() / "out" / "image.exr"));
+    EXPECT_TRUE(fs::is_empty(folder_.path() / "out" / "povray" / "frames"));
+}
+
+TEST_F(CommandErrors, OutputThatCannotBeAFolder) {
+    write_file(folder_.path() / "out", "a file");
+    expect_one_message(render(), kRunFailed, "out: cannot be made");
+    EXPECT_EQ(read_text_file(folder_.path() / "out"), "a file");
+}
+
+// Root writes where it likes; /proc refuses even root.
+TEST_F(CommandErrors, UnwritableFolder) {
+    const CommandResult run =
+        run_aphotic(folder_.path(), {"generate", "rig.toml", "-o", "/proc/aphotic"});
+    expect_one_message(run, kRunFailed, "/proc/aphotic");
+}
+
+TEST_F(CommandErrors, IntegrateWithoutFramesSaysWhichIsMissing) {
+    ASSERT_EQ(
+        run_aphotic(folder_.path(), {"generate", "rig.toml", "-o", "out", "--wavelengths", "500"})
+            .status,
+        0);
+    const CommandResult run = run_aphotic(folder_.path(), {"integrate", "out"});
+    expect_one_message(run, kRunFailed, "band_500nm.exr: this frame is missing");
+    EXPECT_FALSE(fs::exists(folder_.path() / "out" / "image.exr"));
+}
+
+TEST_F(CommandErrors, IntegrateOfAStrangeFolder) {
+    expect_one_message(run_aphotic(folder_.path(), {"integrate", "."}), kBadInput, "manifest.json");
+    write_file(folder_.path() / "manifest.json", "{ \"format\": \"something\" }");
+    expect_one_message(run_aphotic(folder_.path(), {"integrate", "."}), kBadInput, "format");
+}
+
+TEST_F(CommandErrors, FullStandardOutput) {
+    if (::access("/dev/full", W_OK) != 0) GTEST_SKIP() << "this system has no /dev/full";
+    const ProcessEnd end =
+        run_process({.executable = "/bin/sh",
+                     .arguments = {"-c", "exec \"$0\" data > /dev/full", APHOTIC_COMMAND},
+                     .folder = folder_.path(),
+                     .environment = {},
+                     .log = folder_.path() / "log"},
+                    60.0);
+    EXPECT_EQ(end.exit_code, kRunFailed) << read_text_file(folder_.path() / "log");
+}
+
+}  // namespace
+}  // namespace aphotic
