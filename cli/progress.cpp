@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace aphotic::cli {
@@ -22,7 +23,7 @@ void ProgressLine::show(std::string_view what, double share) {
     shown_ = true;
     std::string left;
     if (share > 0.0) {
-        const auto seconds = static_cast<long>(elapsed.count() * (1.0 - share) / share + 0.5);
+        const auto seconds = std::lround(elapsed.count() * (1.0 - share) / share);
         left = fmt::format(", {}:{:02} left", seconds / 60, seconds % 60);
     }
     fmt::print(stderr, "\r\033[K{}  {:.0f} %{}", what, 100.0 * share, left);

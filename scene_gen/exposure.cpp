@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kGrid = 33;              // points along each side of the image
+constexpr std::size_t kGrid = 33;      // points along each side of the image
 constexpr double kMarginView = 1.5;    // a point this far outside the image may still count
 constexpr int kColourLimitLog2 = 120;  // colours are single precision: 2^128 overflows
 
@@ -50,14 +50,14 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
     // The grid's points on the floor, row by row; none where the ray misses it.
     std::vector<std::optional<Vector3d>> points(kGrid * kGrid);
     std::vector<double> camera_legs_m(kGrid * kGrid);
-    for (int j = 0; j < kGrid; ++j) {
-        for (int i = 0; i < kGrid; ++i) {
-            const double column = rig.camera.width_px * (i / (kGrid - 1.0));
-            const double row = rig.camera.height_px * (j / (kGrid - 1.0));
+    for (std::size_t j = 0; j < kGrid; ++j) {
+        for (std::size_t i = 0; i < kGrid; ++i) {
+            const double column = rig.camera.width_px * (static_cast<double>(i) / (kGrid - 1));
+            const double row = rig.camera.height_px * (static_cast<double>(j) / (kGrid - 1));
             const WaterRay ray = pixel_ray(rig, column, row, middle_nm);
             const auto distance_m = distance_to(floor, ray);
             if (!distance_m) continue;
-            const auto index = static_cast<std::size_t>(j * kGrid + i);
+            const std::size_t index = j * kGrid + i;
             points[index] = ray.origin_m + *distance_m * ray.direction;
             camera_legs_m[index] = *distance_m;
         }
@@ -65,7 +65,7 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
     for (std::size_t index = 0; index < points.size(); ++index) {
         if (!points[index]) continue;
         double margin_rad = 0.0;
-        for (const std::size_t step : {std::size_t{1}, std::size_t{kGrid}}) {
+        for (const std::size_t step : {std::size_t{1}, kGrid}) {
             if (index + step >= points.size() || !points[index + step]) continue;
             for (const Strobe& strobe : rig.strobes) {
                 margin_rad = std::max(margin_rad,

@@ -196,7 +196,7 @@ class Section {
 
     // Runs read(), and puts file, line and key before whatever InputError comes out of it.
     template <typename Read>
-    auto at_key(std::string_view key, Read read) const {
+    [[nodiscard]] auto at_key(std::string_view key, Read read) const {
         try {
             return read();
         } catch (const InputError& error) {
@@ -505,7 +505,7 @@ Rig RigReader::read(Section top) {
             .seafloor = std::move(seafloor),
             .strobes = std::move(strobes),
             .digest = sha256_of_text(digested_)};
-    top.at_key("camera", [&] {
+    (void)top.at_key("camera", [&] {
         require_tables_to_cover_the_range(rig);
         return 0;
     });

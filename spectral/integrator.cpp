@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
+#include <span>
 
 namespace aphotic {
 
@@ -26,9 +28,15 @@ constexpr int kMostRows = 64;
 struct Block {
     int first_row = 0;
     int rows = 0;
-    std::size_t plane = 0;        // samples of one channel
-    std::vector<float> radiance;  // one plane a wavelength
-    std::vector<float> signal;    // R, G, B planes
+    std::size_t plane = 0;       // samples of one channel
+    std::vector<float> samples;  // R, G, B, then one plane a wavelength: spectral.exr's order
+
+    [[nodiscard]] std::span<float> signal(std::size_t channel) {
+        return std::span(samples).subspan(channel * plane, plane);
+    }
+    [[nodiscard]] std::span<float> radiance(std::size_t wavelength) {
+        return std::span(samples).subspan((kChannels + wavelength) * plane, plane);
+    }
 };
 
 int rows_per_block(const Manifest& manifest) {
@@ -59,10 +67,10 @@ void read_radiance(const fs::path& folder, const Manifest& manifest, Block& bloc
                 static_cast<std::size_t>(channel) * block.plane, block.plane);
             check_samples(file, w.channel, from, manifest.width_px, block.first_row);
             const double scale = std::ldexp(1.0, -w.exposure_log2);
-            std::transform(from.begin(),
-                           from.end(),
-                           block.radiance.begin() + static_cast<std::ptrdiff_t>(j * block.plane),
-                           [scale](float sample) { return static_cast<float>(scale * sample); });
+            std::transform(
+                from.begin(), from.end(), block.radiance(j).begin(), [scale](float sample) {
+                    return static_cast<float>(scale * sample);
+                });
         }
     }
 }
@@ -73,13 +81,12 @@ void sum_signals(const Manifest& manifest, Block& block) {
         std::fill(sum.begin(), sum.end(), 0.0);
         for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
             const double weight = manifest.wavelengths[j].weight[c];
-            const float* radiance = block.radiance.data() + j * block.plane;
+            const std::span<const float> radiance = block.radiance(j);
             for (std::size_t i = 0; i < block.plane; ++i) sum[i] += weight * radiance[i];
         }
-        std::transform(sum.begin(),
-                       sum.end(),
-                       block.signal.begin() + static_cast<std::ptrdiff_t>(c * block.plane),
-                       [](double value) { return static_cast<float>(value); });
+        std::transform(sum.begin(), sum.end(), block.signal(c).begin(), [](double value) {
+            return static_cast<float>(value);
+        });
     }
 }
 
@@ -140,31 +147,33 @@ CameraImage integrate(const fs::path& folder,
         static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
     image.samples.resize(kChannels * image_plane);
 
+    // Writing, which is mostly compression, goes on beside the reading of the next block.
     const int block_rows = rows_per_block(manifest);
-    std::vector<float> spectral_rows;
+    std::future<void> writing;
     for (int row = 0; row < height_px; row += block_rows) {
         Block block;
         block.first_row = row;
         block.rows = std::min(block_rows, height_px - row);
         block.plane = static_cast<std::size_t>(block.rows) * static_cast<std::size_t>(width_px);
-        block.radiance.resize(block.plane * manifest.wavelengths.size());
-        block.signal.resize(block.plane * kChannels);
+        block.samples.resize(block.plane * spectral_channels.size());
         read_radiance(folder, manifest, block);
         sum_signals(manifest, block);
-
-        image_file.write_rows(block.rows, block.signal);
-        spectral_rows = block.signal;
-        spectral_rows.insert(spectral_rows.end(), block.radiance.begin(), block.radiance.end());
-        spectral_file.write_rows(block.rows, spectral_rows);
         const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px);
         for (std::size_t c = 0; c < kChannels; ++c) {
-            std::copy_n(
-                block.signal.begin() + static_cast<std::ptrdiff_t>(c * block.plane),
-                block.plane,
+            std::ranges::copy(
+                block.signal(c),
                 image.samples.begin() + static_cast<std::ptrdiff_t>(c * image_plane + first));
         }
-        if (report) report(static_cast<double>(row + block.rows) / height_px);
+        if (writing.valid()) writing.get();
+        writing =
+            std::async(std::launch::async, [&image_file, &spectral_file, block = std::move(block)] {
+                const auto signals = std::span(block.samples).first(kChannels * block.plane);
+                image_file.write_rows(block.rows, signals);
+                spectral_file.write_rows(block.rows, block.samples);
+            });
+        if (report) report(static_cast<double>(row + block_rows) / height_px);
     }
+    writing.get();
     image_file.finish();
     spectral_file.finish();
     return image;

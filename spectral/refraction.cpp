@@ -53,7 +53,8 @@ double seawater_index(double lambda_nm, double salinity_psu, double temperature_
         "wavelength", lambda_nm, kSeawaterIndexRange.first_nm, kSeawaterIndexRange.last_nm, "nm");
     require_between("salinity", salinity_psu, 0.0, 40.0, "psu");
     require_between("temperature", temperature_c, -2.0, 35.0, "C");
-    static const auto n = read_quan_fry();
+    static const auto kCoefficients = read_quan_fry();
+    const auto& n = kCoefficients;
     const double s = salinity_psu;
     const double t = temperature_c;
     const double l = lambda_nm;

@@ -33,7 +33,7 @@ struct RoleRule {
 
 const std::vector<RoleRule>& role_rules() {
     const std::string nm = "wavelength_nm";
-    static const std::vector<RoleRule> rules{
+    static const std::vector<RoleRule> kRules{
         {CurveRole::WaterAbsorption, "water absorption", {{nm, "absorption_per_m"}}, kNoUpperBound},
         {CurveRole::LampSpectrum,
          "lamp spectrum",
@@ -54,7 +54,7 @@ const std::vector<RoleRule>& role_rules() {
          {{nm, "xbar", "ybar", "zbar"}},
          kNoUpperBound},
     };
-    return rules;
+    return kRules;
 }
 
 const RoleRule& rule_of(CurveRole role) {

@@ -171,8 +171,8 @@ TEST(Traps, PackingChangesNoBit) {
     const auto samples_of = [&](const TempFolder& folder, const Manifest& manifest, std::size_t j) {
         const ManifestWavelength& w = manifest.wavelengths[j];
         ExrReader frame(image_path(folder.path(), manifest.frames[w.frame]));
-        std::vector<float> samples(
-            static_cast<std::size_t>(rig.camera.width_px * rig.camera.height_px));
+        std::vector<float> samples(static_cast<std::size_t>(rig.camera.width_px) *
+                                   static_cast<std::size_t>(rig.camera.height_px));
         frame.read_rows(0, rig.camera.height_px, std::span(&w.channel, 1), samples);
         return samples;
     };

@@ -20,22 +20,38 @@ constexpr double kRounding = 1e-15;  // a few units in the last place of numbers
 
 // The least that a rig must say. Errors are told by line: keep the lines' numbers in mind.
 constexpr std::string_view kMinimal =
-    /*  1 */ "[sled]\n"
-    /*  2 */ "altitude_m = 2.5\n"
-    /*  3 */ "[camera]\n"
-    /*  4 */ "resolution = [1360, 1024]\n"
-    /*  5 */ "pixel_pitch_um = 6.45\n"
-    /*  6 */ "focal_length_mm = 12\n"
-    /*  7 */ "range_nm = [400, 700]\n"
-    /*  8 */ "response = \"nikon-d5100\"\n"
-    /*  9 */ "[water]\n"
-    /* 10 */ "[seafloor]\n"
-    /* 11 */ "[beam.wide]\n"
-    /* 12 */ "cones = [{ part = \"all\", half_angle_deg = 90, weight = 1 }]\n"
-    /* 13 */ "[[strobe]]\n"
-    /* 14 */ "name = \"fore\"\n"
-    /* 15 */ "position_m = [0.5, 0, 0]\n"
-    /* 16 */ "aim = { tilt_deg = 26, toward = \"axis\" }\n"
+    /*  1 */
+    "[sled]\n"
+    /*  2 */
+    "altitude_m = 2.5\n"
+    /*  3 */
+    "[camera]\n"
+    /*  4 */
+    "resolution = [1360, 1024]\n"
+    /*  5 */
+    "pixel_pitch_um = 6.45\n"
+    /*  6 */
+    "focal_length_mm = 12\n"
+    /*  7 */
+    "range_nm = [400, 700]\n"
+    /*  8 */
+    "response = \"nikon-d5100\"\n"
+    /*  9 */
+    "[water]\n"
+    /* 10 */
+    "[seafloor]\n"
+    /* 11 */
+    "[beam.wide]\n"
+    /* 12 */
+    "cones = [{ part = \"all\", half_angle_deg = 90, weight = 1 }]\n"
+    /* 13 */
+    "[[strobe]]\n"
+    /* 14 */
+    "name = \"fore\"\n"
+    /* 15 */
+    "position_m = [0.5, 0, 0]\n"
+    /* 16 */
+    "aim = { tilt_deg = 26, toward = \"axis\" }\n"
     /* 17 */ "beam = \"wide\"\n";
 
 constexpr std::string_view kPort =
@@ -52,8 +68,8 @@ std::string with(int line, std::string_view text) {
     std::size_t start = 0;
     for (int n = 1; start < kMinimal.size(); ++n) {
         const std::size_t end = kMinimal.find('\n', start) + 1;
-        result += n == line ? std::string(text) + "\n"
-                            : std::string(kMinimal.substr(start, end - start));
+        result +=
+            n == line ? std::string(text) + "\n" : std::string(kMinimal.substr(start, end - start));
         start = end;
     }
     return result;
@@ -139,15 +155,14 @@ TEST(RigReader, ConvertsDegreesToRadians) {
 }
 
 TEST(RigReader, ReadsEverythingThatMayBeSaid) {
-    std::string text =
-        "title = \"All of it\"\n" + with(9,
-                                         std::string(kPort) +
-                                             "[water]\n"
-                                             "absorption = \"pure-2016\"\n"
-                                             "multiple = 0.5\n"
-                                             "uniform_loss_per_m = 0.125\n"
-                                             "salinity_psu = 7\n"
-                                             "temperature_c = -1.5\n");
+    std::string text = "title = \"All of it\"\n" + with(9,
+                                                        std::string(kPort) +
+                                                            "[water]\n"
+                                                            "absorption = \"pure-2016\"\n"
+                                                            "multiple = 0.5\n"
+                                                            "uniform_loss_per_m = 0.125\n"
+                                                            "salinity_psu = 7\n"
+                                                            "temperature_c = -1.5\n");
     text.replace(text.find("[seafloor]\n"),
                  11,
                  "[seafloor]\nreflectance = \"red-algae\"\nphong = 0.25\nphong_size = 12\n");
@@ -311,12 +326,11 @@ TEST(RigReader, ChecksEveryNumber) {
          "range_nm = [0.4, 0.7]",
          "camera.range_nm: found [0.4, 0.7]; allowed: an array of 2 numbers, each from 100 to "
          "10000"},
-            });
+    });
 }
 
 TEST(RigReader, ChecksArraysOfNumbers) {
-    const std::string allowed =
-        "; allowed: an array of 3 numbers, each from -1000 to 1000";
+    const std::string allowed = "; allowed: an array of 3 numbers, each from -1000 to 1000";
     expect_errors({
         {15, "position_m = 0.5", "strobe[0].position_m: found 0.5" + allowed},
         {15, "position_m = [0, 0]", "strobe[0].position_m: found [0, 0]" + allowed},
@@ -351,7 +365,9 @@ TEST(RigReader, ChecksTheNumbersThatMayBeLeftOut) {
              {"[water]",
               "salinity_psu = 41",
               "water.salinity_psu: found 41; allowed: a number from 0 to 40"},
-             {"[water]", "temperature_c = -3", "water.temperature_c: found -3; allowed: a number from -2 to 35"},
+             {"[water]",
+              "temperature_c = -3",
+              "water.temperature_c: found -3; allowed: a number from -2 to 35"},
              {"[seafloor]",
               "phong = -1",
               "seafloor.phong: found -1; allowed: a number from 0 to 1000000"},
@@ -462,9 +478,10 @@ TEST(RigReader, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(error_of(with(2, "altitude_m = 2\nrol_deg = 1")),
               "rig.toml:3: sled.rol_deg: is no known key; did you mean 'roll_deg'? Known here: "
               "altitude_m, pitch_deg, roll_deg");
-    EXPECT_EQ(error_of(with(9, "[water]\nsalinity_ppt = 35")),
-              "rig.toml:10: water.salinity_ppt: is no known key; did you mean 'salinity_psu'? Known "
-              "here: absorption, multiple, uniform_loss_per_m, salinity_psu, temperature_c");
+    EXPECT_EQ(
+        error_of(with(9, "[water]\nsalinity_ppt = 35")),
+        "rig.toml:10: water.salinity_ppt: is no known key; did you mean 'salinity_psu'? Known "
+        "here: absorption, multiple, uniform_loss_per_m, salinity_psu, temperature_c");
     EXPECT_EQ(error_of(with(10, "[seafloor]\nphong_sice = 35")),
               "rig.toml:11: seafloor.phong_sice: is no known key; did you mean 'phong_size'? Known "
               "here: reflectance, phong, phong_size");
@@ -616,8 +633,9 @@ TEST(RigReader, ChecksThePort) {
 
 TEST(RigReader, UnknownTableNamesTheNearest) {
     const std::string message = error_of(with(10, "[seafloor]\nreflectance = \"sandd\""));
-    EXPECT_TRUE(message.starts_with("rig.toml:11: seafloor.reflectance: no built-in table is "
-                                    "called 'sandd'; did you mean 'sand'?"))
+    EXPECT_TRUE(
+        message.starts_with("rig.toml:11: seafloor.reflectance: no built-in table is "
+                            "called 'sandd'; did you mean 'sand'?"))
         << message;
 }
 
@@ -652,10 +670,10 @@ TEST(RigReader, AQuantumResponseCountsPhotons) {
     const Rig table = parse_rig(
         with(8, "response = { table = \"rgb.csv\", kind = \"quantum\" }"), "r", folder.path());
     EXPECT_NEAR(table.camera.sensor.response(1, 550.0) / (0.25 * per_joule), 1.0, kFewRoundings);
-    const Rig filtered = parse_rig(
-        with(8, "response = { filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }"),
-        "r",
-        folder.path());
+    const Rig filtered =
+        parse_rig(with(8, "response = { filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }"),
+                  "r",
+                  folder.path());
     EXPECT_NEAR(
         filtered.camera.sensor.response(1, 550.0) / (0.125 * per_joule), 1.0, kFewRoundings);
 }
@@ -672,15 +690,17 @@ TEST(RigReader, AResponseFileMustSayItsKind) {
               "rig.toml:8: camera.response: found 7" + allowed);
     EXPECT_EQ(error_of(with(8, "response = { table = \"rgb.csv\" }"), folder.path()),
               "rig.toml:8: camera.response.kind: is missing; allowed: \"energy\" or \"quantum\"");
-    EXPECT_EQ(error_of(with(8, "response = { table = \"rgb.csv\", kind = \"raw\" }"), folder.path()),
-              "rig.toml:8: camera.response.kind: found 'raw'; allowed: \"energy\" or \"quantum\"");
-    const std::string unknown =
-        error_of(with(8, "response = { table = \"rgb.csv\", kind = \"energy\", kinds = 1 }"),
-                 folder.path());
-    EXPECT_TRUE(unknown.starts_with("rig.toml:8: camera.response.kinds: is no known key; did you "
-                                    "mean 'kind'?"))
+    EXPECT_EQ(
+        error_of(with(8, "response = { table = \"rgb.csv\", kind = \"raw\" }"), folder.path()),
+        "rig.toml:8: camera.response.kind: found 'raw'; allowed: \"energy\" or \"quantum\"");
+    const std::string unknown = error_of(
+        with(8, "response = { table = \"rgb.csv\", kind = \"energy\", kinds = 1 }"), folder.path());
+    EXPECT_TRUE(
+        unknown.starts_with("rig.toml:8: camera.response.kinds: is no known key; did you "
+                            "mean 'kind'?"))
         << unknown;
-    const std::string half = error_of(with(8, "response = { filters = \"rgb.csv\" }"), folder.path());
+    const std::string half =
+        error_of(with(8, "response = { filters = \"rgb.csv\" }"), folder.path());
     EXPECT_TRUE(half.starts_with("rig.toml:8: camera.response.quantum_efficiency: is missing; "))
         << half;
 }

@@ -47,12 +47,9 @@ void write_frame(const fs::path& file, int width_px, int height_px, const Conten
             for (int x = 0; x < width_px; ++x) plane[row][x] = half(content(c, row, x));
         }
         header.channels().insert(names[c], Imf::Channel(Imf::HALF));
-        buffer.insert(names[c],
-                      Imf::Slice::Make(Imf::HALF,
-                                       &plane[0][0],
-                                       Imath::V2i(0),
-                                       width_px,
-                                       height_px));
+        buffer.insert(
+            names[c],
+            Imf::Slice::Make(Imf::HALF, &plane[0][0], Imath::V2i(0), width_px, height_px));
     }
     Imf::OutputFile out(file.c_str(), header);
     out.setFrameBuffer(buffer);
@@ -169,8 +166,7 @@ TEST(Integrator, WritesWhatItReturns) {
     Render render(5, 3);
     fill(render);
     const CameraImage image = render.integrate();
-    EXPECT_EQ(render.files(),
-              (std::vector<std::string>{"image.exr", "povray", "spectral.exr"}));
+    EXPECT_EQ(render.files(), (std::vector<std::string>{"image.exr", "povray", "spectral.exr"}));
     for (const char* file : {"image.exr", "spectral.exr"}) {
         for (std::size_t c = 0; c < kChannels; ++c) {
             const auto part = std::span(image.samples).subspan(15 * c, 15);
@@ -191,8 +187,7 @@ TEST(Integrator, WritesTheRadianceOfEachWavelength) {
         const auto plane = plane_of(render.folder() / "spectral.exr", channels[j]);
         for (int row = 0; row < 3; ++row) {
             for (int x = 0; x < 5; ++x) {
-                EXPECT_EQ(plane[static_cast<std::size_t>(5 * row + x)],
-                          radiance_by_hand(row, x)[j])
+                EXPECT_EQ(plane[static_cast<std::size_t>(5 * row + x)], radiance_by_hand(row, x)[j])
                     << channels[j];
             }
         }
@@ -336,11 +331,9 @@ TEST(Integrator, RefusesAMissingFrame) {
 TEST(Integrator, RefusesAFrameThatIsNotTheOneNoted) {
     Render render(4, 3);
     fill(render);
-    write_frame(
-        render.image("band_650nm"), 4, 3, [](int, int, int) { return 1.0F; });
-    EXPECT_EQ(
-        render.error(),
-        render.image("band_650nm").string() + ": is not the image that the manifest notes");
+    write_frame(render.image("band_650nm"), 4, 3, [](int, int, int) { return 1.0F; });
+    EXPECT_EQ(render.error(),
+              render.image("band_650nm").string() + ": is not the image that the manifest notes");
     EXPECT_EQ(render.files(), std::vector<std::string>{"povray"}) << "left behind";
 }
 
@@ -373,8 +366,7 @@ TEST(Integrator, AFailureLeavesTheImagesOfBefore) {
     const std::string before = sha256_of_file(render.folder() / "image.exr");
     fs::remove(render.image("band_650nm"));
     EXPECT_NE(render.error(), "no error");
-    EXPECT_EQ(render.files(),
-              (std::vector<std::string>{"image.exr", "povray", "spectral.exr"}));
+    EXPECT_EQ(render.files(), (std::vector<std::string>{"image.exr", "povray", "spectral.exr"}));
     EXPECT_EQ(sha256_of_file(render.folder() / "image.exr"), before);
 }
 

@@ -47,7 +47,8 @@ int pixels_of(const std::filesystem::path& file, PlotColour colour) {
     int count = 0;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            const unsigned char* bgr = data + y * stride + x * 4;
+            const unsigned char* bgr =
+                data + static_cast<std::ptrdiff_t>(y) * stride + static_cast<std::ptrdiff_t>(x) * 4;
             count +=
                 near(bgr[0], colour.blue) && near(bgr[1], colour.green) && near(bgr[2], colour.red);
         }

@@ -112,9 +112,8 @@ TEST(Preview, WithoutAWhiteShowsTheSignalsAsTheyAre) {
 
 TEST(Preview, WithTheImagesOwnWhiteHasAGreyMean) {
     // Means 3, 6 and 12; each pixel is the same multiple of them in every channel.
-    const Picture picture = shown(one_row({2.0F, 4.0F, 4.0F, 8.0F, 8.0F, 16.0F}),
-                                  kNoLamp,
-                                  {.white = PreviewWhite::Image});
+    const Picture picture = shown(
+        one_row({2.0F, 4.0F, 4.0F, 8.0F, 8.0F, 16.0F}), kNoLamp, {.white = PreviewWhite::Image});
     for (const Rgb& pixel : picture.pixels) {
         EXPECT_EQ(pixel.red, pixel.green) << pixel;
         EXPECT_EQ(pixel.green, pixel.blue) << pixel;
@@ -171,8 +170,7 @@ TEST(Preview, LeavesABlackImageBlack) {
 
 // Fitted weights may be negative, so signals may be.
 TEST(Preview, ShowsNegativeSignalsBlack) {
-    const Picture picture =
-        shown(one_row({-1.0F, 1.0F, -1.0F, 1.0F, -1.0F, 1.0F}), kNoLamp, {});
+    const Picture picture = shown(one_row({-1.0F, 1.0F, -1.0F, 1.0F, -1.0F, 1.0F}), kNoLamp, {});
     EXPECT_EQ(picture.pixels[0], (Rgb{0, 0, 0}));
 }
 

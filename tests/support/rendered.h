@@ -70,7 +70,8 @@ inline Difference against_closed_form(const Rig& rig,
         render(find_povray(""), folder.path(), set, {.jobs = 2, .report = {}});
     Difference difference;
     difference.darkest_sample = std::numeric_limits<double>::infinity();
-    const auto pixels = static_cast<std::size_t>(rig.camera.width_px * rig.camera.height_px);
+    const auto pixels = static_cast<std::size_t>(rig.camera.width_px) *
+                        static_cast<std::size_t>(rig.camera.height_px);
     for (const ManifestWavelength& w : result.manifest.wavelengths) {
         ExrReader frame(image_path(folder.path(), result.manifest.frames[w.frame]));
         std::vector<float> samples(pixels);
