@@ -54,7 +54,15 @@ struct Process::Child {
 };
 
 Process::Process(const ProcessRequest& request) : child_(std::make_unique<Child>()) {
+    // Boost goes on in our own folder if it cannot change into this one, and writes over the
+    // beginning of an older log.
+    if (!std::filesystem::is_directory(request.folder)) {
+        throw RunError(fmt::format("{}: cannot be started: {} is no folder",
+                                   request.executable.string(),
+                                   request.folder.string()));
+    }
     std::error_code error;
+    std::filesystem::remove(request.log, error);
     child_->child =
         bp::child(bp::exe = request.executable.string(),
                   bp::args = request.arguments,
@@ -76,7 +84,9 @@ Process::~Process() {
     if (child_ == nullptr) return;
     std::error_code ignored;
     if (!child_->child.running(ignored)) return;
+    const pid_t pid = child_->child.id();
     child_->child.terminate(ignored);
+    ::waitpid(pid, nullptr, 0);  // terminate() does not wait: it could still write, or be a zombie
 }
 
 std::optional<ProcessEnd> Process::poll() {

@@ -171,7 +171,7 @@ CameraImage integrate(const fs::path& folder,
                 image_file.write_rows(block.rows, signals);
                 spectral_file.write_rows(block.rows, block.samples);
             });
-        if (report) report(static_cast<double>(row + block_rows) / height_px);
+        if (report) report(static_cast<double>(std::min(row + block_rows, height_px)) / height_px);
     }
     writing.get();
     image_file.finish();

@@ -25,22 +25,22 @@ Spectrum flat(double value) {
 class RandomRigs {
   public:
     Rig next(bool has_port) {
-        Rig rig{.title = "",
-                .sled = {.altitude_m = between(0.5, 6.0),
-                         .pitch_rad = between(-0.3, 0.3),
-                         .roll_rad = between(-0.3, 0.3)},
-                .camera = {.width_px = 200 + static_cast<int>(between(0.0, 1000.0)),
-                           .height_px = 200 + static_cast<int>(between(0.0, 1000.0)),
-                           .pixel_pitch_m = 6.45e-6,
-                           .focal_length_m = between(0.005, 0.03),
-                           .range = {400.0, 700.0},
-                           .sensor =
-                               Sensor({flat(1.0), flat(1.0), flat(1.0)}, ResponseKind::Energy),
-                           .port = std::nullopt},
-                .water = {.absorption_per_m = flat(between(0.0, 1.0))},
-                .seafloor = {.reflectance = flat(between(0.05, 1.0))},
-                .strobes = {},
-                .digest = ""};
+        Rig rig{
+            .title = "",
+            .sled = {.altitude_m = between(0.5, 6.0),
+                     .pitch_rad = between(-0.3, 0.3),
+                     .roll_rad = between(-0.3, 0.3)},
+            .camera = {.width_px = 200 + static_cast<int>(between(0.0, 1000.0)),
+                       .height_px = 200 + static_cast<int>(between(0.0, 1000.0)),
+                       .pixel_pitch_m = 6.45e-6,
+                       .focal_length_m = between(0.005, 0.03),
+                       .range = {400.0, 700.0},
+                       .sensor = Sensor({flat(1.0), flat(1.0), flat(1.0)}, ResponseKind::Energy),
+                       .port = std::nullopt},
+            .water = {.absorption_per_m = flat(between(0.0, 1.0))},
+            .seafloor = {.reflectance = flat(between(0.05, 1.0))},
+            .strobes = {},
+            .digest = ""};
         if (between(0.0, 1.0) < 0.3) rig.seafloor.phong = between(0.0, 1.0);
         if (has_port) {
             rig.camera.port = FlatPort{.distance_m = between(0.01, 0.1),
@@ -61,16 +61,15 @@ class RandomRigs {
         // The floor is at most 0.31 x 1.5 m + 0.32 x 1.5 m above its altitude within 1.5 m.
         const Eigen::Vector3d position(
             between(-1.5, 1.5), between(-1.5, 1.5), between(-1.0, rig.sled.altitude_m - 0.05));
-        const double above = closed_form::dot(
-            {-position.x(), -position.y(), rig.sled.altitude_m - position.z()},
-            closed_form::world_down(rig.sled));
+        const double above =
+            closed_form::dot({-position.x(), -position.y(), rig.sled.altitude_m - position.z()},
+                             closed_form::world_down(rig.sled));
         if (above < 0.05) return add_strobe(rig);
         Beam beam{.name = "b", .weights = ConeWeights::Flux, .cones = {}};
         const int cones = 1 + static_cast<int>(between(0.0, 3.0));
         for (int c = 0; c < cones; ++c) {
-            beam.cones.push_back({.part = "",
-                                  .half_angle_rad = between(0.02, 1.57),
-                                  .weight = between(0.0, 1.0)});
+            beam.cones.push_back(
+                {.part = "", .half_angle_rad = between(0.02, 1.57), .weight = between(0.0, 1.0)});
         }
         rig.strobes.push_back(
             {.name = "s",
@@ -93,8 +92,8 @@ struct Pixel {
 // Where the image is brightest by far when a strobe is close to the floor: around its foot. The
 // pinhole's pixel, with the water's index in place of the port: near enough.
 Pixel pixel_near_foot(const Rig& rig, const Strobe& strobe, RandomRigs& random) {
-    const double magnified = (rig.camera.port ? 1.34 : 1.0) * rig.camera.focal_length_m /
-                             rig.camera.pixel_pitch_m;
+    const double magnified =
+        (rig.camera.port ? 1.34 : 1.0) * rig.camera.focal_length_m / rig.camera.pixel_pitch_m;
     const closed_form::Vector down = closed_form::world_down(rig.sled);
     const closed_form::Vector place{
         strobe.position_m.x(), strobe.position_m.y(), strobe.position_m.z()};
@@ -116,8 +115,8 @@ double worst_share(const Rig& rig, RandomRigs& random, int pixels) {
             pixel.row >= rig.camera.height_px) {
             return;
         }
-        brightest = std::max(
-            brightest, closed_form::radiance(rig, pixel.column, pixel.row, 550.0).radiance);
+        brightest = std::max(brightest,
+                             closed_form::radiance(rig, pixel.column, pixel.row, 550.0).radiance);
     };
     for (int i = 0; i < pixels; ++i) {
         look_at({static_cast<int>(random.between(0.0, rig.camera.width_px)),
@@ -193,8 +192,8 @@ TEST(RadianceBound, KeepsItsMarginBetweenLampsCloseToTheFloor) {
         double brightest = 0.0;
         for (int row = 412; row < 612; ++row) {
             for (int column = 580; column < 780; ++column) {
-                brightest = std::max(brightest,
-                                     closed_form::radiance(rig, column, row, 550.0).radiance);
+                brightest =
+                    std::max(brightest, closed_form::radiance(rig, column, row, 550.0).radiance);
             }
         }
         EXPECT_LT(brightest, kMargin * bound) << spacing;

@@ -363,14 +363,15 @@ TEST(LampGrid, KeepsTheErrorThatItsHeaderStates) {
             double worst = 0.0;
             for (double x_m = -1.0; x_m <= 1.0; x_m += 0.25) {
                 for (double y_m = -1.0; y_m <= 1.0; y_m += 0.25) {
-                    const Vector3d at(strobe.position_m.x() + x_m, strobe.position_m.y() + y_m, 2.0);
+                    const Vector3d at(
+                        strobe.position_m.x() + x_m, strobe.position_m.y() + y_m, 2.0);
                     const double exact = irradiance(fine_m, strobe, at);
                     worst =
                         std::max(worst, std::abs(irradiance(lamps_m, strobe, at) / exact - 1.0));
                 }
             }
-            EXPECT_LT(worst, kStated) << "emitter " << emitter.across_m << " m, axis "
-                                      << axis.transpose();
+            EXPECT_LT(worst, kStated)
+                << "emitter " << emitter.across_m << " m, axis " << axis.transpose();
             EXPECT_GT(worst, 0.0) << "the grids are the same";
         }
     }

@@ -49,6 +49,11 @@ std::vector<float> rows_of(int channels, int first_row, int rows, int width_px) 
 constexpr int kWidth = 7;
 constexpr int kHeight = 37;  // two of ZIP's blocks of 16 rows, and a part of one
 
+// Room for that many rows of both channels.
+std::vector<float> room_for(int rows) {
+    return std::vector<float>(std::size_t{2} * kWidth * static_cast<std::size_t>(rows));
+}
+
 void write_image(const fs::path& file, const std::vector<int>& blocks) {
     ExrWriter out(file, kWidth, kHeight, {"A", "B"}, {{"aphotic:note", "text"}, {"empty", ""}});
     int row = 0;
@@ -72,7 +77,7 @@ TEST(Exr, ComesBackFloatForFloat) {
     EXPECT_EQ(in.width_px(), kWidth);
     EXPECT_EQ(in.height_px(), kHeight);
     EXPECT_EQ(in.channels(), (std::vector<std::string>{"A", "B"}));
-    std::vector<float> samples(2 * kWidth * kHeight);
+    std::vector<float> samples = room_for(kHeight);
     in.read_rows(0, kHeight, in.channels(), samples);
     EXPECT_EQ(samples, rows_of(2, 0, kHeight, kWidth));
 }
@@ -84,7 +89,7 @@ TEST(Exr, DoesNotDependOnTheBlocksItWasWrittenOrReadIn) {
     ExrReader in(file);
     for (const int rows : {1, 3, 16, 20, kHeight}) {
         for (int first = 0; first + rows <= kHeight; first += rows) {
-            std::vector<float> samples(static_cast<std::size_t>(2 * kWidth * rows));
+            std::vector<float> samples = room_for(rows);
             in.read_rows(first, rows, in.channels(), samples);
             EXPECT_EQ(samples, rows_of(2, first, rows, kWidth))
                 << rows << " rows from row " << first;
@@ -98,7 +103,7 @@ TEST(Exr, ReadsTheChannelsThatAreNamedInTheirOrder) {
     write_image(file, {kHeight});
     ExrReader in(file);
     const std::vector<std::string> names{"B", "A"};
-    std::vector<float> samples(2 * kWidth);
+    std::vector<float> samples = room_for(1);
     in.read_rows(4, 1, names, samples);
     EXPECT_EQ(samples.front(), sample_at(1, 4, 0));
     EXPECT_EQ(samples.back(), sample_at(0, 4, kWidth - 1));
@@ -212,7 +217,7 @@ TEST(Exr, ThatIsCutShortIsARunErrorThatNamesIt) {
     fs::resize_file(file, fs::file_size(file) - 100);
     const std::string message = run_error([&] {
         ExrReader in(file);
-        std::vector<float> samples(2 * kWidth * kHeight);
+        std::vector<float> samples = room_for(kHeight);
         in.read_rows(0, kHeight, in.channels(), samples);
     });
     EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
@@ -224,7 +229,7 @@ TEST(Exr, WithoutTheChannelIsARunErrorThatNamesBoth) {
     write_image(file, {kHeight});
     ExrReader in(file);
     const std::vector<std::string> names{"A", "Z"};
-    std::vector<float> samples(2 * kWidth);
+    std::vector<float> samples = room_for(1);
     EXPECT_EQ(run_error([&] { in.read_rows(0, 1, names, samples); }),
               file.string() + ": has no channel Z");
 }

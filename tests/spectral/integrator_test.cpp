@@ -118,9 +118,14 @@ class Render {
     Manifest manifest_;
 };
 
+std::size_t index_of(int width_px, int row, int column) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px) +
+           static_cast<std::size_t>(column);
+}
+
 std::vector<float> plane_of(const fs::path& file, const std::string& channel) {
     ExrReader in(file);
-    std::vector<float> samples(static_cast<std::size_t>(in.width_px() * in.height_px()));
+    std::vector<float> samples(index_of(in.width_px(), in.height_px(), 0));
     in.read_rows(0, in.height_px(), std::span(&channel, 1), samples);
     return samples;
 }
@@ -154,7 +159,7 @@ TEST(Integrator, SumsWeightTimesRadianceExactly) {
     for (int row = 0; row < 3; ++row) {
         for (int x = 0; x < 5; ++x) {
             const auto L = radiance_by_hand(row, x);
-            const auto at = static_cast<std::size_t>(5 * row + x);
+            const auto at = index_of(5, row, x);
             EXPECT_EQ(image.samples[at], 1.0 * L[0] + 2.0 * L[1] + 0.25 * L[2]) << row << ' ' << x;
             EXPECT_EQ(image.samples[15 + at], 0.5 * L[0] - L[1]) << row << ' ' << x;
             EXPECT_EQ(image.samples[30 + at], 4.0 * L[2]) << row << ' ' << x;
@@ -187,8 +192,7 @@ TEST(Integrator, WritesTheRadianceOfEachWavelength) {
         const auto plane = plane_of(render.folder() / "spectral.exr", channels[j]);
         for (int row = 0; row < 3; ++row) {
             for (int x = 0; x < 5; ++x) {
-                EXPECT_EQ(plane[static_cast<std::size_t>(5 * row + x)], radiance_by_hand(row, x)[j])
-                    << channels[j];
+                EXPECT_EQ(plane[index_of(5, row, x)], radiance_by_hand(row, x)[j]) << channels[j];
             }
         }
     }
@@ -259,7 +263,7 @@ TEST(Integrator, KeepsEveryRowOfTallImages) {
         for (int row = 0; row < height_px; ++row) {
             for (int x = 0; x < 3; ++x) {
                 const auto L = radiance_by_hand(row, x);
-                const auto at = static_cast<std::size_t>(3 * row + x);
+                const auto at = index_of(3, row, x);
                 ASSERT_EQ(image.samples[at], L[0] + 2.0 * L[1] + 0.25 * L[2])
                     << "row " << row << " of " << height_px;
                 ASSERT_EQ(radiance[at], L[2]) << "row " << row << " of " << height_px;

@@ -152,17 +152,18 @@ TEST(Manifest, NamesEachKeyThatIsMissing) {
     EXPECT_EQ(error_after([](Json&) {}), "no error");
     const Json whole = some_json();
     for (const auto& [key, value] : whole.items()) {
-        const std::string message = error_after([&](Json& json) { json.erase(key); });
+        const std::string message = error_after([gone = key](Json& json) { json.erase(gone); });
         EXPECT_TRUE(message.starts_with(key + ": found nothing; allowed: ")) << message;
     }
     for (const auto& [key, value] : whole["wavelengths"][1].items()) {
         const std::string message =
-            error_after([&](Json& json) { json["wavelengths"][1].erase(key); });
+            error_after([gone = key](Json& json) { json["wavelengths"][1].erase(gone); });
         EXPECT_TRUE(message.starts_with("wavelengths[1]: " + key + ": found nothing; allowed: "))
             << message;
     }
     for (const auto& [key, value] : whole["frames"][0].items()) {
-        const std::string message = error_after([&](Json& json) { json["frames"][0].erase(key); });
+        const std::string message =
+            error_after([gone = key](Json& json) { json["frames"][0].erase(gone); });
         EXPECT_TRUE(message.starts_with("frames[0]: " + key + ": found nothing; allowed: "))
             << message;
     }

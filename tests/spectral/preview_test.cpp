@@ -42,7 +42,8 @@ Picture read_png(const fs::path& file) {
     const unsigned char* data = cairo_image_surface_get_data(surface);
     for (int y = 0; y < picture.height; ++y) {
         for (int x = 0; x < picture.width; ++x) {
-            const unsigned char* bgr = data + y * stride + x * 4;
+            const unsigned char* bgr =
+                data + static_cast<std::ptrdiff_t>(y) * stride + static_cast<std::ptrdiff_t>(x) * 4;
             picture.pixels.push_back({bgr[2], bgr[1], bgr[0]});
         }
     }
@@ -52,9 +53,8 @@ Picture read_png(const fs::path& file) {
 
 // One row of pixels per channel: samples.size() / 3 pixels.
 CameraImage one_row(std::vector<float> samples) {
-    return {.width_px = static_cast<int>(samples.size() / kChannels),
-            .height_px = 1,
-            .samples = std::move(samples)};
+    const auto width_px = static_cast<int>(samples.size() / kChannels);
+    return {.width_px = width_px, .height_px = 1, .samples = std::move(samples)};
 }
 
 Picture shown(const CameraImage& image,

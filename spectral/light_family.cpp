@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/light_family.h"
+
+#include <boost/math/special_functions/legendre.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace aphotic {
+namespace {
+
+using Signals = std::array<double, kChannels>;
+
+struct Node {
+    double x;       // in [0, 1]
+    double weight;  // their sum is 1
+};
+
+std::vector<Node> gauss_legendre(unsigned points) {
+    const int order = static_cast<int>(points);
+    std::vector<Node> nodes;
+    for (const double zero : boost::math::legendre_p_zeros<double>(order)) {
+        const double slope = boost::math::legendre_p_prime(order, zero);
+        const double weight = 1.0 / ((1.0 - zero * zero) * slope * slope);
+        nodes.push_back({.x = 0.5 * (1.0 + zero), .weight = weight});
+        // Boost lists the zeros that are not negative; the rule is symmetric.
+        if (zero != 0.0) nodes.push_back({.x = 0.5 * (1.0 - zero), .weight = weight});
+    }
+    std::ranges::sort(nodes, {}, &Node::x);
+    return nodes;
+}
+
+const std::vector<std::vector<Node>>& gauss_legendre_rules() {
+    static const auto kRules = [] {
+        std::vector<std::vector<Node>> rules{{}};
+        for (unsigned n = 1; n <= kExactPoints; ++n) rules.push_back(gauss_legendre(n));
+        return rules;
+    }();
+    return kRules;
+}
+
+double source_at(const std::vector<Spectrum>& source, double lambda_nm) {
+    double value = 1.0;
+    for (const Spectrum& curve : source) value *= curve.at(lambda_nm);
+    return value;
+}
+
+// One member of the family: a source and a path.
+struct Member {
+    const std::vector<Spectrum>* source;
+    double path_m;
+};
+
+std::vector<Member> members_of(const LightFamily& family, int paths) {
+    std::vector<Member> members;
+    for (const auto& source : family.sources) {
+        for (int i = 0; i < paths; ++i) {
+            const double share = paths == 1 ? 0.0 : static_cast<double>(i) / (paths - 1);
+            const double path_m =
+                family.shortest_path_m + share * (family.longest_path_m - family.shortest_path_m);
+            members.push_back({.source = &source, .path_m = path_m});
+        }
+    }
+    return members;
+}
+
+double light(const LightFamily& family, const Member& member, double lambda_nm) {
+    return source_at(*member.source, lambda_nm) *
+           std::exp(-family.water.attenuation_per_m(lambda_nm) * member.path_m);
+}
+
+Signals signals_of(const LightFamily& family,
+                   const Member& member,
+                   std::span<const WeightedWavelength> rule) {
+    Signals signals{};
+    for (const WeightedWavelength& w : rule) {
+        const double f = light(family, member, w.lambda_nm);
+        for (std::size_t c = 0; c < kChannels; ++c) signals[c] += w.weight[c] * f;
+    }
+    return signals;
+}
+
+std::vector<WeightedWavelength> nodes_between(const Sensor& sensor,
+                                              double first_nm,
+                                              double last_nm,
+                                              unsigned points) {
+    std::vector<WeightedWavelength> nodes;
+    const double width_nm = last_nm - first_nm;
+    for (const Node& node : gauss_legendre_rules()[points]) {
+        WeightedWavelength w{.lambda_nm = first_nm + node.x * width_nm, .weight = {}};
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            w.weight[c] =
+                node.weight * width_nm * sensor.response(static_cast<int>(c), w.lambda_nm);
+        }
+        nodes.push_back(w);
+    }
+    return nodes;
+}
+
+std::vector<double> knots_of(const Sensor& sensor,
+                             const LightFamily& family,
+                             WavelengthRange range) {
+    std::vector<const Spectrum*> curves = sensor.curves();
+    for (const auto& source : family.sources) {
+        for (const Spectrum& curve : source) curves.push_back(&curve);
+    }
+    if (family.water.multiple != 0.0) curves.push_back(&family.water.absorption_per_m);
+    return union_of_knots(curves, range);
+}
+
+}  // namespace
+
+std::vector<WeightedWavelength> reference_grid(const Sensor& sensor,
+                                               const LightFamily& family,
+                                               WavelengthRange range,
+                                               double error) {
+    const std::vector<double> knots = knots_of(sensor, family, range);
+    const std::vector<Member> members = members_of(family, 3);
+    const std::size_t intervals = knots.size() - 1;
+
+    std::vector<std::vector<Signals>> exact(intervals);  // by interval and member
+    std::vector<Signals> total(members.size(), Signals{});
+    for (std::size_t i = 0; i < intervals; ++i) {
+        const auto nodes = nodes_between(sensor, knots[i], knots[i + 1], kExactPoints);
+        for (std::size_t m = 0; m < members.size(); ++m) {
+            exact[i].push_back(signals_of(family, members[m], nodes));
+            for (std::size_t c = 0; c < kChannels; ++c) total[m][c] += exact[i][m][c];
+        }
+    }
+
+    const double share = error / static_cast<double>(intervals);
+    std::vector<WeightedWavelength> grid;
+    for (std::size_t i = 0; i < intervals; ++i) {
+        std::vector<WeightedWavelength> nodes;
+        for (unsigned points = 1; points <= kExactPoints; ++points) {
+            nodes = nodes_between(sensor, knots[i], knots[i + 1], points);
+            bool is_enough = true;
+            for (std::size_t m = 0; m < members.size() && is_enough; ++m) {
+                const Signals found = signals_of(family, members[m], nodes);
+                for (std::size_t c = 0; c < kChannels; ++c) {
+                    is_enough &= std::abs(found[c] - exact[i][m][c]) <= share * total[m][c];
+                }
+            }
+            if (is_enough) break;
+        }
+        grid.insert(grid.end(), nodes.begin(), nodes.end());
+    }
+    return grid;
+}
+
+std::array<double, kChannels> rule_error(const Sensor& sensor,
+                                         const LightFamily& family,
+                                         WavelengthRange range,
+                                         std::span<const WeightedWavelength> rule) {
+    constexpr double kGridError = 1e-9;
+    constexpr int kPaths = 33;
+    const std::vector<WeightedWavelength> grid = reference_grid(sensor, family, range, kGridError);
+    std::array<double, kChannels> worst{};
+    for (const Member& member : members_of(family, kPaths)) {
+        const Signals right = signals_of(family, member, grid);
+        const Signals found = signals_of(family, member, rule);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            if (right[c] == 0.0) continue;
+            worst[c] = std::max(worst[c], std::abs(found[c] / right[c] - 1.0));
+        }
+    }
+    return worst;
+}
+
+}  // namespace aphotic

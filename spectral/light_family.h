@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The shapes that a scene's light can take over wavelength, and how to integrate them.
+//
+// Light that reaches the camera has gone a path of some length l and met one material:
+//
+//   f(lambda) = source(lambda) exp(-K(lambda) l),      T_c(l) = int f Q_c dlambda
+//
+// source  lamp spectrum, times the floor's reflectance (a highlight: the lamp's alone)
+// K       loss of the water [1/m]        l  lamp to floor to camera, in water [m]
+// Q_c     response of channel c          T_c  signal that such light gives
+//
+// A pixel's signal is a sum of such T_c with factors that are not negative. So a rule of
+// wavelengths and weights that errs by at most e on every member of the family errs by at most
+// e on every pixel.
+#pragma once
+
+#include "spectral/bands.h"
+#include "spectral/sensor.h"
+#include "spectral/spectrum.h"
+#include "spectral/water.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+struct LightFamily {
+    // Each source is the product of its curves.
+    std::vector<std::vector<Spectrum>> sources;
+    Water water;
+    double shortest_path_m = 0.0;
+    double longest_path_m = 0.0;
+};
+
+// An integration grid that is exact to the stated error for every member of the family: between
+// neighbouring knots of all tables each factor is a straight line, and Gauss-Legendre with as
+// many points as the interval needs takes their product. Summed over the intervals, the
+// differences from a rule of kExactPoints points stay under `error` times the channel's T_c, at
+// the shortest, the middle and the longest path.
+[[nodiscard]] std::vector<WeightedWavelength> reference_grid(const Sensor& sensor,
+                                                             const LightFamily& family,
+                                                             WavelengthRange range,
+                                                             double error);
+inline constexpr unsigned kExactPoints = 12;
+
+// The largest relative error of the rule over the family, per channel, against reference_grid.
+// A channel that sees none of a source's light has error 0 for it.
+[[nodiscard]] std::array<double, kChannels> rule_error(const Sensor& sensor,
+                                                       const LightFamily& family,
+                                                       WavelengthRange range,
+                                                       std::span<const WeightedWavelength> rule);
+
+}  // namespace aphotic

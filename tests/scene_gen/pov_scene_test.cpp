@@ -1,0 +1,512 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/pov_scene.h"
+
+#include "scene_gen/rig_reader.h"
+#include "spectral/error.h"
+#include "tests/support/closed_form.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <regex>
+#include <sstream>
+
+namespace aphotic {
+namespace {
+
+using Eigen::Vector3d;
+using Numbers = std::vector<double>;
+
+constexpr double kPi = std::numbers::pi;
+// A few products of doubles, each rounded once.
+constexpr double kRounding = 1e-15;
+
+// Straight lines between numbers that no short decimal holds.
+Spectrum sloping(double first, double last) {
+    return {"sloping", {400.0, 700.0}, {first, last}};
+}
+
+// No two numbers alike, no symmetry, and few of them short in decimal.
+Rig odd_rig() {
+    Strobe fore{.name = "fore",
+                .position_m = {1.0 / 3.0, -0.1, 0.2},
+                .axis = Vector3d(-0.3, 0.1, 0.9).normalized(),
+                .beam = {.name = "b",
+                         .weights = ConeWeights::Flux,
+                         .cones = {{.part = "core", .half_angle_rad = 0.3, .weight = 0.7},
+                                   {.part = "halo", .half_angle_rad = kPi / 2, .weight = 0.3}}},
+                .spectrum = sloping(0.1, 0.7),
+                .power = 1.1,
+                .emitter = std::nullopt};
+    Strobe aft = fore;
+    aft.name = "aft";
+    aft.position_m = {-0.7, 0.4, -0.1};
+    aft.axis = Vector3d(0.2, -0.3, 0.7).normalized();
+    aft.beam.cones = {{.part = "all", .half_angle_rad = 1.2, .weight = 1.0}};
+    return {.title = "odd",
+            .sled = {.altitude_m = 2.3, .pitch_rad = 0.07, .roll_rad = -0.05},
+            .camera = {.width_px = 13,
+                       .height_px = 7,
+                       .pixel_pitch_m = 6.45e-4,
+                       .focal_length_m = 0.0123,
+                       .range = {400.0, 700.0},
+                       .sensor = Sensor({sloping(1, 1), sloping(1, 1), sloping(1, 1)},
+                                        ResponseKind::Energy),
+                       .port = std::nullopt},
+            .water = {.absorption_per_m = sloping(0.02, 0.6), .uniform_loss_per_m = 0.01},
+            .seafloor = {.reflectance = sloping(0.3, 0.5)},
+            .strobes = {fore, aft},
+            .digest = ""};
+}
+
+Rig with_port(Rig rig) {
+    rig.camera.port =
+        FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+    return rig;
+}
+
+std::vector<FrameScene> scenes_of(const Rig& rig,
+                                  const std::vector<double>& lambda_nm = {450.0, 550.0, 650.0},
+                                  const SceneOptions& options = {}) {
+    return make_scenes(rig, lambda_nm, options);
+}
+
+std::string sdl_of(const Rig& rig) {
+    return scenes_of(rig).front().sdl;
+}
+
+// The scene as POV-Ray reads it: without what stands behind // on each line.
+std::string without_comments(const std::string& sdl) {
+    std::istringstream lines(sdl);
+    std::string rest;
+    for (std::string line; std::getline(lines, line);) {
+        rest += line.substr(0, line.find("//")) + "\n";
+    }
+    return rest;
+}
+
+bool holds(const std::string& sdl, const std::string& word) {
+    return without_comments(sdl).find(word) != std::string::npos;
+}
+
+Numbers numbers_in(const std::string& text) {
+    static const std::regex kNumber(R"([-+]?\d+\.?\d*(e[-+]?\d+)?)");
+    Numbers numbers;
+    for (std::sregex_iterator at(text.begin(), text.end(), kNumber), end; at != end; ++at) {
+        numbers.push_back(std::stod(at->str()));
+    }
+    return numbers;
+}
+
+// The numbers of each line that begins like this, comments aside.
+std::vector<Numbers> numbers_after(const std::string& sdl, const std::string& start) {
+    std::istringstream lines(without_comments(sdl));
+    std::vector<Numbers> found;
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t first = line.find_first_not_of(' ');
+        if (first == std::string::npos || !line.substr(first).starts_with(start)) continue;
+        found.push_back(numbers_in(line.substr(first + start.size())));
+    }
+    return found;
+}
+
+Numbers one_after(const std::string& sdl, const std::string& start) {
+    const auto found = numbers_after(sdl, start);
+    EXPECT_EQ(found.size(), 1U) << "lines that begin with " << start;
+    return found.empty() ? Numbers(8, 0.0) : found.front();
+}
+
+std::string input_error(const Rig& rig) {
+    try {
+        static_cast<void>(scenes_of(rig));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+// --- Names and order -------------------------------------------------------------------------
+
+TEST(PovScene, IsNamedAfterItsWavelengths) {
+    const auto scenes = scenes_of(odd_rig(), {478.0, 575.6, 638.4, 690.0});
+    ASSERT_EQ(scenes.size(), 2U);
+    EXPECT_EQ(scenes[0].name, "band_478_576_638nm");
+    EXPECT_EQ(scenes[1].name, "band_690nm");
+}
+
+TEST(PovScene, NamesHaveDecimalsWhereWholeNumbersWouldBeAlike) {
+    const auto scenes = scenes_of(odd_rig(), {500.0, 500.25, 500.26}, {1, std::nullopt});
+    ASSERT_EQ(scenes.size(), 3U);
+    EXPECT_EQ(scenes[0].name, "band_500.00nm");
+    EXPECT_EQ(scenes[1].name, "band_500.25nm");
+    EXPECT_EQ(scenes[2].name, "band_500.26nm");
+}
+
+TEST(PovScene, KeepsTheWavelengthsInTheirOrder) {
+    const std::vector<double> lambda_nm{450.0, 500.0, 550.0, 600.0, 650.0};
+    for (const int per_frame : {1, 2, 3}) {
+        const auto scenes = scenes_of(odd_rig(), lambda_nm, {per_frame, std::nullopt});
+        std::vector<double> found_nm;
+        for (const FrameScene& scene : scenes) {
+            EXPECT_LE(scene.wavelengths.size(), static_cast<std::size_t>(per_frame));
+            for (const FrameWavelength& w : scene.wavelengths) found_nm.push_back(w.lambda_nm);
+        }
+        EXPECT_EQ(found_nm, lambda_nm) << per_frame << " a frame";
+        EXPECT_EQ(scenes.size(),
+                  (5U + static_cast<unsigned>(per_frame) - 1U) / static_cast<unsigned>(per_frame));
+    }
+}
+
+TEST(PovScene, OfFewerThanThreeWavelengthsRepeatsItsLast) {
+    const Rig rig = odd_rig();
+    const auto scenes = scenes_of(rig, {450.0, 650.0});
+    ASSERT_EQ(scenes.size(), 1U);
+    ASSERT_EQ(scenes[0].wavelengths.size(), 2U);
+    const Numbers rho = one_after(scenes[0].sdl, "pigment { rgb ");
+    EXPECT_EQ(rho,
+              (Numbers{rig.seafloor.reflectance.at(450.0),
+                       rig.seafloor.reflectance.at(650.0),
+                       rig.seafloor.reflectance.at(650.0)}));
+    const auto flux = numbers_after(scenes[0].sdl, "#declare Flux = ");
+    ASSERT_EQ(flux.size(), 2U);
+    EXPECT_NE(flux[0][0], flux[0][1]);
+    EXPECT_EQ(flux[0][1], flux[0][2]);
+}
+
+// --- Numbers ---------------------------------------------------------------------------------
+
+TEST(PovScene, HoldsTheCameraToTheLastBit) {
+    const Rig rig = odd_rig();
+    const std::string sdl = sdl_of(rig);
+    EXPECT_EQ(one_after(sdl, "direction z * "), Numbers{0.0123});
+    EXPECT_EQ(one_after(sdl, "right x * "), Numbers{13 * 6.45e-4});
+    EXPECT_EQ(one_after(sdl, "up y * "), Numbers{7 * 6.45e-4});
+    EXPECT_EQ(one_after(sdl, "perspective  location "), (Numbers{0.0, 0.0, 0.0}));
+}
+
+TEST(PovScene, HoldsTheWaterAndTheFloorToTheLastBit) {
+    const Rig rig = odd_rig();
+    const std::string sdl = sdl_of(rig);
+    Numbers K_per_m;
+    Numbers rho;
+    for (const double l : {450.0, 550.0, 650.0}) {
+        K_per_m.push_back(rig.water.absorption_per_m.at(l) + 0.01);
+        rho.push_back(rig.seafloor.reflectance.at(l));
+    }
+    EXPECT_EQ(one_after(sdl, "media { method 1  intervals 1  samples 1, 1  absorption rgb "),
+              K_per_m);
+    EXPECT_EQ(one_after(sdl, "pigment { rgb "), rho);
+}
+
+// POV-Ray's plane <n>, d is the points with n.p = d. Its x is our starboard, its y our forward.
+TEST(PovScene, HasTheFloorWhereTheSledHasIt) {
+    const Rig rig = odd_rig();
+    const Numbers plane = one_after(sdl_of(rig), "plane { ");
+    ASSERT_EQ(plane.size(), 4U);
+    const closed_form::Vector down = closed_form::world_down(rig.sled);
+    EXPECT_NEAR(plane[0], -down[1], kRounding);
+    EXPECT_NEAR(plane[1], -down[0], kRounding);
+    EXPECT_NEAR(plane[2], -down[2], kRounding);
+    EXPECT_NEAR(plane[3], -down[2] * 2.3, 4.0 * kRounding) << "through (0, 0, altitude)";
+}
+
+// The lines of Cone_Lamp: <position>, Axis, half angle, axial intensity, Flux.
+TEST(PovScene, HasEveryConeOfEveryStrobeInPovraysFrame) {
+    const Rig rig = odd_rig();
+    const std::string sdl = sdl_of(rig);
+    const auto lamps = numbers_after(sdl, "Cone_Lamp (");
+    const auto axes = numbers_after(sdl, "#declare Axis = ");
+    ASSERT_EQ(lamps.size(), 3U);
+    ASSERT_EQ(axes.size(), 2U);
+    std::size_t lamp = 0;
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        const Strobe& strobe = rig.strobes[s];
+        EXPECT_EQ(axes[s], (Numbers{strobe.axis.y(), strobe.axis.x(), strobe.axis.z()}));
+        for (const Cone& cone : strobe.beam.cones) {
+            const Numbers& found = lamps.at(lamp++);
+            ASSERT_EQ(found.size(), 5U);
+            EXPECT_EQ(found[0], strobe.position_m.y());
+            EXPECT_EQ(found[1], strobe.position_m.x());
+            EXPECT_EQ(found[2], strobe.position_m.z());
+            EXPECT_NEAR(found[3] * kPi / 180.0, cone.half_angle_rad, kRounding) << cone.part;
+            const double sin_gamma = std::sin(cone.half_angle_rad);
+            EXPECT_NEAR(found[4] * kPi * sin_gamma * sin_gamma / cone.weight, 1.0, kRounding);
+        }
+    }
+}
+
+// POV-Ray's light at a distance d far above f is colour 2 f^2 / d^2, and its floor has no 1/pi:
+// for a radiance Phi P A / (pi d^2) the colour times 2 f^2 must be Phi P A 2^e / (N pi).
+TEST(PovScene, LightsWithTheStrobesPowerTimesTheExposure) {
+    Rig rig = odd_rig();
+    rig.strobes[1].emitter = Emitter{.across_m = 0.1, .along_m = 0.05};
+    for (const std::optional<LampGrid> grid :
+         {std::optional<LampGrid>(), std::optional(LampGrid{.across = 3, .along = 2})}) {
+        const FrameScene scene = scenes_of(rig, {450.0, 550.0, 650.0}, {3, grid}).front();
+        ASSERT_TRUE(holds(scene.sdl,
+                          "Position, rgb Flux * Axial_Intensity / (2 * pi * Fade_Distance * "
+                          "Fade_Distance)"));
+        const double fade_m = one_after(scene.sdl, "#declare Fade_Distance = ").front();
+        const auto fluxes = numbers_after(scene.sdl, "#declare Flux = ");
+        const auto lamps = numbers_after(scene.sdl, "Cone_Lamp (");
+        ASSERT_EQ(fluxes.size(), 2U);
+        const auto lamps_aft = lamps.size() - 2;  // the fore strobe is a point with two cones
+        if (grid) {
+            EXPECT_EQ(lamps_aft, 6U);
+        }
+        EXPECT_GT(lamps_aft, 1U);
+        for (std::size_t s = 0; s < 2; ++s) {
+            const double N = s == 0 ? 1.0 : static_cast<double>(lamps_aft);
+            const double A = s == 0 ? lamps[0][4] : lamps[2][4];
+            for (std::size_t c = 0; c < 3; ++c) {
+                const FrameWavelength& w = scene.wavelengths[c];
+                const double colour = fluxes[s][c] * A / (2.0 * kPi * fade_m * fade_m);
+                const double wanted = rig.strobes[s].spectrum.at(w.lambda_nm) * 1.1 * A *
+                                      std::exp2(w.exposure_log2) / (N * kPi);
+                constexpr double kFewRoundings = 5.0 * kRounding;
+                EXPECT_NEAR(colour * 2.0 * fade_m * fade_m / wanted, 1.0, kFewRoundings)
+                    << "strobe " << s << ", channel " << c << ", " << N << " lamps";
+            }
+        }
+    }
+}
+
+// The fade law 2/(1 + (d/f)^2) deviates from 2 f^2/d^2 by (f/d)^2: under 1e-6 from the nearest
+// point of the floor on. A power of two keeps the scaling exact.
+TEST(PovScene, FadesByTheInverseSquareFromTheNearestFloorOn) {
+    Rig rig = odd_rig();
+    rig.strobes[0].position_m.z() = 2.2;  // some 12 cm above the floor
+    const double fade_m = one_after(sdl_of(rig), "#declare Fade_Distance = ").front();
+    const closed_form::Vector down = closed_form::world_down(rig.sled);
+    const closed_form::Vector to_floor{
+        -rig.strobes[0].position_m.x(), -rig.strobes[0].position_m.y(), 2.3 - 2.2};
+    const double height_m = closed_form::dot(to_floor, down);
+    EXPECT_LE(std::pow(fade_m / height_m, 2.0), 1e-6);
+    EXPECT_GT(fade_m, 1e-10) << "POV-Ray takes less for no fading at all";
+    EXPECT_EQ(fade_m, std::exp2(std::round(std::log2(fade_m))));
+}
+
+// The exposed frame must use half floats well: peak over 2^10, and no more than 2^14.
+TEST(PovScene, ExposesEachWavelengthIntoTheUpperHalfFloats) {
+    const Rig rig = odd_rig();
+    for (const FrameScene& scene : scenes_of(rig)) {
+        for (const FrameWavelength& w : scene.wavelengths) {
+            double peak = 0.0;
+            for (int row = 0; row < rig.camera.height_px; ++row) {
+                for (int column = 0; column < rig.camera.width_px; ++column) {
+                    peak = std::max(peak,
+                                    closed_form::radiance(rig, column, row, w.lambda_nm).radiance);
+                }
+            }
+            const double exposed = std::ldexp(peak, w.exposure_log2);
+            EXPECT_GT(exposed, 0x1p10) << w.lambda_nm << " nm";
+            EXPECT_LE(exposed, 0x1p14) << w.lambda_nm << " nm";
+        }
+    }
+}
+
+// --- Only what the scene requires ------------------------------------------------------------
+
+TEST(PovScene, HasNoMediumInClearWater) {
+    Rig rig = odd_rig();
+    EXPECT_TRUE(holds(sdl_of(rig), "media {"));
+    EXPECT_TRUE(holds(sdl_of(rig), "media_attenuation on"));
+    rig.water.uniform_loss_per_m = 0.0;
+    EXPECT_TRUE(holds(sdl_of(rig), "media {")) << "absorption alone";
+    rig.water.multiple = 0.0;
+    EXPECT_FALSE(holds(sdl_of(rig), "media")) << "clear";
+    rig.water.uniform_loss_per_m = 0.01;
+    EXPECT_TRUE(holds(sdl_of(rig), "media {")) << "uniform loss alone";
+    EXPECT_TRUE(holds(sdl_of(rig), "media_attenuation on"));
+}
+
+// It would make point lights of the spotlights.
+TEST(PovScene, IsNeverShadowless) {
+    Rig rig = odd_rig();
+    EXPECT_FALSE(holds(sdl_of(rig), "shadowless"));
+    rig.water.multiple = 0.0;
+    rig.water.uniform_loss_per_m = 0.0;
+    EXPECT_FALSE(holds(sdl_of(rig), "shadowless"));
+}
+
+TEST(PovScene, HasNoLampThatDoesNotShine) {
+    Rig rig = odd_rig();
+    rig.strobes[0].beam.cones[0].weight = 0.0;
+    EXPECT_EQ(numbers_after(sdl_of(rig), "Cone_Lamp (").size(), 2U) << "a cone of weight 0";
+    rig.strobes[0].power = 0.0;
+    EXPECT_EQ(numbers_after(sdl_of(rig), "Cone_Lamp (").size(), 1U) << "a strobe of power 0";
+    rig.strobes[1].spectrum = Spectrum("dark", {400.0, 660.0, 700.0}, {0.0, 0.0, 1.0});
+    EXPECT_EQ(numbers_after(sdl_of(rig), "Cone_Lamp (").size(), 0U) << "dark at 450 to 650 nm";
+    EXPECT_EQ(numbers_after(scenes_of(rig, {450.0, 690.0}).front().sdl, "Cone_Lamp (").size(), 1U)
+        << "dark at one of two";
+}
+
+TEST(PovScene, HasAHighlightOnlyWhereThereIsOne) {
+    Rig rig = odd_rig();
+    EXPECT_FALSE(holds(sdl_of(rig), "phong"));
+    rig.seafloor.phong = 0.3;
+    rig.seafloor.phong_size = 12.5;
+    EXPECT_EQ(one_after(sdl_of(rig), "finish { phong "), (Numbers{0.3, 12.5}));
+}
+
+// --- Port ------------------------------------------------------------------------------------
+
+TEST(PovScene, HasNoPortWhereNoneIsGiven) {
+    EXPECT_FALSE(holds(sdl_of(odd_rig()), "box {"));
+    EXPECT_FALSE(holds(sdl_of(odd_rig()), "ior"));
+}
+
+TEST(PovScene, BehindAPortHasOneWavelengthAndItsIndices) {
+    const Rig rig = with_port(odd_rig());
+    const auto scenes = scenes_of(rig);
+    ASSERT_EQ(scenes.size(), 3U);
+    for (const FrameScene& scene : scenes) {
+        ASSERT_EQ(scene.wavelengths.size(), 1U);
+        const double lambda_nm = scene.wavelengths[0].lambda_nm;
+        EXPECT_EQ(one_after(scene.sdl, "#declare N_Water = "),
+                  Numbers{seawater_index(lambda_nm, 35.0, 10.0)});
+        EXPECT_EQ(one_after(scene.sdl, "#declare N_Glass = "),
+                  Numbers{rig.camera.port->glass.index(lambda_nm)});
+        const Numbers rho = one_after(scene.sdl, "pigment { rgb ");
+        EXPECT_EQ(rho, Numbers(3, rig.seafloor.reflectance.at(lambda_nm)));
+        // The water is POV-Ray's index 1.
+        EXPECT_TRUE(holds(scene.sdl, "interior { ior N_Glass / N_Water }"));
+        EXPECT_TRUE(holds(scene.sdl, "interior { ior 1 / N_Water }"));
+        EXPECT_FALSE(holds(scene.sdl, "hollow")) << "glass and air would hold water";
+    }
+    EXPECT_EQ(scenes[0].name, "band_450nm");
+}
+
+// The cavity lies strictly inside the glass, its face at the port's distance, and both are wider
+// than the rays of the image's corners.
+TEST(PovScene, NestsTheAirInTheGlass) {
+    const auto boxes = numbers_after(scenes_of(with_port(odd_rig())).front().sdl, "box { ");
+    ASSERT_EQ(boxes.size(), 2U);
+    const Numbers& glass = boxes[0];
+    const Numbers& air = boxes[1];
+    ASSERT_EQ(glass.size(), 6U);
+    ASSERT_EQ(air.size(), 6U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_LT(glass[i], air[i]);
+        EXPECT_LT(air[i], 0.0) << "the pupil is in the air";
+        EXPECT_LT(air[i + 3], glass[i + 3]);
+    }
+    EXPECT_NEAR(air[5], 0.05, kRounding);
+    EXPECT_NEAR(glass[5], 0.062, kRounding);
+    const double corner_x = 0.5 * 13 * 6.45e-4 / 0.0123;  // tangents in air, starboard
+    const double corner_y = 0.5 * 7 * 6.45e-4 / 0.0123;   // and forward
+    EXPECT_GT(air[3], 0.05 * corner_x);
+    EXPECT_GT(air[4], 0.05 * corner_y);
+    EXPECT_GT(glass[3], 0.062 * corner_x);
+    EXPECT_GT(glass[4], 0.062 * corner_y);
+}
+
+TEST(PovScene, RefusesAStrobeInTheHousing) {
+    Rig rig = with_port(odd_rig());
+    rig.strobes[1].position_m = {0.01, -0.01, 0.03};
+    const std::string message = input_error(rig);
+    EXPECT_TRUE(message.starts_with("strobe 'aft' has a lamp inside the camera's housing"))
+        << message;
+    rig.strobes[1].position_m = {0.0, 0.0, 0.07};
+    EXPECT_EQ(input_error(rig), "no error") << "in front of the port";
+    rig.strobes[1].position_m = {0.01, -0.01, 0.03};
+    rig.camera.port.reset();
+    EXPECT_EQ(input_error(rig), "no error") << "without a housing";
+}
+
+// Facing aft from 10 cm above the floor, with 30 cm from edge to edge.
+TEST(PovScene, RefusesAnEmitterThatReachesUnderTheFloor) {
+    Rig rig = odd_rig();
+    rig.sled = {.altitude_m = 2.0, .pitch_rad = 0.0, .roll_rad = 0.0};
+    rig.strobes[0].position_m = {0.5, 0.0, 1.9};
+    rig.strobes[0].axis = -Vector3d::UnitX();
+    EXPECT_EQ(input_error(rig), "no error");
+    rig.strobes[0].emitter = Emitter{.across_m = 0.01, .along_m = 0.3};
+    const std::string message = input_error(rig);
+    EXPECT_TRUE(message.starts_with("strobe 'fore' has a lamp at or under the sea floor"))
+        << message;
+}
+
+// --- Words of the user -----------------------------------------------------------------------
+
+TEST(PovScene, KeepsTheUsersWordsInComments) {
+    const Rig plain = odd_rig();
+    for (const std::string words : {"\"quoted\"",
+                                    "two\nlight_source { 0, 9 }",
+                                    "two\rlight_source { 0, 9 }",
+                                    "two\r\n#end",
+                                    "*/ light_source { 0, 9 } /*",
+                                    "#end",
+                                    "} } }",
+                                    "form\f feed\v tab",
+                                    "back\\slash\\",
+                                    "braces {} of fmt {0}",
+                                    "K\xC3\xB6ln"}) {
+        Rig rig = plain;
+        rig.title = words;
+        rig.strobes[0].name = words;
+        rig.strobes[0].beam.name = words;
+        rig.strobes[0].beam.cones[0].part = words;
+        const std::string sdl = sdl_of(rig);
+        EXPECT_EQ(without_comments(sdl), without_comments(sdl_of(plain))) << words;
+        EXPECT_EQ(std::count(sdl.begin(), sdl.end(), '\r'), 0) << words;
+        EXPECT_EQ(render_ini(rig), render_ini(plain)) << words;
+    }
+}
+
+TEST(PovScene, SaysWhatItIs) {
+    const std::string sdl = sdl_of(odd_rig());
+    EXPECT_NE(sdl.find("// Description: odd\n"), std::string::npos);
+    EXPECT_NE(sdl.find("// Strobe: fore\n"), std::string::npos);
+    EXPECT_NE(sdl.find("// halo\n"), std::string::npos);
+    EXPECT_NE(sdl.find("// File: band_450_550_650nm.pov\n"), std::string::npos);
+    for (const char* wavelength : {"red    450 nm", "green  550 nm", "blue   650 nm"}) {
+        EXPECT_NE(sdl.find(wavelength), std::string::npos) << wavelength;
+    }
+}
+
+TEST(PovScene, ClosesWhatItOpens) {
+    Rig rig = with_port(odd_rig());
+    rig.seafloor.phong = 0.1;
+    const std::string code = without_comments(sdl_of(rig));
+    for (const std::string pair : {"{}", "()", "<>"}) {
+        EXPECT_EQ(std::count(code.begin(), code.end(), pair[0]),
+                  std::count(code.begin(), code.end(), pair[1]))
+            << pair;
+    }
+    EXPECT_EQ(code.find("nan"), std::string::npos);
+    EXPECT_EQ(code.find("inf"), std::string::npos);
+}
+
+// What spoils a measurement by default: ambient light, weak rays cut, gamma.
+TEST(PovScene, TurnsOffPovraysOwnLightAndCuts) {
+    const std::string sdl = sdl_of(odd_rig());
+    for (const char* setting : {"#version 3.7;",
+                                "assumed_gamma 1.0",
+                                "adc_bailout 0",
+                                "ambient 0  emission 0  diffuse 1",
+                                "background { rgb 0 }"}) {
+        EXPECT_TRUE(holds(sdl, setting)) << setting;
+    }
+}
+
+TEST(RenderIni, SetsWhatChangesPixels) {
+    const std::string ini = "\n" + render_ini(odd_rig());
+    for (const char* setting : {"Width=13",
+                                "Height=7",
+                                "Output_File_Type=E",
+                                "Output_Alpha=off",
+                                "File_Gamma=1.0",
+                                "Antialias=off",
+                                "Quality=9",
+                                "Start_Row=0",
+                                "Start_Column=0"}) {
+        EXPECT_NE(ini.find(std::string("\n") + setting + "\n"), std::string::npos) << setting;
+    }
+}
+
+}  // namespace
+}  // namespace aphotic

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How far one image is from another, sample by sample, absolute scale included.
+//
+//   e_i = (a_i - b_i) / max(|b_i|, floor)
+//
+// a      the image in question        b  the reference
+// floor  what counts as black: under it a difference is measured against it, so that a
+//        rounding of nothing is not an infinite error
+//
+// Reported of |e|: the largest and where it is, the 99.9 percentile (nearest rank), the root
+// mean square; and the mean of e, with its sign. No factor is fitted.
+//
+// Samples on edges, where a pixel's centre falls on either side by rounding, are counted and
+// measured on their own. A comparison holds when the largest |e| off the edges is within the
+// bound and every sample, on edges too, is finite.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace aphotic {
+
+struct Comparison {
+    std::string name;  // such as "550 nm" or "R"
+    double max_error = 0.0;
+    int column = 0;  // of max_error
+    int row = 0;
+    double percentile_999 = 0.0;
+    double rms_error = 0.0;
+    double mean_error = 0.0;  // signed
+    std::size_t compared = 0;
+    std::size_t on_edges = 0;
+    double max_error_on_edges = 0.0;
+    std::size_t not_finite = 0;  // samples of a or b that are NaN or inf, edges included
+    double bound = 0.0;
+
+    [[nodiscard]] bool holds() const { return not_finite == 0 && max_error <= bound; }
+};
+
+// The planes are rows of width_px samples. on_edge: 1 for samples on edges; may be empty.
+[[nodiscard]] Comparison compare_planes(std::string name,
+                                        std::span<const float> a,
+                                        std::span<const double> b,
+                                        int width_px,
+                                        std::span<const unsigned char> on_edge,
+                                        double floor,
+                                        double bound);
+
+// e of one sample; NaN when either is not finite.
+[[nodiscard]] double relative_error(double a, double b, double floor);
+
+}  // namespace aphotic

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a validation found, for programs (validation.json) and for people (report.html: one page
+// that needs no other file, no script and no network).
+#pragma once
+
+#include "scene_gen/rig.h"
+#include "spectral/integrator.h"
+#include "validation/comparison.h"
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct ValidationReport {
+    Rig rig;
+    std::string aphotic_version;
+    std::string povray_version;
+    std::vector<Comparison> wavelengths;  // radiance, POV-Ray's against the reference's
+    std::vector<Comparison> channels;     // signals R, G, B
+    CameraImage rendered;                 // signals, through POV-Ray
+    CameraImage traced;                   // signals, by the reference over the full spectrum
+    std::array<double, kChannels> lamp_signal{};  // the white of both previews
+    // Signed relative errors of the signals, R, G, B planes; NaN on edges.
+    std::vector<float> channel_errors;
+    std::size_t frames = 0;
+    std::size_t grid_size = 0;  // wavelengths of the reference
+    int jobs = 1;
+    double render_s = 0.0;
+    double integrate_s = 0.0;
+    double trace_s = 0.0;
+
+    // Every comparison holds.
+    [[nodiscard]] bool holds() const;
+    // The one that is worst against its bound.
+    [[nodiscard]] const Comparison& worst() const;
+};
+
+void write_validation_json(const ValidationReport& report, const std::filesystem::path& file);
+void write_validation_html(const ValidationReport& report, const std::filesystem::path& file);
+
+}  // namespace aphotic
