@@ -45,35 +45,20 @@ double widened_intensity(const Beam& beam, double theta_rad, double margin_rad) 
 
 RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
     const Plane floor = floor_plane(rig.sled);
-    const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
-
-    // The grid's points on the floor, row by row; none where the ray misses it.
-    std::vector<std::optional<Vector3d>> points(kGrid * kGrid);
-    std::vector<double> camera_legs_m(kGrid * kGrid);
-    for (std::size_t j = 0; j < kGrid; ++j) {
-        for (std::size_t i = 0; i < kGrid; ++i) {
-            const double column = rig.camera.width_px * (static_cast<double>(i) / (kGrid - 1));
-            const double row = rig.camera.height_px * (static_cast<double>(j) / (kGrid - 1));
-            const WaterRay ray = pixel_ray(rig, column, row, middle_nm);
-            const auto distance_m = distance_to(floor, ray);
-            if (!distance_m) continue;
-            const std::size_t index = j * kGrid + i;
-            points[index] = ray.origin_m + *distance_m * ray.direction;
-            camera_legs_m[index] = *distance_m;
-        }
-    }
+    const std::vector<std::optional<FloorSample>> points = floor_samples(rig, kGrid);
     for (std::size_t index = 0; index < points.size(); ++index) {
         if (!points[index]) continue;
         double margin_rad = 0.0;
         for (const std::size_t step : {std::size_t{1}, kGrid}) {
             if (index + step >= points.size() || !points[index + step]) continue;
             for (const Strobe& strobe : rig.strobes) {
-                margin_rad = std::max(margin_rad,
-                                      angle_between(*points[index] - strobe.position_m,
-                                                    *points[index + step] - strobe.position_m));
+                margin_rad =
+                    std::max(margin_rad,
+                             angle_between(points[index]->point_m - strobe.position_m,
+                                           points[index + step]->point_m - strobe.position_m));
             }
         }
-        add_point(*points[index], camera_legs_m[index], margin_rad);
+        add_point(points[index]->point_m, points[index]->camera_leg_m, margin_rad);
     }
     // A lamp close to the floor can peak between the grid's points: add its foot.
     for (const Strobe& strobe : rig.strobes) {

@@ -57,6 +57,26 @@ std::optional<double> distance_to(const Plane& plane, const WaterRay& ray) {
     return distance_m > 0.0 ? std::optional(distance_m) : std::nullopt;
 }
 
+std::vector<std::optional<FloorSample>> floor_samples(const Rig& rig, std::size_t side) {
+    const Plane floor = floor_plane(rig.sled);
+    const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
+    const double steps = static_cast<double>(side) - 1.0;
+    std::vector<std::optional<FloorSample>> samples;
+    for (std::size_t j = 0; j < side; ++j) {
+        for (std::size_t i = 0; i < side; ++i) {
+            const double column = rig.camera.width_px * (static_cast<double>(i) / steps);
+            const double row = rig.camera.height_px * (static_cast<double>(j) / steps);
+            const WaterRay ray = pixel_ray(rig, column, row, middle_nm);
+            const auto distance_m = distance_to(floor, ray);
+            samples.emplace_back();
+            if (!distance_m) continue;
+            samples.back() = {.point_m = ray.origin_m + *distance_m * ray.direction,
+                              .camera_leg_m = *distance_m};
+        }
+    }
+    return samples;
+}
+
 LampGrid lamp_grid(const Rig& rig, const Strobe& strobe) {
     if (!strobe.emitter) return {};
     const double spacing_m = kLampSpacing * height_above(floor_plane(rig.sled), strobe.position_m);

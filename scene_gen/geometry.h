@@ -50,6 +50,15 @@ struct WaterRay {
 // Distance along the ray to the plane [m], or nothing when the ray does not come down on it.
 [[nodiscard]] std::optional<double> distance_to(const Plane& plane, const WaterRay& ray);
 
+// What the image sees of the floor, on an even grid of `side` x `side` points from corner to
+// corner, row by row; nothing where it sees none.
+struct FloorSample {
+    Eigen::Vector3d point_m;
+    double camera_leg_m;  // in water
+};
+[[nodiscard]] std::vector<std::optional<FloorSample>> floor_samples(const Rig& rig,
+                                                                    std::size_t side);
+
 // How many lamps an emitter is made of, across x along.
 struct LampGrid {
     int across = 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/scene_set.h"
 
+#include "scene_gen/light_paths.h"
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
 
@@ -37,6 +38,8 @@ SceneSet make_scene_set(const Rig& rig,
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
     manifest.lamp_signal = lamp_signal(rig, wavelengths);
+    manifest.predicted_error =
+        rule_error(rig.camera.sensor, light_family(rig), rig.camera.range, wavelengths);
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         const FrameScene& scene = set.scenes[f];
         // The settings change pixels as much as the scene does: both make the checksum.

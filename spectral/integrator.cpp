@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <span>
 
 namespace aphotic {
@@ -115,68 +114,29 @@ ExrAttributes attributes_of(const Manifest& manifest) {
 
 }  // namespace
 
-std::string spectral_channel(double lambda_nm) {
-    std::string number = fmt::format("{:.6f}", lambda_nm);
-    std::replace(number.begin(), number.end(), '.', ',');
-    return fmt::format("S0.{}nm", number);
-}
-
 CameraImage integrate(const fs::path& folder,
                       const Manifest& manifest,
                       const ProgressReport& report) {
     require_noted_frames(folder, manifest);
-    const int width_px = manifest.width_px;
+    std::vector<double> lambda_nm;
+    for (const ManifestWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
     const int height_px = manifest.height_px;
+    OutputImages images(folder, manifest.width_px, height_px, lambda_nm, attributes_of(manifest));
 
-    const ExrAttributes attributes = attributes_of(manifest);
-    const std::vector<std::string> rgb(kChannelNames.begin(), kChannelNames.end());
-    ExrWriter image_file(folder / "image.exr", width_px, height_px, rgb, attributes);
-
-    std::vector<std::string> spectral_channels = rgb;
-    for (const ManifestWavelength& w : manifest.wavelengths) {
-        spectral_channels.push_back(spectral_channel(w.lambda_nm));
-    }
-    ExrAttributes spectral_attributes = attributes;
-    spectral_attributes.emplace_back("spectralLayoutVersion", "1.0");
-    spectral_attributes.emplace_back("emissiveUnits", "W.m^-2.sr^-1");
-    ExrWriter spectral_file(
-        folder / "spectral.exr", width_px, height_px, spectral_channels, spectral_attributes);
-
-    CameraImage image{.width_px = width_px, .height_px = height_px, .samples = {}};
-    const auto image_plane =
-        static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
-    image.samples.resize(kChannels * image_plane);
-
-    // Writing, which is mostly compression, goes on beside the reading of the next block.
     const int block_rows = rows_per_block(manifest);
-    std::future<void> writing;
     for (int row = 0; row < height_px; row += block_rows) {
         Block block;
         block.first_row = row;
         block.rows = std::min(block_rows, height_px - row);
-        block.plane = static_cast<std::size_t>(block.rows) * static_cast<std::size_t>(width_px);
-        block.samples.resize(block.plane * spectral_channels.size());
+        block.plane =
+            static_cast<std::size_t>(block.rows) * static_cast<std::size_t>(manifest.width_px);
+        block.samples.resize(block.plane * (kChannels + lambda_nm.size()));
         read_radiance(folder, manifest, block);
         sum_signals(manifest, block);
-        const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px);
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            std::ranges::copy(
-                block.signal(c),
-                image.samples.begin() + static_cast<std::ptrdiff_t>(c * image_plane + first));
-        }
-        if (writing.valid()) writing.get();
-        writing =
-            std::async(std::launch::async, [&image_file, &spectral_file, block = std::move(block)] {
-                const auto signals = std::span(block.samples).first(kChannels * block.plane);
-                image_file.write_rows(block.rows, signals);
-                spectral_file.write_rows(block.rows, block.samples);
-            });
-        if (report) report(static_cast<double>(std::min(row + block_rows, height_px)) / height_px);
+        images.write_rows(block.rows, std::move(block.samples));
+        if (report) report(static_cast<double>(row + block.rows) / height_px);
     }
-    writing.get();
-    image_file.finish();
-    spectral_file.finish();
-    return image;
+    return images.finish();
 }
 
 }  // namespace aphotic

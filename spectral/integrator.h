@@ -13,27 +13,15 @@
 // Scaling by a power of two is exact; the sums run in double, in the manifest's order, so the
 // images do not depend on threads. Frames are read in blocks of rows: memory is a few images,
 // whatever the number of wavelengths.
-//
-// spectral.exr has the layout of Fichet, Pacanowski and Wilkie, "An OpenEXR layout for spectral
-// images", JCGT 10(3), 2021: a float channel S0.<wavelength>nm per wavelength, with six decimals
-// and a decimal comma, and R, G, B (here the camera's signal) beside them.
 #pragma once
 
 #include "spectral/manifest.h"
+#include "spectral/output_images.h"
 
 #include <filesystem>
 #include <functional>
-#include <string>
-#include <vector>
 
 namespace aphotic {
-
-// R, G, B planar: all rows of R, then of G, then of B.
-struct CameraImage {
-    int width_px = 0;
-    int height_px = 0;
-    std::vector<float> samples;
-};
 
 // Called with the share of the work that is done, 0 to 1.
 using ProgressReport = std::function<void(double)>;
@@ -43,8 +31,5 @@ using ProgressReport = std::function<void(double)>;
 CameraImage integrate(const std::filesystem::path& folder,
                       const Manifest& manifest,
                       const ProgressReport& report = {});
-
-// The channel of a wavelength in spectral.exr, such as S0.550,000000nm.
-[[nodiscard]] std::string spectral_channel(double lambda_nm);
 
 }  // namespace aphotic

@@ -159,6 +159,7 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
     json["width_px"] = manifest.width_px;
     json["height_px"] = manifest.height_px;
     json["lamp_signal"] = manifest.lamp_signal;
+    json["predicted_error"] = manifest.predicted_error;
     json["frames"] = Json::array();
     for (const ManifestFrame& frame : manifest.frames) {
         json["frames"].push_back({{"name", frame.name},
@@ -195,6 +196,7 @@ Manifest read_manifest(const fs::path& folder) {
     manifest.width_px = reader.integer("width_px", 1, kLargestImagePx);
     manifest.height_px = reader.integer("height_px", 1, kLargestImagePx);
     manifest.lamp_signal = reader.channels("lamp_signal");
+    manifest.predicted_error = reader.channels("predicted_error");
     for (const Reader& frame : reader.objects("frames")) manifest.frames.push_back(frame_of(frame));
     for (const Reader& w : reader.objects("wavelengths")) {
         manifest.wavelengths.push_back(wavelength_of(w, manifest));

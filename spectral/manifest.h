@@ -49,6 +49,9 @@ struct Manifest {
     // What the lamps themselves would signal: the sum over strobes of int Phi Q_c dlambda. The
     // preview's white.
     std::array<double, kChannels> lamp_signal{};
+    // What the choice of wavelengths may cost: the largest relative error of each signal over
+    // all light that the rig can show (spectral/light_family.h), before the frames' rounding.
+    std::array<double, kChannels> predicted_error{};
     std::vector<ManifestWavelength> wavelengths;  // increasing
     std::vector<ManifestFrame> frames;
 };

@@ -138,11 +138,11 @@ TEST(PovScene, IsNamedAfterItsWavelengths) {
 }
 
 TEST(PovScene, NamesHaveDecimalsWhereWholeNumbersWouldBeAlike) {
-    const auto scenes = scenes_of(odd_rig(), {500.0, 500.25, 500.26}, {1, std::nullopt});
+    const auto scenes = scenes_of(odd_rig(), {500.0, 500.21, 500.24}, {1, std::nullopt});
     ASSERT_EQ(scenes.size(), 3U);
     EXPECT_EQ(scenes[0].name, "band_500.00nm");
-    EXPECT_EQ(scenes[1].name, "band_500.25nm");
-    EXPECT_EQ(scenes[2].name, "band_500.26nm");
+    EXPECT_EQ(scenes[1].name, "band_500.21nm");
+    EXPECT_EQ(scenes[2].name, "band_500.24nm");
 }
 
 TEST(PovScene, KeepsTheWavelengthsInTheirOrder) {
