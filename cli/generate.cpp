@@ -4,6 +4,7 @@
 // it from there.
 #include "cli/command.h"
 #include "cli/planning.h"
+#include "cli/words.h"
 #include "plugin/render.h"
 
 #include <fmt/format.h>
@@ -33,14 +34,14 @@ ExitStatus generate_scenes(const Options& options) {
         return kDone;
     }
     fmt::print(
-        "{}: {} scenes for {} wavelengths in {}/povray\n"
+        "{}: {} for {} in {}/povray\n"
         "Render them there, for example with\n"
         "  (cd {}/povray && for scene in band_*.pov; do povray render.ini +I$scene; done)\n"
         "and then say\n"
         "  aphotic integrate {}\n",
         manifest.rig_title,
-        manifest.frames.size(),
-        manifest.wavelengths.size(),
+        counted(manifest.frames.size(), "scene"),
+        counted(manifest.wavelengths.size(), "wavelength"),
         options.folder,
         options.folder,
         options.folder);

@@ -2,6 +2,7 @@
 #include "cli/outcome.h"
 
 #include "cli/progress.h"
+#include "cli/words.h"
 #include "spectral/exr.h"
 #include "spectral/integrator.h"
 
@@ -64,12 +65,12 @@ Json integrate_folder(const fs::path& folder,
 
 void print_outcome(const Json& outcome) {
     const auto folder = outcome["folder"].get<std::string>();
-    fmt::print("{}: {} x {} pixels from {} wavelengths in {} frames, integrated in {:.1f} s\n",
+    fmt::print("{}: {} x {} pixels from {} in {}, integrated in {:.1f} s\n",
                outcome["title"].get<std::string>(),
                outcome["width_px"].get<int>(),
                outcome["height_px"].get<int>(),
-               outcome["wavelengths"].get<int>(),
-               outcome["frames"].get<int>(),
+               counted(outcome["wavelengths"].get<std::size_t>(), "wavelength"),
+               counted(outcome["frames"].get<std::size_t>(), "frame"),
                outcome["integration_s"].get<double>());
     for (const auto& [channel, signal] : outcome["signal"].items()) {
         fmt::print("  {}  {:.6g} to {:.6g}, mean {:.6g}\n",

@@ -3,6 +3,7 @@
 // aphotic plan RIG: what a render would take, before anything is rendered.
 #include "cli/command.h"
 #include "cli/planning.h"
+#include "cli/words.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -36,12 +37,12 @@ void print_json(const Manifest& manifest) {
 }
 
 void print_for_people(const Manifest& manifest) {
-    fmt::print("{}: {} x {} pixels, {} wavelengths in {} frames\n\n",
+    fmt::print("{}: {} x {} pixels, {} in {}\n\n",
                manifest.rig_title,
                manifest.width_px,
                manifest.height_px,
-               manifest.wavelengths.size(),
-               manifest.frames.size());
+               counted(manifest.wavelengths.size(), "wavelength"),
+               counted(manifest.frames.size(), "frame"));
     fmt::print(
         "Against the full spectrum the signals R, G, B will be off by at most {:.2g}, {:.2g}, "
         "{:.2g};\nhalf floats in the frames add up to 4.9e-4.\n\n",

@@ -2,6 +2,9 @@
 #include "cli/planning.h"
 
 #include "scene_gen/rig_reader.h"
+#include "spectral/error.h"
+
+#include <fmt/format.h>
 
 namespace aphotic::cli {
 
@@ -46,8 +49,12 @@ PlannedRender plan_render(const PlanningOptions& options) {
         scene_options.emitter_lamps = {.across = options.emitter_lamps[0],
                                        .along = options.emitter_lamps[1]};
     }
-    SceneSet scenes = make_scene_set(rig, wavelengths, scene_options);
-    return {.rig = std::move(rig), .scenes = std::move(scenes)};
+    try {
+        SceneSet scenes = make_scene_set(rig, wavelengths, scene_options);
+        return {.rig = std::move(rig), .scenes = std::move(scenes)};
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
+    }
 }
 
 }  // namespace aphotic::cli

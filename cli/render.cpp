@@ -6,6 +6,7 @@
 #include "cli/outcome.h"
 #include "cli/planning.h"
 #include "cli/progress.h"
+#include "cli/words.h"
 
 #include <fmt/format.h>
 
@@ -54,12 +55,12 @@ ExitStatus render_rig(const Options& options) {
         fmt::print("{}\n", outcome.dump(2));
         return kDone;
     }
-    fmt::print("POV-Ray {}: {} frames rendered, {} kept, in {:.1f} s with {} jobs\n",
+    fmt::print("POV-Ray {}: {} rendered, {} kept, in {:.1f} s with {}\n",
                povray.version,
-               result.rendered,
+               counted(result.rendered, "frame"),
                result.kept,
                elapsed.count(),
-               options.jobs);
+               counted(static_cast<std::size_t>(options.jobs), "job"));
     print_outcome(outcome);
     return kDone;
 }

@@ -42,7 +42,7 @@ Running start(const PovRay& povray,
               const ManifestFrame& frame,
               int threads) {
     const fs::path work = fs::absolute(folder / "povray");
-    const fs::path log = work / "logs" / (frame.name + ".log");
+    const fs::path log = fs::absolute(log_path(folder, frame));
     const fs::path part = part_path(folder, frame);
     std::error_code ignored;
     fs::remove(part, ignored);

@@ -38,12 +38,34 @@ bool still_holds(const fs::path& folder,
            sha256_of_file(image_path(folder, earlier)) == earlier.image_sha256;
 }
 
-void take_away(const fs::path& image) {
+void take_away(const fs::path& file) {
     std::error_code error;
-    fs::remove(image, error);
+    fs::remove(file, error);
     if (error) {
-        throw RunError(fmt::format("{}: cannot be removed: {}", image.string(), error.message()));
+        throw RunError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
     }
+}
+
+// Frames of the earlier run that this one does not have, and the images made of them.
+void take_away_what_is_past(const fs::path& folder,
+                            const std::optional<Manifest>& earlier,
+                            const Manifest& wanted) {
+    if (!earlier) return;
+    for (const ManifestFrame& frame : earlier->frames) {
+        if (frame_named(wanted, frame.name)) continue;
+        take_away(scene_path(folder, frame));
+        take_away(image_path(folder, frame));
+        take_away(log_path(folder, frame));
+    }
+    const auto is_same = [](const ManifestFrame& a, const ManifestFrame& b) {
+        return a.name == b.name && a.scene_sha256 == b.scene_sha256;
+    };
+    if (earlier->rig_sha256 == wanted.rig_sha256 &&
+        std::ranges::equal(earlier->frames, wanted.frames, is_same)) {
+        return;
+    }
+    for (const char* image : {"image.exr", "spectral.exr", "preview.png"})
+        take_away(folder / image);
 }
 
 }  // namespace
@@ -71,6 +93,7 @@ RenderResult render(const PovRay& povray,
     }
     result.rendered = missing.size();
     result.kept = set.scenes.size() - missing.size();
+    take_away_what_is_past(folder, earlier, result.manifest);
     write_scenes(folder, set);
     write_manifest(folder, result.manifest);
 
@@ -104,6 +127,7 @@ Manifest generate(const fs::path& folder, const SceneSet& set) {
             take_away(image_path(folder, frame));
         }
     }
+    take_away_what_is_past(folder, earlier, manifest);
     write_scenes(folder, set);
     write_manifest(folder, manifest);
     return manifest;

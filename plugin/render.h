@@ -6,6 +6,9 @@
 // same version of POV-Ray made it, and its image is the one that was noted; all others are
 // rendered. The manifest is written anew after each frame, so that whatever interrupts a render
 // costs the frames under way and nothing else.
+//
+// What an earlier run left of other frames, and images made from them, is taken away: it could
+// not be used again, only be mistaken for this rig's.
 #pragma once
 
 #include "plugin/frame_runner.h"

@@ -50,6 +50,8 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
         if (!points[index]) continue;
         double margin_rad = 0.0;
         for (const std::size_t step : {std::size_t{1}, kGrid}) {
+            const bool is_last_of_row = index % kGrid == kGrid - 1;
+            if (step == 1 && is_last_of_row) continue;
             if (index + step >= points.size() || !points[index + step]) continue;
             for (const Strobe& strobe : rig.strobes) {
                 margin_rad =

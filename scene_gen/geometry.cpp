@@ -80,8 +80,9 @@ std::vector<std::optional<FloorSample>> floor_samples(const Rig& rig, std::size_
 LampGrid lamp_grid(const Rig& rig, const Strobe& strobe) {
     if (!strobe.emitter) return {};
     const double spacing_m = kLampSpacing * height_above(floor_plane(rig.sled), strobe.position_m);
+    constexpr double kMostLamps = 1e6;  // far more than any scene can hold: it will be refused
     const auto lamps = [&](double size_m) {
-        return std::clamp(static_cast<int>(std::ceil(size_m / spacing_m)), 1, 64);
+        return static_cast<int>(std::clamp(std::ceil(size_m / spacing_m), 1.0, kMostLamps));
     };
     return {.across = lamps(strobe.emitter->across_m), .along = lamps(strobe.emitter->along_m)};
 }

@@ -95,6 +95,26 @@ Housing housing(const Camera& camera) {
     return h;
 }
 
+// POV-Ray gives up inside a medium when it meets more lights than this.
+constexpr std::size_t kMostLightsInMedia = 1024;
+
+void require_few_enough_lights(const Rig& rig, const SceneOptions& options) {
+    std::size_t lights = 0;
+    for (const Strobe& strobe : rig.strobes) {
+        const LampGrid grid = options.emitter_lamps.value_or(lamp_grid(rig, strobe));
+        const auto lamps =
+            static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.along);
+        lights += strobe.beam.cones.size() * (strobe.emitter ? lamps : 1);
+    }
+    if (rig.water.is_clear() || lights <= kMostLightsInMedia) return;
+    throw InputError(
+        fmt::format("strobes: {} lights, one for every cone of every lamp; allowed: {} in "
+                    "water, which is POV-Ray's limit. Fewer lamps stand for an emitter "
+                    "with --emitter-lamps",
+                    lights,
+                    kMostLightsInMedia));
+}
+
 void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid) {
     const Plane floor = floor_plane(rig.sled);
     const std::vector<Vector3d> lamps_m = lamp_positions_m(strobe, grid);
@@ -376,6 +396,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
                                     const SceneOptions& options) {
     const auto per_frame =
         static_cast<std::size_t>(rig.camera.port ? 1 : options.wavelengths_per_frame);
+    require_few_enough_lights(rig, options);
     for (const Strobe& strobe : rig.strobes) {
         require_place_for_lamps(
             rig, strobe, options.emitter_lamps.value_or(lamp_grid(rig, strobe)));

@@ -44,7 +44,8 @@ struct SceneOptions {
 };
 
 // The frames for these wavelengths, in their order. Throws InputError when a strobe stands
-// where it cannot light from: at or under the floor, or inside the camera's housing.
+// where it cannot light from (at or under the floor, inside the camera's housing), or when there
+// are more lights than POV-Ray takes in water.
 [[nodiscard]] std::vector<FrameScene> make_scenes(const Rig& rig,
                                                   std::span<const double> lambda_nm,
                                                   const SceneOptions& options = {});

@@ -505,9 +505,10 @@ Rig RigReader::read(Section top) {
             .seafloor = std::move(seafloor),
             .strobes = std::move(strobes),
             .digest = sha256_of_text(digested_)};
-    (void)top.at_key("camera", [&] {
+    const Section camera_section = top.section("camera", "a table [camera]");
+    (void)camera_section.at_key("range_nm", [&] {
         require_tables_to_cover_the_range(rig);
-        return 0;
+        return true;
     });
     return rig;
 }
@@ -522,7 +523,9 @@ Rig parse_rig(std::string_view toml, const std::string& file_name, const fs::pat
         throw InputError(
             fmt::format("{}:{}: {}", file_name, error.source().begin.line, error.description()));
     }
-    return RigReader(toml, folder).read(Section(table, "", file_name));
+    Rig rig = RigReader(toml, folder).read(Section(table, "", file_name));
+    if (rig.title.empty()) rig.title = fs::path(file_name).stem().string();
+    return rig;
 }
 
 Rig read_rig(const fs::path& file) {

@@ -145,6 +145,10 @@ fs::path scene_path(const fs::path& folder, const ManifestFrame& frame) {
     return folder / "povray" / (frame.name + ".pov");
 }
 
+fs::path log_path(const fs::path& folder, const ManifestFrame& frame) {
+    return folder / "povray" / "logs" / (frame.name + ".log");
+}
+
 fs::path image_path(const fs::path& folder, const ManifestFrame& frame) {
     return folder / "povray" / "frames" / (frame.name + ".exr");
 }

@@ -9,6 +9,7 @@
 //   DIR/manifest.json
 //   DIR/povray/NAME.pov            the scene of frame NAME
 //   DIR/povray/frames/NAME.exr     its image
+//   DIR/povray/logs/NAME.log       what POV-Ray said
 //
 // A frame is done when its image was checked and its checksum noted; it belongs to the scene
 // whose checksum stands beside it.
@@ -59,6 +60,8 @@ struct Manifest {
 [[nodiscard]] std::filesystem::path manifest_path(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path scene_path(const std::filesystem::path& folder,
                                                const ManifestFrame& frame);
+[[nodiscard]] std::filesystem::path log_path(const std::filesystem::path& folder,
+                                             const ManifestFrame& frame);
 [[nodiscard]] std::filesystem::path image_path(const std::filesystem::path& folder,
                                                const ManifestFrame& frame);
 

@@ -48,13 +48,23 @@ double bright_value(const CameraImage& image, const Channels& scale) {
     std::vector<double> values;
     for (std::size_t c = 0; c < kChannels; ++c) {
         const auto samples = plane(image, c);
-        for (std::size_t i = 0; i < samples.size(); i += step)
-            values.push_back(scale[c] * samples[i]);
+        for (std::size_t i = 0; i < samples.size(); i += step) {
+            if (std::isfinite(samples[i])) values.push_back(scale[c] * samples[i]);
+        }
     }
+    if (values.empty()) return 0.0;
     const auto rank =
         static_cast<std::ptrdiff_t>(kBrightShare * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + rank, values.end());
     return values[static_cast<std::size_t>(rank)];
+}
+
+void require(cairo_status_t status, int width_px, int height_px) {
+    if (status == CAIRO_STATUS_SUCCESS) return;
+    throw RunError(fmt::format("no picture of {} x {} pixels can be made: {}",
+                               width_px,
+                               height_px,
+                               cairo_status_to_string(status)));
 }
 
 }  // namespace
@@ -64,50 +74,63 @@ double srgb_encoded(double linear) {
     return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
 }
 
-void write_preview(const CameraImage& image,
-                   const Channels& lamp_signal,
-                   const PreviewOptions& options,
-                   const std::filesystem::path& file) {
+Channels preview_scale(const CameraImage& image,
+                       const Channels& lamp_signal,
+                       const PreviewOptions& options) {
     Channels scale = white_of(image, lamp_signal, options.white);
     for (double& value : scale) value = 1.0 / value;
     const double bright = bright_value(image, scale);
     const double gain = bright > 0.0 ? std::exp2(options.stops) * kBrightLevel / bright : 0.0;
     for (double& value : scale) value *= gain;
+    return scale;
+}
 
+std::string preview_png(const CameraImage& image, const Channels& scale) {
+    std::vector<std::uint32_t> pixels(image.samples.size() / kChannels);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const double shown = scale[c] * plane(image, c)[i];
+            const double value = std::isnan(shown) ? 0.0 : srgb_encoded(shown);
+            pixels[i] = pixels[i] << 8U | static_cast<std::uint32_t>(std::lround(255.0 * value));
+        }
+    }
+    return png_of(pixels, image.width_px, image.height_px);
+}
+
+std::string png_of(std::span<const std::uint32_t> pixels, int width_px, int height_px) {
     const auto destroy = [](cairo_surface_t* surface) { cairo_surface_destroy(surface); };
     const std::unique_ptr<cairo_surface_t, decltype(destroy)> surface(
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width_px, image.height_px), destroy);
-    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) {
-        throw RunError(fmt::format("{}: no picture of {} x {} pixels can be made: {}",
-                                   file.string(),
-                                   image.width_px,
-                                   image.height_px,
-                                   cairo_status_to_string(cairo_surface_status(surface.get()))));
-    }
-    const auto width = static_cast<std::size_t>(image.width_px);
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px), destroy);
+    require(cairo_surface_status(surface.get()), width_px, height_px);
+    const auto width = static_cast<std::size_t>(width_px);
     unsigned char* data = cairo_image_surface_get_data(surface.get());
     const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface.get()));
-    for (std::size_t row = 0; row < static_cast<std::size_t>(image.height_px); ++row) {
-        auto* pixels = reinterpret_cast<std::uint32_t*>(data + row * stride);
-        for (std::size_t column = 0; column < width; ++column) {
-            std::uint32_t pixel = 0;
-            for (std::size_t c = 0; c < kChannels; ++c) {
-                const double value = srgb_encoded(scale[c] * plane(image, c)[row * width + column]);
-                pixel = pixel << 8U | static_cast<std::uint32_t>(std::lround(255.0 * value));
-            }
-            pixels[column] = pixel;
-        }
+    for (std::size_t row = 0; row < static_cast<std::size_t>(height_px); ++row) {
+        std::ranges::copy(pixels.subspan(row * width, width),
+                          reinterpret_cast<std::uint32_t*>(data + row * stride));
     }
     cairo_surface_mark_dirty(surface.get());
 
-    AtomicFile destination(file);
-    const cairo_status_t status =
-        cairo_surface_write_to_png(surface.get(), destination.temporary().c_str());
-    if (status != CAIRO_STATUS_SUCCESS) {
-        throw RunError(fmt::format(
-            "{}: cannot be written: {}", file.string(), cairo_status_to_string(status)));
+    std::string png;
+    const auto append = [](void* to, const unsigned char* bytes, unsigned int count) {
+        static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+        return CAIRO_STATUS_SUCCESS;
+    };
+    require(cairo_surface_write_to_png_stream(surface.get(), append, &png), width_px, height_px);
+    return png;
+}
+
+void write_preview(const CameraImage& image,
+                   const Channels& lamp_signal,
+                   const PreviewOptions& options,
+                   const std::filesystem::path& file) {
+    std::string png;
+    try {
+        png = preview_png(image, preview_scale(image, lamp_signal, options));
+    } catch (const RunError& error) {
+        throw RunError(fmt::format("{}: {}", file.string(), error.what()));
     }
-    destination.commit();
+    write_text_file(file, png);
 }
 
 }  // namespace aphotic

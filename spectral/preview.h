@@ -17,7 +17,10 @@
 #include "spectral/integrator.h"
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
+#include <span>
+#include <string>
 
 namespace aphotic {
 
@@ -34,7 +37,23 @@ struct PreviewOptions {
 // sRGB's transfer function, from linear 0..1 to encoded 0..1; clips outside.
 [[nodiscard]] double srgb_encoded(double linear);
 
-// lamp_signal: Manifest::lamp_signal.
+// What the samples of each channel are multiplied by before encoding: 2^stops gain / W_c.
+// Samples that are not finite have no say in it. lamp_signal: Manifest::lamp_signal.
+[[nodiscard]] std::array<double, kChannels> preview_scale(
+    const CameraImage& image,
+    const std::array<double, kChannels>& lamp_signal,
+    const PreviewOptions& options);
+
+// The picture under a given scale, as the bytes of a PNG file: images under one scale can be
+// compared by eye. NaN is shown black.
+[[nodiscard]] std::string preview_png(const CameraImage& image,
+                                      const std::array<double, kChannels>& scale);
+
+// Pixels 0xRRGGBB, row by row, as the bytes of a PNG file.
+[[nodiscard]] std::string png_of(std::span<const std::uint32_t> pixels,
+                                 int width_px,
+                                 int height_px);
+
 void write_preview(const CameraImage& image,
                    const std::array<double, kChannels>& lamp_signal,
                    const PreviewOptions& options,

@@ -107,7 +107,7 @@ void require_cover(std::span<const Spectrum* const> curves, WavelengthRange rang
     for (const Spectrum* curve : curves) {
         const WavelengthRange covered = curve->range();
         if (covered.contains(range.first_nm) && covered.contains(range.last_nm)) continue;
-        faults += fmt::format(
+        const std::string fault = fmt::format(
             "{} covers {} to {} nm, which leaves {} of the range {} to {} nm without a value; ",
             curve->name(),
             covered.first_nm,
@@ -115,6 +115,8 @@ void require_cover(std::span<const Spectrum* const> curves, WavelengthRange rang
             gap_text(covered, range),
             range.first_nm,
             range.last_nm);
+        // Strobes may share a lamp: once is enough.
+        if (faults.find(fault) == std::string::npos) faults += fault;
     }
     if (!faults.empty()) throw InputError(faults + remedy_text(common_range(curves), range));
 }

@@ -20,11 +20,13 @@ struct ValidationReport {
     std::string aphotic_version;
     std::string povray_version;
     std::vector<Comparison> wavelengths;  // radiance, POV-Ray's against the reference's
-    std::vector<Comparison> channels;     // signals R, G, B
+    std::vector<double> lambda_nm;        // of `wavelengths`, one each, increasing
+    std::vector<Comparison> channels;     // signals R, G, B, all three
     CameraImage rendered;                 // signals, through POV-Ray
     CameraImage traced;                   // signals, by the reference over the full spectrum
     std::array<double, kChannels> lamp_signal{};  // the white of both previews
-    // Signed relative errors of the signals, R, G, B planes; NaN on edges.
+    // Signed relative errors of the signals, R, G, B planes; NaN on edges and where a sample is
+    // not finite.
     std::vector<float> channel_errors;
     std::size_t frames = 0;
     std::size_t grid_size = 0;  // wavelengths of the reference
@@ -33,13 +35,20 @@ struct ValidationReport {
     double integrate_s = 0.0;
     double trace_s = 0.0;
 
-    // Every comparison holds.
+    // Every comparison holds, and there is one.
     [[nodiscard]] bool holds() const;
-    // The one that is worst against its bound.
+    // The one that is worst against its bound; the first of equals, wavelengths before channels.
     [[nodiscard]] const Comparison& worst() const;
+    [[nodiscard]] std::size_t worst_channel() const;
 };
 
+// max_error / bound; 0 when both are 0, infinite when a sample is not finite.
+[[nodiscard]] double share_of_bound(const Comparison& comparison);
+
+// {holds, worst, rig, rule, wavelengths, channels, versions, ...}: every number above but the
+// pixels. A number that is not finite is null.
 void write_validation_json(const ValidationReport& report, const std::filesystem::path& file);
+// The same report gives the same page, byte for byte.
 void write_validation_html(const ValidationReport& report, const std::filesystem::path& file);
 
 }  // namespace aphotic

@@ -58,13 +58,14 @@ class RandomRigs {
 
   private:
     void add_strobe(Rig& rig) {
-        // The floor is at most 0.31 x 1.5 m + 0.32 x 1.5 m above its altitude within 1.5 m.
-        const Eigen::Vector3d position(
-            between(-1.5, 1.5), between(-1.5, 1.5), between(-1.0, rig.sled.altitude_m - 0.05));
-        const double above =
-            closed_form::dot({-position.x(), -position.y(), rig.sled.altitude_m - position.z()},
-                             closed_form::world_down(rig.sled));
-        if (above < 0.05) return add_strobe(rig);
+        // Every other one is close to the floor, where the image's peak is small and high.
+        const double below_m = between(0.0, 1.0) < 0.5 ? std::pow(10.0, between(-2.0, -0.5))
+                                                       : between(0.05, rig.sled.altitude_m);
+        const double x = between(-1.5, 1.5);
+        const double y = between(-1.5, 1.5);
+        const closed_form::Vector down = closed_form::world_down(rig.sled);
+        const double floor_z = rig.sled.altitude_m - (x * down[0] + y * down[1]) / down[2];
+        const Eigen::Vector3d position(x, y, floor_z - below_m);
         Beam beam{.name = "b", .weights = ConeWeights::Flux, .cones = {}};
         const int cones = 1 + static_cast<int>(between(0.0, 3.0));
         for (int c = 0; c < cones; ++c) {
@@ -215,6 +216,21 @@ TEST(RadianceBound, IsCloseForAnOrdinaryRig) {
             EXPECT_LE(bound.at(lambda_nm), kWaste * brightest) << altitude_m << " m, " << lambda_nm;
         }
     }
+}
+
+// A lamp off to the side, its foot out of view: the bound is that of the nearest edge's points,
+// whose angles are widened by a thirty-second of the image.
+TEST(RadianceBound, IsTightWhereNoStrobeStandsOverTheView) {
+    constexpr double kWaste = 1.2;
+    Rig rig = habcam();
+    rig.sled.pitch_rad = 0.0;
+    rig.strobes.resize(1, rig.strobes.front());
+    rig.strobes[0].position_m = {3.0, 0.0, 0.0};
+    rig.strobes[0].axis = Eigen::Vector3d::UnitZ();
+    rig.strobes[0].beam.cones = {{.part = "", .half_angle_rad = 1.57, .weight = 1.0}};
+    const double brightest = brightest_of(rig, 550.0);
+    EXPECT_GE(RadianceBound(rig).at(550.0), brightest);
+    EXPECT_LE(RadianceBound(rig).at(550.0), kWaste * brightest);
 }
 
 // The lamp's power is a factor of everything.

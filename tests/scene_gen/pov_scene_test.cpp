@@ -119,9 +119,9 @@ Numbers one_after(const std::string& sdl, const std::string& start) {
     return found.empty() ? Numbers(8, 0.0) : found.front();
 }
 
-std::string input_error(const Rig& rig) {
+std::string input_error(const Rig& rig, const SceneOptions& options = {}) {
     try {
-        static_cast<void>(scenes_of(rig));
+        static_cast<void>(scenes_of(rig, {450.0, 550.0, 650.0}, options));
     } catch (const InputError& error) {
         return error.what();
     }
@@ -423,9 +423,10 @@ TEST(PovScene, RefusesAnEmitterThatReachesUnderTheFloor) {
     rig.sled = {.altitude_m = 2.0, .pitch_rad = 0.0, .roll_rad = 0.0};
     rig.strobes[0].position_m = {0.5, 0.0, 1.9};
     rig.strobes[0].axis = -Vector3d::UnitX();
-    EXPECT_EQ(input_error(rig), "no error");
     rig.strobes[0].emitter = Emitter{.across_m = 0.01, .along_m = 0.3};
-    const std::string message = input_error(rig);
+    EXPECT_EQ(input_error(rig, {3, LampGrid{.across = 1, .along = 2}}), "no error")
+        << "lamps at 7.5 cm from the middle";
+    const std::string message = input_error(rig, {3, LampGrid{.across = 1, .along = 4}});
     EXPECT_TRUE(message.starts_with("strobe 'fore' has a lamp at or under the sea floor"))
         << message;
 }

@@ -120,7 +120,7 @@ TEST(RigReader, ReadsTheMinimalRigIntoSi) {
 
 TEST(RigReader, FillsInTheDefaults) {
     const Rig rig = parse(kMinimal);
-    EXPECT_EQ(rig.title, "");
+    EXPECT_EQ(rig.title, "rig") << "the file's name without its extension";
     EXPECT_EQ(rig.sled.pitch_rad, 0.0);
     EXPECT_EQ(rig.sled.roll_rad, 0.0);
     EXPECT_FALSE(rig.camera.port.has_value());
@@ -583,7 +583,8 @@ constexpr const char* kRgb =
 
 TEST(RigReader, RangeThatTablesDoNotCoverNamesThemAndTheRangeThatWouldDo) {
     EXPECT_EQ(error_of(with(7, "range_nm = [390, 750]")),
-              "rig.toml:3: camera: water absorption 'pope-fry-1997' covers 380 to 727.5 nm, which "
+              "rig.toml:7: camera.range_nm: water absorption 'pope-fry-1997' covers 380 to 727.5 "
+              "nm, which "
               "leaves 727.5 to 750 nm of the range 390 to 750 nm without a value; range_nm = "
               "[390, 727.5] would do");
     const std::string both = error_of(with(7, "range_nm = [350, 750]"));
@@ -593,6 +594,16 @@ TEST(RigReader, RangeThatTablesDoNotCoverNamesThemAndTheRangeThatWouldDo) {
                              "range_nm = [380, 727.5] would do"}) {
         EXPECT_NE(both.find(part), std::string::npos) << part << "\nin " << both;
     }
+}
+
+// The range of the response, when none is given, may be more than the water's table covers.
+TEST(RigReader, RangeThatIsLeftOutIsNamedToo) {
+    const std::string message = error_of(with(7, ""));
+    EXPECT_TRUE(
+        message.starts_with("rig.toml:3: camera.range_nm: water absorption "
+                            "'pope-fry-1997' covers 380 to 727.5 nm"))
+        << message;
+    EXPECT_TRUE(message.ends_with("range_nm = [380, 727.5] would do")) << message;
 }
 
 TEST(RigReader, WaterThatAbsorbsNothingNeedsNoTable) {
@@ -605,7 +616,8 @@ TEST(RigReader, GlassMustCoverTheRange) {
     std::string text = with(9, std::string(kPort) + "[water]");
     text.replace(text.find("bk7"), 3, "pmma");  // from 420 nm
     EXPECT_EQ(error_of(text),
-              "rig.toml:3: camera: refractive index of 'pmma' covers 420 to 1620 nm, which leaves "
+              "rig.toml:7: camera.range_nm: refractive index of 'pmma' covers 420 to 1620 nm, "
+              "which leaves "
               "400 to 420 nm of the range 400 to 700 nm without a value; range_nm = [420, 700] "
               "would do");
     text.replace(text.find("[400, 700]"), 10, "[420, 700]");

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,20 @@ TEST(AtomicFile, LeavesTheOldFileWithoutCommit) {
     }
     EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"out.txt"});
     EXPECT_EQ(read_text_file(file), "old");
+}
+
+// The next writer of the same file may be at work already when the first one's object goes.
+TEST(AtomicFile, TouchesNothingAfterCommit) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "out.txt";
+    auto first = std::make_unique<AtomicFile>(file);
+    write_file(first->temporary(), "first");
+    first->commit();
+    AtomicFile second(file);
+    write_file(second.temporary(), "second");
+    first.reset();
+    second.commit();
+    EXPECT_EQ(read_text_file(file), "second");
 }
 
 // A rename is atomic within one folder only, and some writers go by the extension.

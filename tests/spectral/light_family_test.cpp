@@ -1,0 +1,484 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/light_family.h"
+
+#include "spectral/builtin.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+constexpr WavelengthRange kRange{400.0, 700.0};
+constexpr double kWidth_nm = 300.0;
+// What some thousand additions of numbers of one sign may lose.
+constexpr double kRounding = 1e-13;
+
+Spectrum flat(double value) {
+    return {"flat", {300.0, 800.0}, {value, value}};
+}
+
+// first at 400 nm, last at 700 nm.
+Spectrum line(double first, double last) {
+    return {"line", {400.0, 700.0}, {first, last}};
+}
+
+Sensor flat_sensor(ResponseKind kind = ResponseKind::Energy) {
+    return {{flat(1.0), flat(2.0), flat(3.0)}, kind};
+}
+
+Water clear_water() {
+    return {.absorption_per_m = flat(1.0), .multiple = 0.0};
+}
+
+LightFamily family_of(std::vector<std::vector<Spectrum>> sources,
+                      Water water,
+                      double shortest_path_m,
+                      double longest_path_m) {
+    return {.sources = std::move(sources),
+            .water = std::move(water),
+            .shortest_path_m = shortest_path_m,
+            .longest_path_m = longest_path_m};
+}
+
+// The signal that a rule gives to a source after a path.
+double applied(const std::vector<WeightedWavelength>& rule,
+               const std::vector<Spectrum>& source,
+               const Water& water,
+               double path_m,
+               std::size_t channel) {
+    double sum = 0.0;
+    for (const WeightedWavelength& w : rule) {
+        double f = w.weight[channel];
+        for (const Spectrum& curve : source) f *= curve.at(w.lambda_nm);
+        const double K_per_m =
+            water.uniform_loss_per_m +
+            (water.multiple > 0.0 ? water.multiple * water.absorption_per_m.at(w.lambda_nm) : 0.0);
+        sum += f * std::exp(-K_per_m * path_m);
+    }
+    return sum;
+}
+
+double total_weight(const std::vector<WeightedWavelength>& rule, std::size_t channel) {
+    double sum = 0.0;
+    for (const WeightedWavelength& w : rule) sum += w.weight[channel];
+    return sum;
+}
+
+// --- The reference grid against integrals done by hand -------------------------------------------
+
+// K a straight line from k0 to k1 over the range, all else flat:
+//   T_c(l) = q_c W (exp(-k0 l) - exp(-k1 l)) / ((k1 - k0) l)
+TEST(ReferenceGrid, IntegratesAnExponentialToTheStatedError) {
+    constexpr double k0_per_m = 0.02;
+    for (const double rise_per_m : {0.1, 1.0, 4.0}) {
+        const Water water{.absorption_per_m = line(k0_per_m, k0_per_m + rise_per_m)};
+        const auto family = family_of({{flat(1.0)}}, water, 1.0, 3.0);
+        for (const double error : {1e-3, 1e-6, 1e-9}) {
+            const auto grid = reference_grid(flat_sensor(), family, kRange, error);
+            for (const double path_m : {1.0, 2.0, 3.0}) {
+                const double T_nm = kWidth_nm *
+                                    (std::exp(-k0_per_m * path_m) -
+                                     std::exp(-(k0_per_m + rise_per_m) * path_m)) /
+                                    (rise_per_m * path_m);
+                for (std::size_t c = 0; c < kChannels; ++c) {
+                    const double right = (static_cast<double>(c) + 1.0) * T_nm;
+                    EXPECT_NEAR(applied(grid, {flat(1.0)}, water, path_m, c) / right,
+                                1.0,
+                                error + kRounding)
+                        << "K rises by " << rise_per_m << " 1/m; path " << path_m << " m";
+                }
+            }
+        }
+    }
+}
+
+// int_0^1 t^k dt = 1 / (k + 1): lamp t, reflectance t, response t.
+TEST(ReferenceGrid, IntegratesTheProductOfThreeLinesExactly) {
+    const Sensor sensor({line(0.0, 1.0), flat(1.0), line(1.0, 0.0)}, ResponseKind::Energy);
+    const std::vector<Spectrum> source{line(0.0, 1.0), line(0.0, 1.0)};
+    const auto family = family_of({source}, clear_water(), 1.0, 2.0);
+    const auto grid = reference_grid(sensor, family, kRange, 1e-12);
+    EXPECT_NEAR(applied(grid, source, clear_water(), 1.0, 0), kWidth_nm / 4.0, kRounding * 75.0);
+    EXPECT_NEAR(applied(grid, source, clear_water(), 1.0, 1), kWidth_nm / 3.0, kRounding * 100.0);
+    EXPECT_NEAR(applied(grid, source, clear_water(), 1.0, 2), kWidth_nm / 12.0, kRounding * 25.0);
+}
+
+// Gauss-Legendre of n points is exact up to degree 2 n - 1, and no rule of n points goes further.
+TEST(ReferenceGrid, TakesAsManyPointsAsTheDegreeNeedsAndNoMore) {
+    const auto points = [](int lines, ResponseKind kind) {
+        std::vector<Spectrum> source{flat(1.0)};
+        for (int i = 0; i < lines; ++i) source.push_back(line(0.1, 1.0));
+        const auto family = family_of({source}, clear_water(), 1.0, 2.0);
+        // Two ends and no knot between them.
+        const Sensor sensor({line(1.0, 1.0), line(1.0, 1.0), line(1.0, 1.0)}, kind);
+        return reference_grid(sensor, family, kRange, 1e-11).size();
+    };
+    EXPECT_EQ(points(0, ResponseKind::Energy), 1U);
+    EXPECT_EQ(points(1, ResponseKind::Energy), 1U);
+    EXPECT_EQ(points(2, ResponseKind::Energy), 2U);
+    EXPECT_EQ(points(3, ResponseKind::Energy), 2U);
+    EXPECT_EQ(points(4, ResponseKind::Energy), 3U);
+    EXPECT_EQ(points(7, ResponseKind::Energy), 4U);
+    // Photons per joule are a line through 0, one degree more.
+    EXPECT_EQ(points(1, ResponseKind::Quantum), 2U);
+    EXPECT_EQ(points(3, ResponseKind::Quantum), 3U);
+}
+
+TEST(ReferenceGrid, NeedsMorePointsForASmallerError) {
+    const Water water{.absorption_per_m = line(0.0, 2.0)};
+    const auto family = family_of({{flat(1.0)}}, water, 2.0, 4.0);
+    std::size_t last = 0;
+    for (const double error : {1e-2, 1e-4, 1e-8}) {
+        const std::size_t size = reference_grid(flat_sensor(), family, kRange, error).size();
+        EXPECT_GT(size, last) << "at " << error;
+        last = size;
+    }
+}
+
+// A line of 0.2 nm with an area of 0.1 nm, which no grid finds that does not know the table's
+// knots; once in every table that a family has.
+TEST(ReferenceGrid, KnowsTheKnotsOfEveryTable) {
+    const Spectrum peak(
+        "peak", {300.0, 549.9, 550.0, 550.1, 800.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
+    constexpr double kArea_nm = 0.1;
+    const auto energy_of = [](const Sensor& sensor, const std::vector<Spectrum>& source) {
+        const auto family = family_of({source}, clear_water(), 1.0, 2.0);
+        const auto grid = reference_grid(sensor, family, kRange, 1e-9);
+        return applied(grid, source, clear_water(), 1.0, 0);
+    };
+    EXPECT_NEAR(energy_of(flat_sensor(), {peak}), kArea_nm, 1e-9 * kArea_nm);
+    EXPECT_NEAR(energy_of(flat_sensor(), {flat(1.0), peak}), kArea_nm, 1e-9 * kArea_nm);
+    const Sensor narrow({peak, flat(1.0), flat(1.0)}, ResponseKind::Energy);
+    EXPECT_NEAR(energy_of(narrow, {flat(1.0)}), kArea_nm, 1e-9 * kArea_nm);
+
+    // In the water it takes light away: 1 - exp(-t) has the mean 1/e over t from 0 to 1, and so
+    // over both its flanks.
+    const Water water{.absorption_per_m = peak};
+    const auto family = family_of({{flat(1.0)}}, water, 1.0, 1.0);
+    const auto grid = reference_grid(flat_sensor(), family, kRange, 1e-9);
+    const double lost_nm = 0.2 * std::exp(-1.0);
+    EXPECT_NEAR(kWidth_nm - applied(grid, {flat(1.0)}, water, 1.0, 0), lost_nm, 1e-9 * kWidth_nm);
+}
+
+TEST(ReferenceGrid, CoversARangeThatEndsBetweenKnots) {
+    const Sensor sensor({line(0.0, 3.0), flat(1.0), flat(1.0)}, ResponseKind::Energy);
+    const WavelengthRange range{433.0, 611.0};
+    const auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
+    const auto grid = reference_grid(sensor, family, range, 1e-10);
+    // int of (lambda - 400) / 100 from 433 to 611.
+    EXPECT_NEAR(total_weight(grid, 0), (211.0 * 211.0 - 33.0 * 33.0) / 200.0, kRounding * 300.0);
+    EXPECT_NEAR(total_weight(grid, 1), 178.0, kRounding * 178.0);
+    for (const WeightedWavelength& w : grid) EXPECT_TRUE(range.contains(w.lambda_nm));
+}
+
+TEST(ReferenceGrid, GoesUpInWavelengthWithoutRepeats) {
+    const auto family = family_of({load_curves("xenon-flash", CurveRole::LampSpectrum, {})},
+                                  {.absorption_per_m = load_curve(
+                                       "pope-fry-1997", CurveRole::WaterAbsorption, {})},
+                                  1.0,
+                                  10.0);
+    const auto grid = reference_grid(builtin_sensor("nikon-d5100"), family, kRange, 1e-8);
+    for (std::size_t j = 1; j < grid.size(); ++j) {
+        EXPECT_LT(grid[j - 1].lambda_nm, grid[j].lambda_nm);
+    }
+}
+
+TEST(ReferenceGrid, DoesNotReadTheWaterOfMultipleZero) {
+    const Water water{.absorption_per_m = Spectrum("short", {500.0, 510.0}, {1.0, 1.0}),
+                      .multiple = 0.0,
+                      .uniform_loss_per_m = 0.25};
+    const auto family = family_of({{flat(1.0)}}, water, 1.0, 2.0);
+    const auto grid = reference_grid(flat_sensor(), family, kRange, 1e-9);
+    EXPECT_EQ(grid.size(), 1U);
+    EXPECT_NEAR(total_weight(grid, 0), kWidth_nm, kRounding * kWidth_nm);
+}
+
+// 1 photon per joule and nanometre of wavelength is 1e-9 / (h c) = 5.03411657e15: CODATA 2018,
+// of which h and c are exact. int lambda dlambda from 400 to 700 nm is 165 000 nm^2.
+TEST(ReferenceGrid, CountsPhotonsForAQuantumResponse) {
+    constexpr double kPhotons_per_J_nm = 5.03411657e15;
+    constexpr double kDigits = 2e-9;  // of that number
+    const auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
+    const auto grid =
+        reference_grid(flat_sensor(ResponseKind::Quantum), family, kRange, 1e-10);
+    EXPECT_NEAR(total_weight(grid, 0) / (165000.0 * kPhotons_per_J_nm), 1.0, kDigits);
+    EXPECT_NEAR(total_weight(grid, 2) / total_weight(grid, 0), 3.0, kRounding);
+}
+
+TEST(ReferenceGrid, BearsAChannelAndALampThatSeeNothing) {
+    const Sensor sensor({flat(0.0), flat(1.0), line(0.0, 1.0)}, ResponseKind::Energy);
+    const auto family = family_of({{flat(0.0)}, {flat(1.0)}}, clear_water(), 1.0, 2.0);
+    const auto grid = reference_grid(sensor, family, kRange, 1e-9);
+    EXPECT_EQ(total_weight(grid, 0), 0.0);
+    EXPECT_NEAR(total_weight(grid, 1), kWidth_nm, kRounding * kWidth_nm);
+    EXPECT_NEAR(total_weight(grid, 2), 0.5 * kWidth_nm, kRounding * kWidth_nm);
+}
+
+TEST(ReferenceGrid, BearsAFamilyWithoutSources) {
+    const auto grid =
+        reference_grid(flat_sensor(), family_of({}, clear_water(), 0.0, 0.0), kRange, 1e-9);
+    EXPECT_NEAR(total_weight(grid, 0), kWidth_nm, kRounding * kWidth_nm);
+}
+
+// --- The reference grid against brute force ------------------------------------------------------
+
+// A table of a few knots that belongs to one factor of the integrand, read by a straight line of
+// the test's own.
+struct Table {
+    std::vector<double> lambda_nm;
+    std::vector<double> value;
+
+    [[nodiscard]] double at(double x_nm) const {
+        std::size_t i = 1;
+        while (i + 1 < lambda_nm.size() && lambda_nm[i] < x_nm) ++i;
+        const double t = (x_nm - lambda_nm[i - 1]) / (lambda_nm[i] - lambda_nm[i - 1]);
+        return (1.0 - t) * value[i - 1] + t * value[i];
+    }
+    [[nodiscard]] Spectrum spectrum() const { return {"random", lambda_nm, value}; }
+};
+
+class Dice {
+  public:
+    explicit Dice(unsigned seed) : engine_(seed) {}
+    double between(double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(engine_);
+    }
+    Table table(double most) {
+        Table table;
+        const double spacing_nm = between(8.0, 80.0);
+        double lambda_nm = 400.0 - between(0.0, 5.0);
+        while (true) {
+            table.lambda_nm.push_back(lambda_nm);
+            table.value.push_back(between(0.0, most));
+            if (lambda_nm >= 700.0) return table;
+            lambda_nm += between(0.1, 2.0) * spacing_nm;
+        }
+    }
+
+  private:
+    std::mt19937_64 engine_;
+};
+
+// Simpson's rule on every stretch between knots.
+template <typename Integrand>
+double simpson(const std::set<double>& knots_nm, int panels, const Integrand& f) {
+    double sum = 0.0;
+    for (auto it = knots_nm.begin(); std::next(it) != knots_nm.end(); ++it) {
+        const double width_nm = *std::next(it) - *it;
+        for (int i = 0; i <= 2 * panels; ++i) {
+            const double simpson_weight = i == 0 || i == 2 * panels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+            sum += simpson_weight * width_nm / (6.0 * panels) *
+                   f(*it + width_nm * i / (2.0 * panels));
+        }
+    }
+    return sum;
+}
+
+TEST(ReferenceGrid, HoldsItsErrorForRandomFamilies) {
+    constexpr double kError = 1e-8;
+    // Simpson errs by x^4 / (2880 n^4) of an interval over which the exponent runs through x;
+    // here x reaches some 50, in intervals that give little to the whole.
+    constexpr int kPanels = 256;
+    constexpr double kSimpsonError = 2e-9;
+    Dice dice(1);
+    for (int trial = 0; trial < 12; ++trial) {
+        const bool is_quantum = trial % 2 == 1;
+        std::array<Table, kChannels> responses;
+        for (Table& response : responses) response = dice.table(1.0);
+        const Table absorption = dice.table(0.7);
+        std::vector<std::vector<Table>> sources;
+        for (int s = 0; s <= trial % 3; ++s) {
+            sources.push_back({dice.table(5.0), dice.table(0.5)});
+            sources.push_back({sources.back().front()});
+        }
+        const double multiple = trial == 0 ? 0.0 : trial == 1 ? 20.0 : dice.between(0.0, 20.0);
+        const double shortest_m = dice.between(0.2, 3.0);
+        const double longest_m = shortest_m * dice.between(1.0, 3.0);
+
+        std::set<double> knots_nm{kRange.first_nm, kRange.last_nm};
+        const auto note = [&](const Table& table) {
+            for (const double lambda_nm : table.lambda_nm) {
+                if (kRange.contains(lambda_nm)) knots_nm.insert(lambda_nm);
+            }
+        };
+        for (const Table& table : responses) note(table);
+        for (const auto& source : sources) std::ranges::for_each(source, note);
+        note(absorption);
+
+        LightFamily family = family_of({},
+                                       {.absorption_per_m = absorption.spectrum(),
+                                        .multiple = multiple,
+                                        .uniform_loss_per_m = 0.1},
+                                       shortest_m,
+                                       longest_m);
+        for (const auto& source : sources) {
+            family.sources.emplace_back();
+            for (const Table& table : source) family.sources.back().push_back(table.spectrum());
+        }
+        const Sensor sensor(
+            {responses[0].spectrum(), responses[1].spectrum(), responses[2].spectrum()},
+            is_quantum ? ResponseKind::Quantum : ResponseKind::Energy);
+        const auto grid = reference_grid(sensor, family, kRange, kError);
+
+        const double path_m = shortest_m + dice.between(0.0, 1.0) * (longest_m - shortest_m);
+        for (std::size_t s = 0; s < sources.size(); ++s) {
+            for (const double l_m : {shortest_m, path_m, longest_m}) {
+                const std::size_t c = s % kChannels;
+                const double right = simpson(knots_nm, kPanels, [&](double lambda_nm) {
+                    double f = responses[c].at(lambda_nm);
+                    for (const Table& table : sources[s]) f *= table.at(lambda_nm);
+                    if (is_quantum) f *= lambda_nm * 1e-9 / (6.62607015e-34 * 299792458.0);
+                    return f * std::exp(-(multiple * absorption.at(lambda_nm) + 0.1) * l_m);
+                });
+                const double found = applied(grid, family.sources[s], family.water, l_m, c);
+                EXPECT_NEAR(found / right, 1.0, kError + kSimpsonError)
+                    << "family " << trial << ", source " << s << ", path " << l_m << " m, multiple "
+                    << multiple << ", " << grid.size() << " points";
+            }
+        }
+    }
+}
+
+// --- The error of a rule -------------------------------------------------------------------------
+
+// All flat but K, a line that rises by k over the range. One wavelength in the middle finds
+// W exp(-K_m l) where W exp(-K_m l) sinh(x) / x is right, x = k l / 2; so it errs by
+// 1 - x / sinh(x), the more the longer the path.
+TEST(RuleError, IsThatOfOneWavelengthInClosedForm) {
+    constexpr double kRise_per_m = 0.8;
+    const Water water{.absorption_per_m = line(0.1, 0.1 + kRise_per_m)};
+    const auto family = family_of({{flat(1.0)}}, water, 1.0, 3.0);
+    const auto worst =
+        rule_error(flat_sensor(), family, kRange, equal_bands(flat_sensor(), kRange, 1));
+    constexpr double x = 0.5 * kRise_per_m * 3.0;
+    constexpr double kGridError = 2e-9;  // the stated error of the grid it compares with
+    for (const double error : worst) EXPECT_NEAR(error, 1.0 - x / std::sinh(x), kGridError);
+}
+
+TEST(RuleError, FindsTheWorstPathBetweenTheEnds) {
+    // Two wavelengths, at the ends of the range, with weights that make them right at 1 m and
+    // at 3 m: what they err by, they err between.
+    const Water water{.absorption_per_m = line(0.0, 1.0)};
+    const auto T_nm = [](double l_m) { return kWidth_nm * (1.0 - std::exp(-l_m)) / l_m; };
+    // w0 + w1 exp(-l) = T(l) at l = 1 and 3.
+    const double w1_nm = (T_nm(1.0) - T_nm(3.0)) / (std::exp(-1.0) - std::exp(-3.0));
+    const double w0_nm = T_nm(1.0) - w1_nm * std::exp(-1.0);
+    const std::vector<WeightedWavelength> rule{
+        {.lambda_nm = 400.0, .weight = {w0_nm, 2.0 * w0_nm, 3.0 * w0_nm}},
+        {.lambda_nm = 700.0, .weight = {w1_nm, 2.0 * w1_nm, 3.0 * w1_nm}}};
+    double right = 0.0;
+    for (int i = 0; i <= 1000; ++i) {
+        const double l_m = 1.0 + 0.002 * i;
+        right = std::max(right,
+                         std::abs((w0_nm + w1_nm * std::exp(-l_m)) / T_nm(l_m) - 1.0));
+    }
+    const auto worst =
+        rule_error(flat_sensor(), family_of({{flat(1.0)}}, water, 1.0, 3.0), kRange, rule);
+    // It samples 33 paths: within a 64th of the range of the peak of a parabola, (1/32)^2 of it.
+    constexpr double kSampling = 1e-3;
+    ASSERT_GT(right, 0.01);
+    for (const double error : worst) {
+        EXPECT_LE(error, right * (1.0 + 1e-6));
+        EXPECT_GE(error, right * (1.0 - kSampling));
+    }
+}
+
+TEST(RuleError, FindsTheWorstSource) {
+    // One wavelength at 550 nm is right for a flat source, and finds 1 where 1/2 is right for a
+    // peak there.
+    const Spectrum peak("peak", {400.0, 550.0, 700.0}, {0.0, 1.0, 0.0});
+    const auto rule = equal_bands(flat_sensor(), kRange, 1);
+    const auto alone = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
+    for (const double error : rule_error(flat_sensor(), alone, kRange, rule)) {
+        EXPECT_NEAR(error, 0.0, kRounding);
+    }
+    for (const auto& sources : {std::vector<std::vector<Spectrum>>{{flat(1.0)}, {peak}},
+                                std::vector<std::vector<Spectrum>>{{peak}, {flat(1.0)}}}) {
+        const auto both = family_of(sources, clear_water(), 1.0, 2.0);
+        for (const double error : rule_error(flat_sensor(), both, kRange, rule)) {
+            EXPECT_NEAR(error, 1.0, kRounding);
+        }
+    }
+}
+
+TEST(RuleError, IsPerChannel) {
+    const auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
+    auto rule = equal_bands(flat_sensor(), kRange, 3);
+    for (WeightedWavelength& w : rule) {
+        w.weight[1] *= 1.25;
+        w.weight[2] = 0.0;
+    }
+    const auto worst = rule_error(flat_sensor(), family, kRange, rule);
+    EXPECT_NEAR(worst[0], 0.0, kRounding);
+    EXPECT_NEAR(worst[1], 0.25, kRounding);
+    EXPECT_NEAR(worst[2], 1.0, kRounding);
+}
+
+TEST(RuleError, IsZeroForAChannelThatSeesNothing) {
+    const Sensor sensor({flat(0.0), flat(1.0), flat(1.0)}, ResponseKind::Energy);
+    const auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
+    EXPECT_EQ(rule_error(sensor, family, kRange, {})[0], 0.0);
+    EXPECT_EQ(rule_error(sensor, family, kRange, {})[1], 1.0);
+}
+
+LightFamily habcam_light() {
+    return family_of({{load_curve("xenon-flash", CurveRole::LampSpectrum, {}),
+                       load_curve("sand", CurveRole::Reflectance, {})}},
+                     {.absorption_per_m =
+                          load_curve("pope-fry-1997", CurveRole::WaterAbsorption, {})},
+                     3.5,
+                     6.0);
+}
+
+TEST(RuleError, IsNothingForTheReferenceItself) {
+    // Both grids may be off by their stated error.
+    constexpr double kBothGrids = 1e-8 + 1e-9;
+    const Sensor sensor = builtin_sensor("nikon-d5100");
+    const auto grid = reference_grid(sensor, habcam_light(), kRange, 1e-8);
+    for (const double error : rule_error(sensor, habcam_light(), kRange, grid)) {
+        EXPECT_LE(error, kBothGrids);
+    }
+}
+
+// The midpoint rule is of second order once its bands are narrower than the tables' own steps;
+// with straight lines for tables that is from the start: the error of 2 n bands is a quarter.
+TEST(RuleError, OfEqualBandsFallsWithTheSquareOfTheirWidth) {
+    constexpr double kFourthOrder = 0.02;  // what the next term leaves at 16 bands
+    const Sensor sensor({line(0.2, 1.0), line(1.0, 0.3), flat(1.0)}, ResponseKind::Energy);
+    const Water water{.absorption_per_m = line(0.1, 1.0)};
+    const auto family = family_of({{line(1.0, 2.0)}}, water, 1.0, 4.0);
+    const auto at = [&](int count) {
+        return rule_error(sensor, family, kRange, equal_bands(sensor, kRange, count));
+    };
+    const auto coarse = at(16);
+    const auto fine = at(32);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        EXPECT_NEAR(coarse[c] / fine[c], 4.0, 4.0 * kFourthOrder) << coarse[c] << " " << fine[c];
+    }
+}
+
+TEST(RuleError, OfEqualBandsFallsWithRealTablesToo) {
+    const Sensor sensor = builtin_sensor("nikon-d5100");
+    std::array<double, kChannels> last{1.0, 1.0, 1.0};
+    for (const int count : {12, 48, 192}) {
+        const auto found =
+            rule_error(sensor, habcam_light(), kRange, equal_bands(sensor, kRange, count));
+        // Four times the bands: 16 times less if the tables were smooth; half of that is asked.
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            EXPECT_LT(found[c], last[c] / 8.0) << count << " bands, channel " << c;
+        }
+        last = found;
+    }
+}
+
+}  // namespace
+}  // namespace aphotic

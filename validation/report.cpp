@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "validation/report.h"
+
+#include "spectral/atomic_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+namespace aphotic {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_better(const Comparison& a, const Comparison& b) {
+    return share_of_bound(a) < share_of_bound(b);
+}
+
+Json json_of(const Comparison& comparison) {
+    return {{"name", comparison.name},
+            {"holds", comparison.holds()},
+            {"bound", comparison.bound},
+            {"max_error", comparison.max_error},
+            {"column", comparison.column},
+            {"row", comparison.row},
+            {"percentile_999", comparison.percentile_999},
+            {"rms_error", comparison.rms_error},
+            {"mean_error", comparison.mean_error},
+            {"compared", comparison.compared},
+            {"on_edges", comparison.on_edges},
+            {"max_error_on_edges", comparison.max_error_on_edges},
+            {"not_finite", comparison.not_finite}};
+}
+
+Json wavelengths_of(const ValidationReport& report) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < report.wavelengths.size(); ++i) {
+        Json entry{{"lambda_nm", report.lambda_nm[i]}};
+        entry.update(json_of(report.wavelengths[i]));
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+Json channels_of(const ValidationReport& report) {
+    Json list = Json::array();
+    for (const Comparison& channel : report.channels) list.push_back(json_of(channel));
+    return list;
+}
+
+}  // namespace
+
+double share_of_bound(const Comparison& comparison) {
+    if (comparison.not_finite > 0) return std::numeric_limits<double>::infinity();
+    if (comparison.max_error == 0.0) return 0.0;
+    return comparison.max_error / comparison.bound;
+}
+
+bool ValidationReport::holds() const {
+    const auto holds = [](const Comparison& comparison) { return comparison.holds(); };
+    return !(wavelengths.empty() && channels.empty()) && std::ranges::all_of(wavelengths, holds) &&
+           std::ranges::all_of(channels, holds);
+}
+
+const Comparison& ValidationReport::worst() const {
+    assert(!(wavelengths.empty() && channels.empty()));
+    if (channels.empty()) return *std::ranges::max_element(wavelengths, is_better);
+    const Comparison& channel = channels[worst_channel()];
+    if (wavelengths.empty()) return channel;
+    const Comparison& wavelength = *std::ranges::max_element(wavelengths, is_better);
+    return is_better(wavelength, channel) ? channel : wavelength;
+}
+
+std::size_t ValidationReport::worst_channel() const {
+    assert(!channels.empty());
+    return static_cast<std::size_t>(std::ranges::max_element(channels, is_better) -
+                                    channels.begin());
+}
+
+void write_validation_json(const ValidationReport& report, const std::filesystem::path& file) {
+    assert(report.lambda_nm.size() == report.wavelengths.size());
+    const Comparison& worst = report.worst();
+    const Json json{
+        {"holds", report.holds()},
+        {"worst",
+         {{"name", worst.name},
+          {"max_error", worst.max_error},
+          {"bound", worst.bound},
+          {"share_of_bound", share_of_bound(worst)},
+          {"column", worst.column},
+          {"row", worst.row},
+          {"not_finite", worst.not_finite}}},
+        {"rule",
+         "e = (a - b) / max(|b|, floor), a: POV-Ray's image, b: the reference; holds: max |e| off "
+         "the edges <= bound and every sample finite"},
+        {"rig", {{"title", report.rig.title}, {"sha256", report.rig.digest}}},
+        {"image",
+         {{"width_px", report.rendered.width_px}, {"height_px", report.rendered.height_px}}},
+        {"wavelengths", wavelengths_of(report)},
+        {"channels", channels_of(report)},
+        {"lamp_signal", report.lamp_signal},
+        {"reference_wavelengths", report.grid_size},
+        {"frames", report.frames},
+        {"jobs", report.jobs},
+        {"versions", {{"aphotic", report.aphotic_version}, {"povray", report.povray_version}}},
+        {"time_s",
+         {{"render", report.render_s},
+          {"integrate", report.integrate_s},
+          {"trace", report.trace_s}}}};
+    constexpr int kIndent = 2;
+    write_text_file(file, json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace aphotic

@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The page is well-formed XML too, so that a strict reader finds what a browser would forgive.
+#include "spectral/atomic_file.h"
+#include "spectral/preview.h"
+#include "validation/html.h"
+#include "validation/report.h"
+#include "validation/report_pictures.h"
+#include "validation/report_plots.h"
+#include "validation/report_style.h"
+#include "validation/report_words.h"
+#include "validation/svg.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+// Under this the browser shows a picture's pixels as squares.
+constexpr int kSmallPicture_px = 400;
+
+std::string title_of(const ValidationReport& report) {
+    return report.rig.title.empty() ? "Untitled rig" : report.rig.title;
+}
+
+std::string section(std::string_view id, std::string_view heading, std::string_view content) {
+    return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n\n", id, heading, content);
+}
+
+std::string paragraph(std::string_view text) {
+    return fmt::format("<p>{}</p>\n", text);
+}
+
+// "550 nm" or "channel R"
+std::string name_of(const ValidationReport& report, const Comparison& comparison) {
+    const bool is_channel = std::ranges::any_of(
+        report.channels, [&](const Comparison& channel) { return &channel == &comparison; });
+    return (is_channel ? "channel " : "") + user_text(comparison.name);
+}
+
+std::string worst_in_words(const ValidationReport& report) {
+    const Comparison& worst = report.worst();
+    const std::string name = name_of(report, worst);
+    if (worst.not_finite > 0) {
+        return fmt::format("Worst is <strong>{}</strong>: {} {} not finite.",
+                           name,
+                           counted(worst.not_finite, "sample"),
+                           worst.not_finite == 1 ? "is" : "are");
+    }
+    return fmt::format(
+        "{} <strong>{}</strong>: its largest relative error is <strong>{}</strong>, {} times its "
+        "bound of {}, at column {}, row {}.",
+        report.holds() ? "Closest to its bound is" : "Worst is",
+        name,
+        scientific(worst.max_error),
+        scientific(share_of_bound(worst)),
+        scientific(worst.bound),
+        worst.column,
+        worst.row);
+}
+
+std::size_t failures(const ValidationReport& report) {
+    const auto fails = [](const Comparison& comparison) { return !comparison.holds(); };
+    return static_cast<std::size_t>(std::ranges::count_if(report.wavelengths, fails) +
+                                    std::ranges::count_if(report.channels, fails));
+}
+
+std::string verdict(const ValidationReport& report) {
+    const std::size_t all = report.wavelengths.size() + report.channels.size();
+    const std::string summary =
+        report.holds() ? fmt::format("POV-Ray’s images agree with the reference in all {}.",
+                                     counted(all, "comparison"))
+                       : fmt::format("POV-Ray’s images and the reference disagree in {} of {}.",
+                                     grouped(failures(report)),
+                                     counted(all, "comparison"));
+    return fmt::format(
+        "<div class=\"verdict {}\" id=\"verdict\">\n<p class=\"word\">{}</p>\n<p>{} "
+        "{}</p>\n</div>\n",
+        report.holds() ? "holds" : "fails",
+        report.holds() ? "✓ Holds" : "✗ Does not hold",
+        summary,
+        worst_in_words(report));
+}
+
+std::string header(const ValidationReport& report) {
+    return fmt::format(
+        "<header>\n<p class=\"eyebrow\">Aphotic · validation</p>\n<h1>{}</h1>\n{}</header>\n\n",
+        user_text(title_of(report)),
+        verdict(report));
+}
+
+// Both under the reference's scale.
+std::string images(const ValidationReport& report) {
+    const int side = block_side(report.traced.width_px, report.traced.height_px);
+    const CameraImage traced = block_means(report.traced, side);
+    const auto scale =
+        preview_scale(traced, report.lamp_signal, {.white = PreviewWhite::Lamp, .stops = 0.0});
+    const auto figure =
+        [&](const CameraImage& image, std::string_view alt, std::string_view caption) {
+            return fmt::format(
+                "<figure><img class=\"{}\" width=\"{}\" height=\"{}\" alt=\"{}\" src=\"{}\"/>"
+                "<figcaption>{}</figcaption></figure>\n",
+                image.width_px < kSmallPicture_px ? "picture squares" : "picture",
+                image.width_px,
+                image.height_px,
+                alt,
+                data_uri(preview_png(image, scale)),
+                caption);
+        };
+    return fmt::format(
+        "<div class=\"pair\">\n{}{}</div>\n{}",
+        figure(block_means(report.rendered, side),
+               "image through POV-Ray",
+               fmt::format("<strong>POV-Ray</strong>, integrated from {}",
+                           counted(report.wavelengths.size(), "wavelength"))),
+        figure(traced,
+               "image by the reference tracer",
+               fmt::format("<strong>Reference</strong>, over {}",
+                           counted(report.grid_size, "wavelength"))),
+        paragraph(fmt::format(
+            "The camera’s signals at the same exposure and white: the lamps’ "
+            "own light is "
+            "grey, channels are shown as sRGB. Top is forward, right is starboard.{}",
+            side > 1 ? fmt::format(" Shown by means of {0} × {0} pixels.", side) : "")));
+}
+
+std::span<const float> plane(const std::vector<float>& samples, std::size_t channel) {
+    const std::size_t size = samples.size() / kChannels;
+    return std::span(samples).subspan(channel * size, size);
+}
+
+struct MapScale {
+    double end = 0.0;        // of the colours
+    std::size_t beyond = 0;  // pixels
+};
+
+// So that the details show and not only the largest: at the 99.9 percentile, rounded up.
+MapScale map_scale(std::span<const float> errors, const Comparison& channel) {
+    std::vector<double> sizes;
+    for (const float e : errors) {
+        if (std::isfinite(e)) sizes.push_back(std::abs(e));
+    }
+    double percentile = 0.0;
+    if (!sizes.empty()) {
+        const auto rank =
+            static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(sizes.size() - 1));
+        std::nth_element(sizes.begin(), sizes.begin() + rank, sizes.end());
+        percentile = sizes[static_cast<std::size_t>(rank)];
+    }
+    // Mostly equal images have no scale of their own.
+    if (percentile == 0.0) percentile = channel.bound > 0.0 ? channel.bound : channel.max_error;
+    if (percentile == 0.0) percentile = 1e-3;
+    const double end = round_up(percentile);
+    const auto beyond = std::ranges::count_if(sizes, [&](double size) { return size > end; });
+    return {.end = end, .beyond = static_cast<std::size_t>(beyond)};
+}
+
+std::string map_marks(const ValidationReport& report, const Comparison& channel) {
+    const double width = report.traced.width_px;
+    const double height = report.traced.height_px;
+    const double unit = width / 100.0;
+    std::string svg;
+    const auto notch = [&](double x1, double y1, double x2, double y2) {
+        svg +=
+            fmt::format(R"(<line x1="{:.2f}" y1="{:.2f}" x2="{:.2f}" y2="{:.2f}" class="notch"/>)",
+                        x1,
+                        y1,
+                        x2,
+                        y2);
+    };
+    const double row = profile_index(report, ProfileLine::Row) + 0.5;
+    const double column = profile_index(report, ProfileLine::Column) + 0.5;
+    notch(0.0, row, 2.0 * unit, row);
+    notch(width - 2.0 * unit, row, width, row);
+    notch(column, 0.0, column, 2.0 * unit);
+    notch(column, height - 2.0 * unit, column, height);
+    if (channel.max_error > 0.0) {
+        for (const std::string_view style : {"halo", "ring"}) {
+            svg += fmt::format(R"(<circle cx="{:.2f}" cy="{:.2f}" r="{:.2f}" class="{}"/>)",
+                               channel.column + 0.5,
+                               channel.row + 0.5,
+                               1.3 * unit,
+                               style);
+        }
+    }
+    return fmt::format(
+        R"(<svg xmlns="http://www.w3.org/2000/svg" class="marks" viewBox="0 0 {:.0f} {:.0f}">{}</svg>)",
+        width,
+        height,
+        svg);
+}
+
+std::string swatch(std::uint32_t colour, std::string_view words) {
+    return fmt::format(
+        "<span class=\"key\"><svg class=\"swatch\" viewBox=\"0 0 12 12\"><rect width=\"12\" "
+        "height=\"12\" fill=\"#{:06x}\"/></svg> {}</span>\n",
+        colour,
+        words);
+}
+
+std::string map_legend(const Comparison& channel) {
+    std::string legend = swatch(error_colour((kColourSteps - 1) / 2), "POV-Ray is brighter") +
+                         swatch(error_colour(-(kColourSteps - 1) / 2), "POV-Ray is darker") +
+                         swatch(kEdgeColour, "on an edge: " + counted(channel.on_edges, "pixel"));
+    if (channel.not_finite > 0)
+        legend += swatch(kNotFiniteColour, "not finite: " + counted(channel.not_finite, "sample"));
+    if (channel.max_error > 0.0) {
+        legend += fmt::format("<span class=\"key\">◯ the largest, {} at column {}, row {}</span>\n",
+                              scientific(channel.max_error),
+                              channel.column,
+                              channel.row);
+    }
+    return "<p class=\"legend\">" + legend + "</p>\n";
+}
+
+std::string map_in_words(const ErrorMap& map, const MapScale& scale) {
+    std::string words = fmt::format("The colours run from −{0} to +{0}", scientific(scale.end));
+    words += scale.beyond == 0 ? "; no pixel is beyond."
+                               : fmt::format("; {} beyond, shown in the end’s colour.",
+                                             counted(scale.beyond, "pixel"));
+    if (map.side > 1) {
+        words += fmt::format(
+            " Each point of the map shows the largest |e| of {0} × {0} pixels, with its sign.",
+            map.side);
+    }
+    return paragraph(
+        words + " The notches at the sides mark the row and the column of the profiles below.");
+}
+
+std::string map_section(const ValidationReport& report) {
+    const std::size_t c = report.worst_channel();
+    const Comparison& channel = report.channels[c];
+    const auto errors = plane(report.channel_errors, c);
+    const MapScale scale = map_scale(errors, channel);
+    const ErrorMap map = error_map(errors,
+                                   plane(report.rendered.samples, c),
+                                   plane(report.traced.samples, c),
+                                   report.traced.width_px,
+                                   scale.end);
+    const std::string figure = fmt::format(
+        "<div class=\"map\"><div class=\"frame\"><img class=\"picture squares\" width=\"{}\" "
+        "height=\"{}\" alt=\"map of the relative error\" src=\"{}\"/>{}</div>\n{}</div>\n",
+        map.width_px,
+        map.height_px,
+        data_uri(map.png),
+        map_marks(report, channel),
+        colour_bar_svg(scale.end));
+    return section("error-map",
+                   fmt::format("Relative error of channel {}, the worst", escaped(channel.name)),
+                   figure + map_legend(channel) + map_in_words(map, scale));
+}
+
+std::string stroke_key(std::string_view style, std::string_view words) {
+    return fmt::format(
+        "<span class=\"key\"><svg class=\"stroke\" viewBox=\"0 0 34 12\"><path class=\"{}\" "
+        "d=\"M2 6L32 6\"/></svg> {}</span>\n",
+        style,
+        words);
+}
+
+std::string profile_legend(const ValidationReport& report, ProfileLine line) {
+    std::string legend;
+    constexpr std::array<std::string_view, kChannels> kClasses{"red", "green", "blue"};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        legend += stroke_key(fmt::format("reference {}", kClasses[c]),
+                             fmt::format("{} reference (peak {})",
+                                         kChannelNames[c],
+                                         scientific(profile_peak(profile_of(report, line, c)))));
+        legend += stroke_key(fmt::format("rendered {}", kClasses[c]),
+                             fmt::format("{} POV-Ray", kChannelNames[c]));
+    }
+    return "<p class=\"legend\">" + legend + stroke_key("bound", "bound") + "</p>\n";
+}
+
+std::string profiles(const ValidationReport& report) {
+    std::string content = paragraph(
+        "Both renderers over each other through the middle of the image, each channel divided by "
+        "the reference’s largest on that line; beneath, the relative error of each "
+        "pixel. "
+        "The upper scale is the angle off the camera’s axis" +
+        std::string(report.rig.camera.port ? ", before the port bends it." : "."));
+    for (const ProfileLine line : {ProfileLine::Row, ProfileLine::Column}) {
+        content += fmt::format("<figure class=\"plot\"><h3>{} {}</h3>\n{}{}</figure>\n",
+                               line == ProfileLine::Row ? "Row" : "Column",
+                               profile_index(report, line),
+                               profile_legend(report, line),
+                               profile_svg(report, line));
+    }
+    return content;
+}
+
+std::string errors_plot(const ValidationReport& report) {
+    return fmt::format("<figure class=\"plot\"><p class=\"legend\">{}{}{}{}</p>\n{}</figure>\n",
+                       stroke_key("error largest", "largest"),
+                       stroke_key("error percentile", "99.9 percentile"),
+                       stroke_key("error rms", "root mean square"),
+                       stroke_key("bound", "bound"),
+                       errors_svg(report));
+}
+
+std::string rule() {
+    return "<div class=\"rule\">\n<p class=\"formula\"><i>e<sub>i</sub></i> = "
+           "<span class=\"fraction\"><span><i>a<sub>i</sub></i> − "
+           "<i>b<sub>i</sub></i></span>"
+           "<span>max( |<i>b<sub>i</sub></i>|, <i>b</i><sub>0</sub> )</span></span></p>\n"
+           "<dl>\n<dt><i>a</i></dt><dd>POV-Ray’s sample</dd>\n"
+           "<dt><i>b</i></dt><dd>the reference’s sample</dd>\n"
+           "<dt><i>b</i><sub>0</sub></dt><dd>what counts as black: under it a difference is "
+           "measured against it</dd>\n</dl>\n</div>\n" +
+           paragraph(
+               "A comparison holds when the largest |<i>e</i>| off the edges is within its bound "
+               "and every sample, on edges too, is finite. No factor is fitted: the absolute "
+               "scale is part of it. On an edge, where a pixel’s centre falls on either "
+               "side of "
+               "a cone’s rim by rounding, samples are counted and measured on their "
+               "own. The "
+               "99.9 percentile and the root mean square are of |<i>e</i>|, the mean is of "
+               "<i>e</i> with its sign.");
+}
+
+std::string table_row(const Comparison& comparison) {
+    const double share = share_of_bound(comparison);
+    return fmt::format(
+        "<tr class=\"{}\"><th scope=\"row\">{}</th><td>{}</td><td>{}, {}</td><td>{}</td><td>{}</td>"
+        "<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
+        "<td class=\"mark\">{}</td></tr>\n",
+        comparison.holds() ? "holds" : "fails",
+        user_text(comparison.name),
+        scientific(comparison.max_error),
+        comparison.column,
+        comparison.row,
+        scientific(comparison.percentile_999),
+        scientific(comparison.rms_error),
+        scientific(comparison.mean_error),
+        grouped(comparison.compared),
+        grouped(comparison.on_edges),
+        comparison.on_edges == 0 ? "–" : scientific(comparison.max_error_on_edges),
+        grouped(comparison.not_finite),
+        scientific(comparison.bound),
+        scientific(share),
+        comparison.holds() ? "✓ holds" : "✗ fails");
+}
+
+std::string table(std::string_view id,
+                  std::string_view first_column,
+                  const std::vector<Comparison>& comparisons) {
+    std::string rows;
+    for (const Comparison& comparison : comparisons) rows += table_row(comparison);
+    return fmt::format(
+        "<div class=\"wide\"><table id=\"{}\">\n<thead><tr><th>{}</th><th>largest |<i>e</i>|</th>"
+        "<th>at column, row</th><th>99.9 %</th><th>rms</th><th>mean</th><th>compared</th>"
+        "<th>on edges</th><th>largest on edges</th><th>not finite</th><th>bound</th>"
+        "<th>largest / bound</th><th "
+        "class=\"mark\">verdict</th></tr></thead>\n<tbody>\n{}</tbody>\n"
+        "</table></div>\n",
+        id,
+        first_column,
+        rows);
+}
+
+std::string numbers(const ValidationReport& report) {
+    return rule() + errors_plot(report) + "<h3>Channels</h3>\n" +
+           table("channels", "channel", report.channels) + "<h3>Wavelengths</h3>\n" +
+           table("wavelengths", "wavelength", report.wavelengths);
+}
+
+std::string made_with(const ValidationReport& report) {
+    const auto item = [](std::string_view term, const std::string& words) {
+        return fmt::format("<dt>{}</dt><dd>{}</dd>\n", term, words);
+    };
+    const auto seconds = [](double value) { return fmt::format("{:.2f} s", value); };
+    return "<dl class=\"rig\">\n" + item("Aphotic", escaped(report.aphotic_version)) +
+           item("POV-Ray", escaped(report.povray_version)) +
+           item("Rendering",
+                fmt::format("{} for {}, {} at once: {}",
+                            counted(report.frames, "frame"),
+                            counted(report.wavelengths.size(), "wavelength"),
+                            report.jobs,
+                            seconds(report.render_s))) +
+           item("Integrating", seconds(report.integrate_s)) +
+           item("Tracing",
+                fmt::format("the reference, over {}: {}",
+                            counted(report.grid_size, "wavelength"),
+                            seconds(report.trace_s))) +
+           item("Rig", fmt::format("SHA-256 <code>{}</code>", escaped(report.rig.digest))) +
+           "</dl>\n";
+}
+
+}  // namespace
+
+void write_validation_html(const ValidationReport& report, const std::filesystem::path& file) {
+    assert(report.lambda_nm.size() == report.wavelengths.size());
+    assert(report.channels.size() == kChannels);
+    assert(report.rendered.samples.size() == report.traced.samples.size());
+    assert(report.channel_errors.size() == report.traced.samples.size());
+    // The policy lets a browser neither run nor fetch anything, whatever a title may hold.
+    std::string page = fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n"
+        "<meta charset=\"utf-8\"/>\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+        "img-src data:; style-src 'unsafe-inline'\"/>\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+        "<title>{}: validation {}</title>\n<style>\n{}</style>\n</head>\n<body>\n<main>\n",
+        escaped(title_of(report)),
+        report.holds() ? "holds" : "does not hold",
+        kReportStyle);
+    page += header(report);
+    page += section("images", "Both images", images(report));
+    page += map_section(report);
+    page += section("profiles", "Profiles", profiles(report));
+    page += section("numbers", "Errors", numbers(report));
+    page += section("rig", "The rig", rig_in_words(report.rig));
+    page += section("made-with", "Made with", made_with(report));
+    page += "</main>\n</body>\n</html>\n";
+    write_text_file(file, page);
+}
+
+}  // namespace aphotic

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "validation/report_pictures.h"
+
+#include "spectral/preview.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+int blocks(int pixels, int side) {
+    return (pixels + side - 1) / side;
+}
+
+// Calls visit(index of the block, index of the sample) for every sample.
+template <typename Visit>
+void for_each_in_blocks(int width_px, int height_px, int side, const Visit& visit) {
+    const int across = blocks(width_px, side);
+    for (int row = 0; row < height_px; ++row) {
+        for (int column = 0; column < width_px; ++column) {
+            visit(static_cast<std::size_t>(row / side * across + column / side),
+                  static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px) +
+                      static_cast<std::size_t>(column));
+        }
+    }
+}
+
+std::uint32_t mixed(std::uint32_t from, std::uint32_t to, double share) {
+    std::uint32_t colour = 0;
+    for (const unsigned shift : {16U, 8U, 0U}) {
+        const double a = from >> shift & 0xFFU;
+        const double b = to >> shift & 0xFFU;
+        colour |= static_cast<std::uint32_t>(std::lround(a + share * (b - a))) << shift;
+    }
+    return colour;
+}
+
+std::uint32_t colour_of(double e, double scale) {
+    constexpr int kMost = (kColourSteps - 1) / 2;
+    const double step = std::clamp(e / scale, -1.0, 1.0) * kMost;
+    return error_colour(static_cast<int>(std::lround(step)));
+}
+
+}  // namespace
+
+int block_side(int width_px, int height_px) {
+    return blocks(std::max(width_px, height_px), kLargestPicture_px);
+}
+
+CameraImage block_means(const CameraImage& image, int side) {
+    CameraImage result{.width_px = blocks(image.width_px, side),
+                       .height_px = blocks(image.height_px, side),
+                       .samples = {}};
+    const std::size_t pixels = image.samples.size() / kChannels;
+    const auto size =
+        static_cast<std::size_t>(result.width_px) * static_cast<std::size_t>(result.height_px);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        std::vector<double> sum(size, 0.0);
+        std::vector<double> count(size, 0.0);
+        for_each_in_blocks(
+            image.width_px, image.height_px, side, [&](std::size_t block, std::size_t i) {
+                sum[block] += image.samples[c * pixels + i];
+                count[block] += 1.0;
+            });
+        for (std::size_t block = 0; block < size; ++block)
+            result.samples.push_back(static_cast<float>(sum[block] / count[block]));
+    }
+    return result;
+}
+
+// Through a paler tone between white and the ends, so that small errors show too.
+std::uint32_t error_colour(int step) {
+    constexpr std::uint32_t kWhite = 0xFBFAF8;
+    constexpr std::array<std::uint32_t, 3> kBlues{0xBBD6EA, 0x3F86BD, 0x0B3166};
+    constexpr std::array<std::uint32_t, 3> kReds{0xF6CDB6, 0xD4594A, 0x6E0A1E};
+    constexpr double kMost = (kColourSteps - 1) / 2.0;
+    const auto& tones = step < 0 ? kBlues : kReds;
+    const double place = std::abs(step) / kMost * static_cast<double>(tones.size());
+    const auto whole = std::min(static_cast<std::size_t>(place), tones.size() - 1);
+    const std::uint32_t from = whole == 0 ? kWhite : tones[whole - 1];
+    return mixed(from, tones[whole], place - static_cast<double>(whole));
+}
+
+ErrorMap error_map(std::span<const float> errors,
+                   std::span<const float> a,
+                   std::span<const float> b,
+                   int width_px,
+                   double scale) {
+    const int height_px = static_cast<int>(errors.size()) / width_px;
+    ErrorMap map{.side = block_side(width_px, height_px), .width_px = 0, .height_px = 0, .png = {}};
+    map.width_px = blocks(width_px, map.side);
+    map.height_px = blocks(height_px, map.side);
+
+    const auto size =
+        static_cast<std::size_t>(map.width_px) * static_cast<std::size_t>(map.height_px);
+    std::vector<float> largest(size, 0.0F);
+    std::vector<char> has_error(size, 0);
+    std::vector<char> is_bad(size, 0);
+    for_each_in_blocks(width_px, height_px, map.side, [&](std::size_t block, std::size_t i) {
+        if (!std::isfinite(a[i]) || !std::isfinite(b[i])) {
+            is_bad[block] = 1;
+        } else if (!std::isnan(errors[i])) {
+            has_error[block] = 1;
+            if (std::abs(errors[i]) > std::abs(largest[block])) largest[block] = errors[i];
+        }
+    });
+
+    std::vector<std::uint32_t> pixels(size, kEdgeColour);
+    for (std::size_t i = 0; i < size; ++i) {
+        if (has_error[i] != 0) pixels[i] = colour_of(largest[i], scale);
+        if (is_bad[i] != 0) pixels[i] = kNotFiniteColour;
+    }
+    map.png = png_of(pixels, map.width_px, map.height_px);
+    return map;
+}
+
+std::string data_uri(std::string_view png) {
+    std::vector<unsigned char> base64(4 * ((png.size() + 2) / 3) + 1);  // and a closing 0
+    const int length = EVP_EncodeBlock(base64.data(),
+                                       reinterpret_cast<const unsigned char*>(png.data()),
+                                       static_cast<int>(png.size()));
+    return "data:image/png;base64," +
+           std::string(base64.begin(), base64.begin() + static_cast<std::ptrdiff_t>(length));
+}
+
+}  // namespace aphotic

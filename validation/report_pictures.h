@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The pictures of a report, small enough to travel inside its page.
+//
+// A large image is shown by square blocks of pixels: of a camera's image each block's mean, of
+// an error map each block's largest |e|, with its sign, so that no error is averaged away.
+//
+//   colour(e) = blue for -scale .. white for 0 .. red for +scale, in kColourSteps steps
+//
+// Errors beyond the scale get the colour of its end. A block is grey when all of it lies on
+// edges, black when any sample in it is not finite.
+#pragma once
+
+#include "spectral/output_images.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace aphotic {
+
+inline constexpr int kLargestPicture_px = 1000;  // across and down
+inline constexpr int kColourSteps = 65;          // odd: the middle one is white
+inline constexpr std::uint32_t kEdgeColour = 0xA3A19B;
+inline constexpr std::uint32_t kNotFiniteColour = 0x000000;
+
+// The side of the blocks, so that the picture is at most kLargestPicture_px across and down.
+[[nodiscard]] int block_side(int width_px, int height_px);
+
+[[nodiscard]] CameraImage block_means(const CameraImage& image, int side);
+
+// step from -(kColourSteps - 1) / 2 to (kColourSteps - 1) / 2; 0xRRGGBB.
+[[nodiscard]] std::uint32_t error_colour(int step);
+
+struct ErrorMap {
+    int side = 1;  // of a block
+    int width_px = 0;
+    int height_px = 0;
+    std::string png;
+};
+
+// errors: one channel's, rows of width_px samples, NaN on edges and where samples are not finite;
+// `a` and `b`, which they came from, tell these two apart.
+[[nodiscard]] ErrorMap error_map(std::span<const float> errors,
+                                 std::span<const float> a,
+                                 std::span<const float> b,
+                                 int width_px,
+                                 double scale);
+
+// For src="..."
+[[nodiscard]] std::string data_uri(std::string_view png);
+
+}  // namespace aphotic

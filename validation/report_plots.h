@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The plots of a report, each a whole <svg>.
+#pragma once
+
+#include "validation/report.h"
+
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+// A line of pixels through the middle of the image: row height / 2, or column width / 2.
+enum class ProfileLine { Row, Column };
+
+struct Profile {
+    std::vector<double> position_px;  // of the samples' centres: 0.5, 1.5, ...
+    std::vector<double> rendered;
+    std::vector<double> traced;
+    std::vector<double> error;  // relative, NaN on edges
+};
+[[nodiscard]] Profile profile_of(const ValidationReport& report,
+                                 ProfileLine line,
+                                 std::size_t channel);
+
+// The number of the profile's row or column.
+[[nodiscard]] int profile_index(const ValidationReport& report, ProfileLine line);
+
+// The largest signal of the reference along the profile, by which the plot divides both; 1 when
+// it is not above 0.
+[[nodiscard]] double profile_peak(const Profile& profile);
+
+// Both renderers over each other, and beneath them the relative errors, a strip a channel.
+[[nodiscard]] std::string profile_svg(const ValidationReport& report, ProfileLine line);
+
+// Largest, 99.9 percentile and root mean square over wavelength, and of the channels, with the
+// bounds, on a logarithmic axis. What is 0 is not drawn.
+[[nodiscard]] std::string errors_svg(const ValidationReport& report);
+
+// The colours of an error map from -scale to +scale.
+[[nodiscard]] std::string colour_bar_svg(double scale);
+
+}  // namespace aphotic

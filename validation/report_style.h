@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How a report's page looks: on a screen of any width, and on A4 paper.
+#pragma once
+
+#include <string_view>
+
+namespace aphotic {
+
+inline constexpr std::string_view kReportStyle = R"(
+:root { --ink: #1d2530; --soft: #5b6673; --rule: #dfe3e8; --paper: #ffffff; --ground: #f5f4f1;
+  --good: #1f6f43; --bad: #a4262c; --red: #c5382f; --green: #238049; --blue: #2261a8; }
+* { box-sizing: border-box; }
+html { background: var(--ground); -webkit-text-size-adjust: 100%; }
+body { margin: 0; color: var(--ink); font: 16px/1.55 system-ui, -apple-system, "Segoe UI",
+  Roboto, "Helvetica Neue", "Noto Sans", "Liberation Sans", Arial, sans-serif; }
+main { max-width: 1160px; margin: 0 auto; padding: 48px 40px 64px; background: var(--paper); }
+h1 { font-size: 34px; line-height: 1.2; font-weight: 650; margin: 0 0 20px;
+  letter-spacing: -0.01em; overflow-wrap: anywhere; }
+h2 { font-size: 22px; font-weight: 620; margin: 56px 0 14px; padding-top: 18px;
+  border-top: 1px solid var(--rule); }
+h3 { font-size: 16px; font-weight: 620; margin: 26px 0 8px; }
+p { margin: 10px 0; max-width: 75ch; }
+figure { margin: 0; }
+figcaption { color: var(--soft); font-size: 14px; margin-top: 6px; }
+code { font: 13px ui-monospace, "DejaVu Sans Mono", "Liberation Mono", monospace;
+  overflow-wrap: anywhere; }
+.eyebrow { margin: 0 0 4px; color: var(--soft); font-size: 13px; letter-spacing: 0.09em;
+  text-transform: uppercase; }
+.verdict { border-left: 5px solid; padding: 14px 20px; border-radius: 3px; }
+.verdict p { margin: 0; color: var(--ink); max-width: none; }
+.verdict .word { font-size: 20px; font-weight: 650; margin-bottom: 4px; }
+.verdict.holds { border-color: var(--good); background: #eef6f1; }
+.verdict.fails { border-color: var(--bad); background: #fbeeee; }
+.holds .word { color: var(--good); }
+.fails .word { color: var(--bad); }
+.pair { display: grid; grid-template-columns: 1fr 1fr; gap: 20px; }
+.picture { display: block; width: 100%; height: auto; border-radius: 2px; }
+.squares { image-rendering: pixelated; }
+.map { display: flex; gap: 18px; align-items: stretch; }
+.map .frame { position: relative; flex: 1 1 auto; align-self: flex-start;
+  outline: 1px solid var(--rule); }
+.map .marks { position: absolute; inset: 0; width: 100%; height: 100%; }
+#colour-bar { flex: 0 0 84px; width: 84px; height: 438px; }
+.legend { display: flex; flex-wrap: wrap; gap: 2px 22px; font-size: 14px; color: var(--soft);
+  max-width: none; }
+.key { display: inline-flex; align-items: center; gap: 6px; white-space: nowrap; }
+.swatch { width: 13px; height: 13px; outline: 1px solid var(--rule); }
+.stroke { width: 34px; height: 12px; }
+.plot { margin: 6px 0 26px; }
+.plot > svg { display: block; width: 100%; height: auto; }
+svg text { fill: var(--ink); font-family: inherit; }
+svg .tick { font-size: 12px; fill: var(--soft); }
+svg .axis { font-size: 13px; }
+svg .name { font-size: 13px; font-weight: 650; }
+svg path, svg .frame { fill: none; }
+svg .frame { stroke: #9aa3ad; stroke-width: 1; }
+svg .grid { stroke: #e9ecef; stroke-width: 1; }
+svg .notch { stroke: #4c5560; stroke-width: 1; vector-effect: non-scaling-stroke; }
+svg .halo { fill: none; stroke: #ffffff; stroke-width: 5; vector-effect: non-scaling-stroke; }
+svg .ring { fill: none; stroke: #14181d; stroke-width: 2; vector-effect: non-scaling-stroke; }
+svg path.red, svg text.red { --tone: var(--red); }
+svg path.green, svg text.green { --tone: var(--green); }
+svg path.blue, svg text.blue { --tone: var(--blue); }
+svg text.name { fill: var(--tone); }
+svg .reference { stroke: var(--tone); stroke-opacity: 0.32; stroke-width: 6;
+  stroke-linejoin: round; }
+svg .rendered { stroke: var(--tone); stroke-width: 1.6; stroke-dasharray: 7 5;
+  stroke-linejoin: round; }
+svg .dots { stroke: var(--tone); stroke-width: 2.2; stroke-opacity: 0.75; }
+svg .bound { stroke: var(--bad); stroke-width: 1.3; stroke-dasharray: 2 3; }
+svg .error { stroke-width: 1.5; }
+svg .mark { stroke-width: 6; }
+svg .largest { stroke: #14365f; }
+svg .percentile { stroke: #3a86c8; }
+svg .rms { stroke: #8fb9a0; }
+.rule { display: flex; flex-wrap: wrap; align-items: center; gap: 8px 56px; margin: 8px 0; }
+.formula { font: 21px/1.4 "STIX Two Text", "Cambria", "Liberation Serif", "Times New Roman",
+  serif; margin: 6px 0; }
+.fraction { display: inline-block; vertical-align: middle; text-align: center; }
+.fraction span { display: block; padding: 0 8px; }
+.fraction span + span { border-top: 1.5px solid var(--ink); }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: 4px 20px; margin: 8px 0; }
+dt { color: var(--soft); }
+dd { margin: 0; overflow-wrap: anywhere; }
+dl.rig { gap: 9px 28px; max-width: 100ch; }
+dl.rig dt { max-width: 26ch; overflow-wrap: anywhere; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; width: 100%; font-size: 13px;
+  font-variant-numeric: tabular-nums; }
+th, td { padding: 6px 8px; text-align: right; white-space: nowrap; }
+thead th { font-weight: 500; color: var(--soft); border-bottom: 1.5px solid var(--ink);
+  vertical-align: bottom; white-space: normal; }
+tbody td, tbody th { border-bottom: 1px solid var(--rule); }
+th:first-child { text-align: left; padding-left: 0; }
+tbody th { font-weight: 620; }
+th.mark, td.mark { text-align: left; }
+td.mark { font-weight: 620; }
+tr.holds .mark { color: var(--good); }
+tr.fails .mark { color: var(--bad); }
+tr.fails { background: #fdf4f4; }
+@media (max-width: 760px) {
+  main { padding: 24px 16px; }
+  .pair { grid-template-columns: 1fr; }
+  dl.rig { grid-template-columns: 1fr; gap: 0; }
+  dl.rig dd { margin-bottom: 10px; }
+}
+@media print {
+  @page { size: A4; margin: 14mm; }
+  html { background: none; }
+  body { font-size: 10pt; }
+  main { padding: 0; max-width: none; }
+  h1 { font-size: 20pt; }
+  h2 { margin-top: 22pt; font-size: 14pt; break-after: avoid; }
+  h3 { break-after: avoid; }
+  figure, .map, .pair, .rule, tr { break-inside: avoid; }
+  table { font-size: 6.6pt; }
+  th, td { padding: 2pt 3pt; }
+  .wide { overflow: visible; }
+  .verdict, .swatch, .picture, tr.fails { print-color-adjust: exact;
+    -webkit-print-color-adjust: exact; }
+}
+)";
+
+}  // namespace aphotic
