@@ -31,7 +31,7 @@ Action configure_integrate(CLI::App& app) {
             integrate_folder(options->folder, manifest, options->preview);
         outcome["title"] = manifest.rig_title;
         if (options->json) {
-            fmt::print("{}\n", outcome.dump(2));
+            fmt::print("{}\n", dumped(outcome));
         } else {
             print_outcome(outcome);
         }

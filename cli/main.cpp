@@ -26,6 +26,12 @@ constexpr std::array kCommands{
             aphotic::cli::configure_plan},
     Command{"generate", "write the POV-Ray scenes alone", aphotic::cli::configure_generate},
     Command{"integrate", "frames and manifest to images", aphotic::cli::configure_integrate},
+    Command{"trace",
+            "the same images by the reference tracer, without POV-Ray",
+            aphotic::cli::configure_trace},
+    Command{"validate",
+            "render, trace, and compare them within stated bounds",
+            aphotic::cli::configure_validate},
     Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
 };
 

@@ -34,17 +34,13 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
         ->capture_default_str();
 }
 
-Json integrate_folder(const fs::path& folder,
-                      const Manifest& manifest,
-                      const PreviewOptions& preview) {
-    const auto start = std::chrono::steady_clock::now();
-    set_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
-    ProgressLine line;
-    const CameraImage image =
-        integrate(folder, manifest, [&](double share) { line.show("integrating", share); });
-    write_preview(image, manifest.lamp_signal, preview, folder / "preview.png");
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+std::string dumped(const Json& json) {
+    // Titles and paths are the user's and need not be UTF-8; JSON must be.
+    constexpr int kIndent = 2;
+    return json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
+}
 
+Json outcome_of(const fs::path& folder, const CameraImage& image) {
     Json channels;
     const auto plane = static_cast<std::ptrdiff_t>(image.samples.size() / kChannels);
     for (int c = 0; c < kChannels; ++c) {
@@ -57,14 +53,28 @@ Json integrate_folder(const fs::path& folder,
     return {{"folder", folder.string()},
             {"width_px", image.width_px},
             {"height_px", image.height_px},
-            {"wavelengths", manifest.wavelengths.size()},
-            {"frames", manifest.frames.size()},
-            {"signal", channels},
-            {"integration_s", elapsed.count()}};
+            {"signal", channels}};
+}
+
+Json integrate_folder(const fs::path& folder,
+                      const Manifest& manifest,
+                      const PreviewOptions& preview) {
+    const auto start = std::chrono::steady_clock::now();
+    set_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+    ProgressLine line;
+    const CameraImage image =
+        integrate(folder, manifest, [&](double share) { line.show("integrating", share); });
+    write_preview(image, manifest.lamp_signal, preview, folder / "preview.png");
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+
+    Json outcome = outcome_of(folder, image);
+    outcome["wavelengths"] = manifest.wavelengths.size();
+    outcome["frames"] = manifest.frames.size();
+    outcome["integration_s"] = elapsed.count();
+    return outcome;
 }
 
 void print_outcome(const Json& outcome) {
-    const auto folder = outcome["folder"].get<std::string>();
     fmt::print("{}: {} x {} pixels from {} in {}, integrated in {:.1f} s\n",
                outcome["title"].get<std::string>(),
                outcome["width_px"].get<int>(),
@@ -72,6 +82,11 @@ void print_outcome(const Json& outcome) {
                counted(outcome["wavelengths"].get<std::size_t>(), "wavelength"),
                counted(outcome["frames"].get<std::size_t>(), "frame"),
                outcome["integration_s"].get<double>());
+    print_signals(outcome);
+}
+
+void print_signals(const Json& outcome) {
+    const auto folder = outcome["folder"].get<std::string>();
     for (const auto& [channel, signal] : outcome["signal"].items()) {
         fmt::print("  {}  {:.6g} to {:.6g}, mean {:.6g}\n",
                    channel,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From finished frames to pictures, and what is said about it: the end of `render` and the whole
-// of `integrate`.
+// From finished frames to pictures, and what is said about them.
 #pragma once
 
 #include "spectral/manifest.h"
@@ -11,17 +10,26 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <string>
 
 namespace aphotic::cli {
 
 void add_preview_options(CLI::App& app, PreviewOptions& options);
+
+// JSON as it is printed.
+[[nodiscard]] std::string dumped(const nlohmann::ordered_json& json);
+
+// Where the images are, their size, and the least, mean and largest signal of each channel.
+[[nodiscard]] nlohmann::ordered_json outcome_of(const std::filesystem::path& folder,
+                                                const CameraImage& image);
 
 // Writes image.exr, spectral.exr and preview.png, and returns what there is to say of them.
 [[nodiscard]] nlohmann::ordered_json integrate_folder(const std::filesystem::path& folder,
                                                       const Manifest& manifest,
                                                       const PreviewOptions& preview);
 
-// The same for people.
+// The same for people: of a whole integration, or of its images alone.
 void print_outcome(const nlohmann::ordered_json& outcome);
+void print_signals(const nlohmann::ordered_json& outcome);
 
 }  // namespace aphotic::cli

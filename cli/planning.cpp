@@ -8,9 +8,8 @@
 
 namespace aphotic::cli {
 
-void add_planning_options(CLI::App& app, PlanningOptions& options) {
+void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
     constexpr int kMostBands = 100000;
-    constexpr int kMostLamps = 64;
     app.add_option("RIG", options.rig_file, "the rig file (TOML)")->required();
     auto* bands =
         app.add_option(
@@ -21,6 +20,11 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
            "--wavelengths", options.wavelengths_nm, "wavelengths in nm, such as 478,576,638")
         ->delimiter(',')
         ->excludes(bands);
+}
+
+void add_planning_options(CLI::App& app, PlanningOptions& options) {
+    constexpr int kMostLamps = 64;
+    add_wavelength_options(app, options);
     app.add_option("--per-frame",
                    options.per_frame,
                    "wavelengths that share a frame, one a channel; behind a port always 1")
@@ -36,13 +40,18 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
         ->check(CLI::Range(1, kMostLamps));
 }
 
-PlannedRender plan_render(const PlanningOptions& options) {
+PlannedWavelengths plan_wavelengths(const PlanningOptions& options) {
     Rig rig = read_rig(options.rig_file);
     const Camera& camera = rig.camera;
-    const std::vector<WeightedWavelength> wavelengths =
+    std::vector<WeightedWavelength> wavelengths =
         options.wavelengths_nm.empty()
             ? equal_bands(camera.sensor, camera.range, options.bands)
             : listed_wavelengths(camera.sensor, camera.range, options.wavelengths_nm);
+    return {.rig = std::move(rig), .wavelengths = std::move(wavelengths)};
+}
+
+PlannedRender plan_render(const PlanningOptions& options) {
+    PlannedWavelengths planned = plan_wavelengths(options);
     SceneOptions scene_options{.wavelengths_per_frame = options.per_frame,
                                .emitter_lamps = std::nullopt};
     if (!options.emitter_lamps.empty()) {
@@ -50,8 +59,8 @@ PlannedRender plan_render(const PlanningOptions& options) {
                                        .along = options.emitter_lamps[1]};
     }
     try {
-        SceneSet scenes = make_scene_set(rig, wavelengths, scene_options);
-        return {.rig = std::move(rig), .scenes = std::move(scenes)};
+        SceneSet scenes = make_scene_set(planned.rig, planned.wavelengths, scene_options);
+        return {.rig = std::move(planned.rig), .scenes = std::move(scenes)};
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
     }

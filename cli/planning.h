@@ -21,7 +21,18 @@ struct PlanningOptions {
     std::vector<int> emitter_lamps;
 };
 
+// The rig and its wavelengths.
+void add_wavelength_options(CLI::App& app, PlanningOptions& options);
+
+// These, and how POV-Ray is to render them.
 void add_planning_options(CLI::App& app, PlanningOptions& options);
+
+struct PlannedWavelengths {
+    Rig rig;
+    std::vector<WeightedWavelength> wavelengths;
+};
+
+[[nodiscard]] PlannedWavelengths plan_wavelengths(const PlanningOptions& options);
 
 struct PlannedRender {
     Rig rig;

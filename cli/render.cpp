@@ -52,7 +52,7 @@ ExitStatus render_rig(const Options& options) {
     outcome["frames_kept"] = result.kept;
     outcome["povray_s"] = elapsed.count();
     if (options.json) {
-        fmt::print("{}\n", outcome.dump(2));
+        fmt::print("{}\n", dumped(outcome));
         return kDone;
     }
     fmt::print("POV-Ray {}: {} rendered, {} kept, in {:.1f} s with {}\n",

@@ -34,9 +34,9 @@ bp::environment environment_of(const ProcessRequest& request) {
     bp::environment environment = boost::this_process::environment();
     for (const auto& [name, value] : request.environment) {
         if (value.empty()) {
-            environment.erase(name);
+            environment.reset(name);
         } else {
-            environment[name] = value;
+            environment.set(name, value);  // environment[name] reads past shorter variables
         }
     }
     return environment;

@@ -6,7 +6,6 @@
 #include "spectral/digest.h"
 
 namespace aphotic {
-namespace {
 
 std::array<double, kChannels> lamp_signal(const Rig& rig,
                                           std::span<const WeightedWavelength> wavelengths) {
@@ -19,8 +18,6 @@ std::array<double, kChannels> lamp_signal(const Rig& rig,
     }
     return signal;
 }
-
-}  // namespace
 
 SceneSet make_scene_set(const Rig& rig,
                         std::span<const WeightedWavelength> wavelengths,

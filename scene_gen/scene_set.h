@@ -12,6 +12,7 @@
 #include "spectral/bands.h"
 #include "spectral/manifest.h"
 
+#include <array>
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -27,6 +28,10 @@ struct SceneSet {
 [[nodiscard]] SceneSet make_scene_set(const Rig& rig,
                                       std::span<const WeightedWavelength> wavelengths,
                                       const SceneOptions& options = {});
+
+// What the lamps alone would signal: the sum over strobes of their light, undimmed and white.
+[[nodiscard]] std::array<double, kChannels> lamp_signal(
+    const Rig& rig, std::span<const WeightedWavelength> wavelengths);
 
 // Scenes, settings and an empty folder for the frames; not the manifest, in which whoever
 // renders first notes what is there already.

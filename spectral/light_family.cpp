@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -105,7 +106,24 @@ std::vector<double> knots_of(const Sensor& sensor,
         for (const Spectrum& curve : source) curves.push_back(&curve);
     }
     if (family.water.multiple != 0.0) curves.push_back(&family.water.absorption_per_m);
-    return union_of_knots(curves, range);
+    std::vector<double> knots = union_of_knots(curves, range);
+    // kExactPoints are exact where light falls by exp(-8) and less. Where it falls farther between
+    // two knots, the brighter end is halved until it does not: what is left over is as much
+    // darker as it is steeper.
+    constexpr double kMostFall = 8.0;
+    const std::size_t tables_knots = knots.size();
+    for (std::size_t i = 0; i + 1 < tables_knots; ++i) {
+        double bright_nm = knots[i];
+        double dark_nm = knots[i + 1];
+        const auto K_per_m = [&](double nm) { return family.water.attenuation_per_m(nm); };
+        if (K_per_m(dark_nm) < K_per_m(bright_nm)) std::swap(bright_nm, dark_nm);
+        while ((K_per_m(dark_nm) - K_per_m(bright_nm)) * family.longest_path_m > kMostFall) {
+            dark_nm = 0.5 * (bright_nm + dark_nm);
+            knots.push_back(dark_nm);
+        }
+    }
+    std::ranges::sort(knots);
+    return knots;
 }
 
 }  // namespace

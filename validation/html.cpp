@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
 constexpr std::string_view kMinus = "−";                   // U+2212
+constexpr std::string_view kTimes = "\xC2\xA0×\xC2\xA0";   // between blanks that do not break
 constexpr std::string_view kNarrowBlank = "\xE2\x80\xAF";  // U+202F, does not break
 
 std::string with_minus(const std::string& number) {
@@ -81,11 +82,13 @@ std::string scientific(double value) {
     const int exponent = std::stoi(text.substr(split + 1));
     if (exponent >= -2 && exponent < 3)
         return with_minus(fmt::format("{:.{}f}", value, 2 - exponent));
-    return with_minus(text.substr(0, split)) + " × 10" + superscript(exponent);
+    return fmt::format(
+        "{}{}10{}", with_minus(text.substr(0, split)), kTimes, superscript(exponent));
 }
 
 std::string power_label(double factor, int exponent) {
-    return (factor == 1.0 ? "" : plain(factor) + " × ") + "10" + superscript(exponent);
+    if (factor == 1.0) return "10" + superscript(exponent);
+    return fmt::format("{}{}10{}", plain(factor), kTimes, superscript(exponent));
 }
 
 std::string plain(double value) {

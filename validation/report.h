@@ -17,17 +17,17 @@ namespace aphotic {
 
 struct ValidationReport {
     Rig rig;
-    std::string aphotic_version;
-    std::string povray_version;
-    std::vector<Comparison> wavelengths;  // radiance, POV-Ray's against the reference's
-    std::vector<double> lambda_nm;        // of `wavelengths`, one each, increasing
-    std::vector<Comparison> channels;     // signals R, G, B, all three
-    CameraImage rendered;                 // signals, through POV-Ray
-    CameraImage traced;                   // signals, by the reference over the full spectrum
+    std::string aphotic_version{};
+    std::string povray_version{};
+    std::vector<Comparison> wavelengths{};  // radiance, POV-Ray's against the reference's
+    std::vector<double> lambda_nm{};        // of `wavelengths`, one each, increasing
+    std::vector<Comparison> channels{};     // signals R, G, B, all three
+    CameraImage rendered{};                 // signals, through POV-Ray
+    CameraImage traced{};                   // signals, by the reference over the full spectrum
     std::array<double, kChannels> lamp_signal{};  // the white of both previews
     // Signed relative errors of the signals, R, G, B planes; NaN on edges and where a sample is
     // not finite.
-    std::vector<float> channel_errors;
+    std::vector<float> channel_errors{};
     std::size_t frames = 0;
     std::size_t grid_size = 0;  // wavelengths of the reference
     int jobs = 1;

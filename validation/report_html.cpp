@@ -206,9 +206,10 @@ std::string swatch(std::uint32_t colour, std::string_view words) {
 }
 
 std::string map_legend(const Comparison& channel) {
-    std::string legend = swatch(error_colour((kColourSteps - 1) / 2), "POV-Ray is brighter") +
-                         swatch(error_colour(-(kColourSteps - 1) / 2), "POV-Ray is darker") +
-                         swatch(kEdgeColour, "on an edge: " + counted(channel.on_edges, "pixel"));
+    std::string legend =
+        swatch(error_colour((kColourSteps - 1) / 2), "POV-Ray is brighter") +
+        swatch(error_colour(-(kColourSteps - 1) / 2), "POV-Ray is darker") +
+        swatch(kEdgeColour, "on the edge of a cone: " + counted(channel.on_edges, "pixel"));
     if (channel.not_finite > 0)
         legend += swatch(kNotFiniteColour, "not finite: " + counted(channel.not_finite, "sample"));
     if (channel.max_error > 0.0) {
@@ -265,32 +266,21 @@ std::string stroke_key(std::string_view style, std::string_view words) {
         words);
 }
 
-std::string profile_legend(const ValidationReport& report, ProfileLine line) {
-    std::string legend;
-    constexpr std::array<std::string_view, kChannels> kClasses{"red", "green", "blue"};
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        legend += stroke_key(fmt::format("reference {}", kClasses[c]),
-                             fmt::format("{} reference (peak {})",
-                                         kChannelNames[c],
-                                         scientific(profile_peak(profile_of(report, line, c)))));
-        legend += stroke_key(fmt::format("rendered {}", kClasses[c]),
-                             fmt::format("{} POV-Ray", kChannelNames[c]));
-    }
-    return "<p class=\"legend\">" + legend + stroke_key("bound", "bound") + "</p>\n";
+std::string profile_legend() {
+    return "<p class=\"legend\">" + stroke_key("reference", "reference") +
+           stroke_key("rendered", "POV-Ray") + stroke_key("bound", "bound of the error") + "</p>\n";
 }
 
 std::string profiles(const ValidationReport& report) {
     std::string content = paragraph(
-        "Both renderers over each other through the middle of the image, each channel divided by "
-        "the reference’s largest on that line; beneath, the relative error of each "
-        "pixel. "
-        "The upper scale is the angle off the camera’s axis" +
+        "Both renderers over each other through the middle of the image; beneath each channel, "
+        "its relative error pixel by pixel. The upper scale is the angle off the camera’s axis" +
         std::string(report.rig.camera.port ? ", before the port bends it." : "."));
     for (const ProfileLine line : {ProfileLine::Row, ProfileLine::Column}) {
         content += fmt::format("<figure class=\"plot\"><h3>{} {}</h3>\n{}{}</figure>\n",
                                line == ProfileLine::Row ? "Row" : "Column",
                                profile_index(report, line),
-                               profile_legend(report, line),
+                               profile_legend(),
                                profile_svg(report, line));
     }
     return content;
@@ -316,13 +306,12 @@ std::string rule() {
            "measured against it</dd>\n</dl>\n</div>\n" +
            paragraph(
                "A comparison holds when the largest |<i>e</i>| off the edges is within its bound "
-               "and every sample, on edges too, is finite. No factor is fitted: the absolute "
-               "scale is part of it. On an edge, where a pixel’s centre falls on either "
-               "side of "
-               "a cone’s rim by rounding, samples are counted and measured on their "
-               "own. The "
-               "99.9 percentile and the root mean square are of |<i>e</i>|, the mean is of "
-               "<i>e</i> with its sign.");
+               "and "
+               "every sample, on edges too, is finite. No factor is fitted: the absolute scale is "
+               "part of it. On the edge of a cone, where rounding, dispersion or the size of an "
+               "emitter puts a pixel on both sides, samples are counted and measured on their "
+               "own. The 99.9 percentile and the root mean square are of |<i>e</i>|, the mean is "
+               "of <i>e</i> with its sign.");
 }
 
 std::string table_row(const Comparison& comparison) {
@@ -355,7 +344,7 @@ std::string table(std::string_view id,
     for (const Comparison& comparison : comparisons) rows += table_row(comparison);
     return fmt::format(
         "<div class=\"wide\"><table id=\"{}\">\n<thead><tr><th>{}</th><th>largest |<i>e</i>|</th>"
-        "<th>at column, row</th><th>99.9 %</th><th>rms</th><th>mean</th><th>compared</th>"
+        "<th class=\"at\">at column, row</th><th>99.9 %</th><th>rms</th><th>mean</th><th>compared</th>"
         "<th>on edges</th><th>largest on edges</th><th>not finite</th><th>bound</th>"
         "<th>largest / bound</th><th "
         "class=\"mark\">verdict</th></tr></thead>\n<tbody>\n{}</tbody>\n"
@@ -412,11 +401,11 @@ void write_validation_html(const ValidationReport& report, const std::filesystem
         report.holds() ? "holds" : "does not hold",
         kReportStyle);
     page += header(report);
+    page += section("rig", "The rig", rig_in_words(report.rig));
     page += section("images", "Both images", images(report));
     page += map_section(report);
     page += section("profiles", "Profiles", profiles(report));
     page += section("numbers", "Errors", numbers(report));
-    page += section("rig", "The rig", rig_in_words(report.rig));
     page += section("made-with", "Made with", made_with(report));
     page += "</main>\n</body>\n</html>\n";
     write_text_file(file, page);

@@ -19,7 +19,7 @@ namespace aphotic {
 namespace {
 
 constexpr double kWidth = 1080.0;
-constexpr double kLeft = 78.0;
+constexpr double kLeft = 92.0;
 constexpr double kPanelWidth = kWidth - kLeft - 14.0;
 constexpr std::array<std::string_view, kChannels> kClasses{"red", "green", "blue"};
 
@@ -77,6 +77,12 @@ int shared_log10(double largest) {
     return static_cast<int>(std::floor(std::log10(largest) + 1e-9));
 }
 
+// Signals of ordinary size are written out.
+int signal_log10(double largest) {
+    const int exponent = largest > 0.0 ? shared_log10(largest) : 0;
+    return exponent < -2 || exponent > 3 ? exponent : 0;
+}
+
 // In whole degrees off the camera's axis, at the sensor's side of any port.
 SvgAxis degree_axis(const Camera& camera, int pixels) {
     const double focal_px = camera.focal_length_m / camera.pixel_pitch_m;
@@ -104,78 +110,65 @@ std::string labels_above(const SvgPanel& panel, const SvgAxis& axis) {
     return svg;
 }
 
-struct ScaledProfile {
-    Profile profile;
-    std::vector<double> rendered;  // over the peak
-    std::vector<double> traced;
-};
-
-std::vector<ScaledProfile> scaled_profiles(const ValidationReport& report, ProfileLine line) {
-    std::vector<ScaledProfile> all;
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        ScaledProfile scaled{.profile = profile_of(report, line, c), .rendered = {}, .traced = {}};
-        const double peak = profile_peak(scaled.profile);
-        for (const double value : scaled.profile.rendered) scaled.rendered.push_back(value / peak);
-        for (const double value : scaled.profile.traced) scaled.traced.push_back(value / peak);
-        all.push_back(std::move(scaled));
-    }
-    return all;
-}
-
-std::string curves(const SvgPanel& panel,
-                   const std::vector<ScaledProfile>& profiles,
-                   ProfileLine line,
-                   bool of_reference) {
-    std::string svg;
-    for (std::size_t c = 0; c < profiles.size(); ++c) {
-        const Points points = thinned(profiles[c].profile.position_px,
-                                      of_reference ? profiles[c].traced : profiles[c].rendered,
-                                      false);
-        svg += svg_curve(panel,
-                         points.x,
-                         points.y,
-                         fmt::format(R"(class="{} {}" id="{}-{}-{}")",
-                                     of_reference ? "reference" : "rendered",
-                                     kClasses[c],
-                                     word(line),
-                                     kChannelNames[c],
-                                     of_reference ? "reference" : "rendered"));
-    }
-    return svg;
-}
-
-SvgAxis signal_axis(const std::vector<ScaledProfile>& profiles) {
+SvgAxis signal_axis(const Profile& profile) {
     double least = 0.0;
-    double most = 1.0;
-    for (const ScaledProfile& scaled : profiles) {
-        for (const auto& values : {scaled.rendered, scaled.traced}) {
-            for (const double value : values) {
-                if (!std::isfinite(value)) continue;
-                least = std::min(least, value);
-                most = std::max(most, value);
-            }
+    double most = 0.0;
+    for (const auto* values : {&profile.rendered, &profile.traced}) {
+        for (const double value : *values) {
+            if (!std::isfinite(value)) continue;
+            least = std::min(least, value);
+            most = std::max(most, value);
         }
     }
-    return linear_axis(least, most + 0.05 * (most - least), 6);
+    if (most == least) most = least + 1.0;
+    const double last = most + 0.07 * (most - least);
+    return linear_axis(least, last, 5, signal_log10(last));
 }
 
 // Shows the bound too when it is not far from the errors.
-double error_scale(const ValidationReport& report, const std::vector<ScaledProfile>& profiles) {
+double error_scale(const ValidationReport& report, const std::vector<Profile>& profiles) {
     double largest = 0.0;
     double bound = 0.0;
-    for (const ScaledProfile& scaled : profiles)
-        largest = std::max(largest, largest_size(scaled.profile.error));
+    for (const Profile& profile : profiles)
+        largest = std::max(largest, largest_size(profile.error));
     for (const Comparison& channel : report.channels) bound = std::max(bound, channel.bound);
     if (largest == 0.0) return bound > 0.0 ? round_up(bound) : 1.0;
     constexpr double kNear = 4.0;
     return round_up(1.05 * (bound < kNear * largest ? std::max(bound, largest) : largest));
 }
 
-std::string strip(const SvgPanel& panel,
-                  const Profile& profile,
-                  const Comparison& comparison,
-                  ProfileLine line,
-                  std::size_t channel) {
+std::string curve_style(ProfileLine line, std::size_t channel, std::string_view whose) {
+    return fmt::format(R"(class="{} {}" id="{}-{}-{}")",
+                       whose,
+                       kClasses[channel],
+                       word(line),
+                       kChannelNames[channel],
+                       whose);
+}
+
+std::string signal_panel(const SvgPanel& panel,
+                         const Profile& profile,
+                         ProfileLine line,
+                         std::size_t channel) {
+    std::string svg = svg_grid(panel) + svg_y_labels(panel);
+    const Points traced = thinned(profile.position_px, profile.traced, false);
+    const Points rendered = thinned(profile.position_px, profile.rendered, false);
+    svg += svg_curve(panel, traced.x, traced.y, curve_style(line, channel, "reference"));
+    svg += svg_curve(panel, rendered.x, rendered.y, curve_style(line, channel, "rendered"));
+    const int unit = signal_log10(panel.y.last);
+    return svg + svg_upward_text(20.0,
+                                 panel.top + panel.height / 2.0,
+                                 fmt::format(R"(class="name {}")", kClasses[channel]),
+                                 fmt::format("{} signal{}",
+                                             kChannelNames[channel],
+                                             unit == 0 ? "" : " / " + power_label(1.0, unit)));
+}
+
+std::string error_panel(const SvgPanel& panel,
+                        const Profile& profile,
+                        const Comparison& comparison,
+                        ProfileLine line,
+                        std::size_t channel) {
     std::string svg = svg_grid(panel) + svg_y_labels(panel);
     const std::array<double, 2> ends{panel.x.first, panel.x.last};
     for (const double level : {comparison.bound, -comparison.bound}) {
@@ -184,18 +177,11 @@ std::string strip(const SvgPanel& panel,
             svg += svg_curve(panel, ends, levels, R"(class="bound")");
     }
     const Points points = thinned(profile.position_px, profile.error, true);
-    svg += svg_dots(panel,
-                    points.x,
-                    points.y,
-                    fmt::format(R"(class="dots {}" id="{}-{}-error")",
-                                kClasses[channel],
-                                word(line),
-                                kChannelNames[channel]));
-    return svg + svg_text(panel.left + 8.0,
-                          panel.top + 16.0,
-                          SvgAnchor::Start,
-                          fmt::format(R"(class="name {}")", kClasses[channel]),
-                          kChannelNames[channel]);
+    svg += svg_dots(panel, points.x, points.y, curve_style(line, channel, "dots"));
+    return svg + svg_upward_text(20.0,
+                                 panel.top + panel.height / 2.0,
+                                 R"(class="axis")",
+                                 "e / " + power_label(1.0, shared_log10(panel.y.last)));
 }
 
 // Of one quantity over the comparisons.
@@ -301,53 +287,41 @@ Profile profile_of(const ValidationReport& report, ProfileLine line, std::size_t
     return profile;
 }
 
-double profile_peak(const Profile& profile) {
-    double peak = 0.0;
-    for (const double value : profile.traced) {
-        if (std::isfinite(value)) peak = std::max(peak, value);
-    }
-    return peak > 0.0 ? peak : 1.0;
-}
-
 std::string profile_svg(const ValidationReport& report, ProfileLine line) {
     constexpr double kTop = 44.0;
-    constexpr double kSignalHeight = 250.0;
-    constexpr double kStripHeight = 78.0;
-    constexpr double kGap = 10.0;
+    constexpr double kSignalHeight = 130.0;
+    constexpr double kErrorHeight = 72.0;
+    constexpr double kGap = 8.0;
+    constexpr double kGapBetweenChannels = 24.0;
     const int pixels = length_px(report, line);
-    const std::vector<ScaledProfile> profiles = scaled_profiles(report, line);
+    std::vector<Profile> profiles;
+    for (std::size_t c = 0; c < kChannels; ++c) profiles.push_back(profile_of(report, line, c));
+    const double scale = error_scale(report, profiles);
+
     SvgPanel panel{.left = kLeft,
                    .top = kTop,
                    .width = kPanelWidth,
-                   .height = kSignalHeight,
+                   .height = 0.0,
                    .x = linear_axis(0.0, pixels, 10),
-                   .y = signal_axis(profiles)};
-    std::string svg = svg_grid(panel) + svg_y_labels(panel);
-    svg += curves(panel, profiles, line, true) + curves(panel, profiles, line, false);
-    svg += labels_above(panel, degree_axis(report.rig.camera, pixels));
+                   .y = {}};
+    std::string svg = labels_above(panel, degree_axis(report.rig.camera, pixels));
     svg += svg_text(panel.left + panel.width / 2.0,
                     14.0,
                     SvgAnchor::Middle,
                     R"(class="axis")",
                     line == ProfileLine::Row ? "off the camera’s axis, port to starboard"
                                              : "off the camera’s axis, forward to aft");
-    svg +=
-        svg_upward_text(18.0, panel.top + panel.height / 2.0, R"(class="axis")", "signal / peak");
-
-    const double scale = error_scale(report, profiles);
-    const int unit = shared_log10(scale);
-    panel.y = linear_axis(-scale, scale, 4, unit);
-    const double strips_top = panel.bottom() + kGap;
     for (std::size_t c = 0; c < kChannels; ++c) {
+        if (c > 0) panel.top = panel.bottom() + kGapBetweenChannels;
+        panel.height = kSignalHeight;
+        panel.y = signal_axis(profiles[c]);
+        svg += signal_panel(panel, profiles[c], line, c);
         panel.top = panel.bottom() + kGap;
-        panel.height = kStripHeight;
-        svg += strip(panel, profiles[c].profile, report.channels[c], line, c);
+        panel.height = kErrorHeight;
+        panel.y = linear_axis(-scale, scale, 4, shared_log10(scale));
+        svg += error_panel(panel, profiles[c], report.channels[c], line, c);
     }
     svg += svg_x_labels(panel);
-    svg += svg_upward_text(18.0,
-                           (strips_top + panel.bottom()) / 2.0,
-                           R"(class="axis")",
-                           "relative error e / " + power_label(1.0, unit));
     svg += svg_text(panel.left + panel.width / 2.0,
                     panel.bottom() + 36.0,
                     SvgAnchor::Middle,

@@ -26,11 +26,7 @@ struct Profile {
 // The number of the profile's row or column.
 [[nodiscard]] int profile_index(const ValidationReport& report, ProfileLine line);
 
-// The largest signal of the reference along the profile, by which the plot divides both; 1 when
-// it is not above 0.
-[[nodiscard]] double profile_peak(const Profile& profile);
-
-// Both renderers over each other, and beneath them the relative errors, a strip a channel.
+// For each channel both renderers over each other, and beneath them the relative error.
 [[nodiscard]] std::string profile_svg(const ValidationReport& report, ProfileLine line);
 
 // Largest, 99.9 percentile and root mean square over wavelength, and of the channels, with the

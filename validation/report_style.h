@@ -46,7 +46,7 @@ code { font: 13px ui-monospace, "DejaVu Sans Mono", "Liberation Mono", monospace
   max-width: none; }
 .key { display: inline-flex; align-items: center; gap: 6px; white-space: nowrap; }
 .swatch { width: 13px; height: 13px; outline: 1px solid var(--rule); }
-.stroke { width: 34px; height: 12px; }
+.stroke { width: 34px; height: 12px; --tone: var(--ink); }
 .plot { margin: 6px 0 26px; }
 .plot > svg { display: block; width: 100%; height: auto; }
 svg text { fill: var(--ink); font-family: inherit; }
@@ -91,6 +91,7 @@ table { border-collapse: collapse; width: 100%; font-size: 13px;
 th, td { padding: 6px 8px; text-align: right; white-space: nowrap; }
 thead th { font-weight: 500; color: var(--soft); border-bottom: 1.5px solid var(--ink);
   vertical-align: bottom; white-space: normal; }
+th.at { white-space: nowrap; }
 tbody td, tbody th { border-bottom: 1px solid var(--rule); }
 th:first-child { text-align: left; padding-left: 0; }
 tbody th { font-weight: 620; }

@@ -169,11 +169,12 @@ std::string beam_in_words(const Beam& beam) {
                                     deg(cone.half_angle_rad),
                                     plain(cone.weight)));
     }
-    return fmt::format("{}; {} is {}.",
+    return fmt::format("{}: {}; {} is {}.",
+                       cones.size() == 1 ? "Cone" : "Cones",
                        listed(cones),
                        cones.size() == 1 ? "the weight" : "each weight",
                        beam.weights == ConeWeights::Flux
-                           ? "a share of the lamp's flux"
+                           ? "a share of the lamp’s flux"
                            : "an intensity on the axis, as the source paper prints it");
 }
 
@@ -217,7 +218,7 @@ std::string place_in_words(const Eigen::Vector3d& position_m) {
 
 std::string aim_in_words(const Eigen::Vector3d& axis) {
     const double across = std::hypot(axis.x(), axis.y());
-    if (across < kNothing) return axis.z() > 0.0 ? "along the camera's axis" : "straight up";
+    if (across < kNothing) return axis.z() > 0.0 ? "along the camera’s axis" : "straight up";
     // Off the bow or the stern, whichever is nearer, to one side.
     const double to_side = std::atan2(std::abs(axis.y()), std::abs(axis.x()));
     const char* end = axis.x() > 0.0 ? "forward" : "aft";
@@ -226,7 +227,7 @@ std::string aim_in_words(const Eigen::Vector3d& axis) {
     if (to_side < kNothing) towards = end;
     if (to_side > std::numbers::pi / 2.0 - kNothing) towards = side;
     return fmt::format(
-        "{} off the camera's axis, towards {}", deg(std::atan2(across, axis.z())), towards);
+        "{} off the camera’s axis, towards {}", deg(std::atan2(across, axis.z())), towards);
 }
 
 std::string rig_in_words(const Rig& rig) {

@@ -16,7 +16,7 @@ namespace aphotic {
 // Where a point of the sled frame is, such as "0.5 m aft and 0.2 m up from the entrance pupil".
 [[nodiscard]] std::string place_in_words(const Eigen::Vector3d& position_m);
 
-// Which way a unit vector points, such as "26° off the camera's axis, towards aft".
+// Which way a unit vector points, such as "26° off the camera’s axis, towards aft".
 [[nodiscard]] std::string aim_in_words(const Eigen::Vector3d& axis);
 
 }  // namespace aphotic

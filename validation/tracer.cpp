@@ -31,9 +31,11 @@ Vector3d vertical(const Sled& sled) {
 
 // Lamps along one side of an emitter, so that the midpoint rule holds kEmitterError: with h their
 // spacing it errs by h^2/24 of the second derivative, which for light on a plane at distance d is
-// at most 20/d^2 of the value, shared between the two sides.
-int lamps_for(double side_m, double distance_m) {
-    const double spacing_m = distance_m * std::sqrt(0.5 * kEmitterError * 24.0 / 20.0);
+// at most 20/d^2 of the value, shared between the two sides. A highlight, cos^n of an angle that
+// turns by h/d, adds n/d^2.
+int lamps_for(double side_m, double distance_m, const Seafloor& seafloor) {
+    const double curvature = 20.0 + (seafloor.phong > 0.0 ? seafloor.phong_size : 0.0);
+    const double spacing_m = distance_m * std::sqrt(0.5 * kEmitterError * 24.0 / curvature);
     return std::max(1, static_cast<int>(std::ceil(side_m / spacing_m)));
 }
 
@@ -67,9 +69,10 @@ void Tracer::place_lamps() {
             down_.dot(Vector3d(0.0, 0.0, rig_.sled.altitude_m) - strobe.position_m);
         const int across = options_.lamps_across > 0
                                ? options_.lamps_across
-                               : lamps_for(strobe.emitter->across_m, height_m);
-        const int along = options_.lamps_along > 0 ? options_.lamps_along
-                                                   : lamps_for(strobe.emitter->along_m, height_m);
+                               : lamps_for(strobe.emitter->across_m, height_m, rig_.seafloor);
+        const int along = options_.lamps_along > 0
+                              ? options_.lamps_along
+                              : lamps_for(strobe.emitter->along_m, height_m, rig_.seafloor);
         // The emitter's own frame: its normal is the axis; forward, as it lies in its plane.
         Vector3d starboard_side = strobe.axis.cross(Vector3d::UnitX());
         if (starboard_side.norm() < 1e-6) starboard_side = strobe.axis.cross(Vector3d::UnitZ());
@@ -212,9 +215,11 @@ Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
     const double arriving = axial * cos_theta / (lamps_of_strobe_[lamp.strobe] * d2);
     found.diffuse = arriving * cos_incidence;
     if (rig_.seafloor.phong > 0.0) {
-        const double alignment = std::max(0.0, -view.mirrored.dot(from_lamp) / d);
-        found.specular =
-            arriving * rig_.seafloor.phong * std::pow(alignment, rig_.seafloor.phong_size);
+        const double alignment = -view.mirrored.dot(from_lamp) / d;
+        if (alignment > 0.0) {  // else none, where phong_size is 0 too
+            found.specular =
+                arriving * rig_.seafloor.phong * std::pow(alignment, rig_.seafloor.phong_size);
+        }
     }
     return found;
 }
@@ -280,9 +285,11 @@ std::vector<unsigned char> Tracer::on_cone_edges(WavelengthRange range) const {
                                     look(column + 0.5, row + 0.5, ends[1], views[1]);
             for (const Strobe& strobe : rig_.strobes) {
                 for (const Cone& cone : strobe.beam.cones) {
-                    // A cone of 90 degrees ends where its cosine does: there is no step.
+                    // A cone of 90 degrees ends where its cosine does: there is no step. Nor is
+                    // there one where there is no light.
                     const bool has_step =
-                        cone.half_angle_rad < 0.5 * std::numbers::pi - rounding_rad;
+                        cone.half_angle_rad < 0.5 * std::numbers::pi - rounding_rad &&
+                        cone.weight * strobe.power > 0.0;
                     is_marked =
                         is_marked || (sees_floor && has_step && is_on_edge(strobe, cone, views));
                 }

@@ -129,8 +129,8 @@ double worst_share(const Rig& rig, RandomRigs& random, int pixels) {
 }
 
 void expect_bound_holds(bool has_port) {
-    constexpr int kRigs = 400;
-    constexpr int kPixels = 200;
+    constexpr int kRigs = 150;
+    constexpr int kPixels = 60;
     RandomRigs random;
     int lit = 0;
     double worst = 0.0;
@@ -159,8 +159,8 @@ Rig habcam() {
 
 double brightest_of(const Rig& rig, double lambda_nm) {
     double brightest = 0.0;
-    for (int row = 0; row < rig.camera.height_px; row += 8) {
-        for (int column = 0; column < rig.camera.width_px; column += 8) {
+    for (int row = 0; row < rig.camera.height_px; row += 16) {
+        for (int column = 0; column < rig.camera.width_px; column += 16) {
             brightest =
                 std::max(brightest, closed_form::radiance(rig, column, row, lambda_nm).radiance);
         }
@@ -191,8 +191,8 @@ TEST(RadianceBound, KeepsItsMarginBetweenLampsCloseToTheFloor) {
         }
         const double bound = RadianceBound(rig).at(550.0);
         double brightest = 0.0;
-        for (int row = 412; row < 612; ++row) {
-            for (int column = 580; column < 780; ++column) {
+        for (int row = 412; row < 612; row += 3) {
+            for (int column = 580; column < 780; column += 3) {
                 brightest =
                     std::max(brightest, closed_form::radiance(rig, column, row, 550.0).radiance);
             }

@@ -85,10 +85,10 @@ TEST(ReferenceGrid, IntegratesAnExponentialToTheStatedError) {
         for (const double error : {1e-3, 1e-6, 1e-9}) {
             const auto grid = reference_grid(flat_sensor(), family, kRange, error);
             for (const double path_m : {1.0, 2.0, 3.0}) {
-                const double T_nm = kWidth_nm *
-                                    (std::exp(-k0_per_m * path_m) -
-                                     std::exp(-(k0_per_m + rise_per_m) * path_m)) /
-                                    (rise_per_m * path_m);
+                const double T_nm =
+                    kWidth_nm *
+                    (std::exp(-k0_per_m * path_m) - std::exp(-(k0_per_m + rise_per_m) * path_m)) /
+                    (rise_per_m * path_m);
                 for (std::size_t c = 0; c < kChannels; ++c) {
                     const double right = (static_cast<double>(c) + 1.0) * T_nm;
                     EXPECT_NEAR(applied(grid, {flat(1.0)}, water, path_m, c) / right,
@@ -147,8 +147,7 @@ TEST(ReferenceGrid, NeedsMorePointsForASmallerError) {
 // A line of 0.2 nm with an area of 0.1 nm, which no grid finds that does not know the table's
 // knots; once in every table that a family has.
 TEST(ReferenceGrid, KnowsTheKnotsOfEveryTable) {
-    const Spectrum peak(
-        "peak", {300.0, 549.9, 550.0, 550.1, 800.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
+    const Spectrum peak("peak", {300.0, 549.9, 550.0, 550.1, 800.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
     constexpr double kArea_nm = 0.1;
     const auto energy_of = [](const Sensor& sensor, const std::vector<Spectrum>& source) {
         const auto family = family_of({source}, clear_water(), 1.0, 2.0);
@@ -181,11 +180,11 @@ TEST(ReferenceGrid, CoversARangeThatEndsBetweenKnots) {
 }
 
 TEST(ReferenceGrid, GoesUpInWavelengthWithoutRepeats) {
-    const auto family = family_of({load_curves("xenon-flash", CurveRole::LampSpectrum, {})},
-                                  {.absorption_per_m = load_curve(
-                                       "pope-fry-1997", CurveRole::WaterAbsorption, {})},
-                                  1.0,
-                                  10.0);
+    const auto family =
+        family_of({load_curves("xenon-flash", CurveRole::LampSpectrum, {})},
+                  {.absorption_per_m = load_curve("pope-fry-1997", CurveRole::WaterAbsorption, {})},
+                  1.0,
+                  10.0);
     const auto grid = reference_grid(builtin_sensor("nikon-d5100"), family, kRange, 1e-8);
     for (std::size_t j = 1; j < grid.size(); ++j) {
         EXPECT_LT(grid[j - 1].lambda_nm, grid[j].lambda_nm);
@@ -208,8 +207,7 @@ TEST(ReferenceGrid, CountsPhotonsForAQuantumResponse) {
     constexpr double kPhotons_per_J_nm = 5.03411657e15;
     constexpr double kDigits = 2e-9;  // of that number
     const auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
-    const auto grid =
-        reference_grid(flat_sensor(ResponseKind::Quantum), family, kRange, 1e-10);
+    const auto grid = reference_grid(flat_sensor(ResponseKind::Quantum), family, kRange, 1e-10);
     EXPECT_NEAR(total_weight(grid, 0) / (165000.0 * kPhotons_per_J_nm), 1.0, kDigits);
     EXPECT_NEAR(total_weight(grid, 2) / total_weight(grid, 0), 3.0, kRounding);
 }
@@ -276,8 +274,8 @@ double simpson(const std::set<double>& knots_nm, int panels, const Integrand& f)
         const double width_nm = *std::next(it) - *it;
         for (int i = 0; i <= 2 * panels; ++i) {
             const double simpson_weight = i == 0 || i == 2 * panels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-            sum += simpson_weight * width_nm / (6.0 * panels) *
-                   f(*it + width_nm * i / (2.0 * panels));
+            sum +=
+                simpson_weight * width_nm / (6.0 * panels) * f(*it + width_nm * i / (2.0 * panels));
         }
     }
     return sum;
@@ -378,8 +376,7 @@ TEST(RuleError, FindsTheWorstPathBetweenTheEnds) {
     double right = 0.0;
     for (int i = 0; i <= 1000; ++i) {
         const double l_m = 1.0 + 0.002 * i;
-        right = std::max(right,
-                         std::abs((w0_nm + w1_nm * std::exp(-l_m)) / T_nm(l_m) - 1.0));
+        right = std::max(right, std::abs((w0_nm + w1_nm * std::exp(-l_m)) / T_nm(l_m) - 1.0));
     }
     const auto worst =
         rule_error(flat_sensor(), family_of({{flat(1.0)}}, water, 1.0, 3.0), kRange, rule);
@@ -431,12 +428,12 @@ TEST(RuleError, IsZeroForAChannelThatSeesNothing) {
 }
 
 LightFamily habcam_light() {
-    return family_of({{load_curve("xenon-flash", CurveRole::LampSpectrum, {}),
-                       load_curve("sand", CurveRole::Reflectance, {})}},
-                     {.absorption_per_m =
-                          load_curve("pope-fry-1997", CurveRole::WaterAbsorption, {})},
-                     3.5,
-                     6.0);
+    return family_of(
+        {{load_curve("xenon-flash", CurveRole::LampSpectrum, {}),
+          load_curve("sand", CurveRole::Reflectance, {})}},
+        {.absorption_per_m = load_curve("pope-fry-1997", CurveRole::WaterAbsorption, {})},
+        3.5,
+        6.0);
 }
 
 TEST(RuleError, IsNothingForTheReferenceItself) {

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic trace RIG -o DIR: the same images by the reference tracer, without POV-Ray.
+#include "cli/command.h"
+#include "cli/outcome.h"
+#include "cli/planning.h"
+#include "cli/progress.h"
+#include "spectral/atomic_file.h"
+#include "spectral/output_images.h"
+#include "validation/tracer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <thread>
+
+namespace aphotic::cli {
+namespace {
+
+struct Options {
+    PlanningOptions planning;
+    std::string folder;
+    int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    PreviewOptions preview;
+    bool json = false;
+};
+
+ExitStatus trace_rig(const Options& options) {
+    constexpr int kRows = 64;
+    const PlannedWavelengths planned = plan_wavelengths(options.planning);
+    const Camera& camera = planned.rig.camera;
+    TraceOptions request{.signals = true, .planes_nm = {}, .threads = options.threads};
+    for (const WeightedWavelength& w : planned.wavelengths)
+        request.planes_nm.push_back(w.lambda_nm);
+
+    const auto start = std::chrono::steady_clock::now();
+    const Tracer tracer(planned.rig, request);
+    make_folder(options.folder);
+    set_exr_threads(options.threads);
+    OutputImages images(options.folder,
+                        camera.width_px,
+                        camera.height_px,
+                        request.planes_nm,
+                        {{"aphotic:version", APHOTIC_VERSION},
+                         {"aphotic:rig_title", planned.rig.title},
+                         {"aphotic:rig_sha256", planned.rig.digest},
+                         {"aphotic:renderer", "reference tracer"}});
+    {
+        ProgressLine line;
+        for (int row = 0; row < camera.height_px; row += kRows) {
+            const int rows = std::min(kRows, camera.height_px - row);
+            const std::vector<double> block = tracer.rows(row, rows);
+            images.write_rows(rows, {block.begin(), block.end()});
+            line.show("tracing", static_cast<double>(row + rows) / camera.height_px);
+        }
+    }
+    const CameraImage image = images.finish();
+    write_preview(image,
+                  lamp_signal(planned.rig, planned.wavelengths),
+                  options.preview,
+                  std::filesystem::path(options.folder) / "preview.png");
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+
+    nlohmann::ordered_json outcome = outcome_of(options.folder, image);
+    outcome["title"] = planned.rig.title;
+    outcome["rig_sha256"] = planned.rig.digest;
+    outcome["wavelengths"] = request.planes_nm.size();
+    outcome["grid"] = tracer.grid_size();
+    outcome["spectral_error"] = kSpectralError;
+    outcome["threads"] = options.threads;
+    outcome["trace_s"] = elapsed.count();
+    write_text_file(std::filesystem::path(options.folder) / "trace.json", dumped(outcome) + "\n");
+    if (options.json) {
+        fmt::print("{}\n", dumped(outcome));
+        return kDone;
+    }
+    fmt::print(
+        "{}: {} x {} pixels traced over {} wavelengths, exact to {:.0e} of a signal, in {:.1f} s\n",
+        planned.rig.title,
+        image.width_px,
+        image.height_px,
+        tracer.grid_size(),
+        kSpectralError,
+        elapsed.count());
+    print_signals(outcome);
+    return kDone;
+}
+
+}  // namespace
+
+Action configure_trace(CLI::App& app) {
+    constexpr int kMostThreads = 1024;
+    const auto options = std::make_shared<Options>();
+    add_wavelength_options(app, options->planning);
+    app.add_option("-o,--output", options->folder, "the folder to write to")
+        ->required()
+        ->type_name("DIR");
+    app.add_option("--threads", options->threads, "threads to trace with; by default the cores")
+        ->check(CLI::Range(1, kMostThreads))
+        ->capture_default_str();
+    add_preview_options(app, options->preview);
+    app.add_flag("--json", options->json, "say what was made as JSON");
+    app.footer(
+        "image.exr holds the signals over the full spectrum; the wavelengths chosen are the\n"
+        "planes of spectral.exr. POV-Ray is not needed.");
+    return [options] { return trace_rig(*options); };
+}
+
+}  // namespace aphotic::cli

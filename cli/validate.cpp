@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic validate RIG -o DIR: the rig through POV-Ray and through the reference, compared.
+#include "validation/validation.h"
+
+#include "cli/command.h"
+#include "cli/outcome.h"
+#include "cli/planning.h"
+#include "cli/progress.h"
+#include "cli/words.h"
+#include "plugin/render.h"
+#include "spectral/atomic_file.h"
+#include "spectral/error.h"
+#include "spectral/exr.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+namespace aphotic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    PlanningOptions planning;
+    std::string folder;
+    std::string rendered_folder;
+    std::string povray;
+    int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    bool json = false;
+};
+
+// Whole planes of one channel each, out of folder/spectral.exr.
+std::vector<float> radiance_planes(const fs::path& file, const std::vector<std::string>& channels) {
+    ExrReader image(file);
+    std::vector<float> samples(channels.size() * static_cast<std::size_t>(image.width_px()) *
+                               static_cast<std::size_t>(image.height_px()));
+    image.read_rows(0, image.height_px(), channels, samples);
+    return samples;
+}
+
+CameraImage signals_in(const fs::path& file) {
+    ExrReader image(file);
+    CameraImage signals{
+        .width_px = image.width_px(), .height_px = image.height_px(), .samples = {}};
+    signals.samples = radiance_planes(file, {kChannelNames.begin(), kChannelNames.end()});
+    return signals;
+}
+
+RenderedImages images_in(const fs::path& folder, const Manifest& manifest) {
+    RenderedImages images{.lambda_nm = {},
+                          .exposure_log2 = {},
+                          .predicted_error = manifest.predicted_error,
+                          .radiance = {},
+                          .signals = signals_in(folder / "image.exr")};
+    std::vector<std::string> channels;
+    for (const ManifestWavelength& w : manifest.wavelengths) {
+        images.lambda_nm.push_back(w.lambda_nm);
+        images.exposure_log2.push_back(w.exposure_log2);
+        channels.push_back(spectral_channel(w.lambda_nm));
+    }
+    images.radiance = [folder, channels](std::size_t first, std::size_t count) {
+        const auto from = channels.begin() + static_cast<std::ptrdiff_t>(first);
+        return radiance_planes(folder / "spectral.exr",
+                               {from, from + static_cast<std::ptrdiff_t>(count)});
+    };
+    return images;
+}
+
+// Renders the rig into the folder, as `aphotic render` does.
+struct Rendering {
+    Manifest manifest;
+    double render_s = 0.0;
+    double integrate_s = 0.0;
+};
+
+Rendering render_here(const Options& options, const SceneSet& scenes) {
+    const PovRay povray = find_povray(options.povray);
+    const auto start = std::chrono::steady_clock::now();
+    Rendering rendering;
+    {
+        ProgressLine line;
+        const auto report = [&](const FrameProgress& progress) {
+            line.show(
+                fmt::format("rendering: {} of {} frames", progress.frames_done, progress.frames),
+                progress.share);
+        };
+        rendering.manifest =
+            render(povray, options.folder, scenes, {.jobs = options.jobs, .report = report})
+                .manifest;
+    }
+    rendering.render_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto outcome = integrate_folder(options.folder, rendering.manifest, {});
+    rendering.integrate_s = outcome["integration_s"].get<double>();
+    return rendering;
+}
+
+void require_same_size(const Rig& rig, const Manifest& manifest, const std::string& folder) {
+    if (manifest.width_px == rig.camera.width_px && manifest.height_px == rig.camera.height_px)
+        return;
+    throw InputError(fmt::format("{}: found images of {} x {} pixels; allowed: the rig's {} x {}",
+                                 folder,
+                                 manifest.width_px,
+                                 manifest.height_px,
+                                 rig.camera.width_px,
+                                 rig.camera.height_px));
+}
+
+void print_verdict(const ValidationReport& report, const std::string& folder) {
+    const Comparison& worst = report.worst();
+    fmt::print("{}: {}\n",
+               report.rig.title,
+               report.holds() ? "POV-Ray and the reference agree within their bounds"
+                              : "POV-Ray and the reference DISAGREE");
+    fmt::print("  {:>10}  {:>9}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n",
+               "",
+               "max |e|",
+               "99.9 %",
+               "rms",
+               "mean",
+               "bound",
+               "on edges");
+    const auto print_row = [](const Comparison& c) {
+        fmt::print("  {:>10}  {:9.2e}  {:9.2e}  {:9.2e}  {:9.1e}  {:9.2e}  {}{}\n",
+                   c.name,
+                   c.max_error,
+                   c.percentile_999,
+                   c.rms_error,
+                   c.mean_error,
+                   c.bound,
+                   c.on_edges,
+                   c.holds() ? "" : "  <-- out of bounds");
+    };
+    for (const Comparison& channel : report.channels) print_row(channel);
+    Comparison wavelengths =
+        *std::ranges::max_element(report.wavelengths, {}, &Comparison::max_error);
+    print_row(wavelengths);
+    fmt::print("  worst against its bound: {} at column {}, row {}: {:.3g} of {:.3g}\n",
+               worst.name,
+               worst.column,
+               worst.row,
+               worst.max_error,
+               worst.bound);
+    fmt::print(
+        "  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);
+}
+
+ExitStatus validate_rig(const Options& options) {
+    const PlannedRender planned = plan_render(options.planning);
+    make_folder(options.folder);
+    Rendering rendering;
+    const bool is_rendered = !options.rendered_folder.empty();
+    if (is_rendered) {
+        rendering.manifest = read_manifest(options.rendered_folder);
+        require_same_size(planned.rig, rendering.manifest, options.rendered_folder);
+        if (rendering.manifest.rig_sha256 != planned.rig.digest) {
+            fmt::print(stderr,
+                       "aphotic: {} was rendered from another rig file than {}; going on\n",
+                       options.rendered_folder,
+                       options.planning.rig_file);
+        }
+    } else {
+        rendering = render_here(options, planned.scenes);
+    }
+    const fs::path images = is_rendered ? options.rendered_folder : options.folder;
+
+    ValidationReport report = [&] {
+        ProgressLine line;
+        return validate(
+            planned.rig, images_in(images, rendering.manifest), options.jobs, [&](double share) {
+                line.show("tracing", share);
+            });
+    }();
+    report.aphotic_version = APHOTIC_VERSION;
+    report.povray_version = rendering.manifest.povray_version;
+    report.lamp_signal = rendering.manifest.lamp_signal;
+    report.frames = rendering.manifest.frames.size();
+    report.jobs = options.jobs;
+    report.render_s = rendering.render_s;
+    report.integrate_s = rendering.integrate_s;
+    const fs::path folder = options.folder;
+    write_validation_json(report, folder / "validation.json");
+    write_validation_html(report, folder / "report.html");
+    if (options.json) {
+        fmt::print("{}", read_text_file(folder / "validation.json"));
+    } else {
+        print_verdict(report, options.folder);
+    }
+    return report.holds() ? kDone : kAnswerIsNo;
+}
+
+}  // namespace
+
+Action configure_validate(CLI::App& app) {
+    constexpr int kMostJobs = 1024;
+    const auto options = std::make_shared<Options>();
+    add_planning_options(app, options->planning);
+    app.add_option("-o,--output", options->folder, "the folder to write to")
+        ->required()
+        ->type_name("DIR");
+    app.add_option("--rendered",
+                   options->rendered_folder,
+                   "a finished render to validate, instead of rendering: its wavelengths count")
+        ->type_name("DIR");
+    app.add_option("--jobs", options->jobs, "frames and threads at a time; by default the cores")
+        ->check(CLI::Range(1, kMostJobs))
+        ->capture_default_str();
+    app.add_option(
+           "--povray", options->povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
+        ->type_name("PROGRAM");
+    app.add_flag("--json", options->json, "print validation.json");
+    app.footer("Exit status 0 when every wavelength and channel is within its bound, 1 when not.");
+    return [options] { return validate_rig(*options); };
+}
+
+}  // namespace aphotic::cli

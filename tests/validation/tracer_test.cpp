@@ -1,0 +1,1379 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The reference on its own, against answers that are not code of ours: formulas derived in the
+// comments, integrals that a conservation law fixes, symmetries, limits, and numbers from
+// tables. Lamps, floors and waters are flat over wavelength unless a test says otherwise.
+#include "validation/tracer.h"
+
+#include "scene_gen/rig_reader.h"
+#include "spectral/builtin.h"
+#include "spectral/light_family.h"
+#include "support/closed_form.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/special_functions/expint.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180.0;
+constexpr double kLambda_nm = 550.0;
+// Some hundred operations on doubles.
+constexpr double kRounding = 1e-13;
+
+Spectrum flat(double value) {
+    return {"flat", {300.0, 800.0}, {value, value}};
+}
+
+Beam lambertian() {
+    return {.name = "lambertian",
+            .weights = ConeWeights::Flux,
+            .cones = {{.part = "all", .half_angle_rad = 0.5 * kPi, .weight = 1.0}}};
+}
+
+Beam cone_of(double half_angle_rad, double weight, ConeWeights weights = ConeWeights::Flux) {
+    return {.name = "cone",
+            .weights = weights,
+            .cones = {{.part = "only", .half_angle_rad = half_angle_rad, .weight = weight}}};
+}
+
+// Flux 1, straight down.
+Strobe lamp_at(const Vector3d& position_m, Beam beam = lambertian()) {
+    return {.name = "lamp",
+            .position_m = position_m,
+            .axis = Vector3d::UnitZ(),
+            .beam = std::move(beam),
+            .spectrum = flat(1.0),
+            .power = 1.0,
+            .emitter = std::nullopt};
+}
+
+// Level, 2 m above a floor that is all white, in clear water; one Lambertian lamp at the pupil.
+// Neighbouring pixels differ by `slope` in the tangent.
+Rig plain_rig(int width_px = 1, int height_px = 1, double slope = 0.1) {
+    return {.title = "",
+            .sled = {.altitude_m = 2.0, .pitch_rad = 0.0, .roll_rad = 0.0},
+            .camera = {.width_px = width_px,
+                       .height_px = height_px,
+                       .pixel_pitch_m = slope,
+                       .focal_length_m = 1.0,
+                       .range = {400.0, 700.0},
+                       .sensor = Sensor({flat(1.0), flat(1.0), flat(1.0)}, ResponseKind::Energy),
+                       .port = std::nullopt},
+            .water = {.absorption_per_m = flat(1.0), .multiple = 0.0},
+            .seafloor = {.reflectance = flat(1.0)},
+            .strobes = {lamp_at(Vector3d::Zero())},
+            .digest = ""};
+}
+
+Rig with_loss(Rig rig, double K_per_m) {
+    rig.water.uniform_loss_per_m = K_per_m;
+    return rig;
+}
+
+// scenes/habcam.toml, with fewer and larger pixels over the same field of view.
+Rig habcam(int width_px, int height_px, const std::string& scene = "habcam") {
+    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene + ".toml");
+    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
+    rig.camera.width_px = width_px;
+    rig.camera.height_px = height_px;
+    return rig;
+}
+
+std::vector<double> image_of(const Rig& rig, const TraceOptions& options) {
+    return Tracer(rig, options).rows(0, rig.camera.height_px);
+}
+
+// The radiance of every pixel at one wavelength.
+std::vector<double> plane_of(const Rig& rig, double lambda_nm = kLambda_nm) {
+    return image_of(rig, {.signals = false, .planes_nm = {lambda_nm}});
+}
+
+std::vector<double> plane_with_lamps(const Rig& rig, int across, int along) {
+    return image_of(rig,
+                    {.signals = false,
+                     .planes_nm = {kLambda_nm},
+                     .lamps_across = across,
+                     .lamps_along = along});
+}
+
+double only_pixel(const Rig& rig, double lambda_nm = kLambda_nm) {
+    return plane_of(rig, lambda_nm).at(0);
+}
+
+// Tangents of a pixel's ray: forward, starboard.
+struct Slope {
+    double forward;
+    double starboard;
+};
+Slope slope_of(const Rig& rig, std::size_t pixel) {
+    const auto width = static_cast<std::size_t>(rig.camera.width_px);
+    const double scale = rig.camera.pixel_pitch_m / rig.camera.focal_length_m;
+    return {
+        .forward = (0.5 * rig.camera.height_px - 0.5 - static_cast<double>(pixel / width)) * scale,
+        .starboard =
+            (static_cast<double>(pixel % width) + 0.5 - 0.5 * rig.camera.width_px) * scale};
+}
+
+void expect_ratio(double found, double wanted, double tolerance, const std::string& what = "") {
+    EXPECT_NEAR(found / wanted, 1.0, tolerance)
+        << what << " found " << found << "; wanted " << wanted;
+}
+
+// --- Closed forms ------------------------------------------------------------------------------
+
+// Straight down on the axis: L = Phi/pi / h^2 * rho/pi * exp(-2 K h).
+TEST(TracerClosedForm, HoldsOnTheAxis) {
+    Rig rig = with_loss(plain_rig(), 0.3);
+    rig.seafloor.reflectance = flat(0.4);
+    rig.strobes[0].power = 5.0;
+    rig.strobes[0].spectrum = flat(7.0);
+    const double L = 35.0 / kPi / 4.0 * 0.4 / kPi * std::exp(-2.0 * 0.3 * 2.0);
+    expect_ratio(only_pixel(rig), L, kRounding);
+}
+
+// Lamp at the pupil, angle t off the axis: d = r = h / cos t, and lamp and floor both see cos t:
+//   L = Phi rho / (pi^2 h^2) cos^4 t exp(-2 K h / cos t)
+TEST(TracerClosedForm, HoldsOffTheAxis) {
+    Rig rig = with_loss(plain_rig(9, 7, 0.4), 0.3);
+    rig.seafloor.reflectance = flat(0.4);
+    const auto plane = plane_of(rig);
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        const auto [forward, starboard] = slope_of(rig, i);
+        const double cos_t = 1.0 / std::sqrt(1.0 + forward * forward + starboard * starboard);
+        const double L =
+            0.4 / (kPi * kPi * 4.0) * std::pow(cos_t, 4.0) * std::exp(-2.0 * 0.3 * 2.0 / cos_t);
+        expect_ratio(plane[i], L, kRounding, "pixel " + std::to_string(i));
+    }
+}
+
+TEST(TracerClosedForm, FallsWithTheSquareOfTheDistance) {
+    Rig rig = plain_rig();
+    const double at_2m = only_pixel(rig);
+    for (const double altitude_m : {0.5, 3.0, 20.0}) {
+        rig.sled.altitude_m = altitude_m;
+        expect_ratio(only_pixel(rig), at_2m * 4.0 / (altitude_m * altitude_m), kRounding);
+    }
+}
+
+TEST(TracerClosedForm, FollowsTheCosineAtTheLamp) {
+    Rig rig = plain_rig();
+    const double upright = only_pixel(rig);
+    for (const double tilt_deg : {20.0, 60.0, 85.0}) {
+        const double tilt = tilt_deg * kDegree;
+        rig.strobes[0].axis = {std::sin(tilt) * 0.6, std::sin(tilt) * 0.8, std::cos(tilt)};
+        expect_ratio(only_pixel(rig), upright * std::cos(tilt), 10.0 * kRounding);
+    }
+}
+
+// The floor goes through the point 2 m down the camera's axis whatever its tilt, so only the
+// angle of incidence changes, and its cosine is cos pitch cos roll.
+TEST(TracerClosedForm, FollowsTheCosineAtTheFloor) {
+    Rig rig = plain_rig();
+    const double level = only_pixel(rig);
+    for (const double pitch_deg : {-40.0, 0.0, 70.0}) {
+        for (const double roll_deg : {-60.0, 0.0, 10.0}) {
+            rig.sled.pitch_rad = pitch_deg * kDegree;
+            rig.sled.roll_rad = roll_deg * kDegree;
+            const double cosine = std::cos(pitch_deg * kDegree) * std::cos(roll_deg * kDegree);
+            expect_ratio(only_pixel(rig), level * cosine, kRounding);
+        }
+    }
+}
+
+// Pixels at 45 degrees ahead and astern of a sled with its bow up by p, lamp at the pupil. The
+// floor falls away forward: z = h + x tan p. The ray x = z meets it at z = h / (1 - tan p), the
+// ray x = -z at z = h / (1 + tan p). Lamp at the pupil: L = cos i cos t / (pi^2 d^2), d = z
+// sqrt 2, cos t = 1 / sqrt 2, cos i = cos(45 deg + p) ahead and cos(45 deg - p) astern.
+TEST(TracerClosedForm, TiltsTheFloorAwayForwardWithTheBowUp) {
+    constexpr double pitch = 20.0 * kDegree;
+    Rig rig = plain_rig(1, 3, 1.0);
+    rig.sled.pitch_rad = pitch;
+    const auto plane = plane_of(rig);
+    const double ahead_m = 2.0 / (1.0 - std::tan(pitch));
+    const double astern_m = 2.0 / (1.0 + std::tan(pitch));
+    const auto L = [](double cos_i, double z_m) {
+        return cos_i * std::sqrt(0.5) / (kPi * kPi * 2.0 * z_m * z_m);
+    };
+    expect_ratio(plane[0], L(std::cos(0.25 * kPi + pitch), ahead_m), kRounding, "ahead");
+    expect_ratio(plane[2], L(std::cos(0.25 * kPi - pitch), astern_m), kRounding, "astern");
+}
+
+// The same with roll, where starboard down brings the floor nearer to starboard.
+TEST(TracerClosedForm, BringsTheFloorNearerToStarboardWithStarboardDown) {
+    constexpr double roll = 20.0 * kDegree;
+    Rig rig = plain_rig(3, 1, 1.0);
+    rig.sled.roll_rad = roll;
+    const auto plane = plane_of(rig);
+    const auto L = [](double cos_i, double z_m) {
+        return cos_i * std::sqrt(0.5) / (kPi * kPi * 2.0 * z_m * z_m);
+    };
+    expect_ratio(
+        plane[0], L(std::cos(0.25 * kPi + roll), 2.0 / (1.0 - std::tan(roll))), kRounding, "port");
+    expect_ratio(plane[2],
+                 L(std::cos(0.25 * kPi - roll), 2.0 / (1.0 + std::tan(roll))),
+                 kRounding,
+                 "starboard");
+}
+
+// Lamp 1.5 m aside at the pupil's height, floor 2 m down: legs of 2.5 m and 2 m.
+TEST(TracerClosedForm, LosesLightOnBothLegsByBeerAndLambert) {
+    Rig rig = plain_rig();
+    rig.strobes = {lamp_at({0.0, 1.5, 0.0})};
+    const double clear = only_pixel(rig);
+    expect_ratio(only_pixel(with_loss(rig, 0.7)), clear * std::exp(-0.7 * 4.5), kRounding);
+
+    rig.water.absorption_per_m = flat(0.4);
+    rig.water.multiple = 0.5;
+    expect_ratio(only_pixel(rig), clear * std::exp(-0.2 * 4.5), kRounding);
+    expect_ratio(only_pixel(with_loss(rig, 0.1)), clear * std::exp(-0.3 * 4.5), kRounding);
+}
+
+TEST(TracerClosedForm, LosesTheSameShareAtEveryWavelengthByUniformLoss) {
+    Rig rig = habcam(3, 2);
+    const TraceOptions options{.signals = true, .planes_nm = {450.0, 650.0}};
+    rig.strobes = {rig.strobes[0]};
+    rig.strobes[0].position_m = Vector3d::Zero();
+    const auto without = image_of(rig, options);
+    const auto with = image_of(with_loss(rig, 0.2), options);
+    for (std::size_t i = 0; i < without.size(); ++i) {
+        // Level with the pupil, both legs are as long as the ray: 2 m |down| over the approach.
+        const auto [forward, starboard] = slope_of(rig, i % 6);
+        const Vector3d ray(forward, starboard, 1.0);
+        const Vector3d down(-std::sin(5.0 * kDegree), 0.0, std::cos(5.0 * kDegree));
+        const double leg_m = 2.0 * down.z() / ray.dot(down) * ray.norm();
+        expect_ratio(with[i], without[i] * std::exp(-0.2 * 2.0 * leg_m), 1e-12);
+    }
+}
+
+// field-notes.md, check 10, from Pope and Fry's table: transmission over 2 m + 2 m on the axis.
+TEST(TracerClosedForm, TransmitsWhatPopeAndFryMeasuredOverTwiceTwoMetres) {
+    constexpr double kHalfDigit = 0.0005;  // three are given
+    Rig air = plain_rig();
+    Rig water = plain_rig();
+    water.water.absorption_per_m = load_curve("pope-fry-1997", CurveRole::WaterAbsorption, {});
+    water.water.multiple = 1.0;
+    const std::array<std::pair<double, double>, 3> expected{
+        {{450.0, 0.964}, {550.0, 0.798}, {650.0, 0.257}}};
+    for (const auto& [lambda_nm, transmission] : expected) {
+        const double found = only_pixel(water, lambda_nm) / only_pixel(air, lambda_nm);
+        EXPECT_NEAR(found, transmission, kHalfDigit) << lambda_nm << " nm";
+    }
+}
+
+TEST(TracerClosedForm, IsBlackWhereTheLampLooksAway) {
+    Rig rig = plain_rig(3, 3, 0.5);
+    rig.strobes[0].axis = -Vector3d::UnitZ();
+    for (const double L : plane_of(rig)) EXPECT_EQ(L, 0.0);
+    // Along the floor: the half space ahead of it is lit, the one astern is not.
+    rig.strobes[0].axis = Vector3d::UnitX();
+    const auto plane = plane_of(rig);
+    EXPECT_GT(plane[1], 0.0);
+    EXPECT_EQ(plane[7], 0.0);
+}
+
+// Level camera axis: the rows at and above the horizon see no floor, and the one just below sees
+// it 20 km away.
+TEST(TracerClosedForm, IsBlackAboveTheHorizonAndFiniteBelow) {
+    Rig rig = habcam(3, 201);
+    rig.sled.pitch_rad = 80.0 * kDegree;
+    rig.camera.pixel_pitch_m *= 0.3;
+    const TraceOptions options{.signals = true, .planes_nm = {450.0}};
+    const auto image = image_of(rig, options);
+    const std::size_t pixels = 3 * 201;
+    for (const double sample : image) {
+        EXPECT_TRUE(std::isfinite(sample));
+        EXPECT_GE(sample, 0.0);
+    }
+    for (std::size_t plane = 0; plane < 4; ++plane) {
+        for (std::size_t i = 0; i < pixels; ++i) {
+            // Above the horizon: the ray's angle ahead of the axis exceeds 90 deg - pitch.
+            const bool is_sky = slope_of(rig, i).forward >= std::tan(10.0 * kDegree);
+            if (!is_sky) continue;
+            EXPECT_EQ(image[plane * pixels + i], 0.0) << "pixel " << i;
+        }
+        EXPECT_GT(image[plane * pixels + pixels - 1], 0.0);
+    }
+}
+
+// --- Flux --------------------------------------------------------------------------------------
+
+// The flux that a white floor catches, from its image: E = pi L, times the floor that a pixel
+// covers, dA = dOmega r^2 / cos v, with dOmega = slope^2 / |ray|^3 and v the ray's angle to the
+// floor's normal.
+double flux_on_floor(const Rig& rig) {
+    const double pitch = rig.sled.pitch_rad;
+    const double roll = rig.sled.roll_rad;
+    const Vector3d down(
+        -std::sin(pitch), std::cos(pitch) * std::sin(roll), std::cos(pitch) * std::cos(roll));
+    const auto plane = plane_of(rig);
+    double flux = 0.0;
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        const auto [forward, starboard] = slope_of(rig, i);
+        const Vector3d ray(forward, starboard, 1.0);
+        const double solid_angle = std::pow(rig.camera.pixel_pitch_m / ray.norm(), 2) / ray.norm();
+        const double cos_v = ray.dot(down) / ray.norm();
+        const double r_m = rig.sled.altitude_m * down.z() / cos_v;
+        flux += kPi * plane[i] * solid_angle * r_m * r_m / cos_v;
+    }
+    return flux;
+}
+
+// A sum over pixels errs where the cone's edge cuts them: of the 2 pi R pixels on a circle of R
+// pixels each is wrong by a third of itself or so, either way. R is 40 and more: 2e-3.
+constexpr double kCutPixels = 4e-3;
+
+// A tilted lamp over a tilted floor, and all of the cone within the image.
+Rig lit_floor(const Beam& beam) {
+    Rig rig = plain_rig(700, 700, 0.004);
+    rig.sled.pitch_rad = 10.0 * kDegree;
+    rig.sled.roll_rad = -15.0 * kDegree;
+    rig.strobes = {lamp_at({0.2, -0.3, -0.1}, beam)};
+    rig.strobes[0].axis = Vector3d(-0.1, 0.2, 1.0).normalized();
+    return rig;
+}
+
+TEST(TracerFlux, OfAConeOnTheFloorIsItsWeight) {
+    for (const auto& [half_angle_deg, weight] : {std::pair{10.0, 0.165}, {26.565, 0.094}}) {
+        const Rig rig = lit_floor(cone_of(half_angle_deg * kDegree, weight));
+        expect_ratio(flux_on_floor(rig), weight, kCutPixels, std::to_string(half_angle_deg));
+    }
+}
+
+// field-notes.md, check 5: pi sin^2 of the half angle.
+TEST(TracerFlux, OfALiteralConeIsItsWeightTimesThatOfItsLobe) {
+    const auto literal = [](double half_angle_deg, double weight) {
+        return flux_on_floor(
+            lit_floor(cone_of(half_angle_deg * kDegree, weight, ConeWeights::Literal)));
+    };
+    expect_ratio(literal(10.0, 2.0), 2.0 * 0.0947, kCutPixels);
+    expect_ratio(literal(26.5, 3.0), 3.0 * 0.6255, kCutPixels);
+}
+
+TEST(TracerFlux, AddsUpOverTheConesOfABeam) {
+    Beam beam = cone_of(10.0 * kDegree, 0.3);
+    beam.cones.push_back({.part = "wide", .half_angle_rad = 25.0 * kDegree, .weight = 0.6});
+    expect_ratio(flux_on_floor(lit_floor(beam)), 0.9, kCutPixels);
+}
+
+// What a Lambertian source gives a point on a parallel plane at unit distance, per pi times its
+// radiance, when it is the rectangle from the point's foot to (X, Y); odd in X and Y. And, the
+// other way round, the share of a Lambertian point's flux that such a rectangle catches. (The
+// configuration factor of J. R. Howell's catalogue for a plane element and a parallel rectangle
+// with a corner on its normal.)
+double rectangle_factor(double X, double Y) {
+    const double A = std::sqrt(1.0 + X * X);
+    const double B = std::sqrt(1.0 + Y * Y);
+    return (X / A * std::atan(Y / A) + Y / B * std::atan(X / B)) / (2.0 * kPi);
+}
+double rectangle_factor(double x0, double x1, double y0, double y1) {
+    return rectangle_factor(x1, y1) - rectangle_factor(x0, y1) - rectangle_factor(x1, y0) +
+           rectangle_factor(x0, y0);
+}
+
+// The 90 degree cone lights a floor without end; the image's share of it is known.
+TEST(TracerFlux, OfALambertianLampOnARectangleIsItsConfigurationFactor) {
+    constexpr double kMidpoint = 1e-5;  // (pixel / height)^2 / 24 of a second derivative of 20
+    Rig rig = plain_rig(400, 300, 0.01);
+    rig.strobes = {lamp_at({0.4, -0.6, -0.5})};
+    // The floor that is seen: 4 m forward and aft less the lamp's place, in heights of 2.5 m.
+    const double share = rectangle_factor(-3.4 / 2.5, 2.6 / 2.5, -3.4 / 2.5, 4.6 / 2.5);
+    expect_ratio(flux_on_floor(rig), share, kMidpoint);
+}
+
+// pi sin^2 of 10, 26.5 and 90 degrees, field-notes.md, check 5.
+TEST(TracerFlux, LiteralAndFluxWeightsDifferByTheFluxOfTheLobe) {
+    constexpr double kHalfDigit = 0.00005;
+    const std::array<std::pair<double, double>, 3> expected{
+        {{10.0, 0.0947}, {26.5, 0.6255}, {90.0, 3.1416}}};
+    for (const auto& [half_angle_deg, lobe] : expected) {
+        Rig rig = plain_rig();
+        rig.strobes[0].beam = cone_of(half_angle_deg * kDegree, 0.5, ConeWeights::Literal);
+        const double literal = only_pixel(rig);
+        rig.strobes[0].beam.weights = ConeWeights::Flux;
+        EXPECT_NEAR(literal / only_pixel(rig), lobe, kHalfDigit) << half_angle_deg << " degrees";
+    }
+}
+
+// --- Discs and rectangles of light ---------------------------------------------------------------
+
+// A horizontal Lambertian disc of radiance 1 through the pupil: rings of lamps, Gauss-Legendre in
+// radius, even in azimuth. A lamp that stands for the area dA has the axial intensity dA.
+std::vector<Strobe> disc(double radius_m, int lamps_per_ring) {
+    using Rule = boost::math::quadrature::gauss<double, 30>;
+    std::vector<Strobe> lamps;
+    const auto ring = [&](double x, double weight) {
+        const double ring_m = 0.5 * radius_m * (1.0 + x);
+        const double area_m2 = kPi * radius_m * weight * ring_m;
+        for (int i = 0; i < lamps_per_ring; ++i) {
+            const double azimuth = 2.0 * kPi * (i + 0.25) / lamps_per_ring;
+            lamps.push_back(lamp_at({ring_m * std::cos(azimuth), ring_m * std::sin(azimuth), 0.0}));
+            lamps.back().beam.weights = ConeWeights::Literal;
+            lamps.back().power = area_m2 / lamps_per_ring;
+        }
+    };
+    for (std::size_t i = 0; i < Rule::abscissa().size(); ++i) {
+        ring(Rule::abscissa()[i], Rule::weights()[i]);
+        if (Rule::abscissa()[i] != 0.0) ring(-Rule::abscissa()[i], Rule::weights()[i]);
+    }
+    return lamps;
+}
+
+// Irradiance h below the centre of a Lambertian disc of radiance 1 and half angle A:
+//   E = 2 pi int_0^A cos t sin t exp(-a h / cos t) dt
+//     = 2 pi [E3(a h) - cos^2 A E3(a h / cos A)]
+// (field-notes.md, check 3). The camera, at the disc's centre, sees L = E / pi exp(-a h).
+TEST(TracerDisc, LightsThroughAbsorbingWaterByExponentialIntegrals) {
+    constexpr double kGauss = 1e-10;  // 30 points over a smooth function of the radius
+    for (const double half_angle_deg : {20.0, 60.0, 75.0}) {
+        for (const double a_per_m : {0.05, 0.5, 2.0}) {
+            const double A = half_angle_deg * kDegree;
+            Rig rig = with_loss(plain_rig(), a_per_m);
+            rig.strobes = disc(2.0 * std::tan(A), 4);
+            const double depth = a_per_m * 2.0;
+            const double E =
+                2.0 * kPi *
+                (boost::math::expint(3, depth) -
+                 std::pow(std::cos(A), 2) * boost::math::expint(3, depth / std::cos(A)));
+            expect_ratio(kPi * only_pixel(rig) / std::exp(-depth),
+                         E,
+                         kGauss,
+                         std::to_string(half_angle_deg) + " degrees,");
+        }
+    }
+}
+
+// In clear water also off the centre. A plane element at the distance c from the axis of a
+// parallel disc of radius R, h away, H = h/c, q = R/c, Z = 1 + H^2 + q^2, receives
+//   E = pi/2 [1 - (Z - 2 q^2) / sqrt(Z^2 - 4 q^2)]
+TEST(TracerDisc, LightsOffItsCentreAsTheConfigurationFactorSays) {
+    constexpr double kRings = 1e-10;  // 60 lamps a ring: the azimuth's error falls exponentially
+    constexpr double kRadius_m = 1.5;
+    Rig rig = plain_rig(5, 1, 0.4);
+    rig.strobes = disc(kRadius_m, 60);
+    const auto plane = plane_of(rig);
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        const double off_m = 2.0 * std::abs(slope_of(rig, i).starboard);
+        double E = kPi * kRadius_m * kRadius_m / (kRadius_m * kRadius_m + 4.0);
+        if (off_m > 0.0) {
+            const double q = kRadius_m / off_m;
+            const double Z = 1.0 + 4.0 / (off_m * off_m) + q * q;
+            E = 0.5 * kPi * (1.0 - (Z - 2.0 * q * q) / std::sqrt(Z * Z - 4.0 * q * q));
+        }
+        expect_ratio(kPi * plane[i], E, kRings, "at " + std::to_string(off_m) + " m");
+    }
+}
+
+// A horizontal emitter of a x b in clear water is a Lambertian rectangle of exitance Phi / (a b):
+// E = Phi / (a b) F, and L = E / pi. `across` lies athwartships, `along` forward.
+double below_rectangle(const Rig& rig, std::size_t pixel) {
+    const Strobe& strobe = rig.strobes[0];
+    const double h_m = rig.sled.altitude_m - strobe.position_m.z();
+    const auto [forward, starboard] = slope_of(rig, pixel);
+    const double x_m = strobe.position_m.x() - forward * rig.sled.altitude_m;
+    const double y_m = strobe.position_m.y() - starboard * rig.sled.altitude_m;
+    const double along_m = 0.5 * strobe.emitter->along_m;
+    const double across_m = 0.5 * strobe.emitter->across_m;
+    const double F = rectangle_factor((x_m - along_m) / h_m,
+                                      (x_m + along_m) / h_m,
+                                      (y_m - across_m) / h_m,
+                                      (y_m + across_m) / h_m);
+    return F / (4.0 * along_m * across_m) / kPi;
+}
+
+Rig emitter_rig(double across_m, double along_m) {
+    Rig rig = plain_rig(9, 7, 0.25);
+    rig.strobes = {lamp_at({0.3, -0.2, -0.4})};
+    rig.strobes[0].emitter = Emitter{.across_m = across_m, .along_m = along_m};
+    return rig;
+}
+
+TEST(TracerEmitter, HoldsItsStatedErrorAgainstTheConfigurationFactor) {
+    for (const auto& [across_m, along_m] :
+         {std::pair{0.0635, 0.0302}, {0.008, 0.008}, {2.0, 0.01}, {0.3, 1.2}}) {
+        const Rig rig = emitter_rig(across_m, along_m);
+        const auto plane = plane_of(rig);
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+            expect_ratio(plane[i], below_rectangle(rig, i), kEmitterError);
+        }
+    }
+}
+
+TEST(TracerEmitter, ConvergesWithTheSquareOfTheLampsSpacing) {
+    constexpr double kNextOrder = 0.05;
+    const Rig rig = emitter_rig(1.6, 1.0);
+    const auto error_with = [&](int lamps) {
+        const auto plane = plane_with_lamps(rig, lamps, lamps);
+        std::vector<double> errors;
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+            errors.push_back(plane[i] / below_rectangle(rig, i) - 1.0);
+        }
+        return errors;
+    };
+    const auto coarse = error_with(10);
+    const auto fine = error_with(20);
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        // Where the second derivative is near zero the order does not show.
+        if (std::abs(fine[i]) < 1e-5) continue;
+        EXPECT_NEAR(coarse[i] / fine[i], 4.0, 4.0 * kNextOrder) << "pixel " << i;
+    }
+    const auto is_large = [](double e) { return std::abs(e) >= 1e-5; };
+    EXPECT_GT(std::ranges::count_if(fine, is_large), 40);
+}
+
+TEST(TracerEmitter, OfNoSizeIsAPoint) {
+    Rig rig = emitter_rig(0.0, 0.0);
+    const auto without_size = plane_of(rig);
+    rig.strobes[0].emitter.reset();
+    EXPECT_EQ(without_size, plane_of(rig));
+}
+
+// Tilted sleds and strobes, absorbing water and a highlight, which no rectangle's formula
+// covers: against four times as many lamps as one would ask for.
+TEST(TracerEmitter, HoldsItsStatedErrorAgainstAFineGrid) {
+    for (const auto& [phong, phong_size] :
+         {std::pair{0.0, 40.0}, {0.5, 40.0}, {0.5, 500.0}, {3.0, 2000.0}}) {
+        Rig rig = habcam(7, 5, "habcam-emitters");
+        rig.strobes = {rig.strobes[0], rig.strobes[3]};
+        for (Strobe& strobe : rig.strobes) strobe.beam = lambertian();
+        rig.sled.roll_rad = 12.0 * kDegree;
+        rig.seafloor.phong = phong;
+        rig.seafloor.phong_size = phong_size;
+        const auto plane = plane_of(rig);
+        const auto fine = plane_with_lamps(rig, 150, 75);
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+            expect_ratio(
+                plane[i], fine[i], kEmitterError, "phong_size " + std::to_string(phong_size));
+        }
+    }
+}
+
+// Level, under a cone of half angle g straight down, a floor point is lit by the lamps within
+// h tan g of it: all of them up to h tan g less half the emitter, none beyond as much more, and
+// between, on the line through its middle, a share that falls evenly. The staircase has one step
+// a lamp.
+TEST(TracerEmitter, SoftensAConesEdgeOverItsOwnWidth) {
+    constexpr double kAcross_m = 0.4;
+    const double gamma = std::atan(0.5);
+    Rig rig = plain_rig(400, 1, 0.005);
+    rig.strobes = {lamp_at(Vector3d::Zero(), cone_of(gamma, 1.0, ConeWeights::Literal))};
+    rig.strobes[0].emitter = Emitter{.across_m = kAcross_m, .along_m = 0.001};
+    const auto plane = plane_of(rig);
+    rig.strobes[0].beam = cone_of(0.5 * kPi, 1.0, ConeWeights::Literal);
+    const auto whole = plane_of(rig);
+    const double step = 0.05;  // wider than a lamp's share, 1 of more than 50, and its 1/d^4
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        const double off_m = 2.0 * std::abs(slope_of(rig, i).starboard);
+        const double share = std::clamp((1.0 + 0.5 * kAcross_m - off_m) / kAcross_m, 0.0, 1.0);
+        const bool is_partly_lit = share > 0.0 && share < 1.0;
+        EXPECT_NEAR(plane[i] / whole[i], share, is_partly_lit ? step : 1e-12) << off_m << " m off";
+    }
+}
+
+// --- Reciprocity ---------------------------------------------------------------------------------
+
+// Lamp at A and camera at B look at the same floor point P. Lamp on P:
+//   L1 = Phi/pi cos(theta_A) cos(i_A) / d_A^2  rho/pi exp(-K (d_A + d_B))
+// Swapped, i_B and d_B take their place. So L1 cos(i_B) / d_B^2 = L2 cos(i_A) / d_A^2 when both
+// look straight at P.
+TEST(TracerReciprocity, HoldsAtAPoint) {
+    // P is the origin, z down. Heights 2 and 3 m, aside of P by 1 and -2.5 m.
+    const std::array<Vector3d, 2> places_m{Vector3d(0.0, 1.0, -2.0), Vector3d(0.0, -2.5, -3.0)};
+    std::array<double, 2> balance{};
+    for (std::size_t e = 0; e < 2; ++e) {
+        // A camera at places_m[e] that looks at P: rolled so that its axis points there. In the
+        // roll r the world's down is (0, sin r, cos r), its starboard (0, cos r, -sin r).
+        const Vector3d here = places_m[e];
+        const Vector3d there = places_m[1 - e];
+        const double roll = std::atan2(here.y(), -here.z());
+        const Vector3d down(0.0, std::sin(roll), std::cos(roll));
+        const Vector3d starboard(0.0, std::cos(roll), -std::sin(roll));
+        Rig rig = with_loss(plain_rig(), 0.4);
+        rig.seafloor.reflectance = flat(0.6);
+        rig.sled.altitude_m = here.norm();
+        rig.sled.roll_rad = roll;
+        const Vector3d to_lamp = there - here;
+        rig.strobes = {lamp_at(to_lamp.y() * starboard + to_lamp.z() * down)};
+        rig.strobes[0].axis =
+            (Vector3d(0.0, 0.0, here.norm()) - rig.strobes[0].position_m).normalized();
+        const double cos_i = -here.z() / here.norm();
+        balance[e] = only_pixel(rig) * cos_i / here.squaredNorm();
+    }
+    EXPECT_GT(balance[0], 0.0);
+    expect_ratio(balance[0], balance[1], kRounding);
+}
+
+// The light that a Lambertian patch at the camera takes in from within a cone about its axis:
+// int L cos dOmega.
+double received(const Rig& rig, double half_angle_rad) {
+    const auto plane = plane_of(rig);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        const auto [forward, starboard] = slope_of(rig, i);
+        const double t2 = forward * forward + starboard * starboard;
+        if (t2 > std::pow(std::tan(half_angle_rad), 2)) continue;
+        // dOmega = slope^2 cos^3.
+        sum += plane[i] * std::pow(rig.camera.pixel_pitch_m, 2) / std::pow(1.0 + t2, 2);
+    }
+    return sum;
+}
+
+// Over the whole floor: a lamp with a cone and a receiver with the same cone give the same when
+// they change places, whatever their attitudes; for in
+//   int cos(theta_A) cos(i_A) cos(i_B) cos(theta_B) / (d_A d_B)^2 exp(-K (d_A + d_B)) dP
+// A and B do.
+TEST(TracerReciprocity, HoldsOverTheWholeFloor) {
+    constexpr double kCutByTwoEdges = 2e-3;  // as kCutPixels, circles of 150 pixels
+    constexpr double kHalfAngle = 30.0 * kDegree;
+    Rig rig = with_loss(plain_rig(350, 350, 0.0035), 0.4);
+    rig.sled.pitch_rad = 10.0 * kDegree;
+    rig.sled.roll_rad = -20.0 * kDegree;
+    const Vector3d axis = Vector3d(-0.4, -0.3, 1.0).normalized();
+    const Vector3d place_m(0.7, 0.4, -0.6);
+    rig.strobes = {lamp_at(place_m, cone_of(kHalfAngle, 1.0))};
+    rig.strobes[0].axis = axis;
+
+    // Seen from the lamp: any frame with its z along the axis, for the floor is all alike.
+    const Vector3d x = Vector3d::UnitX().cross(axis).cross(axis).normalized() * -1.0;
+    Eigen::Matrix3d to_lamp_frame;
+    to_lamp_frame << x.transpose(), axis.cross(x).transpose(), axis.transpose();
+    const Vector3d down(-std::sin(rig.sled.pitch_rad),
+                        std::cos(rig.sled.pitch_rad) * std::sin(rig.sled.roll_rad),
+                        std::cos(rig.sled.pitch_rad) * std::cos(rig.sled.roll_rad));
+    const Vector3d down_there = to_lamp_frame * down;
+    Rig swapped = rig;
+    swapped.sled.pitch_rad = std::asin(-down_there.x());
+    swapped.sled.roll_rad = std::atan2(down_there.y(), down_there.z());
+    swapped.sled.altitude_m = down.dot(Vector3d(0.0, 0.0, 2.0) - place_m) / down.dot(axis);
+    swapped.strobes[0].position_m = to_lamp_frame * -place_m;
+    swapped.strobes[0].axis = to_lamp_frame * Vector3d::UnitZ();
+
+    const double there = received(rig, kHalfAngle);
+    EXPECT_GT(there, 0.0);
+    expect_ratio(received(swapped, kHalfAngle), there, kCutByTwoEdges);
+}
+
+// --- The port ------------------------------------------------------------------------------------
+
+Rig port_rig(int width_px, int height_px, double pixel_um) {
+    Rig rig = plain_rig(width_px, height_px);
+    rig.camera.pixel_pitch_m = pixel_um * 1e-6;
+    rig.camera.focal_length_m = 0.012;
+    rig.camera.port =
+        FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+    return rig;
+}
+
+// field-notes.md, checks 11 and 12: f = 12 mm, 6.45 um, an object far away. Cones of 5, 10, 15
+// and 20 degrees at the pupil draw circles on a floor 10 km below, where the 62 mm of air and
+// glass are nothing; the image of a circle has the radius f tan(asin(n sin t)).
+TEST(TracerPort, SpreadsColoursAsTheTableOfLateralColourSays) {
+    constexpr int kSubpixels = 50;
+    constexpr int kWidth = 2 * 1000 * kSubpixels;
+    Rig rig = port_rig(kWidth, 1, 6.45 / kSubpixels);
+    rig.sled.altitude_m = 10000.0;
+    rig.strobes[0].beam = {.name = "circles", .weights = ConeWeights::Literal, .cones = {}};
+    const std::array<double, 4> circles_deg{5.0, 10.0, 15.0, 20.0};
+    for (const double t_deg : circles_deg) {
+        rig.strobes[0].beam.cones.push_back(
+            {.part = "circle", .half_angle_rad = t_deg * kDegree, .weight = 1.0});
+    }
+    const auto image = image_of(rig, {.signals = false, .planes_nm = {450.0, 650.0}});
+
+    // Where the light falls by a quarter or more from one subpixel to the next, in pixels.
+    std::array<std::vector<double>, 2> edges_px;
+    for (std::size_t colour = 0; colour < 2; ++colour) {
+        const double* row = image.data() + colour * kWidth;
+        for (int i = kWidth / 2; i + 1 < kWidth; ++i) {
+            if (row[i + 1] < 0.8 * row[i]) {
+                edges_px[colour].push_back((i + 1.0 - 0.5 * kWidth) / kSubpixels);
+            }
+        }
+        ASSERT_EQ(edges_px[colour].size(), circles_deg.size());
+    }
+    constexpr std::array<double, 4> kBlueLessRed_px{1.4, 2.9, 4.8, 7.5};
+    constexpr double kHalfDigit_px = 0.05;
+    constexpr double kSubpixel_px = 1.0 / kSubpixels;
+    const std::array<double, 2> n{1.34676, 1.33853};  // at 450 and 650 nm, check 11
+    constexpr double kIndexDigits_px = 0.02;          // 5e-6 of n at 1000 pixels, and the port
+    for (std::size_t k = 0; k < circles_deg.size(); ++k) {
+        EXPECT_NEAR(
+            edges_px[0][k] - edges_px[1][k], kBlueLessRed_px[k], kHalfDigit_px + 2.0 * kSubpixel_px)
+            << circles_deg[k] << " degrees";
+        for (std::size_t colour = 0; colour < 2; ++colour) {
+            const double air = std::asin(n[colour] * std::sin(circles_deg[k] * kDegree));
+            EXPECT_NEAR(
+                edges_px[colour][k], 12000.0 / 6.45 * std::tan(air), kSubpixel_px + kIndexDigits_px)
+                << circles_deg[k] << " degrees";
+        }
+    }
+}
+
+// Air and glass take no light: on the axis the camera's leg is 62 mm short of the altitude.
+TEST(TracerPort, AbsorbsNothingBeforeTheWater) {
+    const Rig rig = port_rig(1, 1, 6.45);
+    expect_ratio(only_pixel(with_loss(rig, 0.7)),
+                 only_pixel(rig) * std::exp(-0.7 * (2.0 + 1.938)),
+                 kRounding);
+}
+
+// The path of one oblique ray, by hand: 45 degrees in air, n of N-BK7 at 587.56 nm 1.51680
+// (Schott), of fresh water at 20 C 1.33306 (Quan and Fry's formula by hand; handbooks have 1.3330).
+// Foot of the ray: 50 mm tan 45 + 12 mm tan(glass) + 1938 mm tan(water). The lamp is at the pupil,
+// so what the water takes away tells d + r, and what reaches the camera tells d.
+TEST(TracerPort, BendsAnObliqueRayAtBothFaces) {
+    constexpr double kDigits = 2e-5;  // of the indices, in the foot's distance
+    constexpr double kHelium_nm = 587.56;
+    Rig rig = port_rig(3, 1, 12000.0);
+    rig.water.salinity_psu = 0.0;
+    rig.water.temperature_c = 20.0;
+    const double glass = std::asin(std::sqrt(0.5) / 1.51680);
+    const double water = std::asin(std::sqrt(0.5) / 1.33306);
+    const double foot_m = 0.05 + 0.012 * std::tan(glass) + 1.938 * std::tan(water);
+    const double d_m = std::hypot(2.0, foot_m);
+    const double r_m = 1.938 / std::cos(water);
+    const double clear = plane_of(rig, kHelium_nm)[2];
+    const double murky = plane_of(with_loss(rig, 1.0), kHelium_nm)[2];
+    EXPECT_NEAR(std::log(clear / murky), d_m + r_m, 4.0 * kDigits);
+    expect_ratio(clear, 4.0 / (kPi * kPi * std::pow(d_m, 4)), 4.0 * kDigits);
+}
+
+// --- Symmetry ------------------------------------------------------------------------------------
+
+// One of everything, with no symmetry of its own.
+Rig lopsided_rig() {
+    Rig rig = habcam(11, 8, "habcam-emitters");
+    rig.sled.roll_rad = -7.0 * kDegree;
+    rig.seafloor.phong = 0.2;
+    rig.strobes[0].position_m = {0.41, 0.17, -0.09};
+    rig.strobes[0].axis = Vector3d(-0.3, 0.2, 1.0).normalized();
+    rig.strobes[1].power = 1.7;
+    rig.strobes[2].emitter.reset();
+    rig.strobes.pop_back();
+    return rig;
+}
+
+// Mirrors what has a place and a direction; `axis` 0 fore and aft, 1 port and starboard.
+Rig mirrored(Rig rig, int axis) {
+    (axis == 0 ? rig.sled.pitch_rad : rig.sled.roll_rad) *= -1.0;
+    for (Strobe& strobe : rig.strobes) {
+        strobe.position_m[axis] *= -1.0;
+        strobe.axis[axis] *= -1.0;
+    }
+    return rig;
+}
+
+void expect_mirrored_images(const Rig& rig) {
+    const TraceOptions options{
+        .signals = true, .planes_nm = {450.0}, .lamps_across = 4, .lamps_along = 3};
+    const auto width = static_cast<std::size_t>(rig.camera.width_px);
+    const auto height = static_cast<std::size_t>(rig.camera.height_px);
+    const auto image = image_of(rig, options);
+    for (const int axis : {0, 1}) {
+        const auto other = image_of(mirrored(rig, axis), options);
+        ASSERT_EQ(other.size(), image.size());
+        for (std::size_t i = 0; i < image.size(); ++i) {
+            const std::size_t plane = i / (width * height);
+            const std::size_t row = i / width % height;
+            const std::size_t column = i % width;
+            const std::size_t twin =
+                plane * width * height + (axis == 0 ? (height - 1 - row) * width + column
+                                                    : row * width + width - 1 - column);
+            EXPECT_NEAR(other[twin], image[i], kRounding * image[i]) << "axis " << axis;
+        }
+    }
+}
+
+TEST(TracerSymmetry, AMirroredRigGivesTheMirroredImage) {
+    expect_mirrored_images(lopsided_rig());
+}
+
+TEST(TracerSymmetry, AMirroredRigGivesTheMirroredImageBehindAPort) {
+    Rig rig = lopsided_rig();
+    rig.camera.port =
+        FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+    expect_mirrored_images(rig);
+}
+
+// Mirrors would not see forward and starboard exchanged. A narrow lamp aimed a little forward
+// and far to starboard lights the pixels there: the third row from the top of seven, and the
+// last column but one of eleven.
+TEST(TracerSymmetry, TopIsForwardAndRightIsStarboard) {
+    Rig rig = plain_rig(11, 7, 0.1);
+    rig.strobes[0].beam = cone_of(2.0 * kDegree, 1.0);
+    rig.strobes[0].axis = Vector3d(0.1, 0.4, 1.0).normalized();
+    const auto plane = plane_of(rig);
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        EXPECT_EQ(plane[i] > 0.0, i == 2 * 11 + 9) << "pixel " << i;
+    }
+}
+
+// The length across lies athwartships: it softens the edge there, and not fore and aft.
+TEST(TracerSymmetry, AcrossIsAthwartships) {
+    Rig rig = plain_rig(41, 41, 0.02);
+    rig.strobes[0].beam = cone_of(std::atan(0.25), 1.0);
+    rig.strobes[0].emitter = Emitter{.across_m = 0.2, .along_m = 0.0};
+    const auto plane = plane_of(rig);
+    const auto lit_on = [&](std::size_t first, std::size_t stride) {
+        std::size_t lit = 0;
+        for (std::size_t i = 0; i < 41; ++i) lit += plane[first + i * stride] > 0.0 ? 1 : 0;
+        return lit;
+    };
+    // Tangents up to 0.25, and 0.25 + 0.1 m / 2 m = 0.3 less half a lamp: pixels 0.02 apart.
+    EXPECT_EQ(lit_on(20, 41), 25U);
+    EXPECT_EQ(lit_on(20 * 41, 1), 29U);
+}
+
+// All lengths times s, all losses per metre over s: the same picture, s^2 darker.
+TEST(TracerSymmetry, ScalesWithTheSquareOfTheSize) {
+    for (const double s : {2.0, 3.7}) {
+        Rig rig = with_loss(lopsided_rig(), 0.1);
+        rig.camera.port =
+            FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+        const auto image = image_of(rig, {.signals = true, .planes_nm = {450.0}});
+        rig.sled.altitude_m *= s;
+        rig.camera.port->distance_m *= s;
+        rig.camera.port->thickness_m *= s;
+        for (Strobe& strobe : rig.strobes) {
+            strobe.position_m *= s;
+            if (!strobe.emitter) continue;
+            strobe.emitter->across_m *= s;
+            strobe.emitter->along_m *= s;
+        }
+        rig.water.multiple /= s;
+        rig.water.uniform_loss_per_m /= s;
+        const auto scaled = image_of(rig, {.signals = true, .planes_nm = {450.0}});
+        for (std::size_t i = 0; i < image.size(); ++i) {
+            expect_ratio(scaled[i], image[i] / (s * s), kRounding);
+        }
+    }
+}
+
+// --- Strobes together
+// ------------------------------------------------------------------------------
+
+TEST(TracerSum, TwiceThePowerIsTwiceTheLight) {
+    Rig rig = lopsided_rig();
+    const TraceOptions options{.signals = true, .planes_nm = {450.0}};
+    const auto image = image_of(rig, options);
+    for (Strobe& strobe : rig.strobes) strobe.power *= 2.0;
+    const auto twice = image_of(rig, options);
+    // A factor of two moves no digit.
+    for (std::size_t i = 0; i < image.size(); ++i) EXPECT_EQ(twice[i], 2.0 * image[i]);
+}
+
+TEST(TracerSum, StrobesAddUp) {
+    const Rig rig = lopsided_rig();
+    const TraceOptions options{.signals = true, .planes_nm = {450.0}};
+    const auto image = image_of(rig, options);
+    std::vector<double> sum(image.size(), 0.0);
+    for (const Strobe& strobe : rig.strobes) {
+        Rig alone = rig;
+        alone.strobes = {strobe};
+        const auto part = image_of(alone, options);
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+    }
+    const std::size_t pixels = image.size() / 4;
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        // Each rig has a spectral grid of its own.
+        expect_ratio(sum[i], image[i], i < 3 * pixels ? 2.0 * kSpectralError : kRounding);
+    }
+}
+
+TEST(TracerSum, WithoutStrobesIsBlack) {
+    Rig rig = lopsided_rig();
+    rig.strobes.clear();
+    for (const double sample : image_of(rig, {.signals = true, .planes_nm = {450.0}})) {
+        EXPECT_EQ(sample, 0.0);
+    }
+}
+
+TEST(TracerSum, MoreAbsorptionIsLessLightInEveryPixelAndChannel) {
+    Rig rig = lopsided_rig();
+    std::vector<double> last;
+    for (const double multiple : {0.0, 0.1, 0.5, 1.0, 5.0, 20.0}) {
+        rig.water.multiple = multiple;
+        const auto image = image_of(rig, {.signals = true, .planes_nm = {450.0, 700.0}});
+        for (std::size_t i = 0; i < last.size(); ++i) {
+            EXPECT_LT(image[i], last[i]) << "multiple " << multiple;
+            EXPECT_GT(image[i], 0.0) << "multiple " << multiple;
+        }
+        last = image;
+    }
+}
+
+// --- The highlight -----------------------------------------------------------------------------
+
+// Lamp 2 m to starboard of the pupil, both 2 m above a level floor: at the point half way the
+// camera sees the lamp's mirror image. The highlight there is phong/pi times what falls on a
+// surface that faces the lamp, A cos(theta) / d^2, with no cosine of incidence: d^2 = 1 + 4.
+TEST(TracerHighlight, IsPhongOverPiWhereTheCameraSeesTheLampMirrored) {
+    Rig rig = plain_rig(3, 1, 0.5);
+    rig.strobes = {lamp_at({0.0, 2.0, 0.0})};
+    rig.strobes[0].axis = Vector3d(0.0, -1.0, 2.0).normalized();
+    rig.seafloor.reflectance = flat(0.0);
+    rig.seafloor.phong = 0.7;
+    for (const double size : {1.0, 40.0}) {
+        rig.seafloor.phong_size = size;
+        expect_ratio(plane_of(rig)[2], 0.7 / kPi * (1.0 / kPi) / 5.0, kRounding);
+    }
+    // On top of what the floor scatters.
+    rig.seafloor.reflectance = flat(0.5);
+    const double scattered = 0.5 * 2.0 / std::sqrt(5.0);
+    expect_ratio(plane_of(rig)[2], (0.7 + scattered) / kPi * (1.0 / kPi) / 5.0, kRounding);
+}
+
+// The camera looks down at 45 degrees to starboard on a point right below the lamp: between the
+// mirrored ray and the lamp there are 45 degrees, and cos^40 of them is 2^-20.
+TEST(TracerHighlight, FallsWithThePowerOfTheCosineToTheMirroredRay) {
+    Rig rig = plain_rig(3, 1, 1.0);
+    rig.strobes = {lamp_at({0.0, 2.0, 0.0})};
+    rig.seafloor.reflectance = flat(0.0);
+    rig.seafloor.phong = 1.0;
+    rig.seafloor.phong_size = 40.0;
+    expect_ratio(plane_of(rig)[2], std::ldexp(1.0, -20) / (kPi * kPi * 4.0), 100.0 * kRounding);
+}
+
+// Water takes from the highlight what it takes from the rest; the floor's colour takes nothing.
+TEST(TracerHighlight, HasTheLampsColourAndLosesOnBothLegs) {
+    Rig rig = plain_rig();
+    rig.seafloor.phong = 1.0;
+    rig.seafloor.reflectance = Spectrum("none", {300.0, 800.0}, {0.0, 0.0});
+    rig.strobes[0].spectrum = Spectrum("slope", {400.0, 700.0}, {1.0, 4.0});
+    expect_ratio(only_pixel(rig, 700.0), 4.0 * only_pixel(rig, 400.0), kRounding);
+    expect_ratio(only_pixel(with_loss(rig, 0.5)), only_pixel(rig) * std::exp(-2.0), kRounding);
+}
+
+// docs/physics.md: 0 where r.l <= 0, whatever the exponent. Lamp low astern, camera looking
+// ahead: the mirrored ray goes ahead, away from the lamp.
+TEST(TracerHighlight, IsNothingOnTheSideAwayFromTheMirroredRay) {
+    Rig rig = plain_rig(1, 3, 2.0);
+    rig.strobes = {lamp_at({-6.0, 0.0, 1.0})};
+    rig.seafloor.reflectance = flat(0.0);
+    rig.seafloor.phong = 1.0;
+    for (const double size : {0.0, 1.0, 40.0}) {
+        rig.seafloor.phong_size = size;
+        EXPECT_EQ(plane_of(rig)[0], 0.0) << "phong_size " << size;
+    }
+}
+
+// --- The spectrum
+// ----------------------------------------------------------------------------------
+
+TEST(TracerSignal, OfFlatSpectraIsRadianceTimesResponseTimesWidth) {
+    Rig rig = with_loss(plain_rig(), 0.3);
+    rig.camera.sensor = Sensor({flat(1.0), flat(2.0), flat(0.5)}, ResponseKind::Energy);
+    const auto image = image_of(rig, {.signals = true, .planes_nm = {kLambda_nm}});
+    ASSERT_EQ(image.size(), 4U);
+    const double L = std::exp(-1.2) / (kPi * kPi * 4.0);
+    expect_ratio(image[0], 300.0 * L, kRounding, "red");
+    expect_ratio(image[1], 600.0 * L, kRounding, "green");
+    expect_ratio(image[2], 150.0 * L, kRounding, "blue");
+    expect_ratio(image[3], L, kRounding, "550 nm");
+}
+
+// A narrow band counts lambda / (h c) photons per joule: 1 nm about 550 nm, where a photon has
+// 3.611720e-19 J.
+TEST(TracerSignal, OfAQuantumResponseCountsPhotons) {
+    constexpr double kDigits = 2e-7;  // of that number
+    Rig rig = plain_rig();
+    rig.camera.range = {549.5, 550.5};
+    const double energy = image_of(rig, {})[0];
+    rig.camera.sensor = Sensor({flat(1.0), flat(1.0), flat(1.0)}, ResponseKind::Quantum);
+    expect_ratio(image_of(rig, {})[0], energy / 3.611720e-19, kDigits);
+}
+
+TEST(TracerSignal, ComesWithThePlanesAskedForInTheirOrder) {
+    const Rig rig = habcam(3, 2);
+    const Tracer both(rig, {.signals = true, .planes_nm = {650.0, 450.0}});
+    const Tracer signals(rig, {.signals = true, .planes_nm = {}});
+    EXPECT_EQ(both.planes(), 5U);
+    EXPECT_EQ(signals.planes(), 3U);
+    EXPECT_GT(signals.grid_size(), 100U);
+    EXPECT_EQ(Tracer(rig, {.signals = false, .planes_nm = {450.0}}).grid_size(), 0U);
+    const auto image = both.rows(0, 2);
+    const auto expect_plane = [&](std::size_t plane, const std::vector<double>& alone) {
+        for (std::size_t i = 0; i < 6; ++i) {
+            expect_ratio(
+                image[plane * 6 + i], alone[i], kRounding, "plane " + std::to_string(plane));
+        }
+    };
+    const auto rgb = signals.rows(0, 2);
+    for (std::size_t c = 0; c < 3; ++c) {
+        expect_plane(c, {rgb.begin() + static_cast<std::ptrdiff_t>(6 * c), rgb.end()});
+    }
+    expect_plane(3, plane_of(rig, 650.0));
+    expect_plane(4, plane_of(rig, 450.0));
+}
+
+// In clear water no path matters, and the grid is that of the family alone.
+TEST(TracerSignal, IsTheWeightedSumOfThePlanes) {
+    Rig rig = habcam(3, 2);
+    rig.water.multiple = 0.0;
+    const LightFamily family{.sources = {{rig.strobes[0].spectrum, rig.seafloor.reflectance}},
+                             .water = rig.water,
+                             .shortest_path_m = 1.0,
+                             .longest_path_m = 1.0};
+    const auto grid = reference_grid(rig.camera.sensor, family, rig.camera.range, kSpectralError);
+    TraceOptions options{.signals = true, .planes_nm = {}};
+    for (const WeightedWavelength& w : grid) options.planes_nm.push_back(w.lambda_nm);
+    const Tracer tracer(rig, options);
+    EXPECT_EQ(tracer.grid_size(), grid.size());
+    const auto image = tracer.rows(0, 2);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        for (std::size_t i = 0; i < 6; ++i) {
+            double sum = 0.0;
+            for (std::size_t j = 0; j < grid.size(); ++j) {
+                sum += grid[j].weight[c] * image[(kChannels + j) * 6 + i];
+            }
+            expect_ratio(image[c * 6 + i], sum, kRounding);
+        }
+    }
+}
+
+// int L Q dlambda by Simpson's rule between all knots of all tables.
+double integrated(const Rig& rig, int column, int row, int channel) {
+    constexpr int kPanels = 8;  // intervals are 2.5 nm and less: an error of 1e-10 and less
+    std::set<double> knots_nm{rig.camera.range.first_nm, rig.camera.range.last_nm};
+    std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
+    curves.push_back(&rig.seafloor.reflectance);
+    curves.push_back(&rig.water.absorption_per_m);
+    for (const Strobe& strobe : rig.strobes) curves.push_back(&strobe.spectrum);
+    for (const Spectrum* curve : curves) {
+        for (const double lambda_nm : curve->lambda_nm()) {
+            if (rig.camera.range.contains(lambda_nm)) knots_nm.insert(lambda_nm);
+        }
+    }
+    double sum = 0.0;
+    for (auto it = knots_nm.begin(); std::next(it) != knots_nm.end(); ++it) {
+        const double width_nm = *std::next(it) - *it;
+        for (int i = 0; i <= 2 * kPanels; ++i) {
+            const double simpson = i == 0 || i == 2 * kPanels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+            const double lambda_nm = *it + width_nm * i / (2.0 * kPanels);
+            sum += simpson * width_nm / (6.0 * kPanels) *
+                   closed_form::radiance(rig, column, row, lambda_nm).radiance *
+                   rig.camera.sensor.response(channel, lambda_nm);
+        }
+    }
+    return sum;
+}
+
+void expect_signals_within_stated_error(const Rig& rig, double margin) {
+    const auto image = image_of(rig, {});
+    const auto pixels = image.size() / kChannels;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const int column = static_cast<int>(i) % rig.camera.width_px;
+        const int row = static_cast<int>(i) / rig.camera.width_px;
+        for (int c = 0; c < kChannels; ++c) {
+            const double right = integrated(rig, column, row, c);
+            expect_ratio(image[static_cast<std::size_t>(c) * pixels + i],
+                         right,
+                         kSpectralError + margin,
+                         "channel " + std::to_string(c));
+        }
+    }
+}
+
+constexpr double kSimpsonError = 1e-9;
+
+TEST(TracerSignal, HoldsItsStatedErrorInEveryWater) {
+    for (const double multiple : {0.0, 1.0, 6.0, 20.0}) {
+        Rig rig = habcam(3, 2);
+        rig.water.multiple = multiple;
+        expect_signals_within_stated_error(rig, kSimpsonError);
+    }
+}
+
+TEST(TracerSignal, HoldsItsStatedErrorWithDifferentLampsAHighlightAndPhotons) {
+    Rig rig = habcam(3, 2);
+    rig.seafloor.phong = 0.5;
+    rig.strobes[1].spectrum = load_curve("xenon-arc", CurveRole::LampSpectrum, {});
+    rig.strobes[2].spectrum = Spectrum("led", {390.0, 455.0, 470.0, 730.0}, {0.0, 1.0, 0.1, 0.0});
+    rig.camera.sensor =
+        Sensor({load_curves("nikon-d5100", CurveRole::SensorResponse, {})}, ResponseKind::Quantum);
+    expect_signals_within_stated_error(rig, kSimpsonError);
+}
+
+// Behind a port the geometry changes with wavelength as well, smoothly where there is no edge.
+TEST(TracerSignal, HoldsItsStatedErrorBehindAPort) {
+    Rig rig = habcam(3, 2, "port");
+    for (Strobe& strobe : rig.strobes) strobe.beam = lambertian();
+    expect_signals_within_stated_error(rig, kSimpsonError);
+}
+
+// --- Against the tests' own formula
+// -----------------------------------------------------------------
+
+class Dice {
+  public:
+    double between(double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(engine_);
+    }
+    bool chance() { return between(0.0, 1.0) < 0.5; }
+    Spectrum curve(double least, double most) {
+        return {"random",
+                {390.0, 480.0, 560.0, 730.0},
+                {between(least, most),
+                 between(least, most),
+                 between(least, most),
+                 between(least, most)}};
+    }
+
+  private:
+    std::mt19937_64 engine_{7};
+};
+
+Rig random_rig(Dice& dice) {
+    Rig rig = plain_rig(5, 4, dice.between(0.05, 0.3));
+    rig.sled = {.altitude_m = dice.between(0.5, 8.0),
+                .pitch_rad = dice.between(-0.6, 0.6),
+                .roll_rad = dice.between(-0.6, 0.6)};
+    if (dice.chance()) {
+        rig.camera.port = FlatPort{.distance_m = dice.between(0.01, 0.1),
+                                   .thickness_m = dice.between(0.002, 0.03),
+                                   .glass = builtin_glass(dice.chance() ? "bk7" : "sapphire")};
+    }
+    rig.water = {.absorption_per_m = dice.curve(0.0, 0.6),
+                 .multiple = dice.chance() ? dice.between(0.0, 2.0) : 0.0,
+                 .uniform_loss_per_m = dice.chance() ? dice.between(0.0, 0.3) : 0.0,
+                 .salinity_psu = dice.between(0.0, 40.0),
+                 .temperature_c = dice.between(0.0, 30.0)};
+    rig.seafloor = {.reflectance = dice.curve(0.0, 1.0),
+                    .phong = dice.chance() ? dice.between(0.0, 2.0) : 0.0,
+                    .phong_size = dice.between(1.0, 60.0)};
+    rig.strobes.clear();
+    const int strobes = static_cast<int>(dice.between(1.0, 4.0));
+    for (int s = 0; s < strobes; ++s) {
+        Beam beam{.name = "random",
+                  .weights = dice.chance() ? ConeWeights::Flux : ConeWeights::Literal,
+                  .cones = {}};
+        for (const double least : {0.1, 0.3, 0.6}) {
+            beam.cones.push_back({.part = "random",
+                                  .half_angle_rad = dice.between(least, 1.5),
+                                  .weight = dice.between(0.0, 2.0)});
+        }
+        // Above the floor, however it is tilted: 0.45 m aside at most, tan 0.6 twice is 0.62.
+        Strobe strobe = lamp_at({dice.between(-0.3, 0.3), dice.between(-0.3, 0.3), -0.1}, beam);
+        strobe.axis = Vector3d(dice.between(-1.0, 1.0), dice.between(-1.0, 1.0), 1.0).normalized();
+        strobe.spectrum = dice.curve(0.0, 3.0);
+        strobe.power = dice.between(0.1, 5.0);
+        if (dice.chance()) {
+            strobe.emitter =
+                Emitter{.across_m = dice.between(0.0, 0.1), .along_m = dice.between(0.0, 0.1)};
+        }
+        rig.strobes.push_back(strobe);
+    }
+    return rig;
+}
+
+TEST(Tracer, AgreesWithTheClosedFormOnRandomRigs) {
+    constexpr double kLongChains = 1e-12;
+    // A lamp so close to a cone's edge may fall on either side of it.
+    constexpr double kEdge_rad = 1e-9;
+    Dice dice;
+    int lit = 0;
+    for (int trial = 0; trial < 150; ++trial) {
+        const Rig rig = random_rig(dice);
+        const double lambda_nm = dice.between(400.0, 700.0);
+        constexpr int kAcross = 3;
+        constexpr int kAlong = 2;
+        const auto plane = image_of(rig,
+                                    {.signals = false,
+                                     .planes_nm = {lambda_nm},
+                                     .lamps_across = kAcross,
+                                     .lamps_along = kAlong});
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+            const auto answer = closed_form::radiance(
+                rig, static_cast<int>(i) % 5, static_cast<int>(i) / 5, lambda_nm, kAcross, kAlong);
+            if (answer.edge_rad < kEdge_rad) continue;
+            EXPECT_NEAR(plane[i], answer.radiance, kLongChains * answer.radiance)
+                << "rig " << trial << ", pixel " << i;
+            if (answer.radiance > 0.0) ++lit;
+        }
+    }
+    EXPECT_GT(lit, 2000);
+}
+
+// --- Bits ----------------------------------------------------------------------------------------
+
+TEST(Tracer, ThreadsChangeNoBit) {
+    for (const char* scene : {"habcam", "port"}) {
+        const Rig rig = habcam(13, 11, scene);
+        TraceOptions options{.signals = true, .planes_nm = {450.0}, .threads = 1};
+        const auto alone = image_of(rig, options);
+        for (const int threads : {2, 3, 16}) {
+            options.threads = threads;
+            EXPECT_EQ(image_of(rig, options), alone) << threads << " threads";
+        }
+    }
+}
+
+TEST(Tracer, RowsAreTheSameInBlocksOfAnySize) {
+    const Rig rig = habcam(7, 10);
+    const Tracer tracer(rig, {.signals = true, .planes_nm = {450.0}});
+    const auto whole = tracer.rows(0, 10);
+    for (const int block : {1, 3, 4}) {
+        for (int first = 0; first < 10; first += block) {
+            const int count = std::min(block, 10 - first);
+            const auto part = tracer.rows(first, count);
+            ASSERT_EQ(part.size(), static_cast<std::size_t>(4 * count * 7));
+            for (std::size_t plane = 0; plane < 4; ++plane) {
+                for (std::size_t i = 0; i < static_cast<std::size_t>(count * 7); ++i) {
+                    EXPECT_EQ(part[plane * static_cast<std::size_t>(count * 7) + i],
+                              whole[plane * 70 + static_cast<std::size_t>(first * 7) + i]);
+                }
+            }
+        }
+    }
+}
+
+// --- Edges of cones
+// --------------------------------------------------------------------------------
+
+std::vector<unsigned char> edges_of(const Rig& rig, WavelengthRange range = {450.0, 650.0}) {
+    return Tracer(rig, {.signals = false, .planes_nm = {kLambda_nm}}).on_cone_edges(range);
+}
+
+std::size_t count_edges(const Rig& rig) {
+    const auto marks = edges_of(rig);
+    return static_cast<std::size_t>(std::ranges::count(marks, 1));
+}
+
+// Lamp at the pupil, straight down on a level floor: the floor point of a pixel is off the axis
+// by the pixel's own angle. Of the pixels around a middle one, twelve are five pixels away from
+// it: (5, 0), (3, 4), (4, 3) and their mirror images.
+TEST(TracerConeEdges, AreThePixelsWhoseCentresLieOnThem) {
+    Rig rig = plain_rig(21, 17, 0.1);
+    rig.strobes[0].beam = cone_of(std::atan(0.5), 1.0);
+    const auto marks = edges_of(rig);
+    ASSERT_EQ(marks.size(), 21U * 17U);
+    for (int row = 0; row < 17; ++row) {
+        for (int column = 0; column < 21; ++column) {
+            const bool is_five_away = (row - 8) * (row - 8) + (column - 10) * (column - 10) == 25;
+            EXPECT_EQ(marks[static_cast<std::size_t>(row * 21 + column)], is_five_away ? 1 : 0)
+                << "column " << column << ", row " << row;
+        }
+    }
+}
+
+TEST(TracerConeEdges, AreAsWideAsRoundingMakesThem) {
+    Rig rig = plain_rig(21, 17, 0.1);
+    for (const double side : {-1.0, 1.0}) {
+        rig.strobes[0].beam = cone_of(std::atan(0.5) + side * 0.9 * kEdgeRad, 1.0);
+        EXPECT_EQ(count_edges(rig), 12U);
+        rig.strobes[0].beam = cone_of(std::atan(0.5) + side * 1.1 * kEdgeRad, 1.0);
+        EXPECT_EQ(count_edges(rig), 0U);
+    }
+}
+
+TEST(TracerConeEdges, OfEveryConeAndEveryStrobeCount) {
+    Rig rig = plain_rig(21, 17, 0.1);
+    rig.strobes.clear();
+    EXPECT_EQ(count_edges(rig), 0U);
+    rig.strobes.push_back(lamp_at(Vector3d::Zero(), cone_of(std::atan(0.5), 1.0)));
+    // One pixel away: 4 more.
+    rig.strobes[0].beam.cones.push_back(
+        {.part = "one pixel", .half_angle_rad = std::atan(0.1), .weight = 1.0});
+    EXPECT_EQ(count_edges(rig), 16U);
+    // Aimed at the pixel seven pixels to starboard, from above it: 12 about that one.
+    rig.strobes.push_back(lamp_at({0.0, 1.4, 0.0}, cone_of(std::atan(0.3), 1.0)));
+    EXPECT_EQ(count_edges(rig), 20U);
+}
+
+TEST(TracerConeEdges, AreNotWhereTheConeEndsWithItsCosine) {
+    Rig rig = plain_rig(5, 5, 0.5);
+    // Aimed level: the 90 degree edge goes right through the middle row.
+    rig.strobes[0].axis = Vector3d::UnitX();
+    EXPECT_EQ(count_edges(rig), 0U);
+    rig.strobes[0].emitter = Emitter{.across_m = 0.1, .along_m = 0.1};
+    EXPECT_EQ(count_edges(rig), 0U);
+}
+
+// A cone that holds no light has no edge that one could see.
+TEST(TracerConeEdges, AreNotWhereTheConeHoldsNoLight) {
+    Rig rig = plain_rig(21, 17, 0.1);
+    rig.strobes[0].beam = cone_of(std::atan(0.5), 0.0);
+    EXPECT_EQ(count_edges(rig), 0U);
+}
+
+TEST(TracerConeEdges, AreNotInTheSky) {
+    Rig rig = plain_rig(21, 17, 0.1);
+    rig.strobes[0].beam = cone_of(std::atan(0.5), 1.0);
+    rig.sled.pitch_rad = 70.0 * kDegree;
+    // The floor ends at tan 20 degrees = 3.64 pixels above the middle: of the twelve on the
+    // circle, three lie 4 and 5 pixels above.
+    EXPECT_EQ(count_edges(rig), 9U);
+}
+
+// Where dispersion takes the edge across a pixel's centre, one end of the range lights it and
+// the other does not: as many as the formula of the tests finds.
+TEST(TracerConeEdges, AreWhereDispersionTakesThemAcrossAPixel) {
+    Rig rig = port_rig(121, 91, 80.0);
+    rig.sled.pitch_rad = 5.0 * kDegree;
+    rig.strobes = {lamp_at({0.3, 0.1, 0.0}, cone_of(12.0 * kDegree, 1.0)),
+                   lamp_at({-0.2, 0.2, 0.0}, cone_of(20.0 * kDegree, 1.0))};
+    const auto marks = edges_of(rig);
+    int crossed = 0;
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+        bool is_crossed = false;
+        for (const Strobe& strobe : rig.strobes) {
+            Rig alone = rig;
+            alone.strobes = {strobe};
+            const auto lit_at = [&](double lambda_nm) {
+                return closed_form::radiance(
+                           alone, static_cast<int>(i) % 121, static_cast<int>(i) / 121, lambda_nm)
+                           .radiance > 0.0;
+            };
+            is_crossed = is_crossed || lit_at(450.0) != lit_at(650.0);
+        }
+        EXPECT_EQ(marks[i], is_crossed ? 1 : 0) << "pixel " << i;
+        crossed += is_crossed ? 1 : 0;
+    }
+    EXPECT_GT(crossed, 20);
+    EXPECT_LT(crossed, 400);
+}
+
+// An emitter's lamps lie on both sides of the edge where the pixel has some of the light that it
+// would have without the edge, and not all.
+TEST(TracerConeEdges, TakeInWhereverAnEmitterIsPartlyWithin) {
+    Rig rig = plain_rig(121, 91, 0.01);
+    rig.strobes = {lamp_at({0.2, 0.1, -0.1}, cone_of(12.0 * kDegree, 1.0, ConeWeights::Literal))};
+    rig.strobes[0].axis = Vector3d(-0.1, 0.05, 1.0).normalized();
+    rig.strobes[0].emitter = Emitter{.across_m = 0.1, .along_m = 0.06};
+    const auto marks = edges_of(rig);
+    const auto plane = plane_with_lamps(rig, 12, 8);
+    rig.strobes[0].beam = cone_of(0.5 * kPi, 1.0, ConeWeights::Literal);
+    const auto whole = plane_with_lamps(rig, 12, 8);
+    int partly = 0;
+    int marked = 0;
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+        const double share = plane[i] / whole[i];
+        const bool is_partly_lit = share > kRounding && share < 1.0 - kRounding;
+        marked += marks[i];
+        if (!is_partly_lit) continue;
+        ++partly;
+        EXPECT_EQ(marks[i], 1) << "pixel " << i << ", share " << share;
+    }
+    EXPECT_GT(partly, 500);
+    // By the emitter's diagonal all around, where its sides would do.
+    EXPECT_LT(marked, 2 * partly);
+}
+
+}  // namespace
+}  // namespace aphotic

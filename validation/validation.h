@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Holds a finished render against the reference: every wavelength's radiance and every channel's
+// signal, pixel by pixel, absolute scale included.
+//
+// Bounds of |e| off the cone edges (comparison.h):
+//
+//   radiance   kHalfFloatBound: a half float's rounding is 2^-11 = 4.9e-4 of the value; the rest
+//              is for the lamps that stand for an emitter and for single-precision colours
+//   signals    the error that the choice of wavelengths was predicted to make, plus the same
+//
+// Black, under which a difference is measured against it: for radiance the smallest normal half
+// float of the frame's exposure, for signals kBlackShare of the brightest.
+#pragma once
+
+#include "validation/report.h"
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr double kHalfFloatBound = 6e-4;
+inline constexpr double kBlackShare = 1e-8;
+
+// A render, as the commands bring it.
+struct RenderedImages {
+    std::vector<double> lambda_nm;
+    std::vector<int> exposure_log2;
+    std::array<double, kChannels> predicted_error{};
+    // The planes of radiance of wavelengths [first, first + count), one after another.
+    std::function<std::vector<float>(std::size_t first, std::size_t count)> radiance;
+    CameraImage signals;
+};
+
+// Traces, compares, and fills the report's comparisons, images, errors and trace_s; what is known
+// of the render alone is left to the caller. report: called with the share of the work.
+[[nodiscard]] ValidationReport validate(const Rig& rig,
+                                        const RenderedImages& rendered,
+                                        int threads,
+                                        const std::function<void(double)>& progress = {});
+
+}  // namespace aphotic
