@@ -123,6 +123,7 @@ ValidationReport validate(const Rig& rig,
                           const std::function<void(double)>& progress) {
     const auto start = std::chrono::steady_clock::now();
     ValidationReport report{.rig = rig};
+    report.lambda_nm = rendered.lambda_nm;
     report.rendered = rendered.signals;
     compare_signals(rig, rendered, threads, progress, report);
     compare_radiance(rig, rendered, threads, progress, report);
