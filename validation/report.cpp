@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 namespace aphotic {
 namespace {
@@ -79,8 +81,23 @@ std::size_t ValidationReport::worst_channel() const {
                                     channels.begin());
 }
 
+void ValidationReport::check() const {
+    const auto require = [](bool holds, const char* what) {
+        if (!holds) throw std::logic_error(std::string("ValidationReport: ") + what);
+    };
+    const auto samples = static_cast<std::size_t>(traced.width_px) *
+                         static_cast<std::size_t>(traced.height_px) * kChannels;
+    require(lambda_nm.size() == wavelengths.size(), "one lambda_nm a wavelength");
+    require(channels.size() == kChannels, "one comparison a channel");
+    require(samples > 0 && traced.samples.size() == samples, "samples of the traced image");
+    require(rendered.width_px == traced.width_px && rendered.height_px == traced.height_px &&
+                rendered.samples.size() == samples,
+            "both images of one size");
+    require(channel_errors.size() == samples, "one error a sample");
+}
+
 void write_validation_json(const ValidationReport& report, const std::filesystem::path& file) {
-    assert(report.lambda_nm.size() == report.wavelengths.size());
+    report.check();
     const Comparison& worst = report.worst();
     const Json json{
         {"holds", report.holds()},

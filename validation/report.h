@@ -40,6 +40,9 @@ struct ValidationReport {
     // The one that is worst against its bound; the first of equals, wavelengths before channels.
     [[nodiscard]] const Comparison& worst() const;
     [[nodiscard]] std::size_t worst_channel() const;
+    // Throws std::logic_error, our own mistake, when the parts do not fit together: what is
+    // written below would be read out of bounds.
+    void check() const;
 };
 
 // max_error / bound; 0 when both are 0, infinite when a sample is not finite.

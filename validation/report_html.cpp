@@ -15,7 +15,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -344,7 +343,8 @@ std::string table(std::string_view id,
     for (const Comparison& comparison : comparisons) rows += table_row(comparison);
     return fmt::format(
         "<div class=\"wide\"><table id=\"{}\">\n<thead><tr><th>{}</th><th>largest |<i>e</i>|</th>"
-        "<th class=\"at\">at column, row</th><th>99.9 %</th><th>rms</th><th>mean</th><th>compared</th>"
+        "<th class=\"at\">at column, row</th><th>99.9 "
+        "%</th><th>rms</th><th>mean</th><th>compared</th>"
         "<th>on edges</th><th>largest on edges</th><th>not finite</th><th>bound</th>"
         "<th>largest / bound</th><th "
         "class=\"mark\">verdict</th></tr></thead>\n<tbody>\n{}</tbody>\n"
@@ -385,10 +385,7 @@ std::string made_with(const ValidationReport& report) {
 }  // namespace
 
 void write_validation_html(const ValidationReport& report, const std::filesystem::path& file) {
-    assert(report.lambda_nm.size() == report.wavelengths.size());
-    assert(report.channels.size() == kChannels);
-    assert(report.rendered.samples.size() == report.traced.samples.size());
-    assert(report.channel_errors.size() == report.traced.samples.size());
+    report.check();
     // The policy lets a browser neither run nor fetch anything, whatever a title may hold.
     std::string page = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n"

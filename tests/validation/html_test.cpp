@@ -51,7 +51,10 @@ TEST(Counted, SetsThousandsApart) {
     EXPECT_EQ(counted(1, "frame"), "1 frame");
     EXPECT_EQ(counted(0, "frame"), "0 frames");
     EXPECT_EQ(grouped(999), "999");
-    EXPECT_EQ(grouped(1392640), "1\xE2\x80\xAF" "392\xE2\x80\xAF" "640");
+    EXPECT_EQ(grouped(1392640),
+              "1\xE2\x80\xAF"
+              "392\xE2\x80\xAF"
+              "640");
 }
 
 }  // namespace

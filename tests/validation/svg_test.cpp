@@ -52,7 +52,9 @@ TEST(LogAxis, EndsAtRoundNumbersAroundItsValues) {
     EXPECT_NEAR(axis.last, 1e-3, kRounding);
     ASSERT_EQ(axis.ticks.size(), 4U) << "1, 2, 5 and 10 times 1e-4";
     EXPECT_EQ(axis.ticks[0].label, "10⁻⁴");
-    EXPECT_EQ(axis.ticks[2].label, "5\xC2\xA0×\xC2\xA0" "10⁻⁴");
+    EXPECT_EQ(axis.ticks[2].label,
+              "5\xC2\xA0×\xC2\xA0"
+              "10⁻⁴");
 }
 
 TEST(LogAxis, LabelsOnlyPowersOfTenOverManyDecades) {

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// `aphotic validate` must be able to say no. Each entry spoils a render in one way that leaves a
+// plausible picture; the command must end with status 1 and name the worst wavelength or channel.
+#include "spectral/manifest.h"
+#include "support/run_command.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <regex>
+
+namespace aphotic {
+namespace {
+
+constexpr int kAnswerIsNo = 1;
+// A floor and lamps without symmetry, few pixels; each entry changes one line of it.
+const std::vector<std::string> kWavelengths{"--wavelengths", "470,550,620"};
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    EXPECT_NE(text.find(from), std::string::npos) << "nothing to spoil: " << from;
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+        text.replace(at, from.size(), to);
+    }
+    return text;
+}
+
+std::string honest_rig() {
+    std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    text = std::regex_replace(text, std::regex(R"(\nresolution[^\n]*)"), "\nresolution = [34, 26]");
+    text = std::regex_replace(
+        text, std::regex(R"(\npixel_pitch_um[^\n]*)"), "\npixel_pitch_um = 258.0");
+    return replaced(text, "roll_deg   = 0.0", "roll_deg   = 3.0");
+}
+
+std::string rig_behind_a_port() {
+    return replaced(honest_rig(),
+                    "[water]",
+                    "[camera.port]\nshape = \"flat\"\ndistance_mm = 50.0\nthickness_mm = 12.0\n"
+                    "glass = \"bk7\"\n\n[water]");
+}
+
+class Sabotage : public testing::Test {
+  protected:
+    void expect_no(const CommandResult& run) {
+        EXPECT_EQ(run.status, kAnswerIsNo) << run.out << run.err;
+        EXPECT_NE(run.out.find("DISAGREE"), std::string::npos) << run.out;
+        const std::regex worst(R"(worst against its bound: (\d+(\.\d+)? nm|R|G|B) at column)");
+        EXPECT_TRUE(std::regex_search(run.out, worst)) << run.out;
+        const auto json =
+            nlohmann::json::parse(read_text_file(folder_.path() / "out" / "validation.json"));
+        EXPECT_FALSE(json.at("holds").get<bool>());
+    }
+
+    CommandResult validate(const std::vector<std::string>& more,
+                           const std::map<std::string, std::string>& environment = {}) {
+        std::vector<std::string> arguments{"validate", "rig.toml", "-o", "out"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_aphotic(folder_.path(), arguments, environment);
+    }
+
+    // Scenes are changed on their way into POV-Ray, by a POV-Ray that edits them with sed.
+    void expect_no_when_scenes_are(const std::string& sed_program,
+                                   const std::string& rig = honest_rig()) {
+        write_file(folder_.path() / "rig.toml", rig);
+        EXPECT_EQ(validate(kWavelengths).status, 0) << "the honest render must pass";
+        std::filesystem::remove_all(folder_.path() / "out");
+        write_script(folder_.path() / "povray",
+                     "scene=${1#+I}\nif [ -f \"$scene\" ]; then\n"
+                     "  cp \"$scene\" before && sed -i '" +
+                         sed_program +
+                         "' \"$scene\"\n"
+                         "  cmp -s before \"$scene\" && exit 9\nfi\nexec povray \"$@\"\n");
+        expect_no(
+            validate(kWavelengths, {{"APHOTIC_POVRAY", (folder_.path() / "povray").string()}}));
+    }
+
+    // The render is of another rig than the one it is held against.
+    void expect_no_when_rendered_from(const std::string& spoilt,
+                                      const std::string& honest,
+                                      const std::vector<std::string>& wavelengths = kWavelengths) {
+        write_file(folder_.path() / "rig.toml", honest);
+        write_file(folder_.path() / "spoilt.toml", spoilt);
+        render("rig.toml", "honest", wavelengths);
+        EXPECT_EQ(validate({"--rendered", "honest"}).status, 0) << "the honest render must pass";
+        render("spoilt.toml", "spoilt", wavelengths);
+        expect_no(validate({"--rendered", "spoilt"}));
+    }
+
+    void render(const std::string& rig,
+                const std::string& to,
+                const std::vector<std::string>& wavelengths) {
+        std::vector<std::string> arguments{"render", rig, "-o", to};
+        arguments.insert(arguments.end(), wavelengths.begin(), wavelengths.end());
+        const CommandResult run = run_aphotic(folder_.path(), arguments);
+        ASSERT_EQ(run.status, 0) << run.err;
+    }
+
+    // The frames are right, the manifest by which they are put together is not.
+    void expect_no_when_integrated_with(const std::function<void(Manifest&)>& spoil) {
+        write_file(folder_.path() / "rig.toml", honest_rig());
+        render("rig.toml", "spoilt", kWavelengths);
+        EXPECT_EQ(validate({"--rendered", "spoilt"}).status, 0) << "the honest render must pass";
+        Manifest manifest = read_manifest(folder_.path() / "spoilt");
+        spoil(manifest);
+        write_manifest(folder_.path() / "spoilt", manifest);
+        ASSERT_EQ(run_aphotic(folder_.path(), {"integrate", "spoilt"}).status, 0);
+        expect_no(validate({"--rendered", "spoilt"}));
+    }
+
+    TempFolder folder_;
+};
+
+TEST_F(Sabotage, WaterAsAContainersMedia) {
+    expect_no_when_scenes_are(
+        "s/^media {\\(.*\\)}$/sphere { 0, 100 hollow pigment { rgbt 1 } interior { media {\\1} } "
+        "}/");
+}
+
+TEST_F(Sabotage, MediaAttenuationLeftOff) {
+    expect_no_when_scenes_are("s/media_attenuation on//");
+}
+
+TEST_F(Sabotage, ShadowlessLamps) {
+    expect_no_when_scenes_are("s/media_attenuation on/media_attenuation on shadowless/");
+}
+
+// Two metres of altitude: a fade distance of 0.2 m.
+TEST_F(Sabotage, FadeDistanceATenthOfTheRange) {
+    expect_no_when_scenes_are("s/#declare Fade_Distance = .*/#declare Fade_Distance = 0.2;/");
+}
+
+TEST_F(Sabotage, HollowHousing) {
+    expect_no_when_scenes_are("s/no_shadow/no_shadow hollow/", rig_behind_a_port());
+}
+
+TEST_F(Sabotage, RightWithTheWrongSign) {
+    expect_no_when_scenes_are("s/right x/right -x/");
+}
+
+TEST_F(Sabotage, PitchWithTheWrongSign) {
+    const std::string honest = honest_rig();
+    expect_no_when_rendered_from(replaced(honest, "pitch_deg  = 5.0", "pitch_deg  = -5.0"), honest);
+}
+
+TEST_F(Sabotage, LiteralForFluxWeights) {
+    const std::string honest = honest_rig();
+    expect_no_when_rendered_from(replaced(honest, "weights = \"flux\"", "weights = \"literal\""),
+                                 honest);
+}
+
+TEST_F(Sabotage, OneStrobeMissing) {
+    const std::string honest = honest_rig();
+    expect_no_when_rendered_from(honest.substr(0, honest.rfind("[[strobe]]")), honest);
+}
+
+TEST_F(Sabotage, HalfTheEmitter) {
+    // Close to the floor, where the size of an emitter is more than a rounding.
+    std::string honest = replaced(honest_rig(), "altitude_m = 2.0", "altitude_m = 1.0");
+    honest = replaced(
+        honest, "beam       = \"fresnel\"", "beam = \"fresnel\"\nemitter_mm = [63.5, 30.2]");
+    expect_no_when_rendered_from(replaced(honest, "[63.5, 30.2]", "[31.75, 30.2]"), honest);
+}
+
+// The tables are the built-in ones, given as the user's own.
+TEST_F(Sabotage, QuantumEfficiencyTakenForEnergyResponse) {
+    write_file(folder_.path() / "rgb.csv",
+               run_aphotic(folder_.path(), {"data", "nikon-d5100", "--csv"}).out);
+    const std::string honest =
+        replaced(honest_rig(), "\"nikon-d5100\"", "{ table = \"rgb.csv\", kind = \"quantum\" }");
+    expect_no_when_rendered_from(
+        replaced(honest, "\"quantum\"", "\"energy\""), honest, {"--bands", "36"});
+}
+
+TEST_F(Sabotage, TableShiftedByOneKnot) {
+    const std::string csv = run_aphotic(folder_.path(), {"data", "pope-fry-1997", "--csv"}).out;
+    // Every value one row later than its wavelength; the first stands twice.
+    std::istringstream lines(csv);
+    std::string line;
+    std::getline(lines, line);
+    std::string shifted = line + "\n";
+    std::string before;
+    while (std::getline(lines, line)) {
+        const auto comma = line.find(',');
+        const std::string value = line.substr(comma);
+        shifted += line.substr(0, comma) + (before.empty() ? value : before) + "\n";
+        before = value;
+    }
+    write_file(folder_.path() / "water.csv", csv);
+    write_file(folder_.path() / "shifted.csv", shifted);
+    const std::string honest = replaced(honest_rig(), "\"pope-fry-1997\"", "\"water.csv\"");
+    expect_no_when_rendered_from(replaced(honest, "water.csv", "shifted.csv"), honest);
+}
+
+TEST_F(Sabotage, ExposuresNotTakenOut) {
+    expect_no_when_integrated_with([](Manifest& manifest) {
+        for (ManifestWavelength& w : manifest.wavelengths) w.exposure_log2 = 0;
+    });
+}
+
+TEST_F(Sabotage, TwoWavelengthsOfAFrameSwapped) {
+    expect_no_when_integrated_with([](Manifest& manifest) {
+        std::swap(manifest.wavelengths[0].channel, manifest.wavelengths[1].channel);
+        std::swap(manifest.wavelengths[0].exposure_log2, manifest.wavelengths[1].exposure_log2);
+    });
+}
+
+}  // namespace
+}  // namespace aphotic
