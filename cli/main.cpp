@@ -32,6 +32,7 @@ constexpr std::array kCommands{
     Command{"validate",
             "render, trace, and compare them within stated bounds",
             aphotic::cli::configure_validate},
+    Command{"compare", "how far one image is from another", aphotic::cli::configure_compare},
     Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
 };
 

@@ -6,6 +6,7 @@
 #   unit    no other program needed; milliseconds each
 #   povray  runs POV-Ray, which takes every core: CTest counts such a test as two
 #   cli     runs the command as a user would
+#   slow    needs a program beyond POV-Ray, such as a browser
 include(GoogleTest)
 
 function(aphotic_tests label)
@@ -26,7 +27,7 @@ function(aphotic_tests label)
             APHOTIC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
             APHOTIC_COMMAND="$<TARGET_FILE:aphotic>")
         target_link_libraries(${target} PRIVATE
-            aphotic::plugin aphotic::scene_gen aphotic::spectral
+            aphotic::validation aphotic::plugin aphotic::scene_gen aphotic::spectral
             fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR PkgConfig::cairo
             GTest::gtest_main
             aphotic_sanitizers aphotic_warnings)

@@ -57,8 +57,12 @@ std::vector<Member> members_of(const LightFamily& family, int paths) {
     for (const auto& source : family.sources) {
         for (int i = 0; i < paths; ++i) {
             const double share = paths == 1 ? 0.0 : static_cast<double>(i) / (paths - 1);
+            // In even ratios, for paths may reach from metres to the horizon.
             const double path_m =
-                family.shortest_path_m + share * (family.longest_path_m - family.shortest_path_m);
+                family.shortest_path_m > 0.0
+                    ? family.shortest_path_m *
+                          std::pow(family.longest_path_m / family.shortest_path_m, share)
+                    : share * family.longest_path_m;
             members.push_back({.source = &source, .path_m = path_m});
         }
     }
@@ -133,7 +137,7 @@ std::vector<WeightedWavelength> reference_grid(const Sensor& sensor,
                                                WavelengthRange range,
                                                double error) {
     const std::vector<double> knots = knots_of(sensor, family, range);
-    const std::vector<Member> members = members_of(family, 3);
+    const std::vector<Member> members = members_of(family, kExactPaths);
     const std::size_t intervals = knots.size() - 1;
 
     std::vector<std::vector<Signals>> exact(intervals);  // by interval and member

@@ -37,13 +37,15 @@ struct LightFamily {
 // An integration grid that is exact to the stated error for every member of the family: between
 // neighbouring knots of all tables each factor is a straight line, and Gauss-Legendre with as
 // many points as the interval needs takes their product. Summed over the intervals, the
-// differences from a rule of kExactPoints points stay under `error` times the channel's T_c, at
-// the shortest, the middle and the longest path.
+// differences from a rule of kExactPoints points stay under `error` times the channel's T_c, on
+// kExactPaths paths from the shortest to the longest, in even ratios. An interval over which the
+// longest path's light falls too steeply for that rule is cut into several.
 [[nodiscard]] std::vector<WeightedWavelength> reference_grid(const Sensor& sensor,
                                                              const LightFamily& family,
                                                              WavelengthRange range,
                                                              double error);
 inline constexpr unsigned kExactPoints = 12;
+inline constexpr int kExactPaths = 5;
 
 // The largest relative error of the rule over the family, per channel, against reference_grid.
 // A channel that sees none of a source's light has error 0 for it.

@@ -18,14 +18,14 @@ int blocks(int pixels, int side) {
 
 // Calls visit(index of the block, index of the sample) for every sample.
 template <typename Visit>
-void for_each_in_blocks(int width_px, int height_px, int side, const Visit& visit) {
-    const int across = blocks(width_px, side);
-    for (int row = 0; row < height_px; ++row) {
-        for (int column = 0; column < width_px; ++column) {
-            visit(static_cast<std::size_t>(row / side * across + column / side),
-                  static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px) +
-                      static_cast<std::size_t>(column));
-        }
+void for_each_in_blocks(int width_px, int height_px, int side_px, const Visit& visit) {
+    const auto width = static_cast<std::size_t>(width_px);
+    const auto height = static_cast<std::size_t>(height_px);
+    const auto side = static_cast<std::size_t>(side_px);
+    const std::size_t across = (width + side - 1) / side;
+    for (std::size_t row = 0; row < height; ++row) {
+        for (std::size_t column = 0; column < width; ++column)
+            visit(row / side * across + column / side, row * width + column);
     }
 }
 

@@ -41,7 +41,7 @@ code { font: 13px ui-monospace, "DejaVu Sans Mono", "Liberation Mono", monospace
 .map .frame { position: relative; flex: 1 1 auto; align-self: flex-start;
   outline: 1px solid var(--rule); }
 .map .marks { position: absolute; inset: 0; width: 100%; height: 100%; }
-#colour-bar { flex: 0 0 84px; width: 84px; height: 438px; }
+#colour-bar { flex: 0 0 84px; width: 84px; height: auto; align-self: flex-start; }
 .legend { display: flex; flex-wrap: wrap; gap: 2px 22px; font-size: 14px; color: var(--soft);
   max-width: none; }
 .key { display: inline-flex; align-items: center; gap: 6px; white-space: nowrap; }
@@ -100,9 +100,10 @@ td.mark { font-weight: 620; }
 tr.holds .mark { color: var(--good); }
 tr.fails .mark { color: var(--bad); }
 tr.fails { background: #fdf4f4; }
-@media (max-width: 760px) {
+@media screen and (max-width: 760px) {
   main { padding: 24px 16px; }
   .pair { grid-template-columns: 1fr; }
+  #colour-bar { flex-basis: 56px; width: 56px; }
   dl.rig { grid-template-columns: 1fr; gap: 0; }
   dl.rig dd { margin-bottom: 10px; }
 }
@@ -117,6 +118,8 @@ tr.fails { background: #fdf4f4; }
   figure, .map, .pair, .rule, tr { break-inside: avoid; }
   table { font-size: 6.6pt; }
   th, td { padding: 2pt 3pt; }
+  .pair + p, .legend, figcaption { font-size: 8.5pt; }
+  dl.rig { gap: 3pt 16pt; max-width: none; }
   .wide { overflow: visible; }
   .verdict, .swatch, .picture, tr.fails { print-color-adjust: exact;
     -webkit-print-color-adjust: exact; }

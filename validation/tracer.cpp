@@ -98,8 +98,8 @@ Tracer::Index Tracer::index_at(double lambda_nm) const {
             .water = seawater_index(lambda_nm, rig_.water.salinity_psu, rig_.water.temperature_c)};
 }
 
-// The family of this rig's light: paths from the shortest to the longest that the image's border
-// and middle see, with some room on both sides.
+// The family of this rig's light: paths from the shortest to the longest that the image sees,
+// with some room on both sides.
 std::vector<WeightedWavelength> Tracer::full_spectrum() const {
     constexpr int kSteps = 16;
     constexpr double kRoom = 1.05;
@@ -118,17 +118,27 @@ std::vector<WeightedWavelength> Tracer::full_spectrum() const {
             .glass = rig_.camera.port->glass.index(middle_nm),
             .water = seawater_index(middle_nm, rig_.water.salinity_psu, rig_.water.temperature_c)};
     }
+    const auto take_in = [&](double column, double row) {
+        View view;
+        if (!look(column, row, index, view)) return false;
+        for (const Lamp& lamp : lamps_) {
+            const double path_m = view.distance_m + (view.point_m - lamp.position_m).norm();
+            family.shortest_path_m = std::min(family.shortest_path_m, path_m / kRoom);
+            family.longest_path_m = std::max(family.longest_path_m, path_m * kRoom);
+        }
+        return true;
+    };
+    bool is_all_floor = true;
     for (int j = 0; j <= kSteps; ++j) {
         for (int i = 0; i <= kSteps; ++i) {
-            View view;
-            const double column = rig_.camera.width_px * i / static_cast<double>(kSteps);
-            const double row = rig_.camera.height_px * j / static_cast<double>(kSteps);
-            if (!look(column, row, index, view)) continue;
-            for (const Lamp& lamp : lamps_) {
-                const double path_m = view.distance_m + (view.point_m - lamp.position_m).norm();
-                family.shortest_path_m = std::min(family.shortest_path_m, path_m / kRoom);
-                family.longest_path_m = std::max(family.longest_path_m, path_m * kRoom);
-            }
+            is_all_floor &= take_in(rig_.camera.width_px * i / static_cast<double>(kSteps),
+                                    rig_.camera.height_px * j / static_cast<double>(kSteps));
+        }
+    }
+    // Towards the horizon paths grow without end: ask every pixel.
+    for (int row = 0; row < rig_.camera.height_px && !is_all_floor; ++row) {
+        for (int column = 0; column < rig_.camera.width_px; ++column) {
+            take_in(column + 0.5, row + 0.5);
         }
     }
     if (family.longest_path_m == 0.0) family.shortest_path_m = 0.0;  // no floor in view

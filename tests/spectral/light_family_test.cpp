@@ -101,6 +101,41 @@ TEST(ReferenceGrid, IntegratesAnExponentialToTheStatedError) {
     }
 }
 
+// The same where the light falls by factors of up to exp(3e6) between two knots, towards either
+// end: no rule of a dozen points reaches that.
+TEST(ReferenceGrid, HoldsItsErrorHoweverSteeplyLightFalls) {
+    constexpr double kError = 1e-8;
+    for (const double rise_per_m : {8.0, 30.0, -30.0, 400.0, -1e6}) {
+        const Water water{.absorption_per_m =
+                              line(std::max(0.0, -rise_per_m), std::max(0.0, rise_per_m))};
+        const auto family = family_of({{flat(1.0)}}, water, 0.5, 3.0);
+        const auto grid = reference_grid(flat_sensor(), family, kRange, kError);
+        for (const double path_m : {0.5, 1.3, 3.0}) {
+            const double x = std::abs(rise_per_m) * path_m;
+            const double T_nm = kWidth_nm * (1.0 - std::exp(-x)) / x;
+            EXPECT_NEAR(
+                applied(grid, {flat(1.0)}, water, path_m, 0) / T_nm, 1.0, kError + kRounding)
+                << "K rises by " << rise_per_m << " 1/m; path " << path_m << " m";
+        }
+    }
+}
+
+// From nothing, and to a hundred times the shortest.
+TEST(ReferenceGrid, HoldsItsErrorOverALongRangeOfPaths) {
+    constexpr double kError = 1e-8;
+    const Water water{.absorption_per_m = line(0.0, 1.0)};
+    for (const double shortest_m : {0.0, 0.5}) {
+        const auto family = family_of({{flat(1.0)}}, water, shortest_m, 50.0);
+        const auto grid = reference_grid(flat_sensor(), family, kRange, kError);
+        for (const double path_m : {0.5, 2.0, 7.0, 20.0, 50.0}) {
+            const double T_nm = kWidth_nm * (1.0 - std::exp(-path_m)) / path_m;
+            EXPECT_NEAR(
+                applied(grid, {flat(1.0)}, water, path_m, 0) / T_nm, 1.0, kError + kRounding)
+                << "path " << path_m << " m of " << shortest_m << " to 50 m";
+        }
+    }
+}
+
 // int_0^1 t^k dt = 1 / (k + 1): lamp t, reflectance t, response t.
 TEST(ReferenceGrid, IntegratesTheProductOfThreeLinesExactly) {
     const Sensor sensor({line(0.0, 1.0), flat(1.0), line(1.0, 0.0)}, ResponseKind::Energy);
@@ -300,7 +335,7 @@ TEST(ReferenceGrid, HoldsItsErrorForRandomFamilies) {
         }
         const double multiple = trial == 0 ? 0.0 : trial == 1 ? 20.0 : dice.between(0.0, 20.0);
         const double shortest_m = dice.between(0.2, 3.0);
-        const double longest_m = shortest_m * dice.between(1.0, 3.0);
+        const double longest_m = shortest_m * dice.between(1.0, 6.0);
 
         std::set<double> knots_nm{kRange.first_nm, kRange.last_nm};
         const auto note = [&](const Table& table) {

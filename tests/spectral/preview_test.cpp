@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace aphotic {
 namespace {
@@ -186,6 +187,28 @@ TEST(Preview, KeepsRowsAndColumns) {
     EXPECT_EQ(picture.pixels[5], (Rgb{0, 0, srgb_byte(kBrightLevel)}));
     EXPECT_EQ(picture.pixels[0], (Rgb{srgb_byte(kBrightLevel), 0, 0}));
     EXPECT_EQ(picture.pixels[4], (Rgb{0, 0, 0}));
+}
+
+// Under one scale, a pixel's colour depends on its own signal alone.
+TEST(PreviewPng, UnderOneScaleShowsEqualSignalsEqual) {
+    const std::array<double, kChannels> scale{0.5, 1.0, 2.0};
+    const TempFolder folder;
+    const auto first_pixel = [&](const CameraImage& image) {
+        write_file(folder.path() / "a.png", preview_png(image, scale));
+        return read_png(folder.path() / "a.png").pixels.front();
+    };
+    const Rgb wanted{srgb_byte(0.2), srgb_byte(0.4), srgb_byte(0.8)};
+    EXPECT_EQ(first_pixel(one_row({0.4F, 0.4F, 0.4F})), wanted);
+    EXPECT_EQ(first_pixel(one_row({0.4F, 9.0F, 0.4F, 9.0F, 0.4F, 9.0F})), wanted);
+}
+
+TEST(PreviewPng, OfSamplesThatAreNotFiniteKeepsTheOthers) {
+    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    const CameraImage image = one_row({kNaN, 1.0F, kNaN, 1.0F, kNaN, 1.0F});
+    const Picture picture = shown(image, kNoLamp, {});
+    EXPECT_EQ(picture.pixels[0], (Rgb{0, 0, 0}));
+    const int level = srgb_byte(kBrightLevel);
+    EXPECT_EQ(picture.pixels[1], (Rgb{level, level, level}));
 }
 
 TEST(Preview, ThatCannotBeWrittenIsARunErrorThatNamesIt) {

@@ -4,9 +4,9 @@
 // picture shown, nothing cut off or wider than the page.
 #include "plugin/process.h"
 #include "spectral/atomic_file.h"
+#include "support/small_report.h"
 #include "support/temp_folder.h"
 #include "validation/report.h"
-#include "validation/report_fixture.h"
 
 #include <gtest/gtest.h>
 

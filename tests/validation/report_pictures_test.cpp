@@ -81,7 +81,7 @@ TEST(ErrorMap, ShowsSamplesThatAreNotFinite) {
 // The one large error of a block must not be averaged away, nor hidden by an edge beside it.
 TEST(ErrorMap, OfALargeImageKeepsTheLargestOfEachBlock) {
     constexpr int kWidth = 1200;
-    std::vector<float> errors(2 * kWidth, 1e-5F);
+    std::vector<float> errors(2UL * kWidth, 1e-5F);
     errors[0] = kNaN;
     errors[kWidth + 1] = -1e-3F;
     errors[2] = errors[3] = errors[kWidth + 2] = errors[kWidth + 3] = kNaN;

@@ -4,8 +4,8 @@
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
 #include "support/png.h"
+#include "support/small_report.h"
 #include "support/temp_folder.h"
-#include "validation/report_fixture.h"
 #include "validation/report_pictures.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ std::string first_unbalanced(const std::string& page) {
         if (page[at + 1] == '!' || page[end - 1] == '/') continue;
         const bool closes = page[at + 1] == '/';
         const std::size_t from = at + (closes ? 2 : 1);
-        const std::string name = page.substr(from, page.find_first_of(" >\n", from) - from);
+        std::string name = page.substr(from, page.find_first_of(" >\n", from) - from);
         if (!closes) {
             open.push_back(name);
         } else if (open.empty() || open.back() != name) {

@@ -758,7 +758,7 @@ TEST(TracerPort, BendsAnObliqueRayAtBothFaces) {
 
 // One of everything, with no symmetry of its own.
 Rig lopsided_rig() {
-    Rig rig = habcam(11, 8, "habcam-emitters");
+    Rig rig = habcam(7, 6, "habcam-emitters");
     rig.sled.roll_rad = -7.0 * kDegree;
     rig.seafloor.phong = 0.2;
     rig.strobes[0].position_m = {0.41, 0.17, -0.09};
@@ -1108,6 +1108,30 @@ TEST(TracerSignal, HoldsItsStatedErrorWithDifferentLampsAHighlightAndPhotons) {
     rig.camera.sensor =
         Sensor({load_curves("nikon-d5100", CurveRole::SensorResponse, {})}, ResponseKind::Quantum);
     expect_signals_within_stated_error(rig, kSimpsonError);
+}
+
+// Just below the horizon the legs are hundreds of metres long, and only blue is left.
+TEST(TracerSignal, HoldsItsStatedErrorUpToTheHorizon) {
+    for (const double pitch_deg : {60.0, 75.0, 80.0}) {
+        Rig rig = habcam(1, 101);
+        rig.sled.pitch_rad = pitch_deg * kDegree;
+        // The camera's rows from 45 degrees ahead of its axis to as much behind.
+        rig.camera.pixel_pitch_m = rig.camera.focal_length_m * 2.0 / 101.0;
+        const auto image = image_of(rig, {});
+        int lit = 0;
+        for (std::size_t row = 0; row < 101; ++row) {
+            const double blue = image[2 * 101 + row];
+            if (blue == 0.0) continue;
+            if (++lit > 4) break;
+            for (int c = 0; c < kChannels; ++c) {
+                expect_ratio(image[static_cast<std::size_t>(c) * 101 + row],
+                             integrated(rig, 0, static_cast<int>(row), c),
+                             kSpectralError + kSimpsonError,
+                             "row " + std::to_string(row));
+            }
+        }
+        EXPECT_GT(lit, 4);
+    }
 }
 
 // Behind a port the geometry changes with wavelength as well, smoothly where there is no edge.

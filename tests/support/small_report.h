@@ -7,6 +7,7 @@
 #include "scene_gen/rig_reader.h"
 #include "validation/report.h"
 
+#include <cstddef>
 #include <limits>
 #include <string>
 
@@ -31,7 +32,8 @@ inline Comparison comparison_of(const std::string& name, double max_error, doubl
 }
 
 inline std::size_t report_sample(int channel, int column, int row) {
-    return static_cast<std::size_t>((channel * kReportHeight_px + row) * kReportWidth_px + column);
+    const std::ptrdiff_t line = std::ptrdiff_t{channel} * kReportHeight_px + row;
+    return static_cast<std::size_t>(line * kReportWidth_px + column);
 }
 
 // Holds; closest to its bound is 550 nm. The reference's signal is column / 40 in R, row / 30 in

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The project's scenes with few pixels over the same field of view.
+#pragma once
+
+#include "spectral/atomic_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+inline std::vector<std::filesystem::path> all_scenes() {
+    std::vector<std::filesystem::path> scenes;
+    const std::filesystem::path folder = std::string(APHOTIC_SOURCE_DIR) + "/scenes";
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (entry.path().extension() == ".toml") scenes.push_back(entry.path());
+    }
+    std::sort(scenes.begin(), scenes.end());
+    return scenes;
+}
+
+// A rig file's text, forty times coarser each way.
+inline std::string small_scene(const std::filesystem::path& file) {
+    constexpr int kCoarser = 40;
+    std::string text = read_text_file(file);
+    std::smatch found;
+    const std::regex resolution(R"(\nresolution\s*=\s*\[(\d+), (\d+)\])");
+    const std::regex pitch(R"(\npixel_pitch_um\s*=\s*([0-9.]+))");
+    if (!std::regex_search(text, found, resolution))
+        throw std::runtime_error("no resolution in " + file.string());
+    const int width = std::stoi(found[1]) / kCoarser;
+    const int height = std::stoi(found[2]) / kCoarser;
+    const std::string size = fmt::format("\nresolution = [{}, {}]", width, height);
+    text = std::regex_replace(text, resolution, size);
+    if (!std::regex_search(text, found, pitch))
+        throw std::runtime_error("no pixel pitch in " + file.string());
+    return std::regex_replace(
+        text, pitch, fmt::format("\npixel_pitch_um = {}", std::stod(found[1]) * kCoarser));
+}
+
+}  // namespace aphotic
