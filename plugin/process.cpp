@@ -9,8 +9,12 @@
 #include <boost/process.hpp>
 #include <boost/process/extend.hpp>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 #include <utility>
 
@@ -54,15 +58,18 @@ struct Process::Child {
 };
 
 Process::Process(const ProcessRequest& request) : child_(std::make_unique<Child>()) {
-    // Boost goes on in our own folder if it cannot change into this one, and writes over the
-    // beginning of an older log.
+    // Boost goes on in our own folder if it cannot change into this one, starts the program though
+    // its log cannot be opened, and writes over the beginning of an older one.
     if (!std::filesystem::is_directory(request.folder)) {
         throw RunError(fmt::format("{}: cannot be started: {} is no folder",
                                    request.executable.string(),
                                    request.folder.string()));
     }
+    if (!std::ofstream(request.log)) {
+        throw RunError(
+            fmt::format("{}: cannot be written: {}", request.log.string(), std::strerror(errno)));
+    }
     std::error_code error;
-    std::filesystem::remove(request.log, error);
     child_->child =
         bp::child(bp::exe = request.executable.string(),
                   bp::args = request.arguments,

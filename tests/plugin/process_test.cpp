@@ -180,9 +180,11 @@ TEST(Process, WithoutItsFolderOrLogIsARunErrorThatNamesIt) {
     EXPECT_EQ(
         run_error([&] { elsewhere.run(); }),
         "/bin/sh: cannot be started: " + elsewhere.file("missing").string() + " is no folder");
-    Script unheard("true");
+    Script unheard("touch ran");
     unheard.request().log = unheard.file("missing") / "log.txt";
-    EXPECT_NE(run_error([&] { unheard.run(); }), "no error");
+    EXPECT_EQ(run_error([&] { unheard.run(); }),
+              unheard.request().log.string() + ": cannot be written: No such file or directory");
+    EXPECT_FALSE(fs::exists(unheard.file("ran"))) << "it was started all the same";
 }
 
 TEST(Process, IsKilledWhenItsTimeIsUp) {
