@@ -115,7 +115,7 @@ tr.fails { background: #fdf4f4; }
   h1 { font-size: 20pt; }
   h2 { margin-top: 22pt; font-size: 14pt; break-after: avoid; }
   h3 { break-after: avoid; }
-  figure, .map, .pair, .rule, tr { break-inside: avoid; }
+  figure, .map, .pair, .rule, p, dd, tr { break-inside: avoid; }
   table { font-size: 6.6pt; }
   th, td { padding: 2pt 3pt; }
   .pair + p, .legend, figcaption { font-size: 8.5pt; }

@@ -25,7 +25,9 @@ std::size_t pixels_of(const Rig& rig) {
 }
 
 // Which wavelength, shortest as needed to tell it from others.
-std::string wavelength_name(double lambda_nm) { return fmt::format("{:.6g} nm", lambda_nm); }
+std::string wavelength_name(double lambda_nm) {
+    return fmt::format("{:.6g} nm", lambda_nm);
+}
 
 void compare_radiance(const Rig& rig,
                       const RenderedImages& rendered,
@@ -55,15 +57,15 @@ void compare_radiance(const Rig& rig,
                 kHalfFloatBound));
         }
         if (progress) {
-            progress(kShareOfSignals +
-                     (1.0 - kShareOfSignals) * static_cast<double>(first + part) /
-                         static_cast<double>(count));
+            progress(kShareOfSignals + (1.0 - kShareOfSignals) * static_cast<double>(first + part) /
+                                           static_cast<double>(count));
         }
     }
 }
 
 // The signals over the full spectrum, in rows so that the progress shows.
-std::vector<double> trace_signals(const Tracer& tracer, const std::function<void(double)>& progress) {
+std::vector<double> trace_signals(const Tracer& tracer,
+                                  const std::function<void(double)>& progress) {
     constexpr int kRows = 32;
     const int height_px = tracer.rig().camera.height_px;
     const std::size_t pixels = pixels_of(tracer.rig());
@@ -127,7 +129,8 @@ ValidationReport validate(const Rig& rig,
     report.rendered = rendered.signals;
     compare_signals(rig, rendered, threads, progress, report);
     compare_radiance(rig, rendered, threads, progress, report);
-    report.trace_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.trace_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;
 }
 
