@@ -3,13 +3,13 @@
 // How bright a frame will be, and by which power of two its light is scaled for it.
 //
 // POV-Ray's EXR holds half floats: relative step 2^-11 from 2^-14 to 65504, coarser below, inf
-// above. The light of each wavelength is multiplied by 2^e, chosen so that no pixel can exceed
-// 2^kTargetLog2 and the brightest comes close to it; the integrator divides it out again,
+// above. The light of each wavelength is multiplied by 2^e, chosen so that the brightest
+// pixel stays about 2^kTargetLog2 or a few octaves under it; the integrator divides it out again,
 // exactly. So a dark red wavelength uses the same digits as a bright blue one.
 //
 //   e = floor(kTargetLog2 - log2 L_max)
 //
-// L_max  upper bound of the radiance in view at power-of-two scale 0, from the rig's closed
+// L_max  close bound of the radiance in view at power-of-two scale 0, from the rig's closed
 //        form on a coarse grid of the image, with every cone widened by the grid's step
 //        [unit of the lamp's spectrum / (m^2 sr)]
 //

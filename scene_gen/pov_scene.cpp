@@ -97,6 +97,8 @@ Housing housing(const Camera& camera) {
 
 // POV-Ray gives up inside a medium when it meets more lights than this.
 constexpr std::size_t kMostLightsInMedia = 1024;
+// Elsewhere it is patience and memory that end: a scene of this many is 15 MB of text.
+constexpr std::size_t kMostLights = 100'000;
 
 void require_few_enough_lights(const Rig& rig, const SceneOptions& options) {
     std::size_t lights = 0;
@@ -106,13 +108,15 @@ void require_few_enough_lights(const Rig& rig, const SceneOptions& options) {
             static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.along);
         lights += strobe.beam.cones.size() * (strobe.emitter ? lamps : 1);
     }
-    if (rig.water.is_clear() || lights <= kMostLightsInMedia) return;
+    const std::size_t most = rig.water.is_clear() ? kMostLights : kMostLightsInMedia;
+    if (lights <= most) return;
     throw InputError(
-        fmt::format("strobes: {} lights, one for every cone of every lamp; allowed: {} in "
-                    "water, which is POV-Ray's limit. Fewer lamps stand for an emitter "
-                    "with --emitter-lamps",
+        fmt::format("strobes: {} lights, one for every cone of every lamp; allowed: {}, "
+                    "which is what POV-Ray takes in {}. Fewer lamps stand for an "
+                    "emitter with --emitter-lamps",
                     lights,
-                    kMostLightsInMedia));
+                    most,
+                    rig.water.is_clear() ? "clear water" : "water"));
 }
 
 void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid) {

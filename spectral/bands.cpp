@@ -34,7 +34,9 @@ std::vector<WeightedWavelength> listed_wavelengths(const Sensor& sensor,
                                                    std::span<const double> lambda_nm) {
     std::vector<WeightedWavelength> bands;
     for (std::size_t j = 0; j < lambda_nm.size(); ++j) {
-        const bool increases = j == 0 || lambda_nm[j] > lambda_nm[j - 1];
+        // Closer ones could not be told apart by the names of their channels.
+        constexpr double kLeastStepNm = 1e-5;
+        const bool increases = j == 0 || lambda_nm[j] >= lambda_nm[j - 1] + kLeastStepNm;
         if (!increases || !range.contains(lambda_nm[j])) {
             throw InputError(
                 fmt::format("wavelengths: found {} nm in place {}; allowed: increasing "

@@ -132,6 +132,11 @@ ManifestWavelength wavelength_of(const Reader& reader, const Manifest& manifest)
                                     [&](const auto& f) { return f.name == frame; });
     if (found == manifest.frames.end()) reader.fail("frame", "the name of one of the frames");
     w.frame = static_cast<std::size_t>(found - manifest.frames.begin());
+    for (const ManifestWavelength& other : manifest.wavelengths) {
+        if (other.frame == w.frame && other.channel == w.channel) {
+            reader.fail("channel", "a channel of the frame that no other wavelength has");
+        }
+    }
     return w;
 }
 
@@ -201,7 +206,14 @@ Manifest read_manifest(const fs::path& folder) {
     manifest.height_px = reader.integer("height_px", 1, kLargestImagePx);
     manifest.lamp_signal = reader.channels("lamp_signal");
     manifest.predicted_error = reader.channels("predicted_error");
-    for (const Reader& frame : reader.objects("frames")) manifest.frames.push_back(frame_of(frame));
+    for (const Reader& frame : reader.objects("frames")) {
+        manifest.frames.push_back(frame_of(frame));
+        for (std::size_t i = 0; i + 1 < manifest.frames.size(); ++i) {
+            if (manifest.frames[i].name == manifest.frames.back().name) {
+                frame.fail("name", "a name that no other frame has");
+            }
+        }
+    }
     for (const Reader& w : reader.objects("wavelengths")) {
         manifest.wavelengths.push_back(wavelength_of(w, manifest));
     }

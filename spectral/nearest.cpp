@@ -35,6 +35,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_name(std::string_view wanted, std::span<const std::string> known) {
+    // The commonest slip: the unit left off.
+    constexpr std::size_t kLeastPrefix = 3;
+    for (const std::string& name : known) {
+        if (wanted.size() >= kLeastPrefix && name.starts_with(wanted)) return name;
+    }
     std::string nearest;
     std::size_t least = wanted.size();
     for (const std::string& name : known) {

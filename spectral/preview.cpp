@@ -56,7 +56,9 @@ double bright_value(const CameraImage& image, const Channels& scale) {
     const auto rank =
         static_cast<std::ptrdiff_t>(kBrightShare * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
+    const double bright = values[static_cast<std::size_t>(rank)];
+    // A small light in the dark: the brightest there is.
+    return bright > 0.0 ? bright : *std::ranges::max_element(values);
 }
 
 void require(cairo_status_t status, int width_px, int height_px) {

@@ -72,15 +72,17 @@ double largest_size(std::span<const double> values) {
     return largest;
 }
 
-// The exponent that a plot's numbers share, such as -4 for errors of a few 1e-4.
-int shared_log10(double largest) {
-    return static_cast<int>(std::floor(std::log10(largest) + 1e-9));
+// The exponent that the numbers of an axis share, such as -4 for errors of a few 1e-4; 0 for
+// numbers of ordinary size, which are written out.
+int unit_log10(double largest) {
+    if (!(largest > 0.0)) return 0;
+    const int exponent = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
+    return exponent < -2 || exponent > 3 ? exponent : 0;
 }
 
-// Signals of ordinary size are written out.
-int signal_log10(double largest) {
-    const int exponent = largest > 0.0 ? shared_log10(largest) : 0;
-    return exponent < -2 || exponent > 3 ? exponent : 0;
+// "e / 10⁻⁴", or "e" alone.
+std::string over_unit(const std::string& quantity, int log10) {
+    return log10 == 0 ? quantity : quantity + " / " + power_label(1.0, log10);
 }
 
 // In whole degrees off the camera's axis, at the sensor's side of any port.
@@ -122,7 +124,7 @@ SvgAxis signal_axis(const Profile& profile) {
     }
     if (most == least) most = least + 1.0;
     const double last = most + 0.07 * (most - least);
-    return linear_axis(least, last, 5, signal_log10(last));
+    return linear_axis(least, last, 5, unit_log10(last));
 }
 
 // Shows the bound too when it is not far from the errors.
@@ -155,13 +157,11 @@ std::string signal_panel(const SvgPanel& panel,
     const Points rendered = thinned(profile.position_px, profile.rendered, false);
     svg += svg_curve(panel, traced.x, traced.y, curve_style(line, channel, "reference"));
     svg += svg_curve(panel, rendered.x, rendered.y, curve_style(line, channel, "rendered"));
-    const int unit = signal_log10(panel.y.last);
+    const int unit = unit_log10(panel.y.last);
     return svg + svg_upward_text(20.0,
                                  panel.top + panel.height / 2.0,
                                  fmt::format(R"(class="name {}")", kClasses[channel]),
-                                 fmt::format("{} signal{}",
-                                             kChannelNames[channel],
-                                             unit == 0 ? "" : " / " + power_label(1.0, unit)));
+                                 over_unit(fmt::format("{} signal", kChannelNames[channel]), unit));
 }
 
 std::string error_panel(const SvgPanel& panel,
@@ -181,7 +181,7 @@ std::string error_panel(const SvgPanel& panel,
     return svg + svg_upward_text(20.0,
                                  panel.top + panel.height / 2.0,
                                  R"(class="axis")",
-                                 "e / " + power_label(1.0, shared_log10(panel.y.last)));
+                                 over_unit("e", unit_log10(panel.y.last)));
 }
 
 // Of one quantity over the comparisons.
@@ -318,7 +318,7 @@ std::string profile_svg(const ValidationReport& report, ProfileLine line) {
         svg += signal_panel(panel, profiles[c], line, c);
         panel.top = panel.bottom() + kGap;
         panel.height = kErrorHeight;
-        panel.y = linear_axis(-scale, scale, 4, shared_log10(scale));
+        panel.y = linear_axis(-scale, scale, 4, unit_log10(scale));
         svg += error_panel(panel, profiles[c], report.channels[c], line, c);
     }
     svg += svg_x_labels(panel);
@@ -375,7 +375,7 @@ std::string colour_bar_svg(double scale) {
     constexpr double kBarWidth = 22.0;
     constexpr double kHeight = 400.0;
     constexpr int kMost = (kColourSteps - 1) / 2;
-    const int unit = shared_log10(scale);
+    const int unit = unit_log10(scale);
     const SvgPanel bar{.left = 4.0,
                        .top = kTop,
                        .width = kBarWidth,
@@ -407,8 +407,7 @@ std::string colour_bar_svg(double scale) {
                     bar.top,
                     bar.width,
                     bar.height);
-    svg += svg_text(
-        bar.left, 14.0, SvgAnchor::Start, R"(class="axis")", "e / " + power_label(1.0, unit));
+    svg += svg_text(bar.left, 14.0, SvgAnchor::Start, R"(class="axis")", over_unit("e", unit));
     return svg_of("colour-bar", 84.0, kTop + kHeight + 12.0, svg);
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/tracer.h"
 
+#include "spectral/error.h"
 #include "spectral/light_family.h"
 #include "spectral/refraction.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -73,6 +75,16 @@ void Tracer::place_lamps() {
         const int along = options_.lamps_along > 0
                               ? options_.lamps_along
                               : lamps_for(strobe.emitter->along_m, height_m, rig_.seafloor);
+        constexpr double kMostLamps = 1e5;
+        if (static_cast<double>(across) * along > kMostLamps) {
+            throw InputError(
+                fmt::format("strobe '{}': its emitter takes {} x {} lamps to trace; "
+                            "allowed: {:.0f}. It is large for its height over the floor",
+                            strobe.name,
+                            across,
+                            along,
+                            kMostLamps));
+        }
         // The emitter's own frame: its normal is the axis; forward, as it lies in its plane.
         Vector3d starboard_side = strobe.axis.cross(Vector3d::UnitX());
         if (starboard_side.norm() < 1e-6) starboard_side = strobe.axis.cross(Vector3d::UnitZ());

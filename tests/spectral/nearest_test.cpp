@@ -36,5 +36,11 @@ TEST(NearestName, TakesTheFirstOfEquals) {
     EXPECT_EQ(nearest_name("cat", known), "cab");
 }
 
+TEST(NearestName, UnitLeftOffIsFound) {
+    const std::vector<std::string> known{"salt", "salinity_psu", "range_nm"};
+    EXPECT_EQ(nearest_name("salinity", known), "salinity_psu");
+    EXPECT_EQ(nearest_name("range", known), "range_nm");
+}
+
 }  // namespace
 }  // namespace aphotic
