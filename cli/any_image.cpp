@@ -9,7 +9,7 @@
 namespace aphotic::cli {
 
 AnyImage open_any_image(const std::filesystem::path& file) {
-    using Open = AnyImage (*)(const std::filesystem::path&);
+    using Open = void (*)(const std::filesystem::path&, AnyImage&);
     // Found through the command's own run path; stays loaded, for the images hold on to it.
     static void* const kPart = ::dlopen("aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
     if (kPart == nullptr) {
@@ -17,7 +17,9 @@ AnyImage open_any_image(const std::filesystem::path& file) {
     }
     const auto open = reinterpret_cast<Open>(::dlsym(kPart, "aphotic_open_any_image"));
     if (open == nullptr) throw RunError("aphotic_any_image.so is not of this version");
-    return open(file);
+    AnyImage image;
+    open(file, image);
+    return image;
 }
 
 }  // namespace aphotic::cli

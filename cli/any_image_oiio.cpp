@@ -7,10 +7,8 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
-// A struct with C++ members crosses: the command and this part are built together.
-#pragma GCC diagnostic ignored "-Wreturn-type-c-linkage"
-
-extern "C" aphotic::cli::AnyImage aphotic_open_any_image(const std::filesystem::path& file) {
+extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
+                                       aphotic::cli::AnyImage& image) {
     // Opened directly: an image cache could hand back the pixels of a file that was since replaced.
     const std::shared_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
     if (!input) {
@@ -18,10 +16,9 @@ extern "C" aphotic::cli::AnyImage aphotic_open_any_image(const std::filesystem::
             fmt::format("{}: cannot be read: {}", file.string(), OIIO::geterror()));
     }
     const OIIO::ImageSpec spec = input->spec();
-    aphotic::cli::AnyImage image{.width_px = spec.width,
-                                 .height_px = spec.height,
-                                 .channels = spec.channelnames,
-                                 .samples = {}};
+    image.width_px = spec.width;
+    image.height_px = spec.height;
+    image.channels = spec.channelnames;
     image.samples = [input, spec, file](std::size_t channel) {
         const auto c = static_cast<int>(channel);
         std::vector<float> samples(spec.image_pixels());
@@ -31,5 +28,4 @@ extern "C" aphotic::cli::AnyImage aphotic_open_any_image(const std::filesystem::
         }
         return samples;
     };
-    return image;
 }

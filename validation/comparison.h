@@ -13,7 +13,7 @@
 //
 // Samples on edges, where a pixel's centre falls on either side by rounding, are counted and
 // measured on their own. A comparison holds when the largest |e| off the edges is within the
-// bound and every sample, on edges too, is finite.
+// bound, every sample, on edges too, is finite, and there is at least one off the edges.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,9 @@ struct Comparison {
     std::size_t not_finite = 0;  // samples of a or b that are NaN or inf, edges included
     double bound = 0.0;
 
-    [[nodiscard]] bool holds() const { return not_finite == 0 && max_error <= bound; }
+    [[nodiscard]] bool holds() const {
+        return compared > 0 && not_finite == 0 && max_error <= bound;
+    }
 };
 
 // The planes are rows of width_px samples. on_edge: 1 for samples on edges; may be empty.

@@ -460,6 +460,9 @@ TEST(RuleError, IsZeroForAChannelThatSeesNothing) {
     const auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
     EXPECT_EQ(rule_error(sensor, family, kRange, {})[0], 0.0);
     EXPECT_EQ(rule_error(sensor, family, kRange, {})[1], 1.0);
+    // Even to a rule that finds something there.
+    const auto rule = equal_bands(flat_sensor(), kRange, 2);
+    EXPECT_EQ(rule_error(sensor, family, kRange, rule)[0], 0.0);
 }
 
 LightFamily habcam_light() {

@@ -288,27 +288,21 @@ TEST(TracerClosedForm, IsBlackWhereTheLampLooksAway) {
     EXPECT_EQ(plane[7], 0.0);
 }
 
-// Level camera axis: the rows at and above the horizon see no floor, and the one just below sees
-// it 20 km away.
-TEST(TracerClosedForm, IsBlackAboveTheHorizonAndFiniteBelow) {
-    Rig rig = habcam(3, 201);
-    rig.sled.pitch_rad = 80.0 * kDegree;
-    rig.camera.pixel_pitch_m *= 0.3;
-    const TraceOptions options{.signals = true, .planes_nm = {450.0}};
-    const auto image = image_of(rig, options);
-    const std::size_t pixels = 3 * 201;
-    for (const double sample : image) {
-        EXPECT_TRUE(std::isfinite(sample));
-        EXPECT_GE(sample, 0.0);
-    }
-    for (std::size_t plane = 0; plane < 4; ++plane) {
-        for (std::size_t i = 0; i < pixels; ++i) {
-            // Above the horizon: the ray's angle ahead of the axis exceeds 90 deg - pitch.
-            const bool is_sky = slope_of(rig, i).forward >= std::tan(10.0 * kDegree);
-            if (!is_sky) continue;
-            EXPECT_EQ(image[plane * pixels + i], 0.0) << "pixel " << i;
+// A bow so high that the horizon is in view, 10 degrees ahead of the camera's axis.
+TEST(TracerClosedForm, IsBlackAboveTheHorizonAndLitBelow) {
+    for (const double multiple : {0.0, 1.0}) {
+        Rig rig = habcam(3, 201);
+        rig.sled.pitch_rad = 80.0 * kDegree;
+        rig.water.multiple = multiple;
+        rig.camera.pixel_pitch_m *= 0.3;
+        const auto image = image_of(rig, {.signals = true, .planes_nm = {450.0}});
+        constexpr std::size_t kPixels = 3 * 201;
+        ASSERT_EQ(image.size(), 4 * kPixels);
+        for (std::size_t i = 0; i < image.size(); ++i) {
+            EXPECT_TRUE(std::isfinite(image[i])) << "sample " << i;
+            const bool is_sky = slope_of(rig, i % kPixels).forward >= std::tan(10.0 * kDegree);
+            EXPECT_EQ(image[i] > 0.0, !is_sky) << "sample " << i;
         }
-        EXPECT_GT(image[plane * pixels + pixels - 1], 0.0);
     }
 }
 
@@ -1022,6 +1016,23 @@ TEST(TracerSignal, ComesWithThePlanesAskedForInTheirOrder) {
     expect_plane(4, plane_of(rig, 450.0));
 }
 
+// A floor that reflects in 0.2 nm only, with an area of 0.1 nm, between all other knots.
+TEST(TracerSignal, KnowsTheKnotsOfTheFloor) {
+    Rig rig = plain_rig();
+    rig.seafloor.reflectance =
+        Spectrum("peak", {300.0, 549.9, 550.0, 550.1, 800.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
+    const double L_nm = 0.1 / (kPi * kPi * 4.0);
+    expect_ratio(image_of(rig, {})[0], L_nm, kSpectralError);
+    // And its highlight at all wavelengths: with lamp and response both t, 0 to 1 over the range,
+    // int t^2 is a third of it.
+    const Spectrum line("line", {400.0, 700.0}, {0.0, 1.0});
+    rig.strobes[0].spectrum = line;
+    rig.camera.sensor = Sensor({line, line, line}, ResponseKind::Energy);
+    rig.seafloor.phong = 0.5;
+    expect_ratio(
+        image_of(rig, {})[0], 0.25 * L_nm + 0.5 * 100.0 / (kPi * kPi * 4.0), kSpectralError);
+}
+
 // In clear water no path matters, and the grid is that of the family alone.
 TEST(TracerSignal, IsTheWeightedSumOfThePlanes) {
     Rig rig = habcam(3, 2);
@@ -1371,6 +1382,29 @@ TEST(TracerConeEdges, AreWhereDispersionTakesThemAcrossAPixel) {
     }
     EXPECT_GT(crossed, 20);
     EXPECT_LT(crossed, 400);
+}
+
+// A pixel that sees one point in blue and one a little farther out in red: it is marked while the
+// edge is nearer to either than POV-Ray's index is exact, and anywhere between them.
+TEST(TracerConeEdges, AreAsWideBehindAPortAsASinglePrecisionIndexMakesThem) {
+    Rig rig = port_rig(3, 1, 2000.0);
+    const auto angle_at = [&](double lambda_nm) {
+        const auto ray = closed_form::camera_ray(rig, 2, 0, lambda_nm);
+        const double leg_m = (2.0 - ray.origin[2]) / ray.direction[2];
+        return std::atan2(ray.origin[1] + leg_m * ray.direction[1], 2.0);
+    };
+    const double blue = angle_at(450.0);
+    const double red = angle_at(650.0);
+    ASSERT_GT(red - blue, 10.0 * kEdgeBehindPortRad);
+    const auto is_marked = [&](double half_angle_rad) {
+        rig.strobes[0].beam = cone_of(half_angle_rad, 1.0);
+        return edges_of(rig)[2] == 1;
+    };
+    EXPECT_FALSE(is_marked(blue - 1.1 * kEdgeBehindPortRad));
+    EXPECT_TRUE(is_marked(blue - 0.9 * kEdgeBehindPortRad));
+    EXPECT_TRUE(is_marked(0.5 * (blue + red)));
+    EXPECT_TRUE(is_marked(red + 0.9 * kEdgeBehindPortRad));
+    EXPECT_FALSE(is_marked(red + 1.1 * kEdgeBehindPortRad));
 }
 
 // An emitter's lamps lie on both sides of the edge where the pixel has some of the light that it
