@@ -94,11 +94,15 @@ TEST_F(CommandErrors, CommandLineMistakesAreBadInput) {
 }
 
 TEST_F(CommandErrors, HelpAndVersionAreNoErrors) {
-    for (const char* command : {"render", "plan", "generate", "integrate", "data"}) {
+    const std::string manual = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/docs/aphotic.1");
+    for (const char* command :
+         {"render", "plan", "generate", "integrate", "trace", "validate", "compare", "data"}) {
         const CommandResult run = run_aphotic(folder_.path(), {command, "--help"});
         EXPECT_EQ(run.status, 0);
         EXPECT_NE(run.out.find("--json"), std::string::npos) << command;
         EXPECT_EQ(run.err, "");
+        EXPECT_NE(manual.find(std::string(".SY aphotic\\ ") + command + "\n"), std::string::npos)
+            << command << " is not in the man page";
     }
     EXPECT_TRUE(run_aphotic(folder_.path(), {"--version"}).out.starts_with("aphotic "));
 }

@@ -78,7 +78,7 @@ double total_weight(const std::vector<WeightedWavelength>& rule, std::size_t cha
 // K a straight line from k0 to k1 over the range, all else flat:
 //   T_c(l) = q_c W (exp(-k0 l) - exp(-k1 l)) / ((k1 - k0) l)
 TEST(ReferenceGrid, IntegratesAnExponentialToTheStatedError) {
-    constexpr double k0_per_m = 0.02;
+    const double k0_per_m = 0.02;
     for (const double rise_per_m : {0.1, 1.0, 4.0}) {
         const Water water{.absorption_per_m = line(k0_per_m, k0_per_m + rise_per_m)};
         const auto family = family_of({{flat(1.0)}}, water, 1.0, 3.0);
@@ -239,11 +239,11 @@ TEST(ReferenceGrid, DoesNotReadTheWaterOfMultipleZero) {
 // 1 photon per joule and nanometre of wavelength is 1e-9 / (h c) = 5.03411657e15: CODATA 2018,
 // of which h and c are exact. int lambda dlambda from 400 to 700 nm is 165 000 nm^2.
 TEST(ReferenceGrid, CountsPhotonsForAQuantumResponse) {
-    constexpr double kPhotons_per_J_nm = 5.03411657e15;
+    constexpr double kPhotons_per_j_nm = 5.03411657e15;
     constexpr double kDigits = 2e-9;  // of that number
     const auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
     const auto grid = reference_grid(flat_sensor(ResponseKind::Quantum), family, kRange, 1e-10);
-    EXPECT_NEAR(total_weight(grid, 0) / (165000.0 * kPhotons_per_J_nm), 1.0, kDigits);
+    EXPECT_NEAR(total_weight(grid, 0) / (165000.0 * kPhotons_per_j_nm), 1.0, kDigits);
     EXPECT_NEAR(total_weight(grid, 2) / total_weight(grid, 0), 3.0, kRounding);
 }
 
@@ -392,7 +392,7 @@ TEST(RuleError, IsThatOfOneWavelengthInClosedForm) {
     const auto family = family_of({{flat(1.0)}}, water, 1.0, 3.0);
     const auto worst =
         rule_error(flat_sensor(), family, kRange, equal_bands(flat_sensor(), kRange, 1));
-    constexpr double x = 0.5 * kRise_per_m * 3.0;
+    const double x = 0.5 * kRise_per_m * 3.0;
     constexpr double kGridError = 2e-9;  // the stated error of the grid it compares with
     for (const double error : worst) EXPECT_NEAR(error, 1.0 - x / std::sinh(x), kGridError);
 }

@@ -125,10 +125,10 @@ struct Slope {
 Slope slope_of(const Rig& rig, std::size_t pixel) {
     const auto width = static_cast<std::size_t>(rig.camera.width_px);
     const double scale = rig.camera.pixel_pitch_m / rig.camera.focal_length_m;
-    return {
-        .forward = (0.5 * rig.camera.height_px - 0.5 - static_cast<double>(pixel / width)) * scale,
-        .starboard =
-            (static_cast<double>(pixel % width) + 0.5 - 0.5 * rig.camera.width_px) * scale};
+    const std::size_t row = pixel / width;
+    const std::size_t column = pixel % width;
+    return {.forward = (0.5 * rig.camera.height_px - 0.5 - static_cast<double>(row)) * scale,
+            .starboard = (static_cast<double>(column) + 0.5 - 0.5 * rig.camera.width_px) * scale};
 }
 
 void expect_ratio(double found, double wanted, double tolerance, const std::string& what = "") {
@@ -202,7 +202,7 @@ TEST(TracerClosedForm, FollowsTheCosineAtTheFloor) {
 // ray x = -z at z = h / (1 + tan p). Lamp at the pupil: L = cos i cos t / (pi^2 d^2), d = z
 // sqrt 2, cos t = 1 / sqrt 2, cos i = cos(45 deg + p) ahead and cos(45 deg - p) astern.
 TEST(TracerClosedForm, TiltsTheFloorAwayForwardWithTheBowUp) {
-    constexpr double pitch = 20.0 * kDegree;
+    const double pitch = 20.0 * kDegree;
     Rig rig = plain_rig(1, 3, 1.0);
     rig.sled.pitch_rad = pitch;
     const auto plane = plane_of(rig);
@@ -217,7 +217,7 @@ TEST(TracerClosedForm, TiltsTheFloorAwayForwardWithTheBowUp) {
 
 // The same with roll, where starboard down brings the floor nearer to starboard.
 TEST(TracerClosedForm, BringsTheFloorNearerToStarboardWithStarboardDown) {
-    constexpr double roll = 20.0 * kDegree;
+    const double roll = 20.0 * kDegree;
     Rig rig = plain_rig(3, 1, 1.0);
     rig.sled.roll_rad = roll;
     const auto plane = plane_of(rig);
@@ -296,7 +296,7 @@ TEST(TracerClosedForm, IsBlackAboveTheHorizonAndLitBelow) {
         rig.water.multiple = multiple;
         rig.camera.pixel_pitch_m *= 0.3;
         const auto image = image_of(rig, {.signals = true, .planes_nm = {450.0}});
-        constexpr std::size_t kPixels = 3 * 201;
+        constexpr std::size_t kPixels = 3UL * 201UL;
         ASSERT_EQ(image.size(), 4 * kPixels);
         for (std::size_t i = 0; i < image.size(); ++i) {
             EXPECT_TRUE(std::isfinite(image[i])) << "sample " << i;
@@ -330,12 +330,12 @@ double flux_on_floor(const Rig& rig) {
 }
 
 // A sum over pixels errs where the cone's edge cuts them: of the 2 pi R pixels on a circle of R
-// pixels each is wrong by a third of itself or so, either way. R is 40 and more: 2e-3.
+// pixels each is wrong by a third of itself or so, either way. R is 30 and more: 2e-3.
 constexpr double kCutPixels = 4e-3;
 
 // A tilted lamp over a tilted floor, and all of the cone within the image.
 Rig lit_floor(const Beam& beam) {
-    Rig rig = plain_rig(700, 700, 0.004);
+    Rig rig = plain_rig(500, 500, 0.0056);
     rig.sled.pitch_rad = 10.0 * kDegree;
     rig.sled.roll_rad = -15.0 * kDegree;
     rig.strobes = {lamp_at({0.2, -0.3, -0.1}, beam)};
@@ -538,14 +538,14 @@ TEST(TracerEmitter, OfNoSizeIsAPoint) {
     EXPECT_EQ(without_size, plane_of(rig));
 }
 
-// Tilted sleds and strobes, absorbing water and a highlight, which no rectangle's formula
-// covers: against four times as many lamps as one would ask for.
+// A tilted sled and strobe, absorbing water and a highlight, which no rectangle's formula covers:
+// against a finer grid. For the sharpest highlight that is 1.6 times as fine each way, and so
+// itself wrong by two fifths of the error.
 TEST(TracerEmitter, HoldsItsStatedErrorAgainstAFineGrid) {
-    for (const auto& [phong, phong_size] :
-         {std::pair{0.0, 40.0}, {0.5, 40.0}, {0.5, 500.0}, {3.0, 2000.0}}) {
+    for (const auto& [phong, phong_size] : {std::pair{0.0, 40.0}, {0.5, 300.0}, {3.0, 2000.0}}) {
         Rig rig = habcam(7, 5, "habcam-emitters");
-        rig.strobes = {rig.strobes[0], rig.strobes[3]};
-        for (Strobe& strobe : rig.strobes) strobe.beam = lambertian();
+        rig.strobes = {rig.strobes[3]};
+        rig.strobes[0].beam = lambertian();
         rig.sled.roll_rad = 12.0 * kDegree;
         rig.seafloor.phong = phong;
         rig.seafloor.phong_size = phong_size;
@@ -593,8 +593,8 @@ TEST(TracerReciprocity, HoldsAtAPoint) {
     for (std::size_t e = 0; e < 2; ++e) {
         // A camera at places_m[e] that looks at P: rolled so that its axis points there. In the
         // roll r the world's down is (0, sin r, cos r), its starboard (0, cos r, -sin r).
-        const Vector3d here = places_m[e];
-        const Vector3d there = places_m[1 - e];
+        const Vector3d& here = places_m[e];
+        const Vector3d& there = places_m[1 - e];
         const double roll = std::atan2(here.y(), -here.z());
         const Vector3d down(0.0, std::sin(roll), std::cos(roll));
         const Vector3d starboard(0.0, std::cos(roll), -std::sin(roll));
@@ -831,7 +831,7 @@ TEST(TracerSymmetry, AcrossIsAthwartships) {
     };
     // Tangents up to 0.25, and 0.25 + 0.1 m / 2 m = 0.3 less half a lamp: pixels 0.02 apart.
     EXPECT_EQ(lit_on(20, 41), 25U);
-    EXPECT_EQ(lit_on(20 * 41, 1), 29U);
+    EXPECT_EQ(lit_on(820, 1), 29U);
 }
 
 // All lengths times s, all losses per metre over s: the same picture, s^2 darker.
@@ -840,7 +840,7 @@ TEST(TracerSymmetry, ScalesWithTheSquareOfTheSize) {
         Rig rig = with_loss(lopsided_rig(), 0.1);
         rig.camera.port =
             FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
-        const auto image = image_of(rig, {.signals = true, .planes_nm = {450.0}});
+        const auto image = image_of(rig, {.signals = false, .planes_nm = {450.0, 650.0}});
         rig.sled.altitude_m *= s;
         rig.camera.port->distance_m *= s;
         rig.camera.port->thickness_m *= s;
@@ -852,7 +852,7 @@ TEST(TracerSymmetry, ScalesWithTheSquareOfTheSize) {
         }
         rig.water.multiple /= s;
         rig.water.uniform_loss_per_m /= s;
-        const auto scaled = image_of(rig, {.signals = true, .planes_nm = {450.0}});
+        const auto scaled = image_of(rig, {.signals = false, .planes_nm = {450.0, 650.0}});
         for (std::size_t i = 0; i < image.size(); ++i) {
             expect_ratio(scaled[i], image[i] / (s * s), kRounding);
         }
@@ -864,7 +864,8 @@ TEST(TracerSymmetry, ScalesWithTheSquareOfTheSize) {
 
 TEST(TracerSum, TwiceThePowerIsTwiceTheLight) {
     Rig rig = lopsided_rig();
-    const TraceOptions options{.signals = true, .planes_nm = {450.0}};
+    const TraceOptions options{
+        .signals = true, .planes_nm = {450.0}, .lamps_across = 3, .lamps_along = 2};
     const auto image = image_of(rig, options);
     for (Strobe& strobe : rig.strobes) strobe.power *= 2.0;
     const auto twice = image_of(rig, options);
@@ -874,7 +875,8 @@ TEST(TracerSum, TwiceThePowerIsTwiceTheLight) {
 
 TEST(TracerSum, StrobesAddUp) {
     const Rig rig = lopsided_rig();
-    const TraceOptions options{.signals = true, .planes_nm = {450.0}};
+    const TraceOptions options{
+        .signals = true, .planes_nm = {450.0}, .lamps_across = 3, .lamps_along = 2};
     const auto image = image_of(rig, options);
     std::vector<double> sum(image.size(), 0.0);
     for (const Strobe& strobe : rig.strobes) {
@@ -903,7 +905,9 @@ TEST(TracerSum, MoreAbsorptionIsLessLightInEveryPixelAndChannel) {
     std::vector<double> last;
     for (const double multiple : {0.0, 0.1, 0.5, 1.0, 5.0, 20.0}) {
         rig.water.multiple = multiple;
-        const auto image = image_of(rig, {.signals = true, .planes_nm = {450.0, 700.0}});
+        const auto image = image_of(
+            rig,
+            {.signals = true, .planes_nm = {450.0, 700.0}, .lamps_across = 3, .lamps_along = 2});
         for (std::size_t i = 0; i < last.size(); ++i) {
             EXPECT_LT(image[i], last[i]) << "multiple " << multiple;
             EXPECT_GT(image[i], 0.0) << "multiple " << multiple;
@@ -1131,7 +1135,7 @@ TEST(TracerSignal, HoldsItsStatedErrorUpToTheHorizon) {
         const auto image = image_of(rig, {});
         int lit = 0;
         for (std::size_t row = 0; row < 101; ++row) {
-            const double blue = image[2 * 101 + row];
+            const double blue = image[202 + row];
             if (blue == 0.0) continue;
             if (++lit > 4) break;
             for (int c = 0; c < kChannels; ++c) {
@@ -1260,19 +1264,20 @@ TEST(Tracer, ThreadsChangeNoBit) {
 }
 
 TEST(Tracer, RowsAreTheSameInBlocksOfAnySize) {
-    const Rig rig = habcam(7, 10);
+    constexpr std::size_t kWidth = 7;
+    constexpr std::size_t kHeight = 10;
+    const Rig rig = habcam(kWidth, kHeight);
     const Tracer tracer(rig, {.signals = true, .planes_nm = {450.0}});
-    const auto whole = tracer.rows(0, 10);
-    for (const int block : {1, 3, 4}) {
-        for (int first = 0; first < 10; first += block) {
-            const int count = std::min(block, 10 - first);
-            const auto part = tracer.rows(first, count);
-            ASSERT_EQ(part.size(), static_cast<std::size_t>(4 * count * 7));
-            for (std::size_t plane = 0; plane < 4; ++plane) {
-                for (std::size_t i = 0; i < static_cast<std::size_t>(count * 7); ++i) {
-                    EXPECT_EQ(part[plane * static_cast<std::size_t>(count * 7) + i],
-                              whole[plane * 70 + static_cast<std::size_t>(first * 7) + i]);
-                }
+    const auto whole = tracer.rows(0, kHeight);
+    for (const std::size_t block : {1U, 3U, 4U}) {
+        for (std::size_t first = 0; first < kHeight; first += block) {
+            const std::size_t count = std::min(block, kHeight - first);
+            const auto part = tracer.rows(static_cast<int>(first), static_cast<int>(count));
+            const std::size_t samples = count * kWidth;
+            ASSERT_EQ(part.size(), 4 * samples);
+            for (std::size_t i = 0; i < part.size(); ++i) {
+                const std::size_t plane = i / samples;
+                EXPECT_EQ(part[i], whole[plane * kHeight * kWidth + first * kWidth + i % samples]);
             }
         }
     }
