@@ -162,6 +162,14 @@ TEST(ComparePlanes, TakesTheReferenceInDoublePrecision) {
     EXPECT_NEAR(compared({1.0F}, {1.0 + 1e-9}).max_error, 1e-9, 1e-15);
 }
 
+TEST(ComparePlanes, OfNothingDoesNotHold) {
+    EXPECT_FALSE(compared({}, {}).holds());
+    const Comparison all_edges = compared({1.0F, 1.0F}, {1.0, 1.0}, {1, 1});
+    EXPECT_EQ(all_edges.compared, 0U);
+    EXPECT_EQ(all_edges.on_edges, 2U);
+    EXPECT_FALSE(all_edges.holds());
+}
+
 TEST(ComparePlanes, DoesNotHoldWhereBlackIsExpectedAndAnythingIsFound) {
     const Comparison found = compared({1e-30F, 1.0F}, {0.0, 1.0});
     EXPECT_TRUE(std::isinf(found.max_error));

@@ -7,6 +7,7 @@
 
 #include "scene_gen/rig_reader.h"
 #include "spectral/builtin.h"
+#include "spectral/error.h"
 #include "spectral/light_family.h"
 #include "support/closed_form.h"
 
@@ -555,6 +556,19 @@ TEST(TracerEmitter, HoldsItsStatedErrorAgainstAFineGrid) {
             expect_ratio(
                 plane[i], fine[i], kEmitterError, "phong_size " + std::to_string(phong_size));
         }
+    }
+}
+
+// 10 m x 10 m, a millimetre above the floor: millions of lamps each way.
+TEST(TracerEmitter, TooLargeForItsHeightIsRefusedByName) {
+    Rig rig = emitter_rig(10.0, 10.0);
+    rig.strobes[0].name = "fore";
+    rig.strobes[0].position_m.z() = 1.999;
+    try {
+        static_cast<void>(plane_of(rig));
+        FAIL() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("'fore'"), std::string::npos) << error.what();
     }
 }
 
