@@ -22,8 +22,8 @@ struct Options {
 };
 
 ExitStatus generate_scenes(const Options& options) {
-    const PlannedRender planned = plan_render(options.planning);
-    const Manifest manifest = generate(options.folder, planned.scenes);
+    const SceneSet scenes = scenes_of(plan_rig(options.planning), options.planning);
+    const Manifest manifest = generate(options.folder, scenes);
     if (options.json) {
         nlohmann::ordered_json json{{"folder", options.folder},
                                     {"scenes", nlohmann::json::array()}};

@@ -1,21 +1,79 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic integrate DIR: the frames of a folder to images, wherever they were rendered.
+// aphotic integrate DIR: the frames of a folder to images, wherever they were rendered; with --rig,
+// to those of a rig of other water, lamps, materials or sensor.
 #include "cli/command.h"
 #include "cli/outcome.h"
+#include "scene_gen/reintegration.h"
+#include "scene_gen/rig_reader.h"
+#include "spectral/atomic_file.h"
+#include "spectral/error.h"
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 namespace aphotic::cli {
 namespace {
 
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
 struct Options {
     std::string folder;
+    std::string rig_file;
+    std::string images_folder;
+    double tolerance = 1e-3;
     PreviewOptions preview;
     bool json = false;
 };
+
+// Beside the frames' own images, so that neither takes the other's place.
+fs::path images_folder(const Options& options) {
+    if (!options.images_folder.empty()) return options.images_folder;
+    if (options.rig_file.empty()) return options.folder;
+    return fs::path(options.folder) / ("as-" + fs::path(options.rig_file).stem().string());
+}
+
+Manifest manifest_of(const Options& options) {
+    Manifest manifest = read_manifest(options.folder);
+    if (options.rig_file.empty()) return manifest;
+    const Rig rig = read_rig(options.rig_file);
+    try {
+        return reintegrate(rig, manifest, options.tolerance);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
+    }
+}
+
+// What the image is made of, for whoever finds it later.
+Json account_of(const Options& options, const Manifest& manifest) {
+    Json account{{"rig_title", manifest.rig_title},
+                 {"rig_sha256", manifest.rig_sha256},
+                 {"frames_of", fs::absolute(options.folder).lexically_normal().string()},
+                 {"tolerance", manifest.tolerance},
+                 {"frame_error", manifest.frame_error},
+                 {"promise", promises_of(manifest.quality, manifest.frame_error)},
+                 {"wavelengths", Json::array()}};
+    for (const ManifestWavelength& w : manifest.wavelengths) {
+        account["wavelengths"].push_back({{"lambda_nm", w.lambda_nm}, {"weight", w.weight}});
+    }
+    return account;
+}
+
+ExitStatus integrate_frames(const Options& options) {
+    const Manifest manifest = manifest_of(options);
+    const fs::path images = images_folder(options);
+    make_folder(images);
+    Json outcome = integrate_folder(options.folder, manifest, options.preview, images);
+    outcome["title"] = manifest.rig_title;
+    if (!options.rig_file.empty()) {
+        write_text_file(images / "integration.json", dumped(account_of(options, manifest)) + "\n");
+    }
+    options.json ? fmt::print("{}\n", dumped(outcome)) : print_outcome(outcome);
+    return kDone;
+}
 
 }  // namespace
 
@@ -23,20 +81,23 @@ Action configure_integrate(CLI::App& app) {
     const auto options = std::make_shared<Options>();
     app.add_option("DIR", options->folder, "a folder of `aphotic render` or `aphotic generate`")
         ->required();
+    auto* rig = app.add_option("--rig",
+                               options->rig_file,
+                               "a rig of the same geometry but other water, lamps, materials or "
+                               "sensor: its image, from these frames");
+    app.add_option("--tolerance",
+                   options->tolerance,
+                   "with --rig: relative error that no pixel's signal is to exceed")
+        ->check(CLI::Range(0.0, 1.0))
+        ->needs(rig)
+        ->capture_default_str();
+    app.add_option("-o,--output",
+                   options->images_folder,
+                   "the folder for the images; by default DIR, with --rig DIR/as-RIG")
+        ->type_name("DIR");
     add_preview_options(app, options->preview);
     app.add_flag("--json", options->json, "say what was made as JSON");
-    return [options] {
-        const Manifest manifest = read_manifest(options->folder);
-        nlohmann::ordered_json outcome =
-            integrate_folder(options->folder, manifest, options->preview);
-        outcome["title"] = manifest.rig_title;
-        if (options->json) {
-            fmt::print("{}\n", dumped(outcome));
-        } else {
-            print_outcome(outcome);
-        }
-        return kDone;
-    };
+    return [options] { return integrate_frames(*options); };
 }
 
 }  // namespace aphotic::cli

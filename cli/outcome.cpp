@@ -57,21 +57,36 @@ Json outcome_of(const fs::path& folder, const CameraImage& image) {
             {"signal", channels}};
 }
 
+Json promises_of(const std::array<RuleQuality, kChannels>& quality, double frame_error) {
+    Json promises;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        promises[std::string(kChannelNames[c])] = {{"error", quality[c].error},
+                                                   {"amplification", quality[c].amplification},
+                                                   {"promise", quality[c].promise(frame_error)}};
+    }
+    return promises;
+}
+
 Json integrate_folder(const fs::path& folder,
                       const Manifest& manifest,
-                      const PreviewOptions& preview) {
+                      const PreviewOptions& preview,
+                      const fs::path& images) {
     const auto start = std::chrono::steady_clock::now();
     set_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
     ProgressLine line;
-    const CameraImage image =
-        integrate(folder, manifest, [&](double share) { line.show("integrating", share); });
-    write_preview(image, manifest.lamp_signal, preview, folder / "preview.png");
+    const auto report = [&](double share) { line.show("integrating", share); };
+    const CameraImage image = images == folder
+                                  ? integrate(folder, manifest, report)
+                                  : integrate_signals(folder, manifest, images, report);
+    write_preview(image, manifest.lamp_signal, preview, images / "preview.png");
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
-    Json outcome = outcome_of(folder, image);
+    Json outcome = outcome_of(images, image);
+    outcome["spectral"] = images == folder;
     outcome["wavelengths"] = manifest.wavelengths.size();
     outcome["frames"] = manifest.frames.size();
-    outcome["predicted_error"] = manifest.predicted_error;
+    outcome["frame_error"] = manifest.frame_error;
+    outcome["promise"] = promises_of(manifest.quality, manifest.frame_error);
     outcome["integration_s"] = elapsed.count();
     return outcome;
 }
@@ -84,13 +99,10 @@ void print_outcome(const Json& outcome) {
                counted(outcome["wavelengths"].get<std::size_t>(), "wavelength"),
                counted(outcome["frames"].get<std::size_t>(), "frame"),
                outcome["integration_s"].get<double>());
-    const auto error = outcome["predicted_error"].get<std::array<double, kChannels>>();
-    fmt::print(
-        "  off the full spectrum by at most {:.2g} (R), {:.2g} (G), {:.2g} (B), and 4.9e-4 for "
-        "half floats\n",
-        error[0],
-        error[1],
-        error[2]);
+    fmt::print("  off the full spectrum by at most {:.3g} (R), {:.3g} (G), {:.3g} (B)\n",
+               outcome["promise"]["R"]["promise"].get<double>(),
+               outcome["promise"]["G"]["promise"].get<double>(),
+               outcome["promise"]["B"]["promise"].get<double>());
     print_signals(outcome);
 }
 
@@ -105,11 +117,12 @@ void print_signals(const Json& outcome) {
     }
     fmt::print(
         "  {}/preview.png   to look at\n"
-        "  {}/image.exr     the camera's signal, linear R, G, B\n"
-        "  {}/spectral.exr  the radiance at each wavelength\n",
-        folder,
+        "  {}/image.exr     the camera's signal, linear R, G, B\n",
         folder,
         folder);
+    if (outcome.value("spectral", true)) {
+        fmt::print("  {}/spectral.exr  the radiance at each wavelength\n", folder);
+    }
 }
 
 }  // namespace aphotic::cli

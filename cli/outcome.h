@@ -5,10 +5,12 @@
 
 #include "spectral/manifest.h"
 #include "spectral/preview.h"
+#include "spectral/rule_fitter.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -23,10 +25,16 @@ void add_preview_options(CLI::App& app, PreviewOptions& options);
 [[nodiscard]] nlohmann::ordered_json outcome_of(const std::filesystem::path& folder,
                                                 const CameraImage& image);
 
-// Writes image.exr, spectral.exr and preview.png, and returns what there is to say of them.
+// Integrates the frames of `folder` into `images`, the same folder or another: then the signals
+// alone. Writes image.exr, spectral.exr and preview.png, and returns what there is to say of them.
 [[nodiscard]] nlohmann::ordered_json integrate_folder(const std::filesystem::path& folder,
                                                       const Manifest& manifest,
-                                                      const PreviewOptions& preview);
+                                                      const PreviewOptions& preview,
+                                                      const std::filesystem::path& images);
+
+// What a plan or a manifest promises, per channel: error, amplification and promise.
+[[nodiscard]] nlohmann::ordered_json promises_of(const std::array<RuleQuality, kChannels>& quality,
+                                                 double frame_error);
 
 // The same for people: of a whole integration, or of its images alone.
 void print_outcome(const nlohmann::ordered_json& outcome);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic plan RIG: what a render would take, before anything is rendered.
+// aphotic plan RIG: what a render would take and what it promises, before anything is rendered.
 #include "cli/command.h"
+#include "cli/outcome.h"
+#include "cli/plan_plot.h"
 #include "cli/planning.h"
 #include "cli/words.h"
 
@@ -9,46 +11,99 @@
 #include <nlohmann/json.hpp>
 
 #include <memory>
+#include <string>
 
 namespace aphotic::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct Options {
     PlanningOptions planning;
+    std::string plot;
     bool json = false;
 };
 
-void print_json(const Manifest& manifest) {
-    nlohmann::ordered_json json{{"rig_title", manifest.rig_title},
-                                {"rig_sha256", manifest.rig_sha256},
-                                {"width_px", manifest.width_px},
-                                {"height_px", manifest.height_px},
-                                {"predicted_error", manifest.predicted_error},
-                                {"frames", manifest.frames.size()},
-                                {"wavelengths", nlohmann::ordered_json::array()}};
-    for (const ManifestWavelength& w : manifest.wavelengths) {
-        json["wavelengths"].push_back({{"lambda_nm", w.lambda_nm},
-                                       {"weight", w.weight},
-                                       {"frame", manifest.frames[w.frame].name},
-                                       {"channel", w.channel},
-                                       {"exposure_log2", w.exposure_log2}});
+// Behind a port: how far the wavelengths lie apart, and the frames that this costs.
+struct PortCost {
+    double spread_px = 0.0;
+    double shared_px = 0.0;  // the most within one frame
+    std::size_t frames_without = 0;
+};
+
+PortCost port_cost(const PlannedRender& planned) {
+    const auto& rule = planned.plan.rule.wavelengths;
+    const auto shift_px = [&](std::size_t a, std::size_t b) {
+        return corner_shift_px(planned.rig, rule[a].lambda_nm, rule[b].lambda_nm);
+    };
+    PortCost cost{.spread_px = shift_px(0, rule.size() - 1)};
+    for (const FrameGroup& frame : planned.plan.frames) {
+        cost.shared_px =
+            std::max(cost.shared_px, shift_px(frame.first, frame.first + frame.count - 1));
     }
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    const auto per_frame = static_cast<std::size_t>(planned.plan.scene.wavelengths_per_frame);
+    cost.frames_without = (rule.size() + per_frame - 1) / per_frame;
+    return cost;
 }
 
-void print_for_people(const Manifest& manifest) {
-    fmt::print("{}: {} x {} pixels, {} in {}\n\n",
-               manifest.rig_title,
-               manifest.width_px,
-               manifest.height_px,
-               counted(manifest.wavelengths.size(), "wavelength"),
-               counted(manifest.frames.size(), "frame"));
+Json wavelengths_of(const Manifest& manifest) {
+    Json all = Json::array();
+    for (const ManifestWavelength& w : manifest.wavelengths) {
+        all.push_back({{"lambda_nm", w.lambda_nm},
+                       {"weight", w.weight},
+                       {"frame", manifest.frames[w.frame].name},
+                       {"channel", w.channel},
+                       {"exposure_log2", w.exposure_log2},
+                       {"index_nm", w.index_nm}});
+    }
+    return all;
+}
+
+void print_json(const PlannedRender& planned, const Manifest& manifest) {
+    const RenderPlan& plan = planned.plan;
+    Json json{{"rig_title", manifest.rig_title},
+              {"rig_sha256", manifest.rig_sha256},
+              {"width_px", manifest.width_px},
+              {"height_px", manifest.height_px},
+              {"method", manifest.method},
+              {"tolerance", plan.tolerance},
+              {"paths_m", {plan.family.shortest_path_m, plan.family.longest_path_m}},
+              {"sources", plan.family.sources.size()},
+              {"frame_error", plan.frame_error},
+              {"promise", promises_of(plan.rule.quality, plan.frame_error)},
+              {"frames", manifest.frames.size()},
+              {"wavelengths", wavelengths_of(manifest)},
+              {"omissions", Json::array()}};
+    if (planned.rig.camera.port) {
+        const PortCost cost = port_cost(planned);
+        json["port"] = {{"spread_px", cost.spread_px},
+                        {"shared_px", cost.shared_px},
+                        {"pixel_shift", plan.scene.pixel_shift},
+                        {"frames_without_port", cost.frames_without}};
+    }
+    for (const Omission& omission : plan.omissions) {
+        json["omissions"].push_back({{"what", omission.what}, {"reason", omission.reason}});
+    }
+    fmt::print("{}\n", dumped(json));
+}
+
+void print_promise(const RenderPlan& plan) {
+    fmt::print("{:>9}  {:>12}  {:>13}  {:>8}\n", "channel", "error", "amplification", "promise");
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const RuleQuality& q = plan.rule.quality[c];
+        fmt::print("{:>9}  {:12.2g}  {:13.3f}  {:8.3g}\n",
+                   kChannelNames[c],
+                   q.error,
+                   q.amplification,
+                   q.promise(plan.frame_error));
+    }
     fmt::print(
-        "Against the full spectrum the signals R, G, B will be off by at most {:.2g}, {:.2g}, "
-        "{:.2g};\nhalf floats in the frames add up to 4.9e-4.\n\n",
-        manifest.predicted_error[0],
-        manifest.predicted_error[1],
-        manifest.predicted_error[2]);
+        "No pixel's signal will be off the full spectrum by more than the promise, which is the\n"
+        "error of the wavelengths and their weights plus the frames' own {:.3g}, amplified.\n\n",
+        plan.frame_error);
+}
+
+void print_wavelengths(const Manifest& manifest) {
     fmt::print("{:>12}  {:>12} {:>12} {:>12}  {:>8}  frame\n",
                "lambda (nm)",
                "weight R",
@@ -67,15 +122,57 @@ void print_for_people(const Manifest& manifest) {
     }
 }
 
+void print_port(const PlannedRender& planned) {
+    const PortCost cost = port_cost(planned);
+    fmt::print(
+        "\nThe port spreads these wavelengths over {:.3g} pixels at the image's corner. {} instead "
+        "of\n{} keep those of one frame within {:.3g} of each other.\n",
+        cost.spread_px,
+        counted(planned.plan.frames.size(), "frame"),
+        cost.frames_without,
+        planned.plan.scene.pixel_shift);
+}
+
+void print_for_people(const PlannedRender& planned, const Manifest& manifest) {
+    const RenderPlan& plan = planned.plan;
+    fmt::print("{}: {} x {} pixels, {} in {}, {}\n",
+               manifest.rig_title,
+               manifest.width_px,
+               manifest.height_px,
+               counted(manifest.wavelengths.size(), "wavelength"),
+               counted(manifest.frames.size(), "frame"),
+               plan.tolerance > 0.0
+                   ? fmt::format("fitted to a tolerance of {}", plan.tolerance)
+                   : manifest.method);
+    fmt::print("{} of light, on paths of {:.3g} to {:.3g} m from lamp to floor to camera\n\n",
+               counted(plan.family.sources.size(), "spectrum"),
+               plan.family.shortest_path_m,
+               plan.family.longest_path_m);
+    print_promise(plan);
+    print_wavelengths(manifest);
+    if (planned.rig.camera.port) print_port(planned);
+    if (plan.omissions.empty()) return;
+    fmt::print("\nLeft out:\n");
+    for (const Omission& omission : plan.omissions) {
+        fmt::print("  {}: {}\n", omission.what, omission.reason);
+    }
+}
+
 }  // namespace
 
 Action configure_plan(CLI::App& app) {
     const auto options = std::make_shared<Options>();
     add_planning_options(app, options->planning);
+    app.add_option("--plot",
+                   options->plot,
+                   "a picture of the light, the wavelengths and the error over path length")
+        ->type_name("FILE.png|FILE.svg");
     app.add_flag("--json", options->json, "the plan as JSON");
     return [options] {
-        const Manifest manifest = plan_render(options->planning).scenes.manifest;
-        options->json ? print_json(manifest) : print_for_people(manifest);
+        const PlannedRender planned = plan_rig(options->planning);
+        const Manifest manifest = scenes_of(planned, options->planning).manifest;
+        if (!options->plot.empty()) plot_plan(planned.rig, planned.plan, options->plot);
+        options->json ? print_json(planned, manifest) : print_for_people(planned, manifest);
         return kDone;
     };
 }

@@ -7,28 +7,99 @@
 #include <fmt/format.h>
 
 namespace aphotic::cli {
+namespace {
+
+PlanRequest request_of(const PlanningOptions& options) {
+    PlanRequest request{.tolerance = options.tolerance,
+                        .fitted = std::nullopt,
+                        .bands = std::nullopt,
+                        .wavelengths_nm = options.wavelengths_nm,
+                        .paths = std::nullopt,
+                        .scene = {.wavelengths_per_frame = options.per_frame,
+                                  .pixel_shift = options.pixel_shift,
+                                  .emitter_lamps = std::nullopt}};
+    if (options.fitted > 0) request.fitted = options.fitted;
+    if (options.bands > 0) request.bands = options.bands;
+    if (!options.paths_m.empty()) {
+        request.paths = {.shortest_m = options.paths_m[0], .longest_m = options.paths_m[1]};
+        if (options.paths_m[0] > options.paths_m[1]) {
+            throw InputError(fmt::format("--paths-m: found {},{}; allowed: the shorter first",
+                                         options.paths_m[0],
+                                         options.paths_m[1]));
+        }
+    }
+    if (!options.emitter_lamps.empty()) {
+        request.scene.emitter_lamps = {.across = options.emitter_lamps[0],
+                                       .along = options.emitter_lamps[1]};
+    }
+    return request;
+}
+
+template <typename Function>
+auto naming_the_file(const PlanningOptions& options, Function function) {
+    try {
+        return function();
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
+    }
+}
+
+}  // namespace
 
 void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
+    constexpr int kMostFitted = 48;
     constexpr int kMostBands = 100000;
+    constexpr double kLeastPath_m = 1e-6;
+    constexpr double kMostPath_m = 1e6;
     app.add_option("RIG", options.rig_file, "the rig file (TOML)")->required();
-    auto* bands =
-        app.add_option(
-               "--bands", options.bands, "equal bands over the sensor's range, each at its middle")
-            ->check(CLI::Range(1, kMostBands))
-            ->capture_default_str();
-    app.add_option(
-           "--wavelengths", options.wavelengths_nm, "wavelengths in nm, such as 478,576,638")
+    auto* tolerance = app.add_option("--tolerance",
+                                     options.tolerance,
+                                     "relative error that no pixel's signal is to exceed; as few "
+                                     "wavelengths are fitted as keep it")
+                          ->check(CLI::Range(0.0, 1.0))
+                          ->capture_default_str();
+    auto* fitted = app.add_option("--fitted",
+                                  options.fitted,
+                                  "instead, so many fitted wavelengths, whatever they keep")
+                       ->check(CLI::Range(1, kMostFitted))
+                       ->excludes(tolerance);
+    auto* bands = app.add_option("--bands",
+                                 options.bands,
+                                 "instead, so many equal bands over the sensor's range, each at "
+                                 "its middle")
+                      ->check(CLI::Range(1, kMostBands))
+                      ->excludes(tolerance)
+                      ->excludes(fitted);
+    app.add_option("--wavelengths",
+                   options.wavelengths_nm,
+                   "instead, these wavelengths in nm, such as 478,576,638, with fitted weights")
         ->delimiter(',')
-        ->excludes(bands);
+        ->excludes(bands)
+        ->excludes(fitted)
+        ->excludes(tolerance);
+    app.add_option("--paths-m",
+                   options.paths_m,
+                   "shortest,longest way of light from lamp to floor to camera, such as 2,16, for "
+                   "a plan that serves several rigs; by default what this one sees")
+        ->delimiter(',')
+        ->expected(2)
+        ->check(CLI::Range(kLeastPath_m, kMostPath_m));
 }
 
 void add_planning_options(CLI::App& app, PlanningOptions& options) {
     constexpr int kMostLamps = 64;
+    constexpr double kMostShift_px = 100.0;
     add_wavelength_options(app, options);
     app.add_option("--per-frame",
                    options.per_frame,
-                   "wavelengths that share a frame, one a channel; behind a port always 1")
+                   "wavelengths that share a frame at most, one a channel")
         ->check(CLI::Range(1, 3))
+        ->capture_default_str();
+    app.add_option("--pixel-shift",
+                   options.pixel_shift,
+                   "how far apart behind a port, in pixels at the image's corner, wavelengths may "
+                   "lie that share a frame")
+        ->check(CLI::Range(0.0, kMostShift_px))
         ->capture_default_str();
     app.add_option(
            "--emitter-lamps",
@@ -40,30 +111,15 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
         ->check(CLI::Range(1, kMostLamps));
 }
 
-PlannedWavelengths plan_wavelengths(const PlanningOptions& options) {
+PlannedRender plan_rig(const PlanningOptions& options) {
     Rig rig = read_rig(options.rig_file);
-    const Camera& camera = rig.camera;
-    std::vector<WeightedWavelength> wavelengths =
-        options.wavelengths_nm.empty()
-            ? equal_bands(camera.sensor, camera.range, options.bands)
-            : listed_wavelengths(camera.sensor, camera.range, options.wavelengths_nm);
-    return {.rig = std::move(rig), .wavelengths = std::move(wavelengths)};
+    const PlanRequest request = request_of(options);
+    RenderPlan plan = naming_the_file(options, [&] { return plan_render(rig, request); });
+    return {.rig = std::move(rig), .plan = std::move(plan)};
 }
 
-PlannedRender plan_render(const PlanningOptions& options) {
-    PlannedWavelengths planned = plan_wavelengths(options);
-    SceneOptions scene_options{.wavelengths_per_frame = options.per_frame,
-                               .emitter_lamps = std::nullopt};
-    if (!options.emitter_lamps.empty()) {
-        scene_options.emitter_lamps = {.across = options.emitter_lamps[0],
-                                       .along = options.emitter_lamps[1]};
-    }
-    try {
-        SceneSet scenes = make_scene_set(planned.rig, planned.wavelengths, scene_options);
-        return {.rig = std::move(planned.rig), .scenes = std::move(scenes)};
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
-    }
+SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options) {
+    return naming_the_file(options, [&] { return make_scene_set(planned.rig, planned.plan); });
 }
 
 }  // namespace aphotic::cli

@@ -4,6 +4,7 @@
 // that plans a render.
 #pragma once
 
+#include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
 
 #include <CLI/CLI.hpp>
@@ -15,9 +16,13 @@ namespace aphotic::cli {
 
 struct PlanningOptions {
     std::string rig_file;
-    int bands = 36;
+    double tolerance = 1e-3;
+    int fitted = 0;  // 0: as the tolerance asks
+    int bands = 0;   // 0: fitted wavelengths
     std::vector<double> wavelengths_nm;
+    std::vector<double> paths_m;
     int per_frame = 3;
+    double pixel_shift = kPixelShift;
     std::vector<int> emitter_lamps;
 };
 
@@ -27,18 +32,15 @@ void add_wavelength_options(CLI::App& app, PlanningOptions& options);
 // These, and how POV-Ray is to render them.
 void add_planning_options(CLI::App& app, PlanningOptions& options);
 
-struct PlannedWavelengths {
-    Rig rig;
-    std::vector<WeightedWavelength> wavelengths;
-};
-
-[[nodiscard]] PlannedWavelengths plan_wavelengths(const PlanningOptions& options);
-
 struct PlannedRender {
     Rig rig;
-    SceneSet scenes;
+    RenderPlan plan;
 };
 
-[[nodiscard]] PlannedRender plan_render(const PlanningOptions& options);
+// Reads the rig and plans. Messages name the rig's file.
+[[nodiscard]] PlannedRender plan_rig(const PlanningOptions& options);
+
+// The scenes of the plan.
+[[nodiscard]] SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options);
 
 }  // namespace aphotic::cli

@@ -5,12 +5,11 @@
 #include "cli/command.h"
 #include "cli/outcome.h"
 #include "cli/planning.h"
-#include "cli/progress.h"
+#include "cli/rendering.h"
 #include "cli/words.h"
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
 #include <thread>
 
@@ -27,30 +26,20 @@ struct Options {
 };
 
 ExitStatus render_rig(const Options& options) {
-    const PlannedRender planned = plan_render(options.planning);
+    const PlannedRender planned = plan_rig(options.planning);
+    const SceneSet scenes = scenes_of(planned, options.planning);
     const PovRay povray = find_povray(options.povray);
 
-    const auto start = std::chrono::steady_clock::now();
-    RenderResult result;
-    {
-        ProgressLine line;
-        const auto report = [&](const FrameProgress& progress) {
-            line.show(
-                fmt::format("rendering: {} of {} frames", progress.frames_done, progress.frames),
-                progress.share);
-        };
-        result = render(
-            povray, options.folder, planned.scenes, {.jobs = options.jobs, .report = report});
-    }
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    const RenderedFrames frames = render_frames(povray, options.folder, scenes, options.jobs);
+    const RenderResult& result = frames.result;
 
-    auto outcome = integrate_folder(options.folder, result.manifest, options.preview);
+    auto outcome = integrate_folder(options.folder, result.manifest, options.preview, options.folder);
     outcome["title"] = planned.rig.title;
     outcome["povray_version"] = povray.version;
     outcome["jobs"] = options.jobs;
     outcome["frames_rendered"] = result.rendered;
     outcome["frames_kept"] = result.kept;
-    outcome["povray_s"] = elapsed.count();
+    outcome["povray_s"] = frames.povray_s;
     if (options.json) {
         fmt::print("{}\n", dumped(outcome));
         return kDone;
@@ -59,7 +48,7 @@ ExitStatus render_rig(const Options& options) {
                povray.version,
                counted(result.rendered, "frame"),
                result.kept,
-               elapsed.count(),
+               frames.povray_s,
                counted(static_cast<std::size_t>(options.jobs), "job"));
     print_outcome(outcome);
     return kDone;

@@ -29,11 +29,12 @@ struct Options {
 
 ExitStatus trace_rig(const Options& options) {
     constexpr int kRows = 64;
-    const PlannedWavelengths planned = plan_wavelengths(options.planning);
+    const PlannedRender planned = plan_rig(options.planning);
     const Camera& camera = planned.rig.camera;
     TraceOptions request{.signals = true, .planes_nm = {}, .threads = options.threads};
-    for (const WeightedWavelength& w : planned.wavelengths)
+    for (const WeightedWavelength& w : planned.plan.rule.wavelengths) {
         request.planes_nm.push_back(w.lambda_nm);
+    }
 
     const auto start = std::chrono::steady_clock::now();
     const Tracer tracer(planned.rig, request);
@@ -58,7 +59,7 @@ ExitStatus trace_rig(const Options& options) {
     }
     const CameraImage image = images.finish();
     write_preview(image,
-                  lamp_signal(planned.rig, planned.wavelengths),
+                  lamp_signal(planned.rig, planned.plan.rule.wavelengths),
                   options.preview,
                   std::filesystem::path(options.folder) / "preview.png");
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

@@ -7,6 +7,7 @@
 #include "cli/outcome.h"
 #include "cli/planning.h"
 #include "cli/progress.h"
+#include "cli/rendering.h"
 #include "cli/words.h"
 #include "plugin/render.h"
 #include "spectral/atomic_file.h"
@@ -15,7 +16,7 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
+#include <cmath>
 #include <memory>
 #include <thread>
 
@@ -50,10 +51,13 @@ CameraImage signals_in(const fs::path& file) {
     return signals;
 }
 
-RenderedImages images_in(const fs::path& folder, const Manifest& manifest) {
+RenderedImages images_in(const fs::path& folder,
+                         const Manifest& manifest,
+                         const LightFamily& family) {
     RenderedImages images{.lambda_nm = {},
                           .exposure_log2 = {},
-                          .predicted_error = manifest.predicted_error,
+                          .shift_error = {},
+                          .promise = {},
                           .radiance = {},
                           .signals = signals_in(folder / "image.exr")};
     std::vector<std::string> channels;
@@ -61,7 +65,11 @@ RenderedImages images_in(const fs::path& folder, const Manifest& manifest) {
         images.lambda_nm.push_back(w.lambda_nm);
         images.exposure_log2.push_back(w.exposure_log2);
         channels.push_back(spectral_channel(w.lambda_nm));
+        images.shift_error.push_back(
+            family.tilt ? std::abs(family.tilt->at(w.lambda_nm) - family.tilt->at(w.index_nm))
+                        : 0.0);
     }
+    for (std::size_t c = 0; c < kChannels; ++c) images.promise[c] = manifest.promise(c);
     images.radiance = [folder, channels](std::size_t first, std::size_t count) {
         const auto from = channels.begin() + static_cast<std::ptrdiff_t>(first);
         return radiance_planes(folder / "spectral.exr",
@@ -78,23 +86,10 @@ struct Rendering {
 };
 
 Rendering render_here(const Options& options, const SceneSet& scenes) {
-    const PovRay povray = find_povray(options.povray);
-    const auto start = std::chrono::steady_clock::now();
-    Rendering rendering;
-    {
-        ProgressLine line;
-        const auto report = [&](const FrameProgress& progress) {
-            line.show(
-                fmt::format("rendering: {} of {} frames", progress.frames_done, progress.frames),
-                progress.share);
-        };
-        rendering.manifest =
-            render(povray, options.folder, scenes, {.jobs = options.jobs, .report = report})
-                .manifest;
-    }
-    rendering.render_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const auto outcome = integrate_folder(options.folder, rendering.manifest, {});
+    const RenderedFrames frames =
+        render_frames(find_povray(options.povray), options.folder, scenes, options.jobs);
+    Rendering rendering{.manifest = frames.result.manifest, .render_s = frames.povray_s};
+    const auto outcome = integrate_folder(options.folder, rendering.manifest, {}, options.folder);
     rendering.integrate_s = outcome["integration_s"].get<double>();
     return rendering;
 }
@@ -150,7 +145,7 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
 }
 
 ExitStatus validate_rig(const Options& options) {
-    const PlannedRender planned = plan_render(options.planning);
+    const PlannedRender planned = plan_rig(options.planning);
     make_folder(options.folder);
     Rendering rendering;
     const bool is_rendered = !options.rendered_folder.empty();
@@ -164,16 +159,16 @@ ExitStatus validate_rig(const Options& options) {
                        options.planning.rig_file);
         }
     } else {
-        rendering = render_here(options, planned.scenes);
+        rendering = render_here(options, scenes_of(planned, options.planning));
     }
     const fs::path images = is_rendered ? options.rendered_folder : options.folder;
 
     ValidationReport report = [&] {
         ProgressLine line;
-        return validate(
-            planned.rig, images_in(images, rendering.manifest), options.jobs, [&](double share) {
-                line.show("tracing", share);
-            });
+        return validate(planned.rig,
+                        images_in(images, rendering.manifest, planned.plan.family),
+                        options.jobs,
+                        [&](double share) { line.show("tracing", share); });
     }();
     report.aphotic_version = APHOTIC_VERSION;
     report.povray_version = rendering.manifest.povray_version;

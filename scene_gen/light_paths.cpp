@@ -3,33 +3,230 @@
 
 #include "scene_gen/geometry.h"
 
+#include <boost/math/tools/minima.hpp>
+
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace aphotic {
 
-LightFamily light_family(const Rig& rig) {
-    constexpr std::size_t kGrid = 33;
-    LightFamily family{.sources = {},
-                       .water = rig.water,
-                       .shortest_path_m = std::numeric_limits<double>::infinity(),
-                       .longest_path_m = 0.0};
-    for (const Strobe& strobe : rig.strobes) {
-        family.sources.push_back({strobe.spectrum, rig.seafloor.reflectance});
-        if (rig.seafloor.phong > 0.0) family.sources.push_back({strobe.spectrum});
+using Eigen::Vector3d;
+
+namespace {
+
+// Bits of an image coordinate: a pixel of the largest image, and more than the path can tell.
+constexpr int kBits = 20;
+// More than any path, and rising away from the floor, so that a search finds its way back.
+constexpr double kNoFloor_m = 1e30;
+
+// The path by way of the floor point that (column, row) shows at lambda_nm.
+double path_m(const Rig& rig, const Strobe& strobe, double column, double row, double lambda_nm) {
+    const Plane floor = floor_plane(rig.sled);
+    const WaterRay ray = pixel_ray(rig, column, row, lambda_nm);
+    const auto distance_m = distance_to(floor, ray);
+    if (!distance_m) return kNoFloor_m * (2.0 + floor.normal.dot(ray.direction));
+    const Vector3d point_m = ray.origin_m + *distance_m * ray.direction;
+    return *distance_m + (point_m - strobe.position_m).norm();
+}
+
+double shortest_path_m(const Rig& rig, const Strobe& strobe, double lambda_nm) {
+    const auto along_row = [&](double row) {
+        return boost::math::tools::brent_find_minima(
+                   [&](double column) { return path_m(rig, strobe, column, row, lambda_nm); },
+                   0.0,
+                   static_cast<double>(rig.camera.width_px),
+                   kBits)
+            .second;
+    };
+    return boost::math::tools::brent_find_minima(
+               along_row, 0.0, static_cast<double>(rig.camera.height_px), kBits)
+        .second;
+}
+
+double half_diagonal_m(const Strobe& strobe) {
+    return strobe.emitter ? 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m)
+                          : 0.0;
+}
+
+// Where light that falls as exp(-K l) / l^3, no faster than any here, is down to kDarkShare.
+double darkest_path_m(const Rig& rig, double shortest_m) {
+    double K_per_m = rig.water.uniform_loss_per_m;
+    if (rig.water.multiple > 0.0) {
+        const auto absorption = rig.water.absorption_per_m.values();
+        K_per_m += rig.water.multiple * *std::ranges::min_element(absorption);
     }
-    for (const auto& sample : floor_samples(rig, kGrid)) {
-        if (!sample) continue;
-        for (const Strobe& strobe : rig.strobes) {
-            const double path_m =
-                sample->camera_leg_m + (sample->point_m - strobe.position_m).norm();
-            family.shortest_path_m = std::min(family.shortest_path_m, path_m / kPathRoom);
-            family.longest_path_m = std::max(family.longest_path_m, path_m * kPathRoom);
+    double l_m = shortest_m;
+    while (std::exp(-K_per_m * (l_m - shortest_m)) * std::pow(shortest_m / l_m, 3) > kDarkShare) {
+        constexpr double kStep = 1.02;
+        l_m *= kStep;
+    }
+    return l_m;
+}
+
+bool is_same(const Spectrum& a, const Spectrum& b) {
+    return std::ranges::equal(a.lambda_nm(), b.lambda_nm()) &&
+           std::ranges::equal(a.values(), b.values());
+}
+
+std::vector<Spectrum> distinct(const std::vector<Spectrum>& curves) {
+    std::vector<Spectrum> kept;
+    for (const Spectrum& curve : curves) {
+        if (std::ranges::none_of(kept, [&](const Spectrum& k) { return is_same(k, curve); })) {
+            kept.push_back(curve);
         }
     }
-    // No floor in view: no light, of no path.
-    if (family.longest_path_m == 0.0) family.shortest_path_m = 0.0;
-    return family;
+    return kept;
+}
+
+std::vector<std::vector<Spectrum>> sources_of(const Rig& rig,
+                                              const std::vector<Spectrum>& lamps,
+                                              const std::vector<Spectrum>& materials) {
+    std::vector<std::vector<Spectrum>> sources;
+    for (const Spectrum& lamp : lamps) {
+        for (const Spectrum& material : materials) sources.push_back({lamp, material});
+        if (rig.seafloor.phong > 0.0) sources.push_back({lamp});
+    }
+    return sources;
+}
+
+// Relative change of the radiance of an image point between two wavelengths' floor points, all
+// else, such as which cones reach it, being equal. The diffuse light alone, and with highlight.
+struct Lit {
+    double diffuse = 0.0;
+    double all = 0.0;
+};
+
+std::optional<Lit> lit_at(const Rig& rig, const WaterRay& ray, const Vector3d& cones_at_m, double K_per_m) {
+    const Plane floor = floor_plane(rig.sled);
+    const auto distance_m = distance_to(floor, ray);
+    if (!distance_m) return std::nullopt;
+    const Vector3d point_m = ray.origin_m + *distance_m * ray.direction;
+    const Vector3d mirrored = ray.direction - 2.0 * ray.direction.dot(floor.normal) * floor.normal;
+    Lit lit;
+    for (const Strobe& strobe : rig.strobes) {
+        const Vector3d towards = point_m - strobe.position_m;
+        const double d_m = towards.norm();
+        const double cos_theta = strobe.axis.dot(towards) / d_m;
+        const double cos_i = -floor.normal.dot(towards) / d_m;
+        if (cos_theta <= 0.0 || cos_i <= 0.0) continue;
+        const double cos_of_cones =
+            strobe.axis.dot((cones_at_m - strobe.position_m).normalized());
+        double intensity = 0.0;
+        for (const Cone& cone : strobe.beam.cones) {
+            if (cos_of_cones < std::cos(cone.half_angle_rad)) continue;
+            intensity += axial_intensity(cone, strobe.beam.weights) * cos_theta;
+        }
+        const double light = strobe.power * intensity / (d_m * d_m) *
+                             std::exp(-K_per_m * (d_m + *distance_m));
+        const double glint = rig.seafloor.phong *
+                             std::pow(std::max(0.0, -mirrored.dot(towards) / d_m), rig.seafloor.phong_size);
+        lit.diffuse += light * cos_i;
+        lit.all += light * (cos_i + glint);
+    }
+    return lit;
+}
+
+// The port's tilt: for each wavelength, the largest |ln| of that change over the image.
+Spectrum port_tilt(const Rig& rig) {
+    constexpr int kGrid = 17;
+    constexpr int kWavelengths = 17;
+    const WavelengthRange range = rig.camera.range;
+    const double middle_nm = std::midpoint(range.first_nm, range.last_nm);
+    std::vector<double> lambda_nm;
+    std::vector<double> tilt;
+    for (int j = 0; j < kWavelengths; ++j) {
+        const double nm = std::lerp(range.first_nm, range.last_nm, j / (kWavelengths - 1.0));
+        const double K_per_m = rig.water.attenuation_per_m(nm);
+        double worst = 0.0;
+        for (int v = 0; v < kGrid; ++v) {
+            for (int u = 0; u < kGrid; ++u) {
+                const double column = rig.camera.width_px * (u / (kGrid - 1.0));
+                const double row = rig.camera.height_px * (v / (kGrid - 1.0));
+                const WaterRay middle = pixel_ray(rig, column, row, middle_nm);
+                const auto distance_m = distance_to(floor_plane(rig.sled), middle);
+                if (!distance_m) continue;
+                const Vector3d point_m = middle.origin_m + *distance_m * middle.direction;
+                const auto from = lit_at(rig, middle, point_m, K_per_m);
+                const auto to = lit_at(rig, pixel_ray(rig, column, row, nm), point_m, K_per_m);
+                if (!from || !to) continue;
+                if (from->diffuse > 0.0 && to->diffuse > 0.0) {
+                    worst = std::max({worst,
+                                      std::abs(std::log(to->diffuse / from->diffuse)),
+                                      std::abs(std::log(to->all / from->all))});
+                }
+            }
+        }
+        lambda_nm.push_back(nm);
+        tilt.push_back(nm < middle_nm ? -worst : worst);
+    }
+    return {"change of light over a port's dispersion", std::move(lambda_nm), std::move(tilt)};
+}
+
+LightFamily family_of(const Rig& rig, std::vector<std::vector<Spectrum>> sources) {
+    const PathRange paths = path_range(rig);
+    return {.sources = std::move(sources),
+            .water = rig.water,
+            .shortest_path_m = paths.shortest_m,
+            .longest_path_m = paths.longest_m,
+            .tilt = rig.camera.port ? std::optional(port_tilt(rig)) : std::nullopt};
+}
+
+std::vector<Spectrum> materials_of(const Rig& rig) {
+    std::vector<Spectrum> materials{rig.seafloor.reflectance};
+    materials.insert(materials.end(), rig.materials.begin(), rig.materials.end());
+    return materials;
+}
+
+std::vector<Spectrum> lamps_of(const Rig& rig) {
+    std::vector<Spectrum> lamps;
+    for (const Strobe& strobe : rig.strobes) lamps.push_back(strobe.spectrum);
+    return lamps;
+}
+
+}  // namespace
+
+PathRange path_range(const Rig& rig) {
+    const Camera& camera = rig.camera;
+    std::vector<double> wavelengths{std::midpoint(camera.range.first_nm, camera.range.last_nm)};
+    if (camera.port) {
+        wavelengths.insert(wavelengths.end(), {camera.range.first_nm, camera.range.last_nm});
+    }
+    PathRange paths{.shortest_m = std::numeric_limits<double>::infinity()};
+    for (const Strobe& strobe : rig.strobes) {
+        const double room_m = half_diagonal_m(strobe);
+        for (const double nm : wavelengths) {
+            const double shortest_m = shortest_path_m(rig, strobe, nm);
+            if (shortest_m >= kNoFloor_m) continue;
+            paths.shortest_m = std::min(paths.shortest_m, shortest_m - room_m);
+            for (const double column : {0.0, static_cast<double>(camera.width_px)}) {
+                for (const double row : {0.0, static_cast<double>(camera.height_px)}) {
+                    const double corner_m = path_m(rig, strobe, column, row, nm);
+                    paths.has_horizon |= corner_m >= kNoFloor_m;
+                    if (corner_m < kNoFloor_m) {
+                        paths.longest_m = std::max(paths.longest_m, corner_m + room_m);
+                    }
+                }
+            }
+        }
+    }
+    if (paths.shortest_m == std::numeric_limits<double>::infinity()) return {};
+    // An emitter may be larger than its distance to the floor.
+    constexpr double kLeastPath_m = 1e-6;
+    paths.shortest_m = std::max(kLeastPath_m, paths.shortest_m / kPathRoom);
+    paths.longest_m = paths.has_horizon ? darkest_path_m(rig, paths.shortest_m)
+                                        : paths.longest_m * kPathRoom;
+    return paths;
+}
+
+LightFamily light_family(const Rig& rig) {
+    return family_of(rig, sources_of(rig, distinct(lamps_of(rig)), distinct(materials_of(rig))));
+}
+
+LightFamily light_family_by_strobe(const Rig& rig) {
+    return family_of(rig, sources_of(rig, lamps_of(rig), materials_of(rig)));
 }
 
 }  // namespace aphotic

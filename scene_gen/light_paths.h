@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The family of light (spectral/light_family.h) that a rig's camera can see: every lamp's
-// spectrum on the floor's material, and bare where the floor has a highlight, over the paths
-// from the shortest to the longest.
+// spectrum on every material, and bare where the floor has a highlight, over the paths from the
+// shortest to the longest.
 //
-// Paths run from each strobe to the floor that the image sees and on to the camera, in water,
-// taken on a grid over the image. kPathRoom on both ends stands for what lies between the grid's
-// points, for the size of emitters, and for the bending of other wavelengths in a port.
+// A path l = d + r runs from a lamp to the floor that the image sees and on to the camera, in
+// water. Over the image it is quasi-convex: so the longest is at a corner, and the shortest is
+// found by nested searches along rows and columns. Emitters add and take half their diagonal. Behind a
+// port this is done at both ends of the range and in its middle; kPathRoom is for the wavelengths
+// between.
+//
+// With the horizon in view paths have no end. The longest that counts is that from which no light
+// over kDarkShare of the brightest can come.
+//
+// Behind a port, each wavelength shows its own point of the floor: the family's tilt is the largest
+// change of radiance on the way from the middle wavelength's point to it, over the image.
 #pragma once
 
 #include "scene_gen/rig.h"
@@ -14,8 +22,23 @@
 
 namespace aphotic {
 
-inline constexpr double kPathRoom = 1.05;
+inline constexpr double kPathRoom = 1.001;
+inline constexpr double kDarkShare = 1e-11;
 
+struct PathRange {
+    double shortest_m = 0.0;
+    double longest_m = 0.0;
+    bool has_horizon = false;  // longest_m is where the light ends, not the floor
+};
+
+// Both zero when the image sees no floor.
+[[nodiscard]] PathRange path_range(const Rig& rig);
+
+// Lamps with the same spectrum are one, and so are materials.
 [[nodiscard]] LightFamily light_family(const Rig& rig);
+
+// The same with one set of sources per strobe, in their order: for each the floor, the materials
+// and, where the floor has a highlight, the bare lamp.
+[[nodiscard]] LightFamily light_family_by_strobe(const Rig& rig);
 
 }  // namespace aphotic

@@ -2,6 +2,7 @@
 #include "scene_gen/pov_scene.h"
 
 #include "scene_gen/exposure.h"
+#include "scene_gen/omissions.h"
 #include "spectral/error.h"
 #include "spectral/refraction.h"
 
@@ -11,6 +12,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -150,19 +152,38 @@ void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid
     }
 }
 
+// By strobe and cone: whether the scene needs it.
+using LitCones = std::vector<std::vector<bool>>;
+
+LitCones lit_cones(const Rig& rig, const SceneOptions& options) {
+    LitCones lit;
+    for (const Strobe& strobe : rig.strobes) {
+        lit.emplace_back();
+        for (const Cone& cone : strobe.beam.cones) {
+            lit.back().push_back(!options.omit || (strobe.power > 0.0 && cone.weight > 0.0 &&
+                                                   lights_the_view(rig, strobe, cone)));
+        }
+    }
+    return lit;
+}
+
 // One scene's text, written part by part.
 class SceneWriter {
   public:
     SceneWriter(const Rig& rig,
                 const RadianceBound& bound,
                 const SceneOptions& options,
+                const LitCones& lit_cones,
                 std::string name,
-                std::vector<double> lambda_nm)
+                std::vector<double> lambda_nm,
+                double index_nm)
         : rig_(rig),
           options_(options),
+          lit_cones_(lit_cones),
           fade_m_(fade_distance_m(rig)),
           lambda_nm_(std::move(lambda_nm)) {
         scene_.name = std::move(name);
+        scene_.index_nm = index_nm;
         for (const double l : lambda_nm_) {
             scene_.wavelengths.push_back(
                 {.lambda_nm = l, .exposure_log2 = exposure_log2(bound.at(l), brightest_colour(l))});
@@ -266,7 +287,7 @@ class SceneWriter {
     void write_port() {
         if (!rig_.camera.port) return;
         const FlatPort& port = *rig_.camera.port;
-        const double lambda_nm = lambda_nm_.front();
+        const double lambda_nm = scene_.index_nm;
         const double n_water =
             seawater_index(lambda_nm, rig_.water.salinity_psu, rig_.water.temperature_c);
         const double n_glass = port.glass.index(lambda_nm);
@@ -303,8 +324,10 @@ class SceneWriter {
         line();
     }
 
+    [[nodiscard]] bool has_medium() const { return !options_.omit || !rig_.water.is_clear(); }
+
     void write_water() {
-        if (rig_.water.is_clear()) return;
+        if (!has_medium()) return;
         const Channels k = per_channel([&](double l) { return rig_.water.attenuation_per_m(l); });
         line(
             "// Water: one absorbing medium everywhere. A constant medium is evaluated in closed "
@@ -322,7 +345,7 @@ class SceneWriter {
         line(fmt::format(
             "plane {{ {}, {}", point(floor.normal), number(floor.normal.dot(floor.point_m))));
         line(fmt::format("   pigment {{ rgb {} }}", vector(rho)));
-        if (rig_.seafloor.phong > 0.0) {
+        if (!options_.omit || rig_.seafloor.phong > 0.0) {
             line(fmt::format("   finish {{ phong {}  phong_size {} }}",
                              number(rig_.seafloor.phong),
                              number(rig_.seafloor.phong_size)));
@@ -350,17 +373,19 @@ class SceneWriter {
         line("      fade_distance Fade_Distance  fade_power 2");
         // shadowless would spare clear water its shadow rays, but it makes a point light of a
         // spotlight: POV-Ray knows one type a light.
-        if (!rig_.water.is_clear()) line("      media_attenuation on");
+        if (has_medium()) line("      media_attenuation on");
         line("   }");
         line("#end");
-        for (const Strobe& strobe : rig_.strobes) write_strobe(strobe);
+        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+            write_strobe(rig_.strobes[s], lit_cones_[s]);
+        }
     }
 
-    void write_strobe(const Strobe& strobe) {
+    void write_strobe(const Strobe& strobe, const std::vector<bool>& lit) {
         line();
         line(fmt::format("// Strobe: {}", comment_text(strobe.name)));
-        if (!shines(strobe)) {
-            line("// shines nothing at these wavelengths");
+        if (std::ranges::none_of(lit, std::identity{}) || (options_.omit && !shines(strobe))) {
+            line("// lights nothing in view at these wavelengths");
             return;
         }
         const auto lamps_m = lamp_positions_m(strobe, grid_of(strobe));
@@ -373,8 +398,9 @@ class SceneWriter {
         }
         line(fmt::format("#declare Flux = {};", vector(flux)));
         line(fmt::format("#declare Axis = {};", point(strobe.axis)));
-        for (const Cone& cone : strobe.beam.cones) {
-            if (cone.weight == 0.0) continue;
+        for (std::size_t k = 0; k < lit.size(); ++k) {
+            if (!lit[k]) continue;
+            const Cone& cone = strobe.beam.cones[k];
             const double half_angle_deg = cone.half_angle_rad * 180.0 / std::numbers::pi;
             for (const Vector3d& lamp_m : lamps_m) {
                 line(fmt::format("Cone_Lamp ({}, Axis, {}, {}, Flux)   // {}",
@@ -388,6 +414,7 @@ class SceneWriter {
 
     const Rig& rig_;
     const SceneOptions& options_;
+    const LitCones& lit_cones_;
     double fade_m_;
     std::vector<double> lambda_nm_;
     FrameScene scene_;
@@ -398,8 +425,6 @@ class SceneWriter {
 std::vector<FrameScene> make_scenes(const Rig& rig,
                                     std::span<const double> lambda_nm,
                                     const SceneOptions& options) {
-    const auto per_frame =
-        static_cast<std::size_t>(rig.camera.port ? 1 : options.wavelengths_per_frame);
     require_few_enough_lights(rig, options);
     for (const Strobe& strobe : rig.strobes) {
         require_place_for_lamps(
@@ -407,17 +432,22 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
     }
     const RadianceBound bound(rig);
     const std::vector<std::string> labels = wavelength_labels(lambda_nm);
+    const LitCones lit = lit_cones(rig, options);
     std::vector<FrameScene> scenes;
-    for (std::size_t first = 0; first < lambda_nm.size(); first += per_frame) {
-        const std::size_t count = std::min(per_frame, lambda_nm.size() - first);
-        const std::string name =
-            fmt::format("band_{}nm",
-                        fmt::join(labels.begin() + static_cast<std::ptrdiff_t>(first),
-                                  labels.begin() + static_cast<std::ptrdiff_t>(first + count),
-                                  "_"));
-        const auto part = lambda_nm.subspan(first, count);
-        scenes.push_back(
-            SceneWriter(rig, bound, options, name, {part.begin(), part.end()}).write());
+    for (const FrameGroup& group :
+         frame_groups(rig, lambda_nm, options.wavelengths_per_frame, options.pixel_shift)) {
+        const auto first = labels.begin() + static_cast<std::ptrdiff_t>(group.first);
+        const std::string name = fmt::format(
+            "band_{}nm", fmt::join(first, first + static_cast<std::ptrdiff_t>(group.count), "_"));
+        const auto part = lambda_nm.subspan(group.first, group.count);
+        scenes.push_back(SceneWriter(rig,
+                                     bound,
+                                     options,
+                                     lit,
+                                     name,
+                                     {part.begin(), part.end()},
+                                     group.index_nm)
+                             .write());
     }
     return scenes;
 }

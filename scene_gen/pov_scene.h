@@ -10,13 +10,14 @@
 //
 // the radiance L(lambda) of docs/physics.md times 2^e, the frame's exposure (exposure.h).
 //
-// Behind a port each wavelength has a frame of its own, the same in all three channels: the
-// refractive index is one number a frame, and water and glass bend each wavelength differently.
+// Behind a port a frame is rendered with the refractive indices of one wavelength
+// (frame_groups.h).
 //
-// What a scene does not hold is not in it: no media in clear water, no port, no lamp of weight
-// or power 0, no highlight of strength 0.
+// What a scene does not hold is not in it (omissions.h): no media in clear water, no port, no cone
+// of weight or power 0 or that lights nothing in view, no highlight of strength 0.
 #pragma once
 
+#include "scene_gen/frame_groups.h"
 #include "scene_gen/geometry.h"
 #include "scene_gen/rig.h"
 
@@ -35,12 +36,15 @@ struct FrameWavelength {
 struct FrameScene {
     std::string name;                          // such as band_478_576_638nm
     std::vector<FrameWavelength> wavelengths;  // by channel: red, green, blue; one to three
+    double index_nm = 0.0;                     // whose refractive indices it has
     std::string sdl;
 };
 
 struct SceneOptions {
-    int wavelengths_per_frame = 3;          // 1 to 3; a port makes it 1
+    int wavelengths_per_frame = 3;          // 1 to 3
+    double pixel_shift = kPixelShift;       // how far a shared frame may shift one behind a port
     std::optional<LampGrid> emitter_lamps;  // none: lamp_grid() chooses per strobe
+    bool omit = true;                       // false: what changes nothing is written all the same
 };
 
 // The frames for these wavelengths, in their order. Throws InputError when a strobe stands

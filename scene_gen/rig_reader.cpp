@@ -145,6 +145,17 @@ class Section {
         return has(key) ? text(key, allowed) : absent;
     }
 
+    [[nodiscard]] std::vector<std::string> texts(std::string_view key, const std::string& allowed) {
+        const toml::array* array = required(key, allowed).as_array();
+        if (array == nullptr) found_but(key, allowed);
+        std::vector<std::string> all;
+        for (const toml::node& node : *array) {
+            if (!node.is_string()) found_but(key, allowed);
+            all.push_back(*node.value<std::string>());
+        }
+        return all;
+    }
+
     // One of a few words.
     [[nodiscard]] std::string word(std::string_view key, const std::vector<std::string>& words) {
         const std::string allowed = fmt::format("\"{}\"", fmt::join(words, "\" or \""));
@@ -257,6 +268,11 @@ class RigReader {
                    CurveRole role,
                    const std::string& absent);
     std::vector<Spectrum> curves(Section& section, std::string_view key, CurveRole role);
+    std::vector<Spectrum> curves_named(const Section& section,
+                                       std::string_view key,
+                                       const std::string& name,
+                                       CurveRole role);
+    std::vector<Spectrum> read_materials(Section& top);
 
     fs::path folder_;
     std::string digested_;
@@ -265,8 +281,17 @@ class RigReader {
 // Curves by built-in name or from a CSV file beside the rig; what a file holds counts in the
 // rig's digest.
 std::vector<Spectrum> RigReader::curves(Section& section, std::string_view key, CurveRole role) {
-    const std::string name =
-        section.text(key, "a built-in table's name (aphotic data) or a .csv file beside the rig");
+    return curves_named(
+        section,
+        key,
+        section.text(key, "a built-in table's name (aphotic data) or a .csv file beside the rig"),
+        role);
+}
+
+std::vector<Spectrum> RigReader::curves_named(const Section& section,
+                                              std::string_view key,
+                                              const std::string& name,
+                                              CurveRole role) {
     return section.at_key(key, [&] {
         if (names_a_file(name)) digested_ += sha256_of_text(read_text_file(folder_ / name));
         return load_curves(name, role, folder_);
@@ -378,6 +403,17 @@ Seafloor RigReader::read_seafloor(Section section) {
     return floor;
 }
 
+std::vector<Spectrum> RigReader::read_materials(Section& top) {
+    std::vector<Spectrum> materials;
+    if (!top.has("materials")) return materials;
+    const std::string allowed =
+        "an array of built-in reflectances (aphotic data) or .csv files beside the rig";
+    for (const std::string& name : top.texts("materials", allowed)) {
+        materials.push_back(curves_named(top, "materials", name, CurveRole::Reflectance).front());
+    }
+    return materials;
+}
+
 Beam RigReader::read_beam(Section section, std::string name) {
     Beam beam{.name = std::move(name), .weights = ConeWeights::Flux, .cones = {}};
     if (section.has("weights") && section.word("weights", {"flux", "literal"}) == "literal") {
@@ -462,6 +498,7 @@ Spectrum range_of_index(const std::string& what, WavelengthRange range) {
 void require_tables_to_cover_the_range(const Rig& rig) {
     std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
     curves.push_back(&rig.seafloor.reflectance);
+    for (const Spectrum& material : rig.materials) curves.push_back(&material);
     if (rig.water.multiple != 0.0) curves.push_back(&rig.water.absorption_per_m);
     for (const Strobe& strobe : rig.strobes) curves.push_back(&strobe.spectrum);
     std::vector<Spectrum> indices;
@@ -496,6 +533,7 @@ Rig RigReader::read(Section top) {
                 section.found_but("name", "a name that no other strobe has");
         }
     }
+    std::vector<Spectrum> materials = read_materials(top);
     top.refuse_unknown_keys();
 
     Rig rig{.title = std::move(title),
@@ -504,6 +542,7 @@ Rig RigReader::read(Section top) {
             .water = std::move(water),
             .seafloor = std::move(seafloor),
             .strobes = std::move(strobes),
+            .materials = std::move(materials),
             .digest = sha256_of_text(digested_)};
     const Section camera_section = top.section("camera", "a table [camera]");
     (void)camera_section.at_key("range_nm", [&] {

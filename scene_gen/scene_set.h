@@ -8,6 +8,7 @@
 #pragma once
 
 #include "scene_gen/pov_scene.h"
+#include "scene_gen/render_plan.h"
 #include "scene_gen/rig.h"
 #include "spectral/bands.h"
 #include "spectral/manifest.h"
@@ -25,9 +26,7 @@ struct SceneSet {
     std::string ini;
 };
 
-[[nodiscard]] SceneSet make_scene_set(const Rig& rig,
-                                      std::span<const WeightedWavelength> wavelengths,
-                                      const SceneOptions& options = {});
+[[nodiscard]] SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan);
 
 // What the lamps alone would signal: the sum over strobes of their light, undimmed and white.
 [[nodiscard]] std::array<double, kChannels> lamp_signal(

@@ -6,17 +6,6 @@
 #include <fmt/format.h>
 
 namespace aphotic {
-namespace {
-
-WeightedWavelength weighted(const Sensor& sensor, double lambda_nm, double width_nm) {
-    WeightedWavelength w{.lambda_nm = lambda_nm, .weight = {}};
-    for (int c = 0; c < kChannels; ++c) {
-        w.weight[static_cast<std::size_t>(c)] = width_nm * sensor.response(c, lambda_nm);
-    }
-    return w;
-}
-
-}  // namespace
 
 std::vector<WeightedWavelength> equal_bands(const Sensor& sensor,
                                             WavelengthRange range,
@@ -24,34 +13,29 @@ std::vector<WeightedWavelength> equal_bands(const Sensor& sensor,
     const double width_nm = (range.last_nm - range.first_nm) / count;
     std::vector<WeightedWavelength> bands;
     for (int j = 0; j < count; ++j) {
-        bands.push_back(weighted(sensor, range.first_nm + (j + 0.5) * width_nm, width_nm));
+        WeightedWavelength w{.lambda_nm = range.first_nm + (j + 0.5) * width_nm, .weight = {}};
+        for (int c = 0; c < kChannels; ++c) {
+            w.weight[static_cast<std::size_t>(c)] = width_nm * sensor.response(c, w.lambda_nm);
+        }
+        bands.push_back(w);
     }
     return bands;
 }
 
-std::vector<WeightedWavelength> listed_wavelengths(const Sensor& sensor,
-                                                   WavelengthRange range,
-                                                   std::span<const double> lambda_nm) {
-    std::vector<WeightedWavelength> bands;
+void require_wavelengths(WavelengthRange range, std::span<const double> lambda_nm) {
     for (std::size_t j = 0; j < lambda_nm.size(); ++j) {
         // Closer ones could not be told apart by the names of their channels.
         constexpr double kLeastStepNm = 1e-5;
         const bool increases = j == 0 || lambda_nm[j] >= lambda_nm[j - 1] + kLeastStepNm;
-        if (!increases || !range.contains(lambda_nm[j])) {
-            throw InputError(
-                fmt::format("wavelengths: found {} nm in place {}; allowed: increasing "
-                            "wavelengths from {} to {} nm",
-                            lambda_nm[j],
-                            j + 1,
-                            range.first_nm,
-                            range.last_nm));
-        }
-        const double from_nm = j == 0 ? range.first_nm : 0.5 * (lambda_nm[j - 1] + lambda_nm[j]);
-        const double to_nm =
-            j + 1 == lambda_nm.size() ? range.last_nm : 0.5 * (lambda_nm[j] + lambda_nm[j + 1]);
-        bands.push_back(weighted(sensor, lambda_nm[j], to_nm - from_nm));
+        if (increases && range.contains(lambda_nm[j])) continue;
+        throw InputError(
+            fmt::format("wavelengths: found {} nm in place {}; allowed: increasing "
+                        "wavelengths from {} to {} nm",
+                        lambda_nm[j],
+                        j + 1,
+                        range.first_nm,
+                        range.last_nm));
     }
-    return bands;
 }
 
 }  // namespace aphotic

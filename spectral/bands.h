@@ -8,9 +8,6 @@
 //
 // equal_bands(n) is the midpoint rule: n bands of equal width over the range, lambda_j the
 // middle of band j, w_cj = width * Q_c(lambda_j). Its error falls with the square of the width.
-//
-// listed_wavelengths() takes the wavelengths as given, each for the band that reaches halfway to
-// its neighbours (the outer ones to the ends of the range). The bands' widths add up to the range.
 #pragma once
 
 #include "spectral/sensor.h"
@@ -32,8 +29,6 @@ struct WeightedWavelength {
                                                           int count);
 
 // Throws InputError unless the wavelengths are increasing and lie within the range.
-[[nodiscard]] std::vector<WeightedWavelength> listed_wavelengths(const Sensor& sensor,
-                                                                 WavelengthRange range,
-                                                                 std::span<const double> lambda_nm);
+void require_wavelengths(WavelengthRange range, std::span<const double> lambda_nm);
 
 }  // namespace aphotic

@@ -112,6 +112,26 @@ ExrAttributes attributes_of(const Manifest& manifest) {
             {"aphotic:wavelengths_nm", fmt::format("{}", fmt::join(lambda_nm, " "))}};
 }
 
+void integrate_into(const fs::path& folder,
+                    const Manifest& manifest,
+                    OutputImages& images,
+                    const ProgressReport& report) {
+    const int height_px = manifest.height_px;
+    const int block_rows = rows_per_block(manifest);
+    for (int row = 0; row < height_px; row += block_rows) {
+        Block block;
+        block.first_row = row;
+        block.rows = std::min(block_rows, height_px - row);
+        block.plane =
+            static_cast<std::size_t>(block.rows) * static_cast<std::size_t>(manifest.width_px);
+        block.samples.resize(block.plane * (kChannels + manifest.wavelengths.size()));
+        read_radiance(folder, manifest, block);
+        sum_signals(manifest, block);
+        images.write_rows(block.rows, std::move(block.samples));
+        if (report) report(static_cast<double>(row + block.rows) / height_px);
+    }
+}
+
 }  // namespace
 
 CameraImage integrate(const fs::path& folder,
@@ -120,22 +140,20 @@ CameraImage integrate(const fs::path& folder,
     require_noted_frames(folder, manifest);
     std::vector<double> lambda_nm;
     for (const ManifestWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
-    const int height_px = manifest.height_px;
-    OutputImages images(folder, manifest.width_px, height_px, lambda_nm, attributes_of(manifest));
+    OutputImages images(
+        folder, manifest.width_px, manifest.height_px, lambda_nm, attributes_of(manifest));
+    integrate_into(folder, manifest, images, report);
+    return images.finish();
+}
 
-    const int block_rows = rows_per_block(manifest);
-    for (int row = 0; row < height_px; row += block_rows) {
-        Block block;
-        block.first_row = row;
-        block.rows = std::min(block_rows, height_px - row);
-        block.plane =
-            static_cast<std::size_t>(block.rows) * static_cast<std::size_t>(manifest.width_px);
-        block.samples.resize(block.plane * (kChannels + lambda_nm.size()));
-        read_radiance(folder, manifest, block);
-        sum_signals(manifest, block);
-        images.write_rows(block.rows, std::move(block.samples));
-        if (report) report(static_cast<double>(row + block.rows) / height_px);
-    }
+CameraImage integrate_signals(const fs::path& folder,
+                              const Manifest& manifest,
+                              const fs::path& images_folder,
+                              const ProgressReport& report) {
+    require_noted_frames(folder, manifest);
+    OutputImages images(
+        images_folder, manifest.width_px, manifest.height_px, {}, attributes_of(manifest));
+    integrate_into(folder, manifest, images, report);
     return images.finish();
 }
 

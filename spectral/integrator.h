@@ -32,4 +32,11 @@ CameraImage integrate(const std::filesystem::path& folder,
                       const Manifest& manifest,
                       const ProgressReport& report = {});
 
+// The signals alone, into images/image.exr: for weights of another rig than the frames', whose
+// radiance they do not hold.
+CameraImage integrate_signals(const std::filesystem::path& folder,
+                              const Manifest& manifest,
+                              const std::filesystem::path& images,
+                              const ProgressReport& report = {});
+
 }  // namespace aphotic

@@ -70,8 +70,10 @@ std::vector<Member> members_of(const LightFamily& family, int paths) {
 }
 
 double light(const LightFamily& family, const Member& member, double lambda_nm) {
+    // One sign of it stands for both: its size is what asks for points.
+    const double tilt = family.tilt ? family.tilt->at(lambda_nm) : 0.0;
     return source_at(*member.source, lambda_nm) *
-           std::exp(-family.water.attenuation_per_m(lambda_nm) * member.path_m);
+           std::exp(-family.water.attenuation_per_m(lambda_nm) * member.path_m + tilt);
 }
 
 Signals signals_of(const LightFamily& family,
@@ -110,6 +112,7 @@ std::vector<double> knots_of(const Sensor& sensor,
         for (const Spectrum& curve : source) curves.push_back(&curve);
     }
     if (family.water.multiple != 0.0) curves.push_back(&family.water.absorption_per_m);
+    if (family.tilt) curves.push_back(&*family.tilt);
     std::vector<double> knots = union_of_knots(curves, range);
     // kExactPoints are exact where light falls by exp(-8) and less. Where it falls farther between
     // two knots, the brighter end is halved until it does not: what is left over is as much
@@ -168,25 +171,6 @@ std::vector<WeightedWavelength> reference_grid(const Sensor& sensor,
         grid.insert(grid.end(), nodes.begin(), nodes.end());
     }
     return grid;
-}
-
-std::array<double, kChannels> rule_error(const Sensor& sensor,
-                                         const LightFamily& family,
-                                         WavelengthRange range,
-                                         std::span<const WeightedWavelength> rule) {
-    constexpr double kGridError = 1e-9;
-    constexpr int kPaths = 33;
-    const std::vector<WeightedWavelength> grid = reference_grid(sensor, family, range, kGridError);
-    std::array<double, kChannels> worst{};
-    for (const Member& member : members_of(family, kPaths)) {
-        const Signals right = signals_of(family, member, grid);
-        const Signals found = signals_of(family, member, rule);
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            if (right[c] == 0.0) continue;
-            worst[c] = std::max(worst[c], std::abs(found[c] / right[c] - 1.0));
-        }
-    }
-    return worst;
 }
 
 }  // namespace aphotic

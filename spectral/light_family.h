@@ -10,6 +10,9 @@
 // K       loss of the water [1/m]        l  lamp to floor to camera, in water [m]
 // Q_c     response of channel c          T_c  signal that such light gives
 //
+// Behind a dispersing port every wavelength shows a point of the floor of its own, where it may be
+// lit more or less by up to a factor exp(tilt(lambda)): then f takes in exp(t tilt), t from -1 to 1.
+//
 // A pixel's signal is a sum of such T_c with factors that are not negative. So a rule of
 // wavelengths and weights that errs by at most e on every member of the family errs by at most
 // e on every pixel.
@@ -20,8 +23,7 @@
 #include "spectral/spectrum.h"
 #include "spectral/water.h"
 
-#include <array>
-#include <span>
+#include <optional>
 #include <vector>
 
 namespace aphotic {
@@ -32,6 +34,7 @@ struct LightFamily {
     Water water;
     double shortest_path_m = 0.0;
     double longest_path_m = 0.0;
+    std::optional<Spectrum> tilt;  // none: no port
 };
 
 // An integration grid that is exact to the stated error for every member of the family: between
@@ -46,12 +49,5 @@ struct LightFamily {
                                                              double error);
 inline constexpr unsigned kExactPoints = 12;
 inline constexpr int kExactPaths = 5;
-
-// The largest relative error of the rule over the family, per channel, against reference_grid.
-// A channel that sees none of a source's light has error 0 for it.
-[[nodiscard]] std::array<double, kChannels> rule_error(const Sensor& sensor,
-                                                       const LightFamily& family,
-                                                       WavelengthRange range,
-                                                       std::span<const WeightedWavelength> rule);
 
 }  // namespace aphotic

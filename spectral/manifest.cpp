@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* kFormat = "aphotic-manifest-1";
+constexpr const char* kFormat = "aphotic-manifest-2";
 constexpr int kLargestImagePx = 16384;
 constexpr int kLargestExposureLog2 = 1000;
 
@@ -55,14 +55,30 @@ class Reader {
         return value.get<double>();
     }
 
-    [[nodiscard]] std::array<double, kChannels> channels(const std::string& key) const {
-        const Json& value = at(key, "three numbers");
+    [[nodiscard]] std::vector<double> numbers(
+        const std::string& key, std::string_view allowed = "a list of numbers") const {
+        const Json& value = at(key, allowed);
         const auto is_number = [](const Json& item) { return item.is_number(); };
-        if (!value.is_array() || value.size() != kChannels ||
-            !std::all_of(value.begin(), value.end(), is_number)) {
-            fail(key, "three numbers");
+        if (!value.is_array() || !std::all_of(value.begin(), value.end(), is_number)) {
+            fail(key, allowed);
         }
-        return value.get<std::array<double, kChannels>>();
+        return value.get<std::vector<double>>();
+    }
+
+    [[nodiscard]] std::array<double, kChannels> channels(const std::string& key) const {
+        constexpr std::string_view kAllowed = "three numbers";
+        const std::vector<double> values = numbers(key, kAllowed);
+        if (values.size() != kChannels) fail(key, kAllowed);
+        return {values[0], values[1], values[2]};
+    }
+
+    [[nodiscard]] std::map<std::string, std::string> texts(const std::string& key) const {
+        const Json& value = at(key, "an object of texts");
+        const auto is_text = [](const Json& item) { return item.is_string(); };
+        if (!value.is_object() || !std::all_of(value.begin(), value.end(), is_text)) {
+            fail(key, "an object of texts");
+        }
+        return value.get<std::map<std::string, std::string>>();
     }
 
     [[nodiscard]] std::vector<Reader> objects(const std::string& key) const {
@@ -126,6 +142,10 @@ ManifestWavelength wavelength_of(const Reader& reader, const Manifest& manifest)
     if (w.channel != "R" && w.channel != "G" && w.channel != "B") {
         reader.fail("channel", "\"R\", \"G\" or \"B\"");
     }
+    w.index_nm = reader.number("index_nm");
+    w.attenuation_per_m = reader.number("attenuation_per_m");
+    w.flux = reader.numbers("flux");
+    w.reflectance = reader.numbers("reflectance");
     const std::string frame = reader.text("frame");
     const auto found = std::find_if(manifest.frames.begin(),
                                     manifest.frames.end(),
@@ -168,7 +188,16 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
     json["width_px"] = manifest.width_px;
     json["height_px"] = manifest.height_px;
     json["lamp_signal"] = manifest.lamp_signal;
-    json["predicted_error"] = manifest.predicted_error;
+    json["method"] = manifest.method;
+    json["tolerance"] = manifest.tolerance;
+    json["frame_error"] = manifest.frame_error;
+    json["error"] = Json::array();
+    json["amplification"] = Json::array();
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        json["error"].push_back(manifest.quality[c].error);
+        json["amplification"].push_back(manifest.quality[c].amplification);
+    }
+    json["geometry"] = manifest.geometry;
     json["frames"] = Json::array();
     for (const ManifestFrame& frame : manifest.frames) {
         json["frames"].push_back({{"name", frame.name},
@@ -182,7 +211,11 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
                                        {"weight", w.weight},
                                        {"frame", manifest.frames[w.frame].name},
                                        {"channel", w.channel},
-                                       {"exposure_log2", w.exposure_log2}});
+                                       {"exposure_log2", w.exposure_log2},
+                                       {"index_nm", w.index_nm},
+                                       {"attenuation_per_m", w.attenuation_per_m},
+                                       {"flux", w.flux},
+                                       {"reflectance", w.reflectance}});
     }
     // Titles are the user's: bytes that are no UTF-8 are replaced, not refused.
     constexpr int kIndent = 2;
@@ -205,7 +238,15 @@ Manifest read_manifest(const fs::path& folder) {
     manifest.width_px = reader.integer("width_px", 1, kLargestImagePx);
     manifest.height_px = reader.integer("height_px", 1, kLargestImagePx);
     manifest.lamp_signal = reader.channels("lamp_signal");
-    manifest.predicted_error = reader.channels("predicted_error");
+    manifest.method = reader.text("method");
+    manifest.tolerance = reader.number("tolerance");
+    manifest.frame_error = reader.number("frame_error");
+    const auto error = reader.channels("error");
+    const auto amplification = reader.channels("amplification");
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        manifest.quality[c] = {.error = error[c], .amplification = amplification[c]};
+    }
+    manifest.geometry = reader.texts("geometry");
     for (const Reader& frame : reader.objects("frames")) {
         manifest.frames.push_back(frame_of(frame));
         for (std::size_t i = 0; i + 1 < manifest.frames.size(); ++i) {

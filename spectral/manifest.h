@@ -15,10 +15,12 @@
 // whose checksum stands beside it.
 #pragma once
 
+#include "spectral/rule_fitter.h"
 #include "spectral/sensor.h"
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,11 @@ struct ManifestWavelength {
     std::size_t frame = 0;                   // index into Manifest::frames
     std::string channel;                     // of the frame: R, G or B
     int exposure_log2 = 0;                   // the frame holds 2^exposure_log2 L(lambda)
+    double index_nm = 0.0;                   // whose refractive indices the frame has
+    // The light that the frame was rendered with, for weights of another water, lamp or sensor.
+    double attenuation_per_m = 0.0;
+    std::vector<double> flux{};         // of each strobe, its power included
+    std::vector<double> reflectance{};  // of the floor, then of each further material
 };
 
 struct Manifest {
@@ -50,11 +57,21 @@ struct Manifest {
     // What the lamps themselves would signal: the sum over strobes of int Phi Q_c dlambda. The
     // preview's white.
     std::array<double, kChannels> lamp_signal{};
-    // What the choice of wavelengths may cost: the largest relative error of each signal over
-    // all light that the rig can show (spectral/light_family.h), before the frames' rounding.
-    std::array<double, kChannels> predicted_error{};
+    // How the wavelengths were chosen: "fitted", "equal bands" or "listed".
+    std::string method;
+    double tolerance = 0.0;  // asked of a fitted choice; else 0
+    // The error that the wavelengths and their weights make, and how they amplify the frames' own
+    // error: together the promise (spectral/rule_fitter.h).
+    std::array<RuleQuality, kChannels> quality{};
+    double frame_error = 0.0;
+    // The rig's geometry in words and numbers: frames serve another rig when it is equal.
+    std::map<std::string, std::string> geometry;
     std::vector<ManifestWavelength> wavelengths;  // increasing
     std::vector<ManifestFrame> frames;
+
+    [[nodiscard]] double promise(std::size_t channel) const {
+        return quality[channel].promise(frame_error);
+    }
 };
 
 [[nodiscard]] std::filesystem::path manifest_path(const std::filesystem::path& folder);

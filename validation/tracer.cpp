@@ -118,7 +118,8 @@ std::vector<WeightedWavelength> Tracer::full_spectrum() const {
     LightFamily family{.sources = {},
                        .water = rig_.water,
                        .shortest_path_m = std::numeric_limits<double>::infinity(),
-                       .longest_path_m = 0.0};
+                       .longest_path_m = 0.0,
+                       .tilt = std::nullopt};
     for (const Strobe& strobe : rig_.strobes) {
         family.sources.push_back({strobe.spectrum, rig_.seafloor.reflectance});
         if (rig_.seafloor.phong > 0.0) family.sources.push_back({strobe.spectrum});

@@ -54,7 +54,7 @@ void compare_radiance(const Rig& rig,
                 rig.camera.width_px,
                 tracer.on_cone_edges({.first_nm = lambda_nm, .last_nm = lambda_nm}),
                 std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[first + k]),
-                kHalfFloatBound));
+                kHalfFloatBound + rendered.shift_error[first + k]));
         }
         if (progress) {
             progress(kShareOfSignals + (1.0 - kShareOfSignals) * static_cast<double>(first + part) /
@@ -108,7 +108,7 @@ void compare_signals(const Rig& rig,
                                                  rig.camera.width_px,
                                                  on_edge,
                                                  black,
-                                                 rendered.predicted_error[c] + kHalfFloatBound));
+                                                 rendered.promise[c]));
         for (std::size_t i = 0; i < pixels; ++i) {
             const double e = on_edge[i] != 0 ? std::numeric_limits<double>::quiet_NaN()
                                              : relative_error(a[i], b[i], black);

@@ -6,8 +6,9 @@
 // Bounds of |e| off the cone edges (comparison.h):
 //
 //   radiance   kHalfFloatBound: a half float's rounding is 2^-11 = 4.9e-4 of the value; the rest
-//              is for the lamps that stand for an emitter and for single-precision colours
-//   signals    the error that the choice of wavelengths was predicted to make, plus the same
+//              is for the lamps that stand for an emitter and for single-precision colours. Behind
+//              a port, what a frame shared with other wavelengths may shift comes to it
+//   signals    what the plan promised, the frames' rounding included
 //
 // Black, under which a difference is measured against it: for radiance the smallest normal half
 // float of the frame's exposure, for signals kBlackShare of the brightest.
@@ -28,7 +29,8 @@ inline constexpr double kBlackShare = 1e-8;
 struct RenderedImages {
     std::vector<double> lambda_nm;
     std::vector<int> exposure_log2;
-    std::array<double, kChannels> predicted_error{};
+    std::vector<double> shift_error;  // by wavelength: of a frame with another's indices
+    std::array<double, kChannels> promise{};
     // The planes of radiance of wavelengths [first, first + count), one after another.
     std::function<std::vector<float>(std::size_t first, std::size_t count)> radiance;
     CameraImage signals;

@@ -25,7 +25,7 @@ constexpr WavelengthRange kRange{400.0, 700.0};
 
 std::string listed_error(const std::vector<double>& lambda_nm) {
     try {
-        static_cast<void>(listed_wavelengths(simple_sensor(), kRange, lambda_nm));
+        require_wavelengths(kRange, lambda_nm);
     } catch (const InputError& error) {
         return error.what();
     }
@@ -81,37 +81,7 @@ TEST(EqualBands, ErrFourTimesLessAtHalfTheWidth) {
     EXPECT_NEAR(coarse / fine, 4.0, kRatioRounding) << coarse << " and " << fine;
 }
 
-TEST(ListedWavelengths, ReachHalfwayToTheirNeighbours) {
-    const auto bands =
-        listed_wavelengths(simple_sensor(), kRange, std::vector{420.0, 500.0, 540.0});
-    ASSERT_EQ(bands.size(), 3U);
-    expect_band(bands[0], 420.0, 460.0 - 400.0);
-    expect_band(bands[1], 500.0, 520.0 - 460.0);
-    expect_band(bands[2], 540.0, 700.0 - 520.0);
-}
-
-TEST(ListedWavelengths, AddUpToTheRange) {
-    double sum_nm = 0.0;
-    const std::vector lambda_nm{400.0, 433.3, 512.0, 700.0};
-    for (const auto& band : listed_wavelengths(simple_sensor(), kRange, lambda_nm)) {
-        sum_nm += band.weight[0];
-    }
-    EXPECT_NEAR(sum_nm, 300.0, kRounding * 300.0);
-}
-
-TEST(ListedWavelengths, InTheMiddlesOfEqualBandsAreEqualBands) {
-    const auto equal = equal_bands(simple_sensor(), kRange, 3);
-    const auto listed =
-        listed_wavelengths(simple_sensor(), kRange, std::vector{450.0, 550.0, 650.0});
-    ASSERT_EQ(listed.size(), equal.size());
-    for (std::size_t j = 0; j < equal.size(); ++j) {
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            EXPECT_NEAR(listed[j].weight[c], equal[j].weight[c], kRounding * 300.0) << j;
-        }
-    }
-}
-
-TEST(ListedWavelengths, MustIncreaseWithinTheRange) {
+TEST(Wavelengths, MustIncreaseWithinTheRange) {
     const std::string allowed = "; allowed: increasing wavelengths from 400 to 700 nm";
     EXPECT_EQ(listed_error({399.9}), "wavelengths: found 399.9 nm in place 1" + allowed);
     EXPECT_EQ(listed_error({500.0, 700.1}), "wavelengths: found 700.1 nm in place 2" + allowed);

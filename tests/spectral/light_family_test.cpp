@@ -46,7 +46,8 @@ LightFamily family_of(std::vector<std::vector<Spectrum>> sources,
     return {.sources = std::move(sources),
             .water = std::move(water),
             .shortest_path_m = shortest_path_m,
-            .longest_path_m = longest_path_m};
+            .longest_path_m = longest_path_m,
+            .tilt = {}};
 }
 
 // The signal that a rule gives to a source after a path.
@@ -116,6 +117,26 @@ TEST(ReferenceGrid, HoldsItsErrorHoweverSteeplyLightFalls) {
             EXPECT_NEAR(
                 applied(grid, {flat(1.0)}, water, path_m, 0) / T_nm, 1.0, kError + kRounding)
                 << "K rises by " << rise_per_m << " 1/m; path " << path_m << " m";
+        }
+    }
+}
+
+// A loss without colour is a factor, even exp(-3000), which is zero to a double: what the grid is
+// right for without it, it is right for with it.
+TEST(ReferenceGrid, HoldsItsErrorWhereLightIsTooLittleForADouble) {
+    constexpr double kError = 1e-8;
+    const Water coloured{.absorption_per_m = line(0.0, 4.0)};
+    for (const double loss_per_m : {100.0, 300.0, 1000.0, 1e4}) {
+        Water black = coloured;
+        black.uniform_loss_per_m = loss_per_m;
+        const auto family = family_of({{flat(1.0)}}, black, 1.0, 3.0);
+        const auto grid = reference_grid(flat_sensor(), family, kRange, kError);
+        for (const double path_m : {1.0, 1.3, 3.0}) {
+            const double x = 4.0 * path_m;
+            const double T_nm = kWidth_nm * (1.0 - std::exp(-x)) / x;
+            EXPECT_NEAR(
+                applied(grid, {flat(1.0)}, coloured, path_m, 0) / T_nm, 1.0, kError + kRounding)
+                << "beside " << loss_per_m << " 1/m; path " << path_m << " m";
         }
     }
 }
@@ -201,6 +222,39 @@ TEST(ReferenceGrid, KnowsTheKnotsOfEveryTable) {
     const auto grid = reference_grid(flat_sensor(), family, kRange, 1e-9);
     const double lost_nm = 0.2 * std::exp(-1.0);
     EXPECT_NEAR(kWidth_nm - applied(grid, {flat(1.0)}, water, 1.0, 0), lost_nm, 1e-9 * kWidth_nm);
+}
+
+// Behind a port a member's light takes in exp(t tilt), t from -1 to 1: for a straight tilt from 0
+// to h that is W (exp(t h) - 1) / (t h), and a peak in it is found as in any other table.
+TEST(ReferenceGrid, IntegratesTheTiltOfEitherSign) {
+    const auto lit =
+        [](const std::vector<WeightedWavelength>& grid, const Spectrum& tilt, double t) {
+            double sum = 0.0;
+            for (const WeightedWavelength& w : grid) {
+                sum += w.weight[0] * std::exp(t * tilt.at(w.lambda_nm));
+            }
+            return sum;
+        };
+    auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
+    for (const double h : {0.03, 0.1, 0.3, 1.0, -1.0, 3.0, -3.0}) {
+        family.tilt = line(0.0, h);
+        for (const double error : {1e-3, 1e-6, 1e-9}) {
+            const auto grid = reference_grid(flat_sensor(), family, kRange, error);
+            for (const double t : {-1.0, -0.4, 0.5, 1.0}) {
+                const double right = kWidth_nm * (std::exp(t * h) - 1.0) / (t * h);
+                EXPECT_NEAR(lit(grid, *family.tilt, t) / right, 1.0, error + kRounding)
+                    << "tilt up to " << h << ", " << t << " of it, " << grid.size() << " points";
+            }
+        }
+    }
+    constexpr double kError = 1e-9;
+    // Over a flank of a triangle exp(t s), s from 0 to 1: (exp(t) - 1) / t of its width.
+    family.tilt = Spectrum("peak", {300.0, 549.9, 550.0, 550.1, 800.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
+    const auto grid = reference_grid(flat_sensor(), family, kRange, kError);
+    for (const double t : {-1.0, 1.0}) {
+        const double right = kWidth_nm - 0.2 + 0.2 * (std::exp(t) - 1.0) / t;
+        EXPECT_NEAR(lit(grid, *family.tilt, t) / right, 1.0, kError + kRounding) << t;
+    }
 }
 
 TEST(ReferenceGrid, CoversARangeThatEndsBetweenKnots) {
@@ -378,140 +432,6 @@ TEST(ReferenceGrid, HoldsItsErrorForRandomFamilies) {
                     << multiple << ", " << grid.size() << " points";
             }
         }
-    }
-}
-
-// --- The error of a rule -------------------------------------------------------------------------
-
-// All flat but K, a line that rises by k over the range. One wavelength in the middle finds
-// W exp(-K_m l) where W exp(-K_m l) sinh(x) / x is right, x = k l / 2; so it errs by
-// 1 - x / sinh(x), the more the longer the path.
-TEST(RuleError, IsThatOfOneWavelengthInClosedForm) {
-    constexpr double kRise_per_m = 0.8;
-    const Water water{.absorption_per_m = line(0.1, 0.1 + kRise_per_m)};
-    const auto family = family_of({{flat(1.0)}}, water, 1.0, 3.0);
-    const auto worst =
-        rule_error(flat_sensor(), family, kRange, equal_bands(flat_sensor(), kRange, 1));
-    const double x = 0.5 * kRise_per_m * 3.0;
-    constexpr double kGridError = 2e-9;  // the stated error of the grid it compares with
-    for (const double error : worst) EXPECT_NEAR(error, 1.0 - x / std::sinh(x), kGridError);
-}
-
-TEST(RuleError, FindsTheWorstPathBetweenTheEnds) {
-    // Two wavelengths, at the ends of the range, with weights that make them right at 1 m and
-    // at 3 m: what they err by, they err between.
-    const Water water{.absorption_per_m = line(0.0, 1.0)};
-    const auto T_nm = [](double l_m) { return kWidth_nm * (1.0 - std::exp(-l_m)) / l_m; };
-    // w0 + w1 exp(-l) = T(l) at l = 1 and 3.
-    const double w1_nm = (T_nm(1.0) - T_nm(3.0)) / (std::exp(-1.0) - std::exp(-3.0));
-    const double w0_nm = T_nm(1.0) - w1_nm * std::exp(-1.0);
-    const std::vector<WeightedWavelength> rule{
-        {.lambda_nm = 400.0, .weight = {w0_nm, 2.0 * w0_nm, 3.0 * w0_nm}},
-        {.lambda_nm = 700.0, .weight = {w1_nm, 2.0 * w1_nm, 3.0 * w1_nm}}};
-    double right = 0.0;
-    for (int i = 0; i <= 1000; ++i) {
-        const double l_m = 1.0 + 0.002 * i;
-        right = std::max(right, std::abs((w0_nm + w1_nm * std::exp(-l_m)) / T_nm(l_m) - 1.0));
-    }
-    const auto worst =
-        rule_error(flat_sensor(), family_of({{flat(1.0)}}, water, 1.0, 3.0), kRange, rule);
-    // It samples 33 paths: within a 64th of the range of the peak of a parabola, (1/32)^2 of it.
-    constexpr double kSampling = 1e-3;
-    ASSERT_GT(right, 0.01);
-    for (const double error : worst) {
-        EXPECT_LE(error, right * (1.0 + 1e-6));
-        EXPECT_GE(error, right * (1.0 - kSampling));
-    }
-}
-
-TEST(RuleError, FindsTheWorstSource) {
-    // One wavelength at 550 nm is right for a flat source, and finds 1 where 1/2 is right for a
-    // peak there.
-    const Spectrum peak("peak", {400.0, 550.0, 700.0}, {0.0, 1.0, 0.0});
-    const auto rule = equal_bands(flat_sensor(), kRange, 1);
-    const auto alone = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
-    for (const double error : rule_error(flat_sensor(), alone, kRange, rule)) {
-        EXPECT_NEAR(error, 0.0, kRounding);
-    }
-    for (const auto& sources : {std::vector<std::vector<Spectrum>>{{flat(1.0)}, {peak}},
-                                std::vector<std::vector<Spectrum>>{{peak}, {flat(1.0)}}}) {
-        const auto both = family_of(sources, clear_water(), 1.0, 2.0);
-        for (const double error : rule_error(flat_sensor(), both, kRange, rule)) {
-            EXPECT_NEAR(error, 1.0, kRounding);
-        }
-    }
-}
-
-TEST(RuleError, IsPerChannel) {
-    const auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
-    auto rule = equal_bands(flat_sensor(), kRange, 3);
-    for (WeightedWavelength& w : rule) {
-        w.weight[1] *= 1.25;
-        w.weight[2] = 0.0;
-    }
-    const auto worst = rule_error(flat_sensor(), family, kRange, rule);
-    EXPECT_NEAR(worst[0], 0.0, kRounding);
-    EXPECT_NEAR(worst[1], 0.25, kRounding);
-    EXPECT_NEAR(worst[2], 1.0, kRounding);
-}
-
-TEST(RuleError, IsZeroForAChannelThatSeesNothing) {
-    const Sensor sensor({flat(0.0), flat(1.0), flat(1.0)}, ResponseKind::Energy);
-    const auto family = family_of({{flat(1.0)}}, clear_water(), 1.0, 2.0);
-    EXPECT_EQ(rule_error(sensor, family, kRange, {})[0], 0.0);
-    EXPECT_EQ(rule_error(sensor, family, kRange, {})[1], 1.0);
-    // Even to a rule that finds something there.
-    const auto rule = equal_bands(flat_sensor(), kRange, 2);
-    EXPECT_EQ(rule_error(sensor, family, kRange, rule)[0], 0.0);
-}
-
-LightFamily habcam_light() {
-    return family_of(
-        {{load_curve("xenon-flash", CurveRole::LampSpectrum, {}),
-          load_curve("sand", CurveRole::Reflectance, {})}},
-        {.absorption_per_m = load_curve("pope-fry-1997", CurveRole::WaterAbsorption, {})},
-        3.5,
-        6.0);
-}
-
-TEST(RuleError, IsNothingForTheReferenceItself) {
-    // Both grids may be off by their stated error.
-    constexpr double kBothGrids = 1e-8 + 1e-9;
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    const auto grid = reference_grid(sensor, habcam_light(), kRange, 1e-8);
-    for (const double error : rule_error(sensor, habcam_light(), kRange, grid)) {
-        EXPECT_LE(error, kBothGrids);
-    }
-}
-
-// The midpoint rule is of second order once its bands are narrower than the tables' own steps;
-// with straight lines for tables that is from the start: the error of 2 n bands is a quarter.
-TEST(RuleError, OfEqualBandsFallsWithTheSquareOfTheirWidth) {
-    constexpr double kFourthOrder = 0.02;  // what the next term leaves at 16 bands
-    const Sensor sensor({line(0.2, 1.0), line(1.0, 0.3), flat(1.0)}, ResponseKind::Energy);
-    const Water water{.absorption_per_m = line(0.1, 1.0)};
-    const auto family = family_of({{line(1.0, 2.0)}}, water, 1.0, 4.0);
-    const auto at = [&](int count) {
-        return rule_error(sensor, family, kRange, equal_bands(sensor, kRange, count));
-    };
-    const auto coarse = at(16);
-    const auto fine = at(32);
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        EXPECT_NEAR(coarse[c] / fine[c], 4.0, 4.0 * kFourthOrder) << coarse[c] << " " << fine[c];
-    }
-}
-
-TEST(RuleError, OfEqualBandsFallsWithRealTablesToo) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    std::array<double, kChannels> last{1.0, 1.0, 1.0};
-    for (const int count : {12, 48, 192}) {
-        const auto found =
-            rule_error(sensor, habcam_light(), kRange, equal_bands(sensor, kRange, count));
-        // Four times the bands: 16 times less if the tables were smooth; half of that is asked.
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            EXPECT_LT(found[c], last[c] / 8.0) << count << " bands, channel " << c;
-        }
-        last = found;
     }
 }
 

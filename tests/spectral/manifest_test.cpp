@@ -25,6 +25,11 @@ Manifest some_manifest() {
     manifest.width_px = 1360;
     manifest.height_px = 1024;
     manifest.lamp_signal = {0.1, 1.0 / 3.0, 1e-300};
+    manifest.method = "fitted";
+    manifest.tolerance = 1e-3;
+    manifest.quality = {{{.error = 1.0 / 7.0, .amplification = 1.2}, {}, {.error = 1e-300}}};
+    manifest.frame_error = 1.0 / 2048.0;
+    manifest.geometry = {{"sled.altitude_m", "2"}, {"strobe 'fore \"x\"'", "at 0.5 0 0 m"}};
     manifest.frames = {
         {.name = "band_450_550nm", .scene_sha256 = "s0", .image_sha256 = "i0"},
         {.name = "band_650.5nm", .scene_sha256 = "s1", .image_sha256 = ""},
@@ -34,7 +39,11 @@ Manifest some_manifest() {
          .weight = {0.1, -0.2, 1e17},
          .frame = 0,
          .channel = "R",
-         .exposure_log2 = 12},
+         .exposure_log2 = 12,
+         .index_nm = 450.0,
+         .attenuation_per_m = 1.0 / 3.0,
+         .flux = {1.0 / 7.0, 0.0},
+         .reflectance = {0.3}},
         {.lambda_nm = 550.1, .weight = {}, .frame = 0, .channel = "G", .exposure_log2 = -1000},
         {.lambda_nm = 650.5, .weight = {}, .frame = 1, .channel = "B", .exposure_log2 = 1000},
     };
@@ -88,6 +97,15 @@ TEST(Manifest, ComesBackWhole) {
     EXPECT_EQ(read.width_px, written.width_px);
     EXPECT_EQ(read.height_px, written.height_px);
     EXPECT_EQ(read.lamp_signal, written.lamp_signal);
+    EXPECT_EQ(read.method, written.method);
+    EXPECT_EQ(read.tolerance, written.tolerance);
+    EXPECT_EQ(read.frame_error, written.frame_error);
+    EXPECT_EQ(read.geometry, written.geometry);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        EXPECT_EQ(read.quality[c].error, written.quality[c].error);
+        EXPECT_EQ(read.quality[c].amplification, written.quality[c].amplification);
+        EXPECT_EQ(read.promise(c), written.promise(c));
+    }
     ASSERT_EQ(read.frames.size(), written.frames.size());
     for (std::size_t f = 0; f < read.frames.size(); ++f) {
         EXPECT_EQ(read.frames[f].name, written.frames[f].name);
@@ -103,6 +121,10 @@ TEST(Manifest, ComesBackWhole) {
         EXPECT_EQ(read.wavelengths[j].frame, written.wavelengths[j].frame);
         EXPECT_EQ(read.wavelengths[j].channel, written.wavelengths[j].channel);
         EXPECT_EQ(read.wavelengths[j].exposure_log2, written.wavelengths[j].exposure_log2);
+        EXPECT_EQ(read.wavelengths[j].index_nm, written.wavelengths[j].index_nm);
+        EXPECT_EQ(read.wavelengths[j].attenuation_per_m, written.wavelengths[j].attenuation_per_m);
+        EXPECT_EQ(read.wavelengths[j].flux, written.wavelengths[j].flux);
+        EXPECT_EQ(read.wavelengths[j].reflectance, written.wavelengths[j].reflectance);
     }
 }
 
@@ -170,13 +192,13 @@ TEST(Manifest, NamesEachKeyThatIsMissing) {
 }
 
 TEST(Manifest, OfAnotherFormatIsRefused) {
-    EXPECT_EQ(error_with("format", "aphotic-manifest-2"),
-              "format: found \"aphotic-manifest-2\"; allowed: \"aphotic-manifest-1\"");
+    EXPECT_EQ(error_with("format", "aphotic-manifest-1"),
+              "format: found \"aphotic-manifest-1\"; allowed: \"aphotic-manifest-2\"");
 }
 
 TEST(Manifest, NamesEachKeyOfTheWrongType) {
     for (const std::string key :
-         {"format", "aphotic_version", "povray_version", "rig_title", "rig_sha256"}) {
+         {"format", "aphotic_version", "povray_version", "rig_title", "rig_sha256", "method"}) {
         EXPECT_EQ(error_with(key, 7), key + ": found 7; allowed: a text");
     }
     for (const std::string key : {"width_px", "height_px"}) {
@@ -192,6 +214,12 @@ TEST(Manifest, NamesEachKeyOfTheWrongType) {
         EXPECT_EQ(wavelength_error("weight", value),
                   "wavelengths[1]: weight: found " + value.dump() + "; allowed: three numbers");
     }
+    for (const std::string key : {"flux", "reflectance"}) {
+        EXPECT_EQ(wavelength_error(key, 7),
+                  "wavelengths[1]: " + key + ": found 7; allowed: a list of numbers");
+    }
+    EXPECT_EQ(error_with("geometry", Json{{"sled", 2}}),
+              "geometry: found {\"sled\":2}; allowed: an object of texts");
     for (const std::string key : {"frames", "wavelengths"}) {
         EXPECT_EQ(error_with(key, 7), key + ": found 7; allowed: a list of objects");
         EXPECT_EQ(error_with(key, Json::array({7})),

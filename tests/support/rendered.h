@@ -45,8 +45,10 @@ inline Rig small_habcam(int width_px = 68, int height_px = 51) {
 inline SceneSet scenes_of(const Rig& rig,
                           const std::vector<double>& lambda_nm,
                           const SceneOptions& options = {}) {
-    const auto wavelengths = listed_wavelengths(rig.camera.sensor, rig.camera.range, lambda_nm);
-    return make_scene_set(rig, wavelengths, options);
+    PlanRequest request;
+    request.wavelengths_nm = lambda_nm;
+    request.scene = options;
+    return make_scene_set(rig, plan_render(rig, request));
 }
 
 struct Difference {

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/omissions.h"
+
+#include "scene_gen/geometry.h"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace aphotic {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr std::size_t kGrid = 33;
+// How far another wavelength's ray, or another lamp of an emitter, may see a floor point from
+// where the grid has it.
+constexpr double kPortMarginRad = 0.02;
+
+double angle_between(const Vector3d& a, const Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+double margin_rad(const Rig& rig, const Strobe& strobe, double distance_m) {
+    double margin = rig.camera.port ? kPortMarginRad : 0.0;
+    if (strobe.emitter) {
+        const double reach_m = 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
+        margin += std::atan2(reach_m, std::max(0.0, distance_m - reach_m));
+    }
+    return margin;
+}
+
+}  // namespace
+
+bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone) {
+    const std::vector<std::optional<FloorSample>> samples = floor_samples(rig, kGrid);
+    for (std::size_t row = 0; row + 1 < kGrid; ++row) {
+        for (std::size_t column = 0; column + 1 < kGrid; ++column) {
+            const std::size_t corner = row * kGrid + column;
+            const std::array cell{&samples[corner],
+                                  &samples[corner + 1],
+                                  &samples[corner + kGrid],
+                                  &samples[corner + kGrid + 1]};
+            const auto seen = std::ranges::count_if(cell, [](auto* s) { return s->has_value(); });
+            if (seen == 0) continue;
+            if (seen < 4) return true;  // the horizon runs through it: it reaches far
+            Vector3d middle_m = Vector3d::Zero();
+            for (const auto* sample : cell) middle_m += 0.25 * (*sample)->point_m;
+            const Vector3d towards = middle_m - strobe.position_m;
+            double reach_rad = 0.0;
+            double nearest_m = towards.norm();
+            for (const auto* sample : cell) {
+                const Vector3d to_corner = (*sample)->point_m - strobe.position_m;
+                reach_rad = std::max(reach_rad, angle_between(towards, to_corner));
+                nearest_m = std::min(nearest_m, to_corner.norm());
+            }
+            if (angle_between(strobe.axis, towards) <=
+                cone.half_angle_rad + reach_rad + margin_rad(rig, strobe, nearest_m)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+std::vector<Omission> omissions(const Rig& rig) {
+    std::vector<Omission> left_out;
+    if (rig.water.is_clear()) {
+        left_out.push_back({"the water's medium", "clear water takes no light"});
+    }
+    if (!rig.camera.port) {
+        left_out.push_back({"a port", "none is given: the pupil is in the water"});
+    }
+    if (rig.seafloor.phong == 0.0) {
+        left_out.push_back({"the floor's highlight", "its strength is 0"});
+    }
+    for (const Strobe& strobe : rig.strobes) {
+        if (strobe.power == 0.0) {
+            left_out.push_back({fmt::format("strobe '{}'", strobe.name), "its power is 0"});
+            continue;
+        }
+        for (const Cone& cone : strobe.beam.cones) {
+            const std::string what =
+                fmt::format("the {} cone of strobe '{}'", cone.part, strobe.name);
+            if (cone.weight == 0.0) {
+                left_out.push_back({what, "its weight is 0"});
+            } else if (!lights_the_view(rig, strobe, cone)) {
+                left_out.push_back({what, "it lights nothing in view"});
+            }
+        }
+    }
+    return left_out;
+}
+
+}  // namespace aphotic

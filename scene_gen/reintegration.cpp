@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/reintegration.h"
+
+#include "scene_gen/scene_set.h"
+#include "spectral/error.h"
+#include "spectral/planner.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace aphotic {
+
+namespace {
+
+// As short as reads back to the same number.
+std::string vector_text(const Eigen::Vector3d& v) {
+    return fmt::format("{} {} {}", v.x(), v.y(), v.z());
+}
+
+std::string beam_text(const Beam& beam) {
+    std::vector<std::string> cones;
+    for (const Cone& cone : beam.cones) {
+        cones.push_back(fmt::format(
+            "{} rad {} 1/sr", cone.half_angle_rad, axial_intensity(cone, beam.weights)));
+    }
+    return fmt::format("{}", fmt::join(cones, ", "));
+}
+
+void require_same_geometry(const Rig& changed, const Manifest& manifest) {
+    // How many lamps stand for an emitter is the frames' affair.
+    constexpr std::string_view kLamps = "lamps";
+    std::map<std::string, std::string> found = geometry_of(changed, {});
+    for (const auto& [key, value] : manifest.geometry) {
+        if (key.ends_with(kLamps)) found[key] = value;
+    }
+    for (const auto& [key, value] : found) {
+        const auto frames = manifest.geometry.find(key);
+        if (frames != manifest.geometry.end() && frames->second == value) continue;
+        throw InputError(
+            fmt::format("{}: found {}; allowed: {}, as the frames were rendered",
+                        key,
+                        value,
+                        frames == manifest.geometry.end() ? "none" : frames->second));
+    }
+    for (const auto& [key, value] : manifest.geometry) {
+        if (!found.contains(key)) {
+            throw InputError(fmt::format(
+                "{}: found none; allowed: {}, as the frames were rendered", key, value));
+        }
+    }
+}
+
+// The frames' light, in the order of light_family_by_strobe(lit).
+std::vector<FrameLight> light_in(const Manifest& manifest,
+                                 const Rig& changed,
+                                 const LightFamily& family) {
+    std::vector<FrameLight> frames;
+    for (const ManifestWavelength& w : manifest.wavelengths) {
+        if (w.flux.size() != changed.strobes.size() ||
+            w.reflectance.size() != changed.materials.size() + 1) {
+            throw InputError(
+                fmt::format("found {} strobes and {} further materials; allowed: {} and {}, as "
+                            "the frames were rendered",
+                            changed.strobes.size(),
+                            changed.materials.size(),
+                            w.flux.size(),
+                            static_cast<int>(w.reflectance.size()) - 1));
+        }
+        FrameLight frame{.lambda_nm = w.lambda_nm,
+                         .attenuation_per_m = w.attenuation_per_m,
+                         .sources = {},
+                         .tilt = family.tilt ? family.tilt->at(std::clamp(
+                                                   w.index_nm,
+                                                   family.tilt->range().first_nm,
+                                                   family.tilt->range().last_nm))
+                                             : 0.0};
+        for (std::size_t s = 0; s < changed.strobes.size(); ++s) {
+            const Strobe& strobe = changed.strobes[s];
+            if (strobe.power == 0.0) {
+                if (w.flux[s] == 0.0) continue;
+                throw InputError(fmt::format(
+                    "strobe '{}': found power 0; allowed: more, for the frames hold its light",
+                    strobe.name));
+            }
+            for (const double reflectance : w.reflectance) {
+                frame.sources.push_back(w.flux[s] / strobe.power * reflectance);
+            }
+            if (changed.seafloor.phong > 0.0) frame.sources.push_back(w.flux[s] / strobe.power);
+        }
+        frames.push_back(std::move(frame));
+    }
+    return frames;
+}
+
+Rig with_lit_strobes_only(Rig rig) {
+    std::erase_if(rig.strobes, [](const Strobe& strobe) { return strobe.power == 0.0; });
+    return rig;
+}
+
+// The fewest further wavelengths with which the tolerance would be kept, as the message says it.
+std::string lacking(const RuleFitter& fitter,
+                    const Rig& changed,
+                    const std::vector<FrameLight>& frames,
+                    double frame_error,
+                    double tolerance) {
+    constexpr int kMost = 6;
+    for (int count = 1; count <= kMost; ++count) {
+        const std::vector<double> lambda_nm = best_wavelengths(
+            fitter, changed.camera.range, count, frame_error, frames);
+        std::vector<FrameLight> all = frames;
+        for (const double nm : lambda_nm) all.push_back(fitter.frame_at(nm));
+        if (fitter.fit(all, frame_error).promise(frame_error) > tolerance) continue;
+        return fmt::format("it lacks {} at {:.2f} nm in the changed rig's water and light",
+                           count == 1 ? "a frame" : "frames",
+                           fmt::join(lambda_nm, ", "));
+    }
+    return "render the changed rig instead";
+}
+
+}  // namespace
+
+std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOptions& options) {
+    const Camera& camera = rig.camera;
+    std::map<std::string, std::string> all{
+        {"sled.altitude_m", fmt::format("{}", rig.sled.altitude_m)},
+        {"sled.pitch_rad", fmt::format("{}", rig.sled.pitch_rad)},
+        {"sled.roll_rad", fmt::format("{}", rig.sled.roll_rad)},
+        {"camera.resolution", fmt::format("{} {}", camera.width_px, camera.height_px)},
+        {"camera.pixel_pitch_m", fmt::format("{}", camera.pixel_pitch_m)},
+        {"camera.focal_length_m", fmt::format("{}", camera.focal_length_m)},
+        {"seafloor.phong", fmt::format("{}", rig.seafloor.phong)}};
+    if (rig.seafloor.phong > 0.0) {
+        all["seafloor.phong_size"] = fmt::format("{}", rig.seafloor.phong_size);
+    }
+    if (camera.port) {
+        all["camera.port"] = fmt::format("{} m off, {} m of {}",
+                                         camera.port->distance_m,
+                                         camera.port->thickness_m,
+                                         camera.port->glass.name());
+        all["water.salinity_psu"] = fmt::format("{}", rig.water.salinity_psu);
+        all["water.temperature_c"] = fmt::format("{}", rig.water.temperature_c);
+    }
+    for (const Strobe& strobe : rig.strobes) {
+        const std::string key = fmt::format("strobe '{}'", strobe.name);
+        all[key] = fmt::format("at {} m, axis {}, cones {}",
+                               vector_text(strobe.position_m),
+                               vector_text(strobe.axis),
+                               beam_text(strobe.beam));
+        if (!strobe.emitter) continue;
+        const LampGrid grid = options.emitter_lamps.value_or(lamp_grid(rig, strobe));
+        all[key + " emitter"] =
+            fmt::format("{} x {} m", strobe.emitter->across_m, strobe.emitter->along_m);
+        all[key + " lamps"] = fmt::format("{} x {}", grid.across, grid.along);
+    }
+    return all;
+}
+
+Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolerance) {
+    require_same_geometry(changed, manifest);
+    const LightFamily family = light_family_by_strobe(with_lit_strobes_only(changed));
+    const RuleFitter fitter(changed.camera.sensor, family, changed.camera.range);
+    const std::vector<FrameLight> frames = light_in(manifest, changed, family);
+    const FittedRule rule = fitter.fit(frames, manifest.frame_error);
+    const double promise = rule.promise(manifest.frame_error);
+    if (promise > tolerance) {
+        throw InputError(
+            fmt::format("the frames can be this rig's image to {:.3g} only; allowed: {}, the "
+                        "tolerance; {}",
+                        promise,
+                        tolerance,
+                        lacking(fitter, changed, frames, manifest.frame_error, tolerance)));
+    }
+    Manifest now = manifest;
+    now.rig_title = changed.title;
+    now.rig_sha256 = changed.digest;
+    now.method = "fitted to frames of another rig";
+    now.tolerance = tolerance;
+    now.quality = rule.quality;
+    now.lamp_signal = lamp_signal(changed, reference_grid(changed.camera.sensor, family, changed.camera.range, 1e-6));
+    for (std::size_t j = 0; j < now.wavelengths.size(); ++j) {
+        now.wavelengths[j].weight = rule.wavelengths[j].weight;
+    }
+    return now;
+}
+
+}  // namespace aphotic

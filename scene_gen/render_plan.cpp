@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/render_plan.h"
+
+#include "spectral/planner.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace aphotic {
+
+namespace {
+
+std::vector<double> wavelengths_of(std::span<const WeightedWavelength> rule) {
+    std::vector<double> lambda_nm;
+    for (const WeightedWavelength& w : rule) lambda_nm.push_back(w.lambda_nm);
+    return lambda_nm;
+}
+
+LightFamily family_of(const Rig& rig, const PlanRequest& request) {
+    LightFamily family = light_family(rig);
+    if (request.paths) {
+        family.shortest_path_m = request.paths->shortest_m;
+        family.longest_path_m = request.paths->longest_m;
+    }
+    return family;
+}
+
+// Behind a port frames are counted, not wavelengths: three of them that cannot share cost three.
+int wavelengths_per_step(const Rig& rig, const SceneOptions& scene) {
+    return rig.camera.port ? 1 : scene.wavelengths_per_frame;
+}
+
+// Puts the wavelengths into frames, and fits or judges the weights with what these hold.
+void share_frames(const Rig& rig,
+                  const RuleFitter& fitter,
+                  std::span<const double> lambda_nm,
+                  RenderPlan& plan) {
+    plan.frames = frame_groups(
+        rig, lambda_nm, plan.scene.wavelengths_per_frame, plan.scene.pixel_shift);
+    const std::vector<FrameLight> frames = frames_light(fitter, lambda_nm, plan.frames);
+    if (plan.method == PlanMethod::EqualBands) {
+        plan.rule.quality = fitter.judge(plan.rule.wavelengths, frames);
+    } else {
+        plan.rule = fitter.fit(frames, plan.frame_error);
+    }
+}
+
+}  // namespace
+
+double frame_error(const Rig& rig) {
+    const bool has_emitter =
+        std::ranges::any_of(rig.strobes, [](const Strobe& s) { return s.emitter.has_value(); });
+    return kFrameError + (has_emitter ? kLampError : 0.0);
+}
+
+std::vector<FrameLight> frames_light(const RuleFitter& fitter,
+                                     std::span<const double> lambda_nm,
+                                     std::span<const FrameGroup> groups) {
+    std::vector<FrameLight> frames;
+    for (const FrameGroup& group : groups) {
+        for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+            frames.push_back(fitter.frame_at(lambda_nm[i]));
+            if (fitter.family().tilt) frames.back().tilt = fitter.family().tilt->at(group.index_nm);
+        }
+    }
+    return frames;
+}
+
+RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
+    const WavelengthRange range = rig.camera.range;
+    RenderPlan plan{.method = PlanMethod::Fitted,
+                    .tolerance = 0.0,
+                    .family = family_of(rig, request),
+                    .rule = {},
+                    .frame_error = frame_error(rig),
+                    .scene = request.scene,
+                    .frames = {},
+                    .omissions = omissions(rig)};
+    const RuleFitter fitter(rig.camera.sensor, plan.family, range);
+    std::vector<double> lambda_nm;
+    if (request.bands) {
+        plan.method = PlanMethod::EqualBands;
+        plan.rule.wavelengths = equal_bands(rig.camera.sensor, range, *request.bands);
+        lambda_nm = wavelengths_of(plan.rule.wavelengths);
+    } else if (!request.wavelengths_nm.empty()) {
+        plan.method = PlanMethod::Listed;
+        require_wavelengths(range, request.wavelengths_nm);
+        lambda_nm = request.wavelengths_nm;
+    } else if (request.fitted) {
+        lambda_nm = best_wavelengths(fitter, range, *request.fitted, plan.frame_error);
+    } else {
+        plan.tolerance = request.tolerance;
+        lambda_nm = wavelengths_of(
+            plan_wavelengths(fitter,
+                             range,
+                             {.tolerance = request.tolerance,
+                              .frame_error = plan.frame_error,
+                              .step = wavelengths_per_step(rig, request.scene)})
+                .wavelengths);
+    }
+    share_frames(rig, fitter, lambda_nm, plan);
+    if (plan.tolerance > 0.0 && plan.promise() > plan.tolerance) {
+        plan.scene.pixel_shift = 0.0;
+        share_frames(rig, fitter, lambda_nm, plan);
+    }
+    return plan;
+}
+
+}  // namespace aphotic

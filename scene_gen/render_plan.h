@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The plan of a render: which wavelengths, with which weights, in which frames, what is left out,
+// and the error that all of this promises.
+//
+// The promise of a channel is
+//
+//   promise = error + amplification frame_error
+//
+// (spectral/rule_fitter.h). frame_error is kFrameError, and kLampError more where point lamps
+// stand for an emitter. It holds for every pixel off the cones' edges that is brighter than black
+// (1e-8 of the brightest), relative to its own signal.
+#pragma once
+
+#include "scene_gen/light_paths.h"
+#include "scene_gen/omissions.h"
+#include "scene_gen/pov_scene.h"
+#include "spectral/rule_fitter.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+
+// The lamps that stand for an emitter err by 1e-4 (geometry.h), the reference's by a fifth of it.
+inline constexpr double kLampError = 1.2e-4;
+
+struct PlanRequest {
+    double tolerance = 1e-3;             // as few fitted wavelengths as keep it
+    std::optional<int> fitted;           // or so many, whatever they keep
+    std::optional<int> bands;            // or equal bands
+    std::vector<double> wavelengths_nm;  // or these, with fitted weights
+    std::optional<PathRange> paths;      // instead of what the rig's own camera sees
+    SceneOptions scene;
+};
+
+// How the wavelengths were chosen.
+enum class PlanMethod { Fitted, EqualBands, Listed };
+
+struct RenderPlan {
+    PlanMethod method = PlanMethod::Fitted;
+    double tolerance = 0.0;  // 0: none was asked for
+    LightFamily family;
+    FittedRule rule;
+    double frame_error = 0.0;
+    SceneOptions scene;
+    std::vector<FrameGroup> frames;
+    std::vector<Omission> omissions;
+
+    [[nodiscard]] double promise() const { return rule.promise(frame_error); }
+};
+
+[[nodiscard]] double frame_error(const Rig& rig);
+
+// Throws InputError when the tolerance cannot be kept, or wavelengths are out of order or range.
+// Where sharing frames behind a port would break the tolerance, each wavelength has its own.
+[[nodiscard]] RenderPlan plan_render(const Rig& rig, const PlanRequest& request);
+
+// What each wavelength's frame knows of light.
+[[nodiscard]] std::vector<FrameLight> frames_light(const RuleFitter& fitter,
+                                                   std::span<const double> lambda_nm,
+                                                   std::span<const FrameGroup> groups);
+
+}  // namespace aphotic

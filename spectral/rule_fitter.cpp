@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/rule_fitter.h"
+
+#include "spectral/minimax.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace aphotic {
+
+using Eigen::ArrayXd;
+using Eigen::ArrayXXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kGridError = 1e-9;
+// Rows of a fit: enough paths to see every swing of the error, not so many that ten materials
+// wait for them.
+constexpr int kMostPaths = 24;
+constexpr int kLeastPaths = 10;
+constexpr int kRows = 240;
+
+constexpr int kIterations = 60;
+constexpr int kQuickIterations = 8;
+// Held down harder and harder, until the promise no longer gains.
+constexpr std::array kRidges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
+
+// From 0 to 1, both ends taken in; Chebyshev's spacing, closer together towards the ends, where
+// a fit tends to err most, or even.
+ArrayXd chebyshev(int count) {
+    return 0.5 - 0.5 * (ArrayXd::LinSpaced(count, 0.0, std::numbers::pi)).cos();
+}
+
+// A share of the way from the shortest to the longest path, in even ratios: paths may reach from
+// metres to the horizon.
+ArrayXd paths_at(const LightFamily& family, const ArrayXd& share) {
+    if (!(family.shortest_path_m > 0.0)) return share * family.longest_path_m;
+    const double ratio = family.longest_path_m / family.shortest_path_m;
+    if (ratio == 1.0) return ArrayXd::Constant(1, family.shortest_path_m);
+    return family.shortest_path_m * (share * std::log(ratio)).exp();
+}
+
+double product_at(const std::vector<Spectrum>& curves, double lambda_nm) {
+    double value = 1.0;
+    for (const Spectrum& curve : curves) value *= curve.at(lambda_nm);
+    return value;
+}
+
+}  // namespace
+
+double FittedRule::error() const {
+    return std::ranges::max(quality, {}, &RuleQuality::error).error;
+}
+
+double FittedRule::promise(double frame_error) const {
+    double worst = 0.0;
+    for (const RuleQuality& q : quality) worst = std::max(worst, q.promise(frame_error));
+    return worst;
+}
+
+RuleFitter::RuleFitter(const Sensor& sensor, const LightFamily& family, WavelengthRange range)
+    : family_(family) {
+    const std::vector<WeightedWavelength> grid = reference_grid(sensor, family, range, kGridError);
+    const auto nodes = static_cast<Index>(grid.size());
+    const auto sources = static_cast<Index>(family.sources.size());
+    grid_lambda_nm_.resize(nodes);
+    grid_attenuation_per_m_.resize(nodes);
+    grid_tilt_ = ArrayXd::Zero(nodes);
+    grid_sources_.resize(nodes, sources);
+    grid_weights_.resize(nodes, kChannels);
+    for (Index i = 0; i < nodes; ++i) {
+        const WeightedWavelength& w = grid[static_cast<std::size_t>(i)];
+        grid_lambda_nm_(i) = w.lambda_nm;
+        grid_attenuation_per_m_(i) = family.water.attenuation_per_m(w.lambda_nm);
+        if (family.tilt) grid_tilt_(i) = family.tilt->at(w.lambda_nm);
+        for (Index s = 0; s < sources; ++s) {
+            grid_sources_(i, s) =
+                product_at(family.sources[static_cast<std::size_t>(s)], w.lambda_nm);
+        }
+        for (Index c = 0; c < kChannels; ++c) {
+            grid_weights_(i, c) = w.weight[static_cast<std::size_t>(c)];
+        }
+    }
+    if (nodes > 0) least_attenuation_per_m_ = grid_attenuation_per_m_.minCoeff();
+    tilts_ = family.tilt ? std::vector{-1.0, 0.0, 1.0} : std::vector{0.0};
+
+    const int curves = static_cast<int>(family.sources.size() * tilts_.size());
+    const int paths = std::clamp(kRows / std::max(1, curves), kLeastPaths, kMostPaths);
+    fitting_ = sample(paths_at(family, chebyshev(paths)));
+    checking_ = sample(paths_at(family, ArrayXd::LinSpaced(kCheckPaths, 0.0, 1.0)));
+}
+
+FrameLight RuleFitter::frame_at(double lambda_nm) const {
+    FrameLight frame{.lambda_nm = lambda_nm,
+                     .attenuation_per_m = family_.water.attenuation_per_m(lambda_nm),
+                     .sources = {},
+                     .tilt = family_.tilt ? family_.tilt->at(lambda_nm) : 0.0};
+    for (const auto& curves : family_.sources) {
+        frame.sources.push_back(product_at(curves, lambda_nm));
+    }
+    return frame;
+}
+
+RuleFitter::Sample RuleFitter::sample(ArrayXd paths_m) const {
+    const Index paths = paths_m.size();
+    const Index sources = grid_sources_.cols();
+    Sample sample{.path_m = std::move(paths_m), .signals = {}};
+    sample.signals.resize(sources * static_cast<Index>(tilts_.size()) * paths, kChannels);
+    Index row = 0;
+    for (Index s = 0; s < sources; ++s) {
+        const MatrixXd weighted = grid_weights_.colwise() * grid_sources_.col(s);
+        for (const double tilt : tilts_) {
+            for (Index p = 0; p < paths; ++p) {
+                const ArrayXd light =
+                    ((least_attenuation_per_m_ - grid_attenuation_per_m_) * sample.path_m(p) +
+                     tilt * grid_tilt_)
+                        .exp();
+                sample.signals.row(row++) = (light.matrix().transpose() * weighted).array();
+            }
+        }
+    }
+    return sample;
+}
+
+MatrixXd RuleFitter::light_of(const Sample& sample, std::span<const FrameLight> frames) const {
+    const Index paths = sample.path_m.size();
+    MatrixXd light(sample.signals.rows(), static_cast<Index>(frames.size()));
+    for (std::size_t j = 0; j < frames.size(); ++j) {
+        const FrameLight& frame = frames[j];
+        const ArrayXd left =
+            ((least_attenuation_per_m_ - frame.attenuation_per_m) * sample.path_m).exp();
+        Index row = 0;
+        for (const double source : frame.sources) {
+            for (const double tilt : tilts_) {
+                light.col(static_cast<Index>(j)).segment(row, paths) =
+                    source * std::exp(tilt * frame.tilt) * left;
+                row += paths;
+            }
+        }
+    }
+    return light;
+}
+
+namespace {
+
+// One channel's rows: those members that it sees, relative to what it sees of them.
+MatrixXd relative_light(const MatrixXd& light, const ArrayXd& signals) {
+    const auto seen = (signals > 0.0).count();
+    MatrixXd relative(seen, light.cols());
+    Index row = 0;
+    for (Index i = 0; i < signals.size(); ++i) {
+        if (signals(i) > 0.0) relative.row(row++) = light.row(i) / signals(i);
+    }
+    return relative;
+}
+
+RuleQuality quality_of(const MatrixXd& relative, const VectorXd& weights) {
+    if (relative.rows() == 0) return {};
+    return {.error = ((relative * weights).array() - 1.0).abs().maxCoeff(),
+            .amplification = (relative * weights.cwiseAbs()).maxCoeff()};
+}
+
+}  // namespace
+
+std::array<RuleQuality, kChannels> RuleFitter::judge(std::span<const WeightedWavelength> rule,
+                                                     std::span<const FrameLight> frames) const {
+    const MatrixXd light = light_of(checking_, frames);
+    std::array<RuleQuality, kChannels> quality{};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        VectorXd weights(static_cast<Index>(rule.size()));
+        for (std::size_t j = 0; j < rule.size(); ++j) {
+            weights(static_cast<Index>(j)) = rule[j].weight[c];
+        }
+        quality[c] = quality_of(
+            relative_light(light, checking_.signals.col(static_cast<Index>(c))), weights);
+    }
+    return quality;
+}
+
+FittedRule RuleFitter::fit(std::span<const FrameLight> frames, double frame_error) const {
+    const MatrixXd light = light_of(fitting_, frames);
+    const MatrixXd checked = light_of(checking_, frames);
+    FittedRule rule;
+    for (const FrameLight& frame : frames) {
+        rule.wavelengths.push_back({.lambda_nm = frame.lambda_nm, .weight = {}});
+    }
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const auto channel = static_cast<Index>(c);
+        const MatrixXd rows = relative_light(light, fitting_.signals.col(channel));
+        const MatrixXd check = relative_light(checked, checking_.signals.col(channel));
+        if (rows.rows() == 0) continue;
+        double best = std::numeric_limits<double>::infinity();
+        for (const double ridge : kRidges) {
+            const MinimaxFit fit =
+                minimax_fit(rows,
+                            VectorXd::Ones(rows.rows()),
+                            {.iterations = kIterations, .ridge = ridge, .weights = {}});
+            const RuleQuality quality = quality_of(check, fit.x);
+            // Freely amplified rounding is no reason to hold down.
+            const double cost =
+                quality.error +
+                std::max(quality.amplification, kFreeAmplification) * frame_error;
+            if (!(cost < best)) break;
+            best = cost;
+            rule.quality[c] = quality;
+            for (std::size_t j = 0; j < frames.size(); ++j) {
+                rule.wavelengths[j].weight[c] = fit.x(static_cast<Index>(j));
+            }
+        }
+    }
+    return rule;
+}
+
+RuleFitter::Column RuleFitter::column_of(std::span<const FrameLight> frames) const {
+    const MatrixXd light = light_of(fitting_, frames);
+    Column column;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        column.light[c] = relative_light(light, fitting_.signals.col(static_cast<Index>(c)));
+    }
+    return column;
+}
+
+namespace {
+
+MatrixXd joined(std::span<const RuleFitter::Column* const> columns, std::size_t channel) {
+    MatrixXd rows(columns.empty() ? 0 : columns.front()->light[channel].rows(),
+                  static_cast<Index>(columns.size()));
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+        rows.col(static_cast<Index>(j)) = columns[j]->light[channel];
+    }
+    return rows;
+}
+
+}  // namespace
+
+ArrayXd RuleFitter::least_costs(std::span<const Column* const> columns,
+                                const Column& candidates,
+                                const Hint& hint) const {
+    ArrayXd least = ArrayXd::Zero(candidates.light[0].cols());
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const Index members = candidates.light[c].rows();
+        if (members == 0 || hint[c].size() != members) continue;
+        least = least.max(minimax_lower_bounds(
+            joined(columns, c), VectorXd::Ones(members), candidates.light[c], hint[c]));
+    }
+    return least;
+}
+
+double RuleFitter::quick_cost(std::span<const Column* const> columns,
+                              double frame_error,
+                              double give_up,
+                              Hint& hint) const {
+    double worst = 0.0;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const MatrixXd rows = joined(columns, c);
+        const Index members = rows.rows();
+        if (members == 0) continue;
+        const MinimaxFit fit = minimax_fit(
+            rows,
+            VectorXd::Ones(members),
+            {.iterations = kQuickIterations, .give_up = give_up, .weights = hint[c]});
+        const RuleQuality quality = quality_of(rows, fit.x);
+        const double cost =
+            quality.error + std::max(0.0, quality.amplification - kFreeAmplification) * frame_error;
+        // Not a number is the worst of costs.
+        if (!(cost <= give_up)) return std::numeric_limits<double>::infinity();
+        hint[c] = fit.weights;
+        worst = std::max(worst, cost);
+    }
+    return worst;
+}
+
+std::vector<double> RuleFitter::places_of_light(int count) const {
+    const Index nodes = grid_lambda_nm_.size();
+    ArrayXd most = ArrayXd::Zero(nodes);  // share of a signal, of the member that has most
+    const Index paths = fitting_.path_m.size();
+    Index row = 0;
+    for (Index s = 0; s < grid_sources_.cols(); ++s) {
+        for (const double tilt : tilts_) {
+            for (Index p = 0; p < paths; ++p, ++row) {
+                if (p != 0 && p != paths / 2 && p != paths - 1) continue;
+                const ArrayXd light =
+                    grid_sources_.col(s) *
+                    ((least_attenuation_per_m_ - grid_attenuation_per_m_) * fitting_.path_m(p) +
+                     tilt * grid_tilt_)
+                        .exp();
+                for (Index c = 0; c < kChannels; ++c) {
+                    const double signal = fitting_.signals(row, c);
+                    if (signal > 0.0) most = most.max(light * grid_weights_.col(c) / signal);
+                }
+            }
+        }
+    }
+    // Density sqrt(share / width) over a width: sqrt(share width).
+    ArrayXd cumulative(nodes);
+    double sum = 0.0;
+    for (Index i = 0; i < nodes; ++i) {
+        const double width_nm = grid_lambda_nm_(std::min(i + 1, nodes - 1)) -
+                                grid_lambda_nm_(std::max<Index>(i - 1, 0));
+        sum += std::sqrt(most(i) * width_nm);
+        cumulative(i) = sum;
+    }
+    std::vector<double> places;
+    Index node = 0;
+    for (int k = 0; k < count && sum > 0.0; ++k) {
+        while (node + 1 < nodes && cumulative(node) < sum * (k + 0.5) / count) ++node;
+        const double lambda_nm = grid_lambda_nm_(node);
+        if (places.empty() || places.back() < lambda_nm) places.push_back(lambda_nm);
+    }
+    return places;
+}
+
+std::vector<RuleFitter::PathError> RuleFitter::errors_over_path(
+    const FittedRule& rule, std::span<const FrameLight> frames, std::size_t source) const {
+    const MatrixXd light = light_of(checking_, frames);
+    const Index paths = checking_.path_m.size();
+    // The middle of three tilts, or the only one.
+    const auto tilts = static_cast<Index>(tilts_.size());
+    const Index first = (static_cast<Index>(source) * tilts + tilts / 2) * paths;
+    std::vector<PathError> errors;
+    for (Index p = 0; p < paths; ++p) {
+        PathError error{.path_m = checking_.path_m(p), .error = {}};
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            double found = 0.0;
+            for (std::size_t j = 0; j < frames.size(); ++j) {
+                found += rule.wavelengths[j].weight[c] * light(first + p, static_cast<Index>(j));
+            }
+            const double right = checking_.signals(first + p, static_cast<Index>(c));
+            if (right > 0.0) error.error[c] = found / right - 1.0;
+        }
+        errors.push_back(error);
+    }
+    return errors;
+}
+
+bool RuleFitter::is_dark() const {
+    return !(checking_.signals > 0.0).any();
+}
+
+}  // namespace aphotic

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Weights that make a few wavelengths stand for the whole spectrum of a family of light:
+//
+//   S_c = int L Q_c dlambda  ~  sum_j w_cj L_j
+//
+//   error          e_c = max over the family of |sum_j w_cj f_j / T_c - 1|
+//   amplification  a_c = max over the family of sum_j |w_cj| f_j / T_c
+//   promise        e_c + a_c frame_error
+//
+// f_j   what the frame of wavelength j holds of a member of the family (FrameLight)
+// T_c   the member's signal in channel c, integrated exactly (reference_grid)
+// frame_error   the relative error of what a frame holds, for the most part its half floats'
+//
+// A pixel's light is a sum of members with factors that are not negative, so no pixel errs by more
+// than the promise, relative to its own signal. Fitted weights make e_c the least that there is
+// (spectral/minimax.h); where that takes so large weights of either sign that the promise
+// suffers, they are held down.
+//
+// The frames need not be of the family's own water, lamps or materials: whatever light they
+// hold, as long as it came by the same geometry, serves as well as it spans the family.
+#pragma once
+
+#include "spectral/light_family.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+// Half floats round by 2^-11 at most; the rest is for single-precision colours and POV-Ray's
+// way to the inverse square law.
+inline constexpr double kFrameError = 0x1p-11 + 2e-6;
+
+struct RuleQuality {
+    double error = 0.0;
+    double amplification = 0.0;
+
+    [[nodiscard]] double promise(double frame_error) const {
+        return error + amplification * frame_error;
+    }
+};
+
+struct FittedRule {
+    std::vector<WeightedWavelength> wavelengths;
+    std::array<RuleQuality, kChannels> quality;  // zero for a channel that sees nothing
+
+    // The worst channel's.
+    [[nodiscard]] double error() const;
+    [[nodiscard]] double promise(double frame_error) const;
+};
+
+// What the frame of one wavelength knows of light.
+struct FrameLight {
+    double lambda_nm = 0.0;
+    double attenuation_per_m = 0.0;
+    std::vector<double> sources;  // in the order of LightFamily::sources
+    double tilt = 0.0;            // LightFamily::tilt at the wavelength whose indices it has
+};
+
+class RuleFitter {
+  public:
+    RuleFitter(const Sensor& sensor, const LightFamily& family, WavelengthRange range);
+
+    // A frame of the family's own water, lamps and materials.
+    [[nodiscard]] FrameLight frame_at(double lambda_nm) const;
+
+    // The weights, and their error on kCheckPaths paths, apart from those of the fit.
+    [[nodiscard]] FittedRule fit(std::span<const FrameLight> frames, double frame_error) const;
+
+    // The same of weights that are given.
+    [[nodiscard]] std::array<RuleQuality, kChannels> judge(
+        std::span<const WeightedWavelength> rule, std::span<const FrameLight> frames) const;
+
+    // For those who try many frames: what a frame's light is to the members of the fit, relative to
+    // their signals, and how well a fit to such columns can do, in few steps. The cost is the
+    // error; amplification beyond kFreeAmplification counts as what it makes of frame_error. A
+    // cost that is known to be over give_up is returned as infinite. `hint` carries what one
+    // trial learns to the next.
+    struct Column {
+        std::array<Eigen::MatrixXd, kChannels> light;  // of one frame, or of a column each
+    };
+    using Hint = std::array<Eigen::ArrayXd, kChannels>;
+    [[nodiscard]] Column column_of(std::span<const FrameLight> frames) const;
+    [[nodiscard]] double quick_cost(std::span<const Column* const> columns,
+                                    double frame_error,
+                                    double give_up,
+                                    Hint& hint) const;
+
+    // What no fit to these columns and one of the candidates can cost less than.
+    [[nodiscard]] Eigen::ArrayXd least_costs(std::span<const Column* const> columns,
+                                             const Column& candidates,
+                                             const Hint& hint) const;
+
+    // At most `count` wavelengths where the light is that matters: nodes of the reference grid,
+    // spread so that equal shares lie between them of the root of what each adds to the signal of
+    // the member that has most of it. The root spreads them: nearly all the light of a long path
+    // may be in a few nm.
+    [[nodiscard]] std::vector<double> places_of_light(int count) const;
+
+    // The error against path length, of source and channel: for plots.
+    struct PathError {
+        double path_m;
+        std::array<double, kChannels> error;
+    };
+    [[nodiscard]] std::vector<PathError> errors_over_path(const FittedRule& rule,
+                                                          std::span<const FrameLight> frames,
+                                                          std::size_t source) const;
+
+    // No member gives any channel a signal.
+    [[nodiscard]] bool is_dark() const;
+
+    [[nodiscard]] const LightFamily& family() const { return family_; }
+
+  private:
+    // Members of the family, and what they signal: for every source, tilt and path, in this
+    // order. All are scaled by exp(K_0 l), K_0 the least loss in the range, so that no path is
+    // too long for a double: only ratios of a member to itself are ever used.
+    struct Sample {
+        Eigen::ArrayXd path_m;
+        Eigen::ArrayXXd signals;  // members by channels
+    };
+
+    [[nodiscard]] Sample sample(Eigen::ArrayXd paths_m) const;
+    [[nodiscard]] Eigen::MatrixXd light_of(const Sample& sample,
+                                           std::span<const FrameLight> frames) const;
+
+    LightFamily family_;
+    double least_attenuation_per_m_ = 0.0;
+    // The reference grid, tabulated.
+    Eigen::ArrayXd grid_lambda_nm_;
+    Eigen::ArrayXd grid_attenuation_per_m_;
+    Eigen::ArrayXd grid_tilt_;
+    Eigen::ArrayXXd grid_sources_;  // wavelengths by sources
+    Eigen::ArrayXXd grid_weights_;  // wavelengths by channels
+    std::vector<double> tilts_;     // -1, 0, 1 behind a port, else 0
+    Sample fitting_;
+    Sample checking_;
+};
+
+inline constexpr int kCheckPaths = 161;
+inline constexpr double kFreeAmplification = 1.25;
+
+}  // namespace aphotic
