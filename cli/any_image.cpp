@@ -8,18 +8,37 @@
 
 namespace aphotic::cli {
 
-AnyImage open_any_image(const std::filesystem::path& file) {
-    using Open = void (*)(const std::filesystem::path&, AnyImage&);
+namespace {
+
+template <typename Function>
+Function from_part(const char* name) {
     // Found through the command's own run path; stays loaded, for the images hold on to it.
     static void* const kPart = ::dlopen("aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
     if (kPart == nullptr) {
         throw RunError(fmt::format("the part that reads images cannot be loaded: {}", ::dlerror()));
     }
-    const auto open = reinterpret_cast<Open>(::dlsym(kPart, "aphotic_open_any_image"));
-    if (open == nullptr) throw RunError("aphotic_any_image.so is not of this version");
+    const auto function = reinterpret_cast<Function>(::dlsym(kPart, name));
+    if (function == nullptr) throw RunError("aphotic_any_image.so is not of this version");
+    return function;
+}
+
+}  // namespace
+
+AnyImage open_any_image(const std::filesystem::path& file) {
+    using Open = void (*)(const std::filesystem::path&, AnyImage&);
     AnyImage image;
-    open(file, image);
+    from_part<Open>("aphotic_open_any_image")(file, image);
     return image;
+}
+
+std::vector<float> resized(std::vector<float> plane,
+                           PlaneSize from,
+                           PlaneSize to,
+                           const std::string& filter) {
+    using Resize =
+        void (*)(std::vector<float>&, PlaneSize, PlaneSize, const std::string&);
+    from_part<Resize>("aphotic_resize")(plane, from, to, filter);
+    return plane;
 }
 
 }  // namespace aphotic::cli

@@ -4,6 +4,7 @@
 #include "cli/any_image.h"
 #include "spectral/error.h"
 
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -28,4 +29,21 @@ extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
         }
         return samples;
     };
+}
+
+extern "C" void aphotic_resize(std::vector<float>& plane,
+                               aphotic::cli::PlaneSize from,
+                               aphotic::cli::PlaneSize to,
+                               const std::string& filter) {
+    const OIIO::ImageBuf image(OIIO::ImageSpec(from.width_px, from.height_px, 1, OIIO::TypeDesc::FLOAT),
+                               plane.data());
+    // A width of 0 lets the filter choose its own.
+    const OIIO::ImageBuf result = OIIO::ImageBufAlgo::resize(
+        image, filter, 0.0F, OIIO::ROI(0, to.width_px, 0, to.height_px, 0, 1, 0, 1));
+    std::vector<float> samples(result.spec().image_pixels());
+    if (result.has_error() ||
+        !result.get_pixels(result.roi(), OIIO::TypeDesc::FLOAT, samples.data())) {
+        throw aphotic::InputError(fmt::format("resizing: {}", result.geterror()));
+    }
+    plane = std::move(samples);
 }

@@ -22,7 +22,7 @@ constexpr std::array kCommands{
             "plan, write the scenes, run POV-Ray, integrate: rig to image",
             aphotic::cli::configure_render},
     Command{"plan",
-            "which wavelengths, frames and exposures a render would take",
+            "which wavelengths and frames a render would take, and the error it promises",
             aphotic::cli::configure_plan},
     Command{"generate", "write the POV-Ray scenes alone", aphotic::cli::configure_generate},
     Command{"integrate", "frames and manifest to images", aphotic::cli::configure_integrate},
@@ -32,6 +32,9 @@ constexpr std::array kCommands{
     Command{"validate",
             "render, trace, and compare them within stated bounds",
             aphotic::cli::configure_validate},
+    Command{"study",
+            "measure the trade of accuracy for time on this machine",
+            aphotic::cli::configure_study},
     Command{"compare", "how far one image is from another", aphotic::cli::configure_compare},
     Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
 };

@@ -30,7 +30,7 @@ ExitStatus render_rig(const Options& options) {
     const SceneSet scenes = scenes_of(planned, options.planning);
     const PovRay povray = find_povray(options.povray);
 
-    const RenderedFrames frames = render_frames(povray, options.folder, scenes, options.jobs);
+    const RenderedFrames frames = render_frames(povray, options.folder, scenes, {.jobs = options.jobs, .report = {}});
     const RenderResult& result = frames.result;
 
     auto outcome = integrate_folder(options.folder, result.manifest, options.preview, options.folder);

@@ -12,15 +12,15 @@ namespace aphotic::cli {
 RenderedFrames render_frames(const PovRay& povray,
                              const std::filesystem::path& folder,
                              const SceneSet& scenes,
-                             int jobs) {
+                             RunOptions options) {
     const auto start = std::chrono::steady_clock::now();
     RenderedFrames frames;
     ProgressLine line;
-    const auto report = [&](const FrameProgress& progress) {
+    options.report = [&](const FrameProgress& progress) {
         line.show(fmt::format("rendering: {} of {} frames", progress.frames_done, progress.frames),
                   progress.share);
     };
-    frames.result = render(povray, folder, scenes, {.jobs = jobs, .report = report});
+    frames.result = render(povray, folder, scenes, options);
     frames.povray_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return frames;

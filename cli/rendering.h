@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Runs POV-Ray on a set of scenes with a progress line, and takes the time.
+// Runs POV-Ray on a set of scenes with a progress line, and takes the time. The options' report is
+// the line.
 #pragma once
 
 #include "plugin/render.h"
@@ -17,6 +18,6 @@ struct RenderedFrames {
 [[nodiscard]] RenderedFrames render_frames(const PovRay& povray,
                                            const std::filesystem::path& folder,
                                            const SceneSet& scenes,
-                                           int jobs);
+                                           RunOptions options);
 
 }  // namespace aphotic::cli

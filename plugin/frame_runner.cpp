@@ -80,7 +80,8 @@ void take_in(const Running& run,
              const ProcessEnd& end,
              const fs::path& folder,
              int width_px,
-             int height_px) {
+             int height_px,
+             const RunOptions& options) {
     if (!end.succeeded()) {
         const std::string said = error_in_log(read_text_file(run.log));
         throw RunError(fmt::format("POV-Ray failed on {} ({}){}{}\nIts log: {}",
@@ -95,6 +96,7 @@ void take_in(const Running& run,
                                    scene_path(folder, run.frame).string(),
                                    run.log.string()));
     }
+    if (options.convert) options.convert(run.part);
     check_frame(run.part, width_px, height_px);
     std::error_code error;
     fs::rename(run.part, image_path(folder, run.frame), error);
@@ -163,7 +165,7 @@ void run_frames(const PovRay& povray,
             if (started < frames.size()) {
                 running.push_back(start(povray, folder, frames[started++], threads));
             }
-            take_in(ended, *end, folder, width_px, height_px);
+            take_in(ended, *end, folder, width_px, height_px, options);
             arrived(ended.frame);
             ++done;
         }

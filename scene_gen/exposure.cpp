@@ -111,9 +111,9 @@ double RadianceBound::at(double lambda_nm) const {
     return bound;
 }
 
-int exposure_log2(double radiance_bound, double brightest_colour) {
+int exposure_log2(double radiance_bound, double brightest_colour, int target_log2) {
     if (!(radiance_bound > 0.0)) return 0;
-    const double for_the_frame = std::floor(kTargetLog2 - std::log2(radiance_bound));
+    const double for_the_frame = std::floor(target_log2 - std::log2(radiance_bound));
     const double for_the_colour = std::floor(kColourLimitLog2 - std::log2(brightest_colour));
     return static_cast<int>(std::min(for_the_frame, for_the_colour));
 }

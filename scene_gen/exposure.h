@@ -50,6 +50,8 @@ class RadianceBound {
 
 // e for a bound; brightest_colour is the largest colour value that the scene would hold at
 // e = 0, kept under POV-Ray's single-precision range. 0 for a bound of 0.
-[[nodiscard]] int exposure_log2(double radiance_bound, double brightest_colour);
+[[nodiscard]] int exposure_log2(double radiance_bound,
+                                double brightest_colour,
+                                int target_log2 = kTargetLog2);
 
 }  // namespace aphotic

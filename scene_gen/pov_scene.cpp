@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/pov_scene.h"
 
-#include "scene_gen/exposure.h"
 #include "scene_gen/omissions.h"
 #include "spectral/error.h"
 #include "spectral/refraction.h"
@@ -97,6 +96,19 @@ Housing housing(const Camera& camera) {
     return h;
 }
 
+LampGrid lamps_of(const Rig& rig, const Strobe& strobe, const SceneOptions& options) {
+    if (options.soft_edges) return {};
+    return options.emitter_lamps.value_or(lamp_grid(rig, strobe));
+}
+
+// Half the angle that an emitter spans, seen from the floor below it.
+double soft_edge_deg(const Rig& rig, const Strobe& strobe, const SceneOptions& options) {
+    if (!options.soft_edges || !strobe.emitter) return 0.0;
+    const double size_m = 0.5 * (strobe.emitter->across_m + strobe.emitter->along_m);
+    const double distance_m = height_above(floor_plane(rig.sled), strobe.position_m);
+    return std::atan(0.5 * size_m / distance_m) * 180.0 / std::numbers::pi;
+}
+
 // POV-Ray gives up inside a medium when it meets more lights than this.
 constexpr std::size_t kMostLightsInMedia = 1024;
 // Elsewhere it is patience and memory that end: a scene of this many is 15 MB of text.
@@ -105,7 +117,7 @@ constexpr std::size_t kMostLights = 100'000;
 void require_few_enough_lights(const Rig& rig, const SceneOptions& options) {
     std::size_t lights = 0;
     for (const Strobe& strobe : rig.strobes) {
-        const LampGrid grid = options.emitter_lamps.value_or(lamp_grid(rig, strobe));
+        const LampGrid grid = lamps_of(rig, strobe, options);
         const auto lamps =
             static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.along);
         lights += strobe.beam.cones.size() * (strobe.emitter ? lamps : 1);
@@ -186,7 +198,9 @@ class SceneWriter {
         scene_.index_nm = index_nm;
         for (const double l : lambda_nm_) {
             scene_.wavelengths.push_back(
-                {.lambda_nm = l, .exposure_log2 = exposure_log2(bound.at(l), brightest_colour(l))});
+                {.lambda_nm = l,
+                 .exposure_log2 =
+                     exposure_log2(bound.at(l), brightest_colour(l), options.peak_log2)});
         }
     }
 
@@ -214,7 +228,7 @@ class SceneWriter {
     }
 
     [[nodiscard]] LampGrid grid_of(const Strobe& strobe) const {
-        return options_.emitter_lamps.value_or(lamp_grid(rig_, strobe));
+        return lamps_of(rig_, strobe, options_);
     }
 
     [[nodiscard]] bool shines(const Strobe& strobe) const {
@@ -369,7 +383,10 @@ class SceneWriter {
             "      Position, rgb Flux * Axial_Intensity / (2 * pi * Fade_Distance * "
             "Fade_Distance)");
         line("      spotlight  point_at Position + Axis");
-        line("      radius Half_Angle  falloff Half_Angle  tightness 1");
+        line(options_.soft_edges
+                 ? "      radius max(0, Half_Angle - Soft_Edge)  falloff min(90, Half_Angle + "
+                   "Soft_Edge)  tightness 1"
+                 : "      radius Half_Angle  falloff Half_Angle  tightness 1");
         line("      fade_distance Fade_Distance  fade_power 2");
         // shadowless would spare clear water its shadow rays, but it makes a point light of a
         // spotlight: POV-Ray knows one type a light.
@@ -398,6 +415,10 @@ class SceneWriter {
         }
         line(fmt::format("#declare Flux = {};", vector(flux)));
         line(fmt::format("#declare Axis = {};", point(strobe.axis)));
+        if (options_.soft_edges) {
+            line(fmt::format("#declare Soft_Edge = {};   // degrees",
+                             number(soft_edge_deg(rig_, strobe, options_))));
+        }
         for (std::size_t k = 0; k < lit.size(); ++k) {
             if (!lit[k]) continue;
             const Cone& cone = strobe.beam.cones[k];
@@ -428,7 +449,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
     require_few_enough_lights(rig, options);
     for (const Strobe& strobe : rig.strobes) {
         require_place_for_lamps(
-            rig, strobe, options.emitter_lamps.value_or(lamp_grid(rig, strobe)));
+            rig, strobe, lamps_of(rig, strobe, options));
     }
     const RadianceBound bound(rig);
     const std::vector<std::string> labels = wavelength_labels(lambda_nm);

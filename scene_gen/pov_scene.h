@@ -17,6 +17,7 @@
 // of weight or power 0 or that lights nothing in view, no highlight of strength 0.
 #pragma once
 
+#include "scene_gen/exposure.h"
 #include "scene_gen/frame_groups.h"
 #include "scene_gen/geometry.h"
 #include "scene_gen/rig.h"
@@ -45,6 +46,10 @@ struct SceneOptions {
     double pixel_shift = kPixelShift;       // how far a shared frame may shift one behind a port
     std::optional<LampGrid> emitter_lamps;  // none: lamp_grid() chooses per strobe
     bool omit = true;                       // false: what changes nothing is written all the same
+    int peak_log2 = kTargetLog2;            // where a frame's brightest pixel goes, or a bit under
+    // One lamp for every emitter: each cone's edge falls from one end of what the emitter spans,
+    // seen from the floor below it, to the other.
+    bool soft_edges = false;
 };
 
 // The frames for these wavelengths, in their order. Throws InputError when a strobe stands

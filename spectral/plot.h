@@ -57,8 +57,8 @@ struct Plot {
     std::vector<PlotCurve> curves;
     bool log_y = false;
     bool log_x = false;
-    std::vector<double> marks_x =
-        {};  // dashed grey lines behind the curves; none beyond the x axis
+    // Thin dashed grey lines from bottom to top, behind the curves; none beyond the x axis.
+    std::vector<double> marks_x = {};
 };
 
 // The panels from top to bottom. Throws InputError for another extension, when there is no panel,

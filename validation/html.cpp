@@ -106,4 +106,26 @@ std::string grouped(std::size_t count) {
     return digits;
 }
 
+std::string html_paragraph(std::string_view content) {
+    return fmt::format("<p>{}</p>\n", content);
+}
+
+std::string html_section(std::string_view id, std::string_view heading, std::string_view content) {
+    return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n\n", id, heading, content);
+}
+
+std::string html_page(std::string_view title, std::string_view style, std::string_view content) {
+    return fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n"
+        "<meta charset=\"utf-8\"/>\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+        "img-src data:; style-src 'unsafe-inline'\"/>\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
+        "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n"
+        "</html>\n",
+        escaped(title),
+        style,
+        content);
+}
+
 }  // namespace aphotic

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Text and numbers as a page shows them.
+// Text and numbers as a page shows them, and the page around them.
 //
 //   escaped("a < \"b\"")   a &lt; &quot;b&quot;
 //   scientific(4.6e-4)     4.60 × 10⁻⁴
@@ -33,5 +33,17 @@ namespace aphotic {
 
 // 1 392 640, with narrow blanks that do not break.
 [[nodiscard]] std::string grouped(std::size_t count);
+
+// The content is markup.
+[[nodiscard]] std::string html_paragraph(std::string_view content);
+[[nodiscard]] std::string html_section(std::string_view id,
+                                       std::string_view heading,
+                                       std::string_view content);
+
+// A whole file that a browser lets neither run nor fetch anything, whatever a title may hold. The
+// title is plain text; content is what the page shows.
+[[nodiscard]] std::string html_page(std::string_view title,
+                                    std::string_view style,
+                                    std::string_view content);
 
 }  // namespace aphotic

@@ -29,14 +29,6 @@ std::string title_of(const ValidationReport& report) {
     return report.rig.title.empty() ? "Untitled rig" : report.rig.title;
 }
 
-std::string section(std::string_view id, std::string_view heading, std::string_view content) {
-    return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n\n", id, heading, content);
-}
-
-std::string paragraph(std::string_view text) {
-    return fmt::format("<p>{}</p>\n", text);
-}
-
 // "550 nm" or "channel R"
 std::string name_of(const ValidationReport& report, const Comparison& comparison) {
     const bool is_channel = std::ranges::any_of(
@@ -123,7 +115,7 @@ std::string images(const ValidationReport& report) {
                "image by the reference tracer",
                fmt::format("<strong>Reference</strong>, over {}",
                            counted(report.grid_size, "wavelength"))),
-        paragraph(fmt::format(
+        html_paragraph(fmt::format(
             "The camera’s signals at the same exposure and white: the lamps’ "
             "own light is "
             "grey, channels are shown as sRGB. Top is forward, right is starboard.{}",
@@ -230,7 +222,7 @@ std::string map_in_words(const ErrorMap& map, const MapScale& scale) {
             " Each point of the map shows the largest |e| of {0} × {0} pixels, with its sign.",
             map.side);
     }
-    return paragraph(
+    return html_paragraph(
         words + " The notches at the sides mark the row and the column of the profiles below.");
 }
 
@@ -252,9 +244,10 @@ std::string map_section(const ValidationReport& report) {
         data_uri(map.png),
         map_marks(report, channel),
         colour_bar_svg(scale.end));
-    return section("error-map",
-                   fmt::format("Relative error of channel {}, the worst", escaped(channel.name)),
-                   figure + map_legend(channel) + map_in_words(map, scale));
+    return html_section(
+        "error-map",
+        fmt::format("Relative error of channel {}, the worst", escaped(channel.name)),
+        figure + map_legend(channel) + map_in_words(map, scale));
 }
 
 std::string stroke_key(std::string_view style, std::string_view words) {
@@ -271,7 +264,7 @@ std::string profile_legend() {
 }
 
 std::string profiles(const ValidationReport& report) {
-    std::string content = paragraph(
+    std::string content = html_paragraph(
         "Both renderers over each other through the middle of the image; beneath each channel, "
         "its relative error pixel by pixel. The upper scale is the angle off the camera’s axis" +
         std::string(report.rig.camera.port ? ", before the port bends it." : "."));
@@ -303,7 +296,7 @@ std::string rule() {
            "<dt><i>b</i></dt><dd>the reference’s sample</dd>\n"
            "<dt><i>b</i><sub>0</sub></dt><dd>what counts as black: under it a difference is "
            "measured against it</dd>\n</dl>\n</div>\n" +
-           paragraph(
+           html_paragraph(
                "A comparison holds when the largest |<i>e</i>| off the edges is within its bound "
                "and "
                "every sample, on edges too, is finite. No factor is fitted: the absolute scale is "
@@ -386,26 +379,16 @@ std::string made_with(const ValidationReport& report) {
 
 void write_validation_html(const ValidationReport& report, const std::filesystem::path& file) {
     report.check();
-    // The policy lets a browser neither run nor fetch anything, whatever a title may hold.
-    std::string page = fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n"
-        "<meta charset=\"utf-8\"/>\n"
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-        "img-src data:; style-src 'unsafe-inline'\"/>\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-        "<title>{}: validation {}</title>\n<style>\n{}</style>\n</head>\n<body>\n<main>\n",
-        escaped(title_of(report)),
-        report.holds() ? "holds" : "does not hold",
-        kReportStyle);
-    page += header(report);
-    page += section("rig", "The rig", rig_in_words(report.rig));
-    page += section("images", "Both images", images(report));
+    std::string page = header(report);
+    page += html_section("rig", "The rig", rig_in_words(report.rig));
+    page += html_section("images", "Both images", images(report));
     page += map_section(report);
-    page += section("profiles", "Profiles", profiles(report));
-    page += section("numbers", "Errors", numbers(report));
-    page += section("made-with", "Made with", made_with(report));
-    page += "</main>\n</body>\n</html>\n";
-    write_text_file(file, page);
+    page += html_section("profiles", "Profiles", profiles(report));
+    page += html_section("numbers", "Errors", numbers(report));
+    page += html_section("made-with", "Made with", made_with(report));
+    const std::string title =
+        title_of(report) + (report.holds() ? ": validation holds" : ": validation does not hold");
+    write_text_file(file, html_page(title, kReportStyle, page));
 }
 
 }  // namespace aphotic

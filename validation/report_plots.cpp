@@ -23,16 +23,6 @@ constexpr double kLeft = 92.0;
 constexpr double kPanelWidth = kWidth - kLeft - 14.0;
 constexpr std::array<std::string_view, kChannels> kClasses{"red", "green", "blue"};
 
-std::string svg_of(std::string_view id, double width, double height, std::string_view content) {
-    return fmt::format(
-        R"(<svg xmlns="http://www.w3.org/2000/svg" id="{}" viewBox="0 0 {:.0f} {:.0f}" role="img">{}</svg>)"
-        "\n",
-        id,
-        width,
-        height,
-        content);
-}
-
 std::string_view word(ProfileLine line) {
     return line == ProfileLine::Row ? "row" : "column";
 }
@@ -327,7 +317,7 @@ std::string profile_svg(const ValidationReport& report, ProfileLine line) {
                     SvgAnchor::Middle,
                     R"(class="axis")",
                     line == ProfileLine::Row ? "column [px]" : "row [px]");
-    return svg_of(fmt::format("profile-{}", word(line)), kWidth, panel.bottom() + 44.0, svg);
+    return svg_drawing(fmt::format("profile-{}", word(line)), kWidth, panel.bottom() + 44.0, svg);
 }
 
 std::string errors_svg(const ValidationReport& report) {
@@ -367,7 +357,7 @@ std::string errors_svg(const ValidationReport& report) {
                     SvgAnchor::Middle,
                     R"(class="axis")",
                     "channel");
-    return svg_of("errors", kWidth, panel.bottom() + 44.0, svg);
+    return svg_drawing("errors", kWidth, panel.bottom() + 44.0, svg);
 }
 
 std::string colour_bar_svg(double scale) {
@@ -408,7 +398,7 @@ std::string colour_bar_svg(double scale) {
                     bar.width,
                     bar.height);
     svg += svg_text(bar.left, 14.0, SvgAnchor::Start, R"(class="axis")", over_unit("e", unit));
-    return svg_of("colour-bar", 84.0, kTop + kHeight + 12.0, svg);
+    return svg_drawing("colour-bar", 84.0, kTop + kHeight + 12.0, svg);
 }
 
 }  // namespace aphotic

@@ -176,4 +176,17 @@ std::string svg_upward_text(double x_px,
         escaped(text));
 }
 
+std::string svg_drawing(std::string_view id,
+                        double width,
+                        double height,
+                        std::string_view elements) {
+    return fmt::format(
+        R"(<svg xmlns="http://www.w3.org/2000/svg" id="{}" viewBox="0 0 {:.0f} {:.0f}" role="img">{}</svg>)"
+        "\n",
+        id,
+        width,
+        height,
+        elements);
+}
+
 }  // namespace aphotic

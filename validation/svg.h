@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Parts of a line drawing in SVG: panels with axes, curves and dots in them. Each function gives
-// the text of some elements; whoever draws puts them into one <svg>.
+// the text of some elements; svg_drawing() puts them into one <svg>.
 //
 //   x_px = left + width  (x - x.first) / (x.last - x.first)
 //   y_px = top  + height (y.last - y) / (y.last - y.first)       log: of the logarithms
@@ -81,5 +81,11 @@ enum class SvgAnchor { Start, Middle, End };
                                           double y_px,
                                           std::string_view style,
                                           std::string_view text);
+
+// A whole <svg> of the elements, which a page's style may scale.
+[[nodiscard]] std::string svg_drawing(std::string_view id,
+                                      double width,
+                                      double height,
+                                      std::string_view elements);
 
 }  // namespace aphotic

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "spectral/atomic_file.h"
+#include "support/temp_folder.h"
 
 #include <fmt/format.h>
 
@@ -42,6 +43,16 @@ inline std::string small_scene(const std::filesystem::path& file) {
         throw std::runtime_error("no pixel pitch in " + file.string());
     return std::regex_replace(
         text, pitch, fmt::format("\npixel_pitch_um = {}", std::stod(found[1]) * kCoarser));
+}
+
+// Puts a scene so made into the folder as rig.toml, with the tables that lie beside it.
+inline void put_small_scene(const std::filesystem::path& file,
+                            const std::filesystem::path& folder) {
+    write_file(folder / "rig.toml", small_scene(file));
+    for (const auto& entry : std::filesystem::directory_iterator(file.parent_path())) {
+        if (entry.path().extension() != ".csv") continue;
+        std::filesystem::copy_file(entry.path(), folder / entry.path().filename());
+    }
 }
 
 }  // namespace aphotic

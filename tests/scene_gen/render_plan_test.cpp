@@ -1,0 +1,679 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/render_plan.h"
+
+#include "scene_gen/rig_reader.h"
+#include "spectral/builtin.h"
+#include "spectral/error.h"
+#include "tests/support/closed_form.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+constexpr unsigned kSeed = 20240614;
+constexpr double kDegree = std::numbers::pi / 180.0;
+// Up to here the promise of a render holds (render_plan.h).
+constexpr double kBlack = 1e-8;
+// Between the paths on which a fitter judges itself an error may peak this much higher.
+constexpr double kBetweenPaths = 0.02;
+// Of Simpson's rule with kPanels between knots, and of the grid that a fitter compares with.
+constexpr int kPanels = 4;
+constexpr double kQuadrature = 1e-8;
+
+Rig rig_of(const std::string& scene) {
+    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene);
+}
+
+Rig habcam() {
+    return rig_of("habcam.toml");
+}
+
+std::vector<double> wavelengths_of(const RenderPlan& plan) {
+    std::vector<double> lambda_nm;
+    for (const WeightedWavelength& w : plan.rule.wavelengths) lambda_nm.push_back(w.lambda_nm);
+    return lambda_nm;
+}
+
+std::string error_of(const Rig& rig, const PlanRequest& request) {
+    try {
+        static_cast<void>(plan_render(rig, request));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+// Wavelengths increase and lie in the range; the frames hold each of them once, in their order.
+void expect_order(const Rig& rig, const RenderPlan& plan) {
+    const std::vector<double> lambda_nm = wavelengths_of(plan);
+    for (std::size_t j = 0; j < lambda_nm.size(); ++j) {
+        EXPECT_TRUE(rig.camera.range.contains(lambda_nm[j])) << lambda_nm[j];
+        if (j == 0) continue;
+        EXPECT_LT(lambda_nm[j - 1], lambda_nm[j]);
+    }
+    std::size_t next = 0;
+    for (const FrameGroup& group : plan.frames) {
+        EXPECT_EQ(group.first, next);
+        EXPECT_GE(group.count, 1U);
+        EXPECT_LE(group.count, static_cast<std::size_t>(plan.scene.wavelengths_per_frame));
+        next += group.count;
+    }
+    EXPECT_EQ(next, lambda_nm.size());
+}
+
+// --- The promise, pixel by pixel -------------------------------------------------------------
+
+std::vector<double> knots_of(const Rig& rig) {
+    std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
+    curves.push_back(&rig.seafloor.reflectance);
+    if (rig.water.multiple != 0.0) curves.push_back(&rig.water.absorption_per_m);
+    for (const Strobe& strobe : rig.strobes) curves.push_back(&strobe.spectrum);
+    std::set<double> knots_nm{rig.camera.range.first_nm, rig.camera.range.last_nm};
+    for (const Spectrum* curve : curves) {
+        for (const double nm : curve->lambda_nm()) {
+            if (rig.camera.range.contains(nm)) knots_nm.insert(nm);
+        }
+    }
+    return {knots_nm.begin(), knots_nm.end()};
+}
+
+// Simpson's rule between the knots: wavelengths and weights, the responses not included.
+std::vector<std::pair<double, double>> simpson(const std::vector<double>& knots_nm, int panels) {
+    std::vector<std::pair<double, double>> nodes;
+    for (std::size_t k = 0; k + 1 < knots_nm.size(); ++k) {
+        const double width_nm = knots_nm[k + 1] - knots_nm[k];
+        for (int i = 0; i <= 2 * panels; ++i) {
+            const double times = i == 0 || i == 2 * panels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+            nodes.emplace_back(std::min(knots_nm[k + 1], knots_nm[k] + width_nm * i / (2 * panels)),
+                               times * width_nm / (6 * panels));
+        }
+    }
+    return nodes;
+}
+
+Spectrum flat(double value) {
+    return {"flat", {100.0, 2000.0}, {value, value}};
+}
+
+// The rig with its lamps, water and floor at every wavelength as they are at this one: its
+// radiance at index_nm is what a frame with those refractive indices holds.
+Rig frozen_at(const Rig& rig, double lambda_nm) {
+    Rig frozen = rig;
+    if (rig.water.multiple != 0.0) {
+        frozen.water.absorption_per_m = flat(rig.water.absorption_per_m.at(lambda_nm));
+    }
+    frozen.seafloor.reflectance = flat(rig.seafloor.reflectance.at(lambda_nm));
+    for (Strobe& strobe : frozen.strobes) strobe.spectrum = flat(strobe.spectrum.at(lambda_nm));
+    return frozen;
+}
+
+struct Pixel {
+    int column, row;
+};
+
+using Signals = std::array<double, kChannels>;
+
+Signals exact_signals(const Rig& rig, Pixel pixel, int panels) {
+    Signals signals{};
+    for (const auto& [nm, weight] : simpson(knots_of(rig), panels)) {
+        const double L = closed_form::radiance(rig, pixel.column, pixel.row, nm).radiance;
+        for (int c = 0; c < kChannels; ++c) {
+            signals[static_cast<std::size_t>(c)] += weight * L * rig.camera.sensor.response(c, nm);
+        }
+    }
+    return signals;
+}
+
+class PlannedSignals {
+  public:
+    PlannedSignals(const Rig& rig, const RenderPlan& plan) : rule_(plan.rule) {
+        for (const FrameGroup& group : plan.frames) {
+            for (std::size_t j = group.first; j < group.first + group.count; ++j) {
+                rigs_.push_back(frozen_at(rig, rule_.wavelengths[j].lambda_nm));
+                index_nm_.push_back(group.index_nm);
+            }
+        }
+    }
+
+    [[nodiscard]] Signals at(Pixel pixel) const {
+        Signals signals{};
+        for (std::size_t j = 0; j < rigs_.size(); ++j) {
+            const double L =
+                closed_form::radiance(rigs_[j], pixel.column, pixel.row, index_nm_[j]).radiance;
+            for (std::size_t c = 0; c < kChannels; ++c) {
+                signals[c] += rule_.wavelengths[j].weight[c] * L;
+            }
+        }
+        return signals;
+    }
+
+  private:
+    FittedRule rule_;
+    std::vector<Rig> rigs_;
+    std::vector<double> index_nm_;
+};
+
+// The worst relative error of pixels off the cones' edges, by channel, and where.
+struct Worst {
+    Signals error{};
+    std::array<Pixel, kChannels> pixel{};
+    int pixels = 0;
+};
+
+Pixel brightest_pixel(const Rig& rig) {
+    constexpr int kStep = 32;
+    Pixel brightest{};
+    double most = 0.0;
+    for (int row = 0; row < rig.camera.height_px; row += kStep) {
+        for (int column = 0; column < rig.camera.width_px; column += kStep) {
+            const double L = closed_form::radiance(rig, column, row, 550.0).radiance;
+            if (L > most) brightest = {.column = column, .row = row};
+            most = std::max(most, L);
+        }
+    }
+    return brightest;
+}
+
+// Half of them anywhere, half near the brightest, and two corners.
+std::vector<Pixel> some_pixels(const Rig& rig, int count) {
+    constexpr double kNear = 60.0;
+    std::mt19937_64 random(kSeed);
+    const int width = rig.camera.width_px;
+    const int height = rig.camera.height_px;
+    std::uniform_int_distribution<int> column(0, width - 1);
+    std::uniform_int_distribution<int> row(0, height - 1);
+    std::normal_distribution<double> aside(0.0, kNear);
+    const auto brightest = brightest_pixel(rig);
+    std::vector<Pixel> pixels{{.column = 0, .row = 0}, {.column = width - 1, .row = height - 1}};
+    for (int i = 2; i < count; ++i) {
+        const auto beside = [&](int middle, int end) {
+            return std::clamp(middle + static_cast<int>(aside(random)), 0, end - 1);
+        };
+        if (i % 2 == 0) {
+            pixels.push_back({.column = column(random), .row = row(random)});
+        } else {
+            pixels.push_back(
+                {.column = beside(brightest.column, width), .row = beside(brightest.row, height)});
+        }
+    }
+    return pixels;
+}
+
+Worst worst_pixels(const Rig& rig, const RenderPlan& plan, int pixels) {
+    // How far another wavelength's ray may move a floor point, seen from a lamp.
+    const double edge_rad = rig.camera.port ? 0.02 : 1e-6;
+    const PlannedSignals planned(rig, plan);
+    Worst worst;
+    for (const Pixel pixel : some_pixels(rig, pixels)) {
+        const auto middle = closed_form::radiance(rig, pixel.column, pixel.row, 550.0);
+        if (middle.radiance == 0.0 || middle.edge_rad < edge_rad) continue;
+        ++worst.pixels;
+        const Signals exact = exact_signals(rig, pixel, kPanels);
+        const Signals found = planned.at(pixel);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const double error = std::abs(found[c] / exact[c] - 1.0);
+            if (!(error > worst.error[c])) continue;
+            worst.error[c] = error;
+            worst.pixel[c] = pixel;
+        }
+    }
+    return worst;
+}
+
+void expect_promise_kept(const Rig& rig,
+                         const RenderPlan& plan,
+                         int pixels,
+                         const std::string& what) {
+    const Worst worst = worst_pixels(rig, plan, pixels);
+    EXPECT_GT(worst.pixels, pixels / 3) << what;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        EXPECT_LE(worst.error[c], plan.rule.quality[c].error * (1.0 + kBetweenPaths) + kQuadrature)
+            << what << ": channel " << kChannelNames[c] << ", column " << worst.pixel[c].column
+            << ", row " << worst.pixel[c].row << "; " << plan.rule.wavelengths.size()
+            << " wavelengths in " << plan.frames.size() << " frames";
+    }
+}
+
+// The integral that the others are held to.
+TEST(RenderPlanPixels, AreIntegratedFinelyEnough) {
+    for (const Pixel pixel : {Pixel{0, 0}, Pixel{700, 300}}) {
+        const Signals once = exact_signals(habcam(), pixel, kPanels);
+        const Signals twice = exact_signals(habcam(), pixel, 2 * kPanels);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            EXPECT_NEAR(once[c] / twice[c], 1.0, 0.1 * kQuadrature) << "channel " << c;
+        }
+    }
+}
+
+// --- HabCam ----------------------------------------------------------------------------------
+
+// The goal of the whole: one frame, with an error of under 1e-5.
+TEST(RenderPlan, OfHabCamIsOneFrameOfThreeWavelengths) {
+    const RenderPlan plan = plan_render(habcam(), {});
+    EXPECT_EQ(plan.method, PlanMethod::Fitted);
+    EXPECT_EQ(plan.tolerance, 1e-3);
+    ASSERT_EQ(plan.frames.size(), 1U);
+    EXPECT_EQ(plan.frames[0].count, 3U);
+    EXPECT_EQ(plan.rule.wavelengths.size(), 3U);
+    EXPECT_LT(plan.rule.error(), 1e-5);
+    EXPECT_LT(plan.promise(), 1e-3);
+    EXPECT_GE(plan.promise(), kFrameError) << "no image is better than its frames";
+    EXPECT_EQ(plan.frame_error, kFrameError);
+    expect_order(habcam(), plan);
+}
+
+TEST(RenderPlan, OfHabCamKeepsItsErrorOnPixels) {
+    expect_promise_kept(habcam(), plan_render(habcam(), {}), 40, "HabCam");
+}
+
+TEST(RenderPlan, KeepsItsErrorOnPixelsOfRandomRigs) {
+    std::mt19937_64 random(kSeed);
+    const auto between = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(random);
+    };
+    for (int n = 0; n < 6; ++n) {
+        Rig rig = habcam();
+        rig.sled = {.altitude_m = between(1.0, 4.0),
+                    .pitch_rad = between(-0.4, 0.4),
+                    .roll_rad = between(-0.4, 0.4)};
+        rig.water.multiple = between(0.0, 3.0);
+        rig.water.uniform_loss_per_m = between(0.0, 0.3);
+        if (n % 2 == 0) rig.seafloor.phong = between(0.0, 0.5);
+        rig.strobes[1].spectrum = load_curve("xenon-arc", CurveRole::LampSpectrum, {});
+        for (Strobe& strobe : rig.strobes) {
+            strobe.power = between(0.1, 3.0);
+            strobe.position_m.z() = between(-0.5, 0.5);
+        }
+        expect_promise_kept(rig, plan_render(rig, {}), 12, "rig " + std::to_string(n));
+    }
+}
+
+TEST(RenderPlan, IsTheSameEveryTime) {
+    for (const char* scene : {"habcam.toml", "port.toml"}) {
+        const RenderPlan first = plan_render(rig_of(scene), {});
+        const RenderPlan second = plan_render(rig_of(scene), {});
+        EXPECT_EQ(wavelengths_of(first), wavelengths_of(second)) << scene;
+        for (std::size_t j = 0; j < first.rule.wavelengths.size(); ++j) {
+            EXPECT_EQ(first.rule.wavelengths[j].weight, second.rule.wavelengths[j].weight);
+        }
+        EXPECT_EQ(first.promise(), second.promise());
+    }
+}
+
+TEST(RenderPlan, SaysWhatIsLeftOut) {
+    Rig rig = habcam();
+    rig.strobes[0].power = 0.0;
+    const std::vector<Omission> left_out = plan_render(rig, {}).omissions;
+    ASSERT_EQ(left_out.size(), 3U);
+    EXPECT_EQ(left_out[0].what, "a port");
+    EXPECT_EQ(left_out[1].what, "the floor's highlight");
+    EXPECT_EQ(left_out[2].what, "strobe 'fore'");
+}
+
+// Where the emitter's lamps stand for it the frame errs by their number, too.
+TEST(RenderPlan, CountsTheErrorOfAnEmittersLamps) {
+    Rig rig = habcam();
+    EXPECT_EQ(frame_error(rig), kFrameError);
+    rig.strobes[3].emitter = Emitter{.across_m = 0.0635, .along_m = 0.0302};
+    EXPECT_EQ(frame_error(rig), kFrameError + kLampError);
+    const RenderPlan plan = plan_render(rig, {});
+    EXPECT_EQ(plan.frame_error, kFrameError + kLampError);
+    EXPECT_GE(plan.promise(), kFrameError + kLampError);
+    EXPECT_EQ(plan.frames.size(), 1U);
+}
+
+// --- Equal bands, listed wavelengths ---------------------------------------------------------
+
+// docs/physics.md has 36 bands err by 1.3e-3 over 4 m; the weights are widths times responses.
+TEST(RenderPlan, OfEqualBandsIsTheMidpointRule) {
+    PlanRequest request;
+    request.bands = 36;
+    const Rig rig = habcam();
+    const RenderPlan plan = plan_render(rig, request);
+    EXPECT_EQ(plan.method, PlanMethod::EqualBands);
+    ASSERT_EQ(plan.rule.wavelengths.size(), 36U);
+    EXPECT_EQ(plan.frames.size(), 12U);
+    constexpr double kWidthNm = 320.0 / 36.0;
+    for (std::size_t j = 0; j < 36; ++j) {
+        const WeightedWavelength& w = plan.rule.wavelengths[j];
+        EXPECT_NEAR(w.lambda_nm, 400.0 + (static_cast<double>(j) + 0.5) * kWidthNm, 1e-9);
+        for (int c = 0; c < kChannels; ++c) {
+            EXPECT_NEAR(w.weight[static_cast<std::size_t>(c)],
+                        kWidthNm * rig.camera.sensor.response(c, w.lambda_nm),
+                        1e-12);
+        }
+    }
+    EXPECT_NEAR(plan.rule.error(), 1.3e-3, 2e-4);
+    EXPECT_GT(plan.rule.error(), 50.0 * plan_render(rig, {}).rule.error());
+    expect_order(rig, plan);
+    expect_promise_kept(rig, plan, 10, "36 bands");
+}
+
+// What the bands' error is stated to be is what it is: the worst pixel comes near it.
+TEST(RenderPlan, StatesTheErrorOfEqualBandsClosely) {
+    PlanRequest request;
+    for (const int bands : {9, 18}) {
+        request.bands = bands;
+        const RenderPlan plan = plan_render(habcam(), request);
+        const Worst worst = worst_pixels(habcam(), plan, 20);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            EXPECT_GE(worst.error[c], 0.9 * plan.rule.quality[c].error)
+                << bands << " bands, channel " << kChannelNames[c];
+        }
+    }
+}
+
+TEST(RenderPlan, KeepsListedWavelengths) {
+    PlanRequest request;
+    request.wavelengths_nm = {478.0, 576.0, 638.0};
+    const RenderPlan plan = plan_render(habcam(), request);
+    EXPECT_EQ(plan.method, PlanMethod::Listed);
+    EXPECT_EQ(wavelengths_of(plan), request.wavelengths_nm);
+    EXPECT_EQ(plan.frames.size(), 1U);
+    expect_promise_kept(habcam(), plan, 20, "listed");
+    // Better ones are not known than those that were looked for.
+    EXPECT_GT(plan.rule.error(), plan_render(habcam(), {}).rule.error());
+
+    request.wavelengths_nm = {450.0, 500.0, 550.0, 600.0, 650.0};
+    const RenderPlan five = plan_render(habcam(), request);
+    EXPECT_EQ(wavelengths_of(five), request.wavelengths_nm);
+    ASSERT_EQ(five.frames.size(), 2U);
+    EXPECT_EQ(five.frames[1].count, 2U);
+}
+
+// However bad, they are what was asked for, and the promise says so.
+TEST(RenderPlan, TakesListedWavelengthsThatCannotKeepATolerance) {
+    PlanRequest request;
+    request.wavelengths_nm = {550.0};
+    const RenderPlan plan = plan_render(habcam(), request);
+    EXPECT_GT(plan.promise(), 1e-2);
+    EXPECT_EQ(plan.frames.size(), 1U);
+}
+
+TEST(RenderPlan, RefusesListedWavelengthsOutOfOrderOrRange) {
+    PlanRequest request;
+    request.wavelengths_nm = {550.0, 500.0};
+    EXPECT_EQ(error_of(habcam(), request),
+              "wavelengths: found 500 nm in place 2; allowed: increasing wavelengths from 400 to "
+              "720 nm");
+    request.wavelengths_nm = {390.0, 500.0};
+    EXPECT_EQ(error_of(habcam(), request),
+              "wavelengths: found 390 nm in place 1; allowed: increasing wavelengths from 400 to "
+              "720 nm");
+}
+
+// --- Paths, materials, water -----------------------------------------------------------------
+
+PlanRequest over_paths(double tolerance) {
+    PlanRequest request;
+    request.paths = PathRange{.shortest_m = 2.0, .longest_m = 16.0};
+    request.tolerance = tolerance;
+    return request;
+}
+
+TEST(RenderPlan, IsForThePathsThatAreAskedFor) {
+    const Rig rig = habcam();
+    const RenderPlan plan = plan_render(rig, over_paths(1e-3));
+    EXPECT_EQ(plan.family.shortest_path_m, 2.0);
+    EXPECT_EQ(plan.family.longest_path_m, 16.0);
+    EXPECT_EQ(plan.rule.wavelengths.size(), 6U) << "three are not enough over 14 m";
+    EXPECT_EQ(plan.frames.size(), 2U);
+    EXPECT_LT(plan.rule.error(), 1e-6);
+    EXPECT_LE(plan.promise(), 1e-3);
+    const RenderPlan loose = plan_render(rig, over_paths(2e-3));
+    EXPECT_EQ(loose.rule.wavelengths.size(), 3U);
+    EXPECT_LT(loose.rule.error(), 1e-3);
+    EXPECT_LE(loose.promise(), 2e-3);
+    EXPECT_EQ(loose.tolerance, 2e-3);
+}
+
+// HabCam from 1.2 to 7 m looks along paths of 2.5 to 16 m: one plan keeps its error on all.
+TEST(RenderPlan, KeepsItsErrorOnPixelsAtOtherAltitudes) {
+    const RenderPlan plan = plan_render(habcam(), over_paths(1e-3));
+    for (const double altitude_m : {1.2, 3.0, 6.5}) {
+        Rig rig = habcam();
+        rig.sled.altitude_m = altitude_m;
+        const PathRange paths = path_range(rig);
+        ASSERT_GE(paths.shortest_m, 2.0) << altitude_m;
+        ASSERT_LE(paths.longest_m, 16.0) << altitude_m;
+        expect_promise_kept(rig, plan, 12, std::to_string(altitude_m) + " m above the floor");
+    }
+}
+
+Rig rig_with_materials() {
+    Rig rig = habcam();
+    for (const char* name : {"green-algae", "brown-algae", "red-algae"}) {
+        rig.materials.push_back(load_curve(name, CurveRole::Reflectance, {}));
+    }
+    // Dark in the blue, with an edge in the green and a dip in the red.
+    rig.materials.emplace_back("sponge",
+                               std::vector{380.0, 520.0, 560.0, 640.0, 670.0, 700.0, 780.0},
+                               std::vector{0.02, 0.04, 0.35, 0.40, 0.15, 0.55, 0.6});
+    return rig;
+}
+
+TEST(RenderPlan, OfFiveMaterialsIsThreeFramesAtMost) {
+    const Rig rig = rig_with_materials();
+    const RenderPlan plan = plan_render(rig, {});
+    EXPECT_EQ(plan.family.sources.size(), 5U);
+    EXPECT_LE(plan.rule.wavelengths.size(), 9U);
+    EXPECT_LE(plan.frames.size(), 3U);
+    EXPECT_LE(plan.promise(), 1e-3);
+    expect_order(rig, plan);
+}
+
+TEST(RenderPlan, KeepsItsErrorOnPixelsOfEveryMaterial) {
+    const Rig rig = rig_with_materials();
+    const RenderPlan plan = plan_render(rig, {});
+    for (const Spectrum& material : rig.materials) {
+        Rig floor = rig;
+        floor.seafloor.reflectance = material;
+        expect_promise_kept(floor, plan, 8, material.name());
+    }
+}
+
+// Every path has the same spectrum: one wavelength weighs it.
+TEST(RenderPlan, OfClearWaterIsOneWavelength) {
+    Rig rig = habcam();
+    rig.water.multiple = 0.0;
+    for (const double loss_per_m : {0.0, 0.4}) {
+        rig.water.uniform_loss_per_m = loss_per_m;
+        const RenderPlan plan = plan_render(rig, {});
+        EXPECT_EQ(plan.rule.wavelengths.size(), 1U) << loss_per_m;
+        EXPECT_EQ(plan.frames.size(), 1U);
+        EXPECT_LT(plan.rule.error(), kBlack);
+        expect_promise_kept(rig, plan, 6, "clear water");
+    }
+}
+
+TEST(RenderPlan, OfADarkRigIsOneFrame) {
+    Rig rig = habcam();
+    rig.seafloor.reflectance = flat(0.0);
+    const RenderPlan plan = plan_render(rig, {});
+    EXPECT_EQ(plan.frames.size(), 1U);
+    EXPECT_EQ(plan.promise(), 0.0);
+}
+
+// With the horizon in view the light goes on until it is black.
+TEST(RenderPlan, ReachesTheHorizon) {
+    Rig rig = habcam();
+    rig.sled.pitch_rad = 75.0 * kDegree;
+    for (Strobe& strobe : rig.strobes) strobe.beam.cones = {strobe.beam.cones[2]};
+    PlanRequest request;
+    request.tolerance = 3e-3;
+    const RenderPlan plan = plan_render(rig, request);
+    EXPECT_LE(plan.promise(), 3e-3);
+    EXPECT_GT(plan.family.longest_path_m, 100.0);
+    expect_promise_kept(rig, plan, 30, "horizon");
+}
+
+// The fore edge looks atan(2 * 12 mm / (1024 * 6.45 um)) = 74.6 degrees off the floor's normal at
+// no pitch. A thousandth of a degree before it sees the horizon there is as little light far away
+// as behind it: what is kept there is kept here.
+TEST(RenderPlan, BearsAnEdgeThatAllButSeesTheHorizon) {
+    Rig rig = habcam();
+    const double horizon_rad = std::atan2(0.012, 512.0 * 6.45e-6);
+    for (const double beyond_deg : {0.001, -0.1, -0.001, -1e-6}) {
+        rig.sled.pitch_rad = horizon_rad + beyond_deg * kDegree;
+        const PathRange paths = path_range(rig);
+        EXPECT_EQ(paths.has_horizon, beyond_deg > 0.0) << beyond_deg;
+        EXPECT_EQ(error_of(rig, {}), "no error")
+            << beyond_deg << " degrees beyond; paths " << paths.shortest_m << " to "
+            << paths.longest_m << " m";
+    }
+}
+
+// A tolerance that nothing keeps is refused, with one that can be kept.
+TEST(RenderPlan, RefusesATooSmallToleranceAndNamesOneThatItKeeps) {
+    for (const Rig& rig : {habcam(), rig_of("port.toml")}) {
+        PlanRequest request;
+        request.tolerance = 1e-5;
+        const std::string message = error_of(rig, request);
+        const std::string start = "tolerance: found 1e-05; allowed: ";
+        ASSERT_TRUE(message.starts_with(start)) << message;
+        EXPECT_NE(message.find(" and more, which "), std::string::npos) << message;
+        EXPECT_TRUE(message.ends_with(" wavelengths keep")) << message;
+        const double least = std::stod(message.substr(start.size()));
+        EXPECT_GE(least, kFrameError) << message;
+        constexpr double kThreeDigits = 0.005;  // to which the message gives it
+        request.tolerance = least * (1.0 + kThreeDigits);
+        EXPECT_LE(plan_render(rig, request).promise(), request.tolerance) << message;
+    }
+}
+
+// --- Behind a port ---------------------------------------------------------------------------
+
+TEST(RenderPlan, BehindAPortKeepsItsToleranceAndItsSharing) {
+    const Rig rig = rig_of("port.toml");
+    for (const double tolerance : {6e-4, 1e-3, 1e-2}) {
+        PlanRequest request;
+        request.tolerance = tolerance;
+        const RenderPlan plan = plan_render(rig, request);
+        EXPECT_LE(plan.promise(), tolerance);
+        EXPECT_LE(plan.frames.size(), plan.rule.wavelengths.size());
+        const std::vector<double> lambda_nm = wavelengths_of(plan);
+        for (const FrameGroup& group : plan.frames) {
+            EXPECT_LE(corner_shift_px(
+                          rig, lambda_nm[group.first], lambda_nm[group.first + group.count - 1]),
+                      request.scene.pixel_shift)
+                << "tolerance " << tolerance;
+        }
+        expect_order(rig, plan);
+    }
+}
+
+// Each wavelength sees a floor point of its own: the integral is along the true rays, the plan has
+// its frames' rays.
+TEST(RenderPlan, BehindAPortKeepsItsErrorOnPixels) {
+    const Rig rig = rig_of("port.toml");
+    for (const double tolerance : {6e-4, 1e-3, 1e-2}) {
+        PlanRequest request;
+        request.tolerance = tolerance;
+        expect_promise_kept(
+            rig, plan_render(rig, request), 60, "tolerance " + std::to_string(tolerance));
+    }
+}
+
+// With all of it, the frames' own error included, no pixel is off by more than the tolerance: of
+// HabCam behind its port, under one lamp close to the floor, and with a lamp's mirror image.
+TEST(RenderPlan, BehindAPortKeepsItsToleranceOnPixels) {
+    Rig low = rig_of("port.toml");
+    low.strobes.resize(1, low.strobes.front());
+    low.strobes[0].position_m = {0.25, 0.3, 1.95};
+    low.strobes[0].axis = Eigen::Vector3d::UnitZ();
+    low.strobes[0].beam.cones = {low.strobes[0].beam.cones[2]};
+    Rig glossy = low;
+    glossy.strobes[0].position_m = {0.2, 0.2, 0.2};
+    glossy.seafloor.phong = 5.0;
+    glossy.seafloor.phong_size = 1000.0;
+    struct Case {
+        std::string name;
+        Rig rig;
+        double tolerance;
+    };
+    for (const Case& each : {Case{"HabCam", rig_of("port.toml"), 6e-4},
+                             {"HabCam", rig_of("port.toml"), 1e-3},
+                             {"a low lamp", low, 1e-3},
+                             {"a low lamp", low, 1e-2},
+                             {"a glossy floor", glossy, 1e-3},
+                             {"a glossy floor", glossy, 1e-2}}) {
+        PlanRequest request;
+        request.tolerance = each.tolerance;
+        const RenderPlan plan = plan_render(each.rig, request);
+        const Worst worst = worst_pixels(each.rig, plan, 160);
+        EXPECT_GT(worst.pixels, 30) << each.name;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const double from_frames = plan.rule.quality[c].amplification * plan.frame_error;
+            EXPECT_LE(worst.error[c] + from_frames, each.tolerance)
+                << each.name << ": channel " << kChannelNames[c] << " errs by " << worst.error[c]
+                << " of " << plan.rule.quality[c].error << ", column " << worst.pixel[c].column
+                << ", row " << worst.pixel[c].row;
+        }
+    }
+}
+
+// Three wavelengths in one frame, each shifted by as much as 2 pixels: the promise knows.
+TEST(RenderPlan, KnowsWhatSharedFramesShift) {
+    const Rig rig = rig_of("port.toml");
+    PlanRequest request;
+    request.wavelengths_nm = {480.0, 550.0, 620.0};
+    const RenderPlan apart = plan_render(rig, request);
+    EXPECT_EQ(apart.frames.size(), 3U);
+    request.scene.pixel_shift = 10.0;
+    const RenderPlan shared = plan_render(rig, request);
+    ASSERT_EQ(shared.frames.size(), 1U);
+    EXPECT_EQ(shared.frames[0].index_nm, 550.0);
+    EXPECT_GT(shared.rule.error(), apart.rule.error());
+    expect_promise_kept(rig, apart, 40, "apart");
+    expect_promise_kept(rig, shared, 40, "shared");
+}
+
+// Where sharing would break the tolerance, each wavelength has a frame of its own.
+TEST(RenderPlan, BehindAPortGivesUpSharingForTheTolerance) {
+    const Rig rig = rig_of("port.toml");
+    PlanRequest request;
+    request.scene.pixel_shift = 1000.0;
+    for (const double tolerance : {6e-4, 7e-4, 1e-3, 3e-3}) {
+        request.tolerance = tolerance;
+        const RenderPlan plan = plan_render(rig, request);
+        EXPECT_LE(plan.promise(), tolerance);
+        const bool is_shared = plan.frames.size() < plan.rule.wavelengths.size();
+        EXPECT_EQ(plan.scene.pixel_shift, is_shared ? 1000.0 : 0.0) << tolerance;
+    }
+}
+
+TEST(RenderPlan, FramesLightHasTheFramesIndices) {
+    const Rig rig = rig_of("port.toml");
+    const LightFamily family = light_family(rig);
+    const RuleFitter fitter(rig.camera.sensor, family, rig.camera.range);
+    const std::vector<double> lambda_nm{450.0, 470.0, 600.0};
+    const std::vector<FrameGroup> groups{{.first = 0, .count = 2, .index_nm = 460.0},
+                                         {.first = 2, .count = 1, .index_nm = 600.0}};
+    const std::vector<FrameLight> frames = frames_light(fitter, lambda_nm, groups);
+    ASSERT_EQ(frames.size(), 3U);
+    const std::array index_nm{460.0, 460.0, 600.0};
+    for (std::size_t j = 0; j < 3; ++j) {
+        EXPECT_EQ(frames[j].lambda_nm, lambda_nm[j]);
+        EXPECT_EQ(frames[j].attenuation_per_m, rig.water.attenuation_per_m(lambda_nm[j]));
+        EXPECT_EQ(frames[j].tilt, family.tilt->at(index_nm[j]));
+        ASSERT_EQ(frames[j].sources.size(), 1U);
+        EXPECT_NEAR(frames[j].sources[0] / (rig.strobes[0].spectrum.at(lambda_nm[j]) *
+                                            rig.seafloor.reflectance.at(lambda_nm[j])),
+                    1.0,
+                    1e-14);
+    }
+}
+
+}  // namespace
+}  // namespace aphotic

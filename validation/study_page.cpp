@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The page is well-formed XML too, as report.html is.
+#include "validation/study_page.h"
+
+#include "validation/html.h"
+#include "validation/report_style.h"
+#include "validation/study_plot.h"
+#include "validation/study_style.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+struct SubjectWords {
+    std::string_view subject;
+    std::string_view heading;
+    std::string_view words;
+};
+constexpr std::array<SubjectWords, 7> kSubjectWords{{
+    {"wavelengths",
+     "Wavelengths",
+     "How many, and how they are chosen: fitted to this rig’s lamps, water and camera, or as equal "
+     "bands. Three share a frame, on all cores."},
+    {"packing", "Wavelengths a frame", "One wavelength a frame in place of three."},
+    {"resolution",
+     "Resolution",
+     "Rendered with fewer pixels over the same field of view, and enlarged with a filter."},
+    {"emitters",
+     "Emitters",
+     "One lamp with softened cone edges in place of the many that stand for an emitter."},
+    {"frames", "Frames", "16-bit linear PNG in place of half-float EXR."},
+    {"antialiasing", "Antialiasing", "POV-Ray’s adaptive supersampling."},
+    {"jobs", "Jobs", "One POV-Ray at a time in place of one a core."},
+}};
+
+// A subject that has no words here is its own heading.
+SubjectWords words_of(std::string_view subject) {
+    const auto found = std::ranges::find(kSubjectWords, subject, &SubjectWords::subject);
+    return found == kSubjectWords.end() ? SubjectWords{subject, subject, ""} : *found;
+}
+
+std::string title_of(const Study& study) {
+    return study.rig_title.empty() ? "Untitled rig" : study.rig_title;
+}
+
+// Three digits, or whole seconds.
+std::string time_in_digits(double value_s) {
+    return fmt::format("{:.{}f}", value_s, value_s < 10.0 ? 2 : value_s < 100.0 ? 1 : 0);
+}
+
+std::string seconds(double value_s) {
+    return time_in_digits(value_s) + "\xC2\xA0s";  // a blank that does not break
+}
+
+std::string ratio_in_words(double ratio) {
+    return fmt::format("{:.{}f}", ratio, ratio < 1.0 ? 2 : ratio < 100.0 ? 1 : 0);
+}
+
+// 10⁻³, 5 × 10⁻⁴, 0.05: as it was asked for, without digits that it never had.
+std::string tolerance_in_words(double tolerance) {
+    constexpr double kReadAsItIs = 0.0099;
+    if (tolerance >= kReadAsItIs || !(tolerance > 0.0)) return plain(tolerance);
+    const std::string text = fmt::format("{:.2e}", tolerance);
+    const std::size_t split = text.find('e');
+    return power_label(std::stod(text.substr(0, split)), std::stoi(text.substr(split + 1)));
+}
+
+// The recommendation.
+
+std::string compared_with_customary(const Study& study, const StudyMeasure& best) {
+    const StudyMeasure* customary = find_measure(study.measures, kCustomary);
+    if (customary == nullptr || customary == &best) return "";
+    const double ratio = customary->total_s() / best.total_s();
+    const std::string words = escaped(customary->setting.words);
+    if (ratio < 1.0)
+        return fmt::format(", {} times as long as {}", ratio_in_words(1.0 / ratio), words);
+    return fmt::format(", {} times as fast as {}", ratio_in_words(ratio), words);
+}
+
+std::string recommendation(const Study& study) {
+    const std::string tolerance = tolerance_in_words(study.tolerance);
+    if (const auto index = recommended(study.measures, study.tolerance)) {
+        const StudyMeasure& best = study.measures[*index];
+        return fmt::format("For {} the cheapest setting is {}: {}, largest error {}{}.",
+                           tolerance,
+                           escaped(best.setting.words),
+                           seconds(best.total_s()),
+                           scientific(best.max_error()),
+                           compared_with_customary(study, best));
+    }
+    const auto closest = std::ranges::min_element(study.measures, {}, &StudyMeasure::max_error);
+    if (closest == study.measures.end()) return "Nothing was measured.";
+    return fmt::format("No setting here keeps {}. The closest is {}: {}, largest error {}.",
+                       tolerance,
+                       escaped(closest->setting.words),
+                       seconds(closest->total_s()),
+                       scientific(closest->max_error()));
+}
+
+// What the customary ways cost against the baseline.
+std::string customary_in_words(const Study& study) {
+    const StudyMeasure* baseline = find_measure(study.measures, kBaseline);
+    const StudyMeasure* customary = find_measure(study.measures, kCustomary);
+    if (baseline == nullptr || customary == nullptr) return "";
+    const auto ratio = [&](const StudyMeasure& measure) {
+        return ratio_in_words(measure.total_s() / baseline->total_s());
+    };
+    const StudyMeasure* mono = find_measure(study.measures, kCustomaryMono);
+    return html_paragraph(fmt::format(
+        "{} take {} times as long as {}{}.",
+        escaped(customary->setting.words),
+        ratio(*customary),
+        escaped(baseline->setting.words),
+        mono == nullptr ? ""
+                        : fmt::format(", with one wavelength a frame {} times", ratio(*mono))));
+}
+
+std::string verdict(const Study& study) {
+    const bool found = recommended(study.measures, study.tolerance).has_value();
+    return fmt::format(
+        "<div class=\"verdict {}\" id=\"verdict\">\n<p class=\"word\">{}</p>\n{}</div>\n",
+        found ? "holds" : "fails",
+        recommendation(study),
+        customary_in_words(study));
+}
+
+std::string what_was_measured(const Study& study) {
+    return html_paragraph(fmt::format(
+        "{} of {}, {} × {} pixels, with Aphotic {} and POV-Ray {} on {}: the wall time of each, "
+        "and how far its image is from the reference tracer’s over {}, which takes {} "
+        "itself.{}",
+        counted(study.measures.size(), "setting"),
+        user_text(title_of(study)),
+        study.width_px,
+        study.height_px,
+        escaped(study.aphotic_version),
+        escaped(study.povray_version),
+        counted(static_cast<std::size_t>(study.cores), "core"),
+        counted(study.grid_size, "wavelength"),
+        seconds(study.trace_s),
+        study.quick ? " A quick study: few settings, and few pixels over the rig’s field of view."
+                    : ""));
+}
+
+std::string header(const Study& study) {
+    return fmt::format(
+        "<header>\n<p class=\"eyebrow\">Aphotic · accuracy against time</p>\n<h1>{}</h1>\n{}{}"
+        "</header>\n\n",
+        user_text(title_of(study)),
+        verdict(study),
+        what_was_measured(study));
+}
+
+// The plot.
+
+// In the order in which they come.
+std::vector<std::string> subjects_of(const Study& study) {
+    std::vector<std::string> subjects;
+    for (const StudyMeasure& measure : study.measures) {
+        if (std::ranges::find(subjects, measure.setting.subject) == subjects.end())
+            subjects.push_back(measure.setting.subject);
+    }
+    return subjects;
+}
+
+std::string key(std::string_view drawing, std::string_view words) {
+    return fmt::format("<span class=\"key\">{} {}</span>\n", drawing, words);
+}
+
+std::string stroke(std::string_view style) {
+    return fmt::format(
+        R"(<svg class="stroke" viewBox="0 0 34 12"><path class="{}" d="M2 6L32 6"/></svg>)", style);
+}
+
+std::string legend(const Study& study) {
+    std::string keys;
+    for (const std::string& subject : subjects_of(study)) {
+        keys += key(subject_mark(subject, false), escaped(std::string(words_of(subject).heading)));
+    }
+    keys += key(subject_mark("wavelengths", true), "hollow: equal bands, filled: fitted");
+    keys += key(stroke("front"), "Pareto front");
+    keys += key(stroke("bound"), "tolerance");
+    keys += key("◯", "recommended");
+    return "<p class=\"legend\">\n" + keys + "</p>\n";
+}
+
+std::string left_out(const Study& study) {
+    const auto drawn = std::ranges::count_if(study.measures, is_drawn);
+    const std::size_t missing = study.measures.size() - static_cast<std::size_t>(drawn);
+    if (missing == 0) return "";
+    return html_paragraph(
+        fmt::format("{} not drawn: the error is 0 or not finite.",
+                    counted(missing, "setting") + (missing == 1 ? " is" : " are")));
+}
+
+std::string plot(const Study& study) {
+    return legend(study) +
+           fmt::format("<figure class=\"plot wide-plot\">\n{}</figure>\n",
+                       study_svg(study, StudyPlotWidth::Wide)) +
+           fmt::format(
+               "<figure class=\"plot narrow\">\n{}<figcaption>Numbers as in the lists "
+               "below.</figcaption></figure>\n",
+               study_svg(study, StudyPlotWidth::Narrow)) +
+           left_out(study);
+}
+
+// The tables.
+
+std::string cell(std::string_view label, std::string_view content) {
+    return fmt::format("<td data-label=\"{}\">{}</td>", label, content);
+}
+
+std::string edge_error(const StudyMeasure& measure) {
+    const bool has_edges = std::ranges::any_of(
+        measure.channels, [](const Comparison& channel) { return channel.on_edges > 0; });
+    return has_edges ? scientific(measure.max_error_on_edges()) : "–";
+}
+
+struct TableRow {
+    std::size_t index = 0;  // of the measure
+    bool against = false;   // from another table, for comparison
+};
+
+std::string table_row(const Study& study, const std::vector<bool>& front, const TableRow& row) {
+    const StudyMeasure& measure = study.measures[row.index];
+    const auto ratio = time_ratio(study.measures, measure.setting.name, kBaseline);
+    const bool is_best = recommended(study.measures, study.tolerance) == row.index;
+    return fmt::format("<tr class=\"{}\"><th scope=\"row\"><span class=\"number\">{}</span>{}</th>",
+                       row.against ? "against"
+                       : is_best   ? "best"
+                                   : "own",
+                       row.index + 1,
+                       escaped(measure.setting.words)) +
+           cell("wavelengths", grouped(measure.wavelengths)) +
+           cell("frames", grouped(measure.frames)) +
+           cell("render [s]", time_in_digits(measure.render_s)) +
+           cell("integrate [s]", time_in_digits(measure.integrate_s)) +
+           cell("time [s]", time_in_digits(measure.total_s())) +
+           cell("× baseline", ratio ? ratio_in_words(*ratio) : "–") +
+           cell("largest error", scientific(measure.max_error())) +
+           cell("99.9 %", scientific(measure.percentile_999())) +
+           cell("rms", scientific(measure.rms_error())) + cell("on edges", edge_error(measure)) +
+           fmt::format("<td class=\"mark\">{}</td></tr>\n",
+                       is_best            ? "★ recommended"
+                       : front[row.index] ? "✓ front"
+                                          : "");
+}
+
+// What a subject varies: the same wavelengths with nothing else changed.
+bool is_varied_by(const StudyMeasure& plain_one, const StudyMeasure& measure) {
+    return plain_one.setting.subject == "wavelengths" &&
+           plain_one.setting.fitted == measure.setting.fitted &&
+           plain_one.setting.bands == measure.setting.bands;
+}
+
+std::vector<TableRow> rows_of(const Study& study, const std::string& subject) {
+    std::vector<TableRow> against;
+    std::vector<TableRow> own;
+    for (std::size_t i = 0; i < study.measures.size(); ++i) {
+        const StudyMeasure& measure = study.measures[i];
+        const auto varies = [&](const StudyMeasure& other) {
+            return other.setting.subject == subject && is_varied_by(measure, other);
+        };
+        if (measure.setting.subject == subject) {
+            own.push_back({.index = i});
+        } else if (std::ranges::any_of(study.measures, varies)) {
+            against.push_back({.index = i, .against = true});
+        }
+    }
+    against.insert(against.end(), own.begin(), own.end());
+    return against;
+}
+
+std::string table(const Study& study, const std::vector<bool>& front, const std::string& subject) {
+    const SubjectWords words = words_of(subject);
+    std::string rows;
+    for (const TableRow& row : rows_of(study, subject)) rows += table_row(study, front, row);
+    return fmt::format(
+        "<h3>{}</h3>\n{}<div class=\"wide\"><table>\n<thead><tr><th>setting</th>"
+        "<th>wave&#173;lengths</th><th>frames</th><th>render [s]</th><th>integrate "
+        "[s]</th><th>time [s]</th>"
+        "<th class=\"at\">× baseline</th><th>largest error</th><th>99.9 %</th><th>rms</th>"
+        "<th>on edges</th><th "
+        "class=\"mark\"></th></tr></thead>\n<tbody>\n{}</tbody>\n</table></div>\n",
+        escaped(words.heading),
+        words.words.empty() ? "" : html_paragraph(words.words),
+        rows);
+}
+
+std::string tables(const Study& study) {
+    const std::vector<bool> front = pareto_front(study.measures);
+    std::string content;
+    for (const std::string& subject : subjects_of(study)) content += table(study, front, subject);
+    return content;
+}
+
+// How to read it.
+
+std::string rule() {
+    return "<div class=\"rule\">\n<p class=\"formula\"><i>e</i> = <span "
+           "class=\"fraction\"><span><i>a</i> − <i>b</i></span>"
+           "<span>max( |<i>b</i>|, <i>b</i><sub>0</sub> )</span></span></p>\n"
+           "<dl>\n<dt><i>a</i></dt><dd>a pixel’s signal in a channel</dd>\n"
+           "<dt><i>b</i></dt><dd>the reference’s</dd>\n"
+           "<dt><i>b</i><sub>0</sub></dt><dd>what counts as black: 10⁻⁸ of the channel’s "
+           "brightest</dd>\n</dl>\n</div>\n";
+}
+
+std::string baseline_in_words(const Study& study) {
+    const StudyMeasure* baseline = find_measure(study.measures, kBaseline);
+    if (baseline == nullptr) return "";
+    return fmt::format(" The baseline is {}.", escaped(baseline->setting.words));
+}
+
+std::string notes(const Study& study) {
+    return rule() +
+           html_paragraph(
+               "Errors are of |<i>e</i>| in the worst of the three channels, over all pixels off "
+               "the edges of the cones: the largest, the 99.9 percentile and the root mean square. "
+               "No factor is fitted: the absolute scale is part of it. Pixels on the edge of a "
+               "cone, which lie on both sides of it, are measured on their own.") +
+           html_paragraph(
+               "The time is POV-Ray’s and the integration’s, enlarging included, as a clock on "
+               "the wall shows it. Seconds are this machine’s; ratios carry over better." +
+               baseline_in_words(study)) +
+           html_paragraph(
+               "On the Pareto front are the settings that no other beats in both time and error. "
+               "Along it, accuracy costs time; a setting above it never pays. The recommended "
+               "setting is the fastest whose largest error is within the tolerance.") +
+           html_paragraph(fmt::format("Rig: SHA-256 <code>{}</code>", escaped(study.rig_sha256)));
+}
+
+}  // namespace
+
+std::string study_page(const Study& study) {
+    return html_page(title_of(study) + ": accuracy against time",
+                     std::string(kReportStyle) + std::string(kStudyStyle),
+                     header(study) + html_section("plot", "Error against time", plot(study)) +
+                         html_section("settings", "Settings", tables(study)) +
+                         html_section("reading", "How to read it", notes(study)));
+}
+
+}  // namespace aphotic

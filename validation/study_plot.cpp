@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "validation/study_plot.h"
+
+#include "validation/html.h"
+#include "validation/label_place.h"
+#include "validation/svg.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace aphotic {
+
+namespace {
+
+constexpr double kMarkRadius = 5.0;
+constexpr double kRingRadius = 9.0;  // around the recommended one
+
+// Where each subject stands is the number of its shape and of its colour; one that is not here
+// looks like the last.
+constexpr std::array<std::string_view, 7> kSubjects{
+    "wavelengths", "packing", "resolution", "emitters", "frames", "antialiasing", "jobs"};
+
+std::size_t subject_index(std::string_view subject) {
+    const auto found = std::ranges::find(kSubjects, subject);
+    return std::min<std::size_t>(static_cast<std::size_t>(found - kSubjects.begin()),
+                                 kSubjects.size() - 1);
+}
+
+std::string polygon(double x, double y, int corners, double first_deg) {
+    std::string path;
+    for (int i = 0; i < corners; ++i) {
+        const double angle = (first_deg + 360.0 * i / corners) * 3.14159265 / 180.0;
+        // A little larger than the circle, whose area they would fall short of.
+        const double radius = 1.25 * kMarkRadius;
+        path += fmt::format("{}{:.1f} {:.1f}",
+                            i == 0 ? 'M' : 'L',
+                            x + radius * std::cos(angle),
+                            y + radius * std::sin(angle));
+    }
+    return path + 'Z';
+}
+
+std::string shape(std::size_t subject, double x, double y) {
+    switch (subject) {
+        case 0:
+            return fmt::format("M{0:.1f} {1:.1f}a{2} {2} 0 1 0 {3} 0a{2} {2} 0 1 0 -{3} 0Z",
+                               x - kMarkRadius,
+                               y,
+                               kMarkRadius,
+                               2.0 * kMarkRadius);
+        case 1:
+            return polygon(x, y, 4, 45.0);
+        case 2:
+            return polygon(x, y, 3, -90.0);
+        case 3:
+            return polygon(x, y, 4, 0.0);
+        case 4:
+            return polygon(x, y, 3, 90.0);
+        case 5:
+            return polygon(x, y, 5, -90.0);
+        default:
+            return polygon(x, y, 6, 0.0);
+    }
+}
+
+std::string mark(
+    std::string_view subject, bool hollow, double x, double y, std::string_view content) {
+    const std::size_t index = subject_index(subject);
+    return fmt::format(R"(<path class="dot s{}{}" d="{}">{}</path>)",
+                       index,
+                       hollow ? " hollow" : "",
+                       shape(index, x, y),
+                       content);
+}
+
+struct Layout {
+    double width = 0.0;
+    double height = 0.0;
+    double left = 0.0;
+    bool names = true;
+};
+
+Layout layout_of(StudyPlotWidth width) {
+    if (width == StudyPlotWidth::Wide)
+        return {.width = 900.0, .height = 560.0, .left = 74.0, .names = true};
+    return {.width = 390.0, .height = 430.0, .left = 62.0, .names = false};
+}
+
+// The axis over the values, with some room at both ends.
+SvgAxis axis_over(const std::vector<double>& values) {
+    constexpr double kRoom = 1.15;
+    if (values.empty()) return log_axis(1.0, 10.0);
+    const auto [least, most] = std::ranges::minmax(values);
+    return log_axis(least / kRoom, most * kRoom);
+}
+
+// Seconds are read without powers of ten; as many are labelled as there is room for.
+SvgAxis time_axis(const std::vector<double>& times, double width) {
+    constexpr double kLabelWidth = 34.0;
+    SvgAxis axis = axis_over(times);
+    const bool all = width / static_cast<double>(axis.ticks.size()) > kLabelWidth;
+    for (SvgTick& tick : axis.ticks) {
+        if (all || !tick.label.empty()) tick.label = plain(tick.value);
+    }
+    return axis;
+}
+
+SvgPanel panel_of(const Study& study, const Layout& layout) {
+    std::vector<double> times;
+    std::vector<double> errors;
+    if (study.tolerance > 0.0) errors.push_back(study.tolerance);
+    for (const StudyMeasure& measure : study.measures) {
+        if (!is_drawn(measure)) continue;
+        times.push_back(measure.total_s());
+        errors.push_back(measure.max_error());
+    }
+    const double width = layout.width - layout.left - 14.0;
+    return {.left = layout.left,
+            .top = 12.0,
+            .width = width,
+            .height = layout.height - 62.0,
+            .x = time_axis(times, width),
+            .y = axis_over(errors)};
+}
+
+// A measure that is drawn, where its mark is.
+struct Dot {
+    std::size_t index = 0;  // of the measure
+    double x_px = 0.0;
+    double y_px = 0.0;
+    bool on_front = false;
+    bool is_best = false;
+};
+
+std::vector<Dot> dots_of(const Study& study, const SvgPanel& panel) {
+    const std::vector<bool> front = pareto_front(study.measures);
+    const auto best = recommended(study.measures, study.tolerance);
+    std::vector<Dot> dots;
+    for (std::size_t i = 0; i < study.measures.size(); ++i) {
+        if (!is_drawn(study.measures[i])) continue;
+        dots.push_back({.index = i,
+                        .x_px = panel.x_px(study.measures[i].total_s()),
+                        .y_px = panel.y_px(study.measures[i].max_error()),
+                        .on_front = front[i],
+                        .is_best = best == i});
+    }
+    return dots;
+}
+
+// The box of a level or upright line.
+LabelBox box_along(double x1, double y1, double x2, double y2) {
+    constexpr double kHalf = 1.5;
+    return {.left = std::min(x1, x2) - kHalf,
+            .top = std::min(y1, y2) - kHalf,
+            .right = std::max(x1, x2) + kHalf,
+            .bottom = std::max(y1, y2) + kHalf};
+}
+
+// From the fastest on: level up to the next one's time, then down to its error.
+std::vector<LabelBox> front_steps(std::vector<Dot> dots, std::string& svg) {
+    std::erase_if(dots, [](const Dot& dot) { return !dot.on_front; });
+    std::ranges::sort(dots, {}, &Dot::x_px);
+    std::string path;
+    std::vector<LabelBox> boxes;
+    for (std::size_t i = 0; i < dots.size(); ++i) {
+        const Dot& dot = dots[i];
+        if (i == 0) {
+            path = fmt::format("M{:.1f} {:.1f}", dot.x_px, dot.y_px);
+            continue;
+        }
+        const Dot& last = dots[i - 1];
+        path += fmt::format("H{:.1f}V{:.1f}", dot.x_px, dot.y_px);
+        boxes.push_back(box_along(last.x_px, last.y_px, dot.x_px, last.y_px));
+        boxes.push_back(box_along(dot.x_px, last.y_px, dot.x_px, dot.y_px));
+    }
+    svg += fmt::format(R"(<path class="front" d="{}"/>)", path);
+    return boxes;
+}
+
+double clearance(const Dot& dot) {
+    return dot.is_best ? kRingRadius + 5.0 : kMarkRadius + 5.0;
+}
+
+LabelBox box_around(const Dot& dot) {
+    const double half = clearance(dot) - 3.0;
+    return {.left = dot.x_px - half,
+            .top = dot.y_px - half,
+            .right = dot.x_px + half,
+            .bottom = dot.y_px + half};
+}
+
+std::string marks(const Study& study, const std::vector<Dot>& dots) {
+    std::string svg;
+    for (const Dot& dot : dots) {
+        const StudyMeasure& measure = study.measures[dot.index];
+        if (dot.is_best) {
+            svg += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="{:.1f}" class="ring"/>)",
+                               dot.x_px,
+                               dot.y_px,
+                               kRingRadius);
+        }
+        const std::string title = fmt::format("<title>{}: {:.3g} s, {}</title>",
+                                              escaped(measure.setting.words),
+                                              measure.total_s(),
+                                              scientific(measure.max_error()));
+        svg += mark(measure.setting.subject, measure.setting.bands > 0, dot.x_px, dot.y_px, title);
+    }
+    return svg;
+}
+
+std::string text_at(const LabelPlace& place, std::string_view style, std::string_view text) {
+    constexpr double kMiddleToBaseline = 4.0;
+    return svg_text(place.x_px,
+                    place.y_px + kMiddleToBaseline,
+                    place.anchor,
+                    fmt::format(R"(class="label {}")", style),
+                    text);
+}
+
+// The line, and its name at the end where it covers least.
+std::string tolerance_line(const Study& study,
+                           const SvgPanel& panel,
+                           std::vector<LabelBox>& taken) {
+    if (!(study.tolerance > 0.0)) return "";
+    constexpr std::string_view kName = "tolerance";
+    const double y = panel.y_px(study.tolerance);
+    const double width = label_width(kName.size());
+    taken.push_back(box_along(panel.left, y, panel.right(), y));
+    // Only the places above and below a point fit between these bounds.
+    const auto at = [&](double left) {
+        const LabelBox bounds{
+            .left = left, .top = panel.top, .right = left + width, .bottom = panel.bottom()};
+        return place_label(left + width / 2.0, y, width, 7.0, taken, bounds);
+    };
+    const auto covered = [&](const LabelPlace& place) {
+        double area = 0.0;
+        for (const LabelBox& box : taken) area += overlap(place.box, box);
+        return area;
+    };
+    const LabelPlace right = at(panel.right() - width - 2.0);
+    const LabelPlace left = at(panel.left + 2.0);
+    const LabelPlace& place = covered(right) <= covered(left) ? right : left;
+    taken.push_back(place.box);
+    const std::array<double, 2> ends{panel.x.first, panel.x.last};
+    const std::array<double, 2> levels{study.tolerance, study.tolerance};
+    return svg_curve(panel, ends, levels, R"(class="bound")") + text_at(place, "limit", kName);
+}
+
+// The recommended one first, then the front. Leaders lie under all words.
+std::string labels(const Study& study,
+                   std::vector<Dot> dots,
+                   const SvgPanel& panel,
+                   bool names,
+                   std::vector<LabelBox> taken) {
+    std::ranges::stable_sort(dots, std::ranges::greater{}, [](const Dot& dot) {
+        return std::pair(dot.is_best, dot.on_front);
+    });
+    const LabelBox bounds{
+        .left = panel.left, .top = panel.top, .right = panel.right(), .bottom = panel.bottom()};
+    std::string leaders;
+    std::string texts;
+    for (const Dot& dot : dots) {
+        const std::string text =
+            names ? study.measures[dot.index].setting.name : fmt::format("{}", dot.index + 1);
+        const LabelPlace place = place_label(
+            dot.x_px, dot.y_px, label_width(text.size()), clearance(dot), taken, bounds);
+        taken.push_back(place.box);
+        if (place.is_far) {
+            leaders += fmt::format(
+                R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" class="leader"/>)",
+                dot.x_px,
+                dot.y_px,
+                place.x_px,
+                place.y_px);
+        }
+        texts += text_at(place, dot.on_front ? "strong" : "", text);
+    }
+    return leaders + texts;
+}
+
+std::string axis_titles(const SvgPanel& panel) {
+    return svg_text(panel.left + panel.width / 2.0,
+                    panel.bottom() + 38.0,
+                    SvgAnchor::Middle,
+                    R"(class="axis")",
+                    "time [s]") +
+           svg_upward_text(
+               16.0, panel.top + panel.height / 2.0, R"(class="axis")", "largest error |e|");
+}
+
+}  // namespace
+
+bool is_drawn(const StudyMeasure& measure) {
+    const auto has_logarithm = [](double value) { return value > 0.0 && std::isfinite(value); };
+    return has_logarithm(measure.total_s()) && has_logarithm(measure.max_error());
+}
+
+std::string subject_mark(std::string_view subject, bool hollow) {
+    return fmt::format(R"(<svg class="dot-key" viewBox="0 0 14 14">{}</svg>)",
+                       mark(subject, hollow, 7.0, 7.0, ""));
+}
+
+std::string study_svg(const Study& study, StudyPlotWidth width) {
+    const Layout layout = layout_of(width);
+    const SvgPanel panel = panel_of(study, layout);
+    const std::vector<Dot> dots = dots_of(study, panel);
+    std::string svg = svg_grid(panel) + svg_x_labels(panel) + svg_y_labels(panel);
+    std::vector<LabelBox> taken = front_steps(dots, svg);
+    for (const Dot& dot : dots) taken.push_back(box_around(dot));
+    svg += tolerance_line(study, panel, taken) + marks(study, dots);
+    svg += labels(study, dots, panel, layout.names, taken) + axis_titles(panel);
+    return svg_drawing(width == StudyPlotWidth::Wide ? "plot-wide" : "plot-narrow",
+                       layout.width,
+                       layout.height,
+                       svg);
+}
+
+}  // namespace aphotic
