@@ -29,12 +29,16 @@ svg text.limit { fill: var(--bad); }
 .plot.narrow { display: none; }
 .number { display: inline-block; width: 2em; margin-left: -2em; color: var(--soft);
   font-weight: 400; }
-thead th:first-child, tbody th:first-child { min-width: 196px; padding-left: 2em; }
+th:first-child { padding-left: 2em; }
 tr.against th, tr.against td { color: var(--soft); font-weight: 400; }
 tr.best { background: #eef6f1; }
 td.mark { color: var(--good); white-space: nowrap; }
 tbody th { white-space: normal; }
-th, td { padding: 6px 5px; }
+@media screen {
+  th, td { padding: 6px 5px; }
+  thead th:first-child { min-width: 196px; padding-left: 2em; }
+  tbody th:first-child { padding-left: 2em; }
+}
 @media screen and (max-width: 760px) {
   .plot.wide-plot { display: none; }
   .plot.narrow { display: block; max-width: 560px; margin-inline: auto; }
@@ -45,10 +49,9 @@ th, td { padding: 6px 5px; }
 @media screen and (max-width: 1100px) {
   table, tbody { display: block; }
   thead { display: none; }
-  tr { display: grid; grid-template-columns: repeat(auto-fill, minmax(100px, 1fr)); gap: 6px 12px; padding: 10px 6px;
-    border-bottom: 1px solid var(--rule); }
+  tr { display: grid; grid-template-columns: repeat(auto-fill, minmax(100px, 1fr)); gap: 6px 12px;
+    padding: 10px 6px; border-bottom: 1px solid var(--rule); }
   tbody th, tbody td { display: block; border: 0; padding: 0; text-align: left; }
-  tbody th:first-child { min-width: 0; padding-left: 2em; }
   tbody th, tbody td.mark { grid-column: 1 / -1; font-size: 15px; }
   tbody td.mark:empty { display: none; }
   tbody td[data-label]::before { content: attr(data-label); display: block; font-size: 12px;

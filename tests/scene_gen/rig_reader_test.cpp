@@ -136,6 +136,7 @@ TEST(RigReader, FillsInTheDefaults) {
     EXPECT_EQ(rig.strobes[0].spectrum.name(), "lamp spectrum 'xenon-flash'");
     EXPECT_EQ(rig.strobes[0].power, 1.0);
     EXPECT_FALSE(rig.strobes[0].emitter.has_value());
+    EXPECT_TRUE(rig.materials.empty());
 }
 
 TEST(RigReader, TakesTheRangeOfTheResponseWhenNoneIsGiven) {
@@ -474,7 +475,7 @@ TEST(RigReader, NamesMissingTablesOfLists) {
 TEST(RigReader, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(error_of("tittle = \"x\"\n" + std::string(kMinimal)),
               "rig.toml:1: tittle: is no known key; did you mean 'title'? Known here: title, sled, "
-              "camera, water, seafloor, beam, strobe");
+              "camera, water, seafloor, beam, strobe, materials");
     EXPECT_EQ(error_of(with(2, "altitude_m = 2\nrol_deg = 1")),
               "rig.toml:3: sled.rol_deg: is no known key; did you mean 'roll_deg'? Known here: "
               "altitude_m, pitch_deg, roll_deg");
@@ -672,6 +673,53 @@ TEST(RigReader, ReadsUserTablesBesideTheRig) {
     EXPECT_EQ(rig.camera.sensor.response(2, 550.0), 0.125);
 }
 
+TEST(RigReader, ReadsMaterialsByNameAndFromFiles) {
+    const TempFolder folder;
+    write_file(folder.path() / "mud.csv", "wavelength_nm,reflectance\n400,0.25\n700,0.75\n");
+    const std::string text =
+        "materials = [\"red-algae\", \"mud.csv\", \"sand\"]\n" + std::string(kMinimal);
+    const Rig rig = parse_rig(text, "rig.toml", folder.path());
+    ASSERT_EQ(rig.materials.size(), 3U);
+    EXPECT_EQ(rig.materials[0].name(), "reflectance 'red-algae'");
+    EXPECT_EQ(rig.materials[1].at(550.0), 0.5);
+    EXPECT_EQ(rig.materials[2].name(), "reflectance 'sand'");
+    EXPECT_TRUE(parse("materials = []\n" + std::string(kMinimal)).materials.empty());
+}
+
+TEST(RigReader, ChecksMaterials) {
+    const auto message = [](std::string_view materials) {
+        return error_of("materials = " + std::string(materials) + "\n" + std::string(kMinimal));
+    };
+    const std::string allowed =
+        "; allowed: an array of built-in reflectances (aphotic data) or .csv files beside the rig";
+    EXPECT_EQ(message("\"sand\""), "rig.toml:1: materials: found 'sand'" + allowed);
+    EXPECT_EQ(message("7"), "rig.toml:1: materials: found 7" + allowed);
+    EXPECT_EQ(message("[\"sand\", 7]"), "rig.toml:1: materials: found ['sand', 7]" + allowed);
+    EXPECT_EQ(message("[[\"sand\"]]"), "rig.toml:1: materials: found [['sand']]" + allowed);
+    for (const auto& [materials, start] : {
+             std::pair{"[\"sand\", \"green-algea\"]",
+                       "no built-in table is called 'green-algea'; did you mean 'green-algae'?"},
+             {"[\"xenon-arc\"]",
+              "'xenon-arc' is a built-in table of role lamp spectrum, not reflectance; allowed: "},
+             {"[\"nowhere.csv\"]", "./nowhere.csv: cannot be read: No such file or directory"},
+         }) {
+        const std::string found = message(materials);
+        EXPECT_TRUE(found.starts_with("rig.toml:1: materials: " + std::string(start))) << found;
+    }
+}
+
+TEST(RigReader, MaterialsMustCoverTheRange) {
+    const TempFolder folder;
+    write_file(folder.path() / "mud.csv", "wavelength_nm,reflectance\n450,0.25\n690,0.75\n");
+    const std::string message =
+        error_of("materials = [\"mud.csv\"]\n" + std::string(kMinimal), folder.path());
+    EXPECT_TRUE(message.starts_with("rig.toml:8: camera.range_nm: ")) << message;
+    EXPECT_NE(message.find("mud.csv"), std::string::npos) << message;
+    EXPECT_NE(message.find(" covers 450 to 690 nm, which leaves 400 to 450 nm"), std::string::npos)
+        << message;
+    EXPECT_TRUE(message.ends_with("range_nm = [450, 690] would do")) << message;
+}
+
 // lambda / (h c) photons per joule, with the exact h and c of the SI.
 TEST(RigReader, AQuantumResponseCountsPhotons) {
     const TempFolder folder;
@@ -789,6 +837,21 @@ TEST(RigReader, DigestCountsResponseTables) {
     EXPECT_NE(digest(std::string(kRgb) + "\n", ccd), first);
     EXPECT_NE(digest(kRgb, ccd + "\n"), first);
     EXPECT_EQ(digest(kRgb, ccd), first);
+}
+
+TEST(RigReader, DigestCountsMaterials) {
+    const TempFolder folder;
+    const std::string mud = "wavelength_nm,reflectance\n400,0.25\n700,0.75\n";
+    const auto digest = [&](const std::string& materials, const std::string& csv) {
+        write_file(folder.path() / "mud.csv", csv);
+        return parse_rig(
+                   "materials = " + materials + "\n" + std::string(kMinimal), "r", folder.path())
+            .digest;
+    };
+    const std::string first = digest("[\"sand\", \"mud.csv\"]", mud);
+    EXPECT_EQ(digest("[\"sand\", \"mud.csv\"]", mud), first);
+    EXPECT_NE(digest("[\"sand\", \"mud.csv\"]", mud + "\n"), first);
+    EXPECT_NE(digest("[\"sand\"]", mud), first);
 }
 
 }  // namespace
