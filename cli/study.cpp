@@ -129,21 +129,23 @@ void change_setting(std::string& ini, const std::string& line, const std::string
     ini.replace(at, line.size(), to);
 }
 
-// Makes a float EXR of a 16-bit PNG, in its place.
+// Makes a float EXR of the 16-bit PNG beside it: POV-Ray adds a format's ending to a foreign name.
 void png_to_exr(const fs::path& file) {
-    const AnyImage png = open_any_image(file);
+    const fs::path png_file = file.string() + ".png";
+    const AnyImage png = open_any_image(png_file);
     const std::vector<std::string> channels{"R", "G", "B"};
     std::vector<float> samples;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const std::vector<float> plane = png.samples(c);
         if (std::ranges::max(plane) >= 1.0F) {
-            throw RunError(fmt::format("{}: a pixel is clipped", file.string()));
+            throw RunError(fmt::format("{}: a pixel is clipped", png_file.string()));
         }
         samples.insert(samples.end(), plane.begin(), plane.end());
     }
     ExrWriter exr(file, png.width_px, png.height_px, channels, {});
     exr.write_rows(png.height_px, samples);
     exr.finish();
+    fs::remove(png_file);
 }
 
 CameraImage enlarged(const CameraImage& image, const Rig& rig, const std::string& filter) {

@@ -58,6 +58,7 @@ RenderedImages images_in(const fs::path& folder,
                           .exposure_log2 = {},
                           .shift_error = {},
                           .promise = {},
+                          .black = {},
                           .radiance = {},
                           .signals = signals_in(folder / "image.exr")};
     std::vector<std::string> channels;
@@ -69,7 +70,10 @@ RenderedImages images_in(const fs::path& folder,
             family.tilt ? std::abs(family.tilt->at(w.lambda_nm) - family.tilt->at(w.index_nm))
                         : 0.0);
     }
-    for (std::size_t c = 0; c < kChannels; ++c) images.promise[c] = manifest.promise(c);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        images.promise[c] = manifest.promise(c);
+        images.black[c] = manifest.black(c);
+    }
     images.radiance = [folder, channels](std::size_t first, std::size_t count) {
         const auto from = channels.begin() + static_cast<std::ptrdiff_t>(first);
         return radiance_planes(folder / "spectral.exr",

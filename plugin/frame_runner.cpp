@@ -91,12 +91,12 @@ void take_in(const Running& run,
                                    said,
                                    run.log.string()));
     }
+    if (options.convert) options.convert(run.part);
     if (!fs::exists(run.part)) {
         throw RunError(fmt::format("POV-Ray made no image of {}, though it ended well\nIts log: {}",
                                    scene_path(folder, run.frame).string(),
                                    run.log.string()));
     }
-    if (options.convert) options.convert(run.part);
     check_frame(run.part, width_px, height_px);
     std::error_code error;
     fs::rename(run.part, image_path(folder, run.frame), error);

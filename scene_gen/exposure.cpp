@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -41,56 +42,89 @@ double widened_intensity(const Beam& beam, double theta_rad, double margin_rad) 
     return std::max(0.0, intensity);
 }
 
+// How far another point of the same cell of the grid may lie, in angle, as seen from a place.
+double reach_rad(const std::vector<Vector3d>& neighbours_m, const Vector3d& at_m, const Vector3d& from_m) {
+    double reach = 0.0;
+    for (const Vector3d& next_m : neighbours_m) {
+        reach = std::max(reach, angle_between(at_m - from_m, next_m - from_m));
+    }
+    return reach;
+}
+
+// cos^size of the angle off the mirrored ray, less the margin.
+double widened_highlight(const Seafloor& floor, double angle_rad, double margin_rad) {
+    const double cos_angle = std::cos(std::max(0.0, angle_rad - margin_rad));
+    return cos_angle > 0.0 ? floor.phong * std::pow(cos_angle, floor.phong_size) : 0.0;
+}
+
 }  // namespace
 
 RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
-    const Plane floor = floor_plane(rig.sled);
-    const std::vector<std::optional<FloorSample>> points = floor_samples(rig, kGrid);
-    for (std::size_t index = 0; index < points.size(); ++index) {
-        if (!points[index]) continue;
-        double margin_rad = 0.0;
+    const std::vector<std::optional<FloorSample>> samples = floor_samples(rig, kGrid);
+    const auto neighbours_of = [&](std::size_t index) {
+        std::vector<Vector3d> neighbours_m;
+        const bool is_last_of_row = index % kGrid == kGrid - 1;
         for (const std::size_t step : {std::size_t{1}, kGrid}) {
-            const bool is_last_of_row = index % kGrid == kGrid - 1;
             if (step == 1 && is_last_of_row) continue;
-            if (index + step >= points.size() || !points[index + step]) continue;
-            for (const Strobe& strobe : rig.strobes) {
-                margin_rad =
-                    std::max(margin_rad,
-                             angle_between(points[index]->point_m - strobe.position_m,
-                                           points[index + step]->point_m - strobe.position_m));
-            }
+            if (index + step >= samples.size() || !samples[index + step]) continue;
+            neighbours_m.push_back(samples[index + step]->point_m);
         }
-        add_point(points[index]->point_m, points[index]->camera_leg_m, margin_rad);
+        return neighbours_m;
+    };
+    for (std::size_t index = 0; index < samples.size(); ++index) {
+        if (!samples[index]) continue;
+        add_point(samples[index]->point_m, samples[index]->camera_leg_m, neighbours_of(index));
     }
-    // A lamp close to the floor can peak between the grid's points: add its foot.
+    // A lamp close to the floor can peak between the grid's points: add its foot, as far from its
+    // neighbours as the nearest of the grid is from its own.
+    const Plane floor = floor_plane(rig.sled);
     for (const Strobe& strobe : rig.strobes) {
         const Vector3d foot_m =
             strobe.position_m - height_above(floor, strobe.position_m) * floor.normal;
-        if (may_be_in_view(rig.camera, foot_m)) {
-            const double port_m =
-                rig.camera.port ? rig.camera.port->distance_m + rig.camera.port->thickness_m : 0.0;
-            add_point(foot_m, std::max(0.0, foot_m.norm() - 2.0 * port_m), std::numbers::pi);
+        if (!may_be_in_view(rig.camera, foot_m)) continue;
+        double nearest_m = std::numeric_limits<double>::infinity();
+        std::vector<Vector3d> neighbours_m;
+        for (std::size_t index = 0; index < samples.size(); ++index) {
+            if (!samples[index] || (samples[index]->point_m - foot_m).norm() >= nearest_m) continue;
+            nearest_m = (samples[index]->point_m - foot_m).norm();
+            neighbours_m = {samples[index]->point_m};
+            for (const Vector3d& next_m : neighbours_of(index)) {
+                neighbours_m.push_back(foot_m + next_m - samples[index]->point_m);
+                neighbours_m.push_back(foot_m - next_m + samples[index]->point_m);
+            }
         }
+        const double port_m =
+            rig.camera.port ? rig.camera.port->distance_m + rig.camera.port->thickness_m : 0.0;
+        add_point(foot_m, std::max(0.0, foot_m.norm() - 2.0 * port_m), neighbours_m);
     }
 }
 
 void RadianceBound::add_point(const Vector3d& point_m,
                               double camera_leg_m,
-                              double cone_margin_rad) {
+                              const std::vector<Vector3d>& neighbours_m) {
+    // Behind a port the ray comes from beside the pupil.
+    constexpr double kPortMarginRad = 0.1;
     const Plane floor = floor_plane(rig_.sled);
+    const Vector3d view = point_m.normalized();
+    const Vector3d mirrored = view - 2.0 * view.dot(floor.normal) * floor.normal;
+    const double camera_reach_rad = reach_rad(neighbours_m, point_m, Vector3d::Zero()) +
+                                    (rig_.camera.port ? kPortMarginRad : 0.0);
     LitPoint lit;
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
         const Strobe& strobe = rig_.strobes[s];
         const Vector3d towards = point_m - strobe.position_m;
         const double d_m = towards.norm();
+        const double margin_rad = reach_rad(neighbours_m, point_m, strobe.position_m);
         const double theta_rad = angle_between(strobe.axis, towards);
-        const double intensity = widened_intensity(strobe.beam, theta_rad, cone_margin_rad);
+        const double intensity = widened_intensity(strobe.beam, theta_rad, margin_rad);
         const double irradiance = strobe.power * intensity / (d_m * d_m);
         const double cos_incidence = std::max(0.0, -floor.normal.dot(towards) / d_m);
+        const double highlight = widened_highlight(
+            rig_.seafloor, angle_between(mirrored, -towards), margin_rad + camera_reach_rad);
         lit.push_back({.strobe = s,
                        .path_m = d_m + camera_leg_m,
                        .diffuse_per_m2 = irradiance * cos_incidence / std::numbers::pi,
-                       .specular_per_m2 = irradiance * rig_.seafloor.phong / std::numbers::pi});
+                       .specular_per_m2 = irradiance * highlight / std::numbers::pi});
     }
     points_.push_back(std::move(lit));
 }

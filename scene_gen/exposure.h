@@ -10,7 +10,8 @@
 //   e = floor(kTargetLog2 - log2 L_max)
 //
 // L_max  close bound of the radiance in view at power-of-two scale 0, from the rig's closed
-//        form on a coarse grid of the image, with every cone widened by the grid's step
+//        form on a coarse grid of the image, with every cone and highlight widened by the
+//        grid's step
 //        [unit of the lamp's spectrum / (m^2 sr)]
 //
 // The factor of four between 2^kTargetLog2 and the largest half float is the grid's margin.
@@ -42,7 +43,10 @@ class RadianceBound {
     };
     using LitPoint = std::vector<Lit>;
 
-    void add_point(const Eigen::Vector3d& point_m, double camera_leg_m, double cone_margin_rad);
+    // neighbours_m: the next points of the grid, between which light may peak.
+    void add_point(const Eigen::Vector3d& point_m,
+                   double camera_leg_m,
+                   const std::vector<Eigen::Vector3d>& neighbours_m);
 
     const Rig& rig_;
     std::vector<LitPoint> points_;

@@ -92,54 +92,81 @@ std::vector<std::vector<Spectrum>> sources_of(const Rig& rig,
     return sources;
 }
 
-// Relative change of the radiance of an image point between two wavelengths' floor points, all
-// else, such as which cones reach it, being equal. The diffuse light alone, and with highlight.
-struct Lit {
-    double diffuse = 0.0;
-    double all = 0.0;
-};
-
-std::optional<Lit> lit_at(const Rig& rig, const WaterRay& ray, const Vector3d& cones_at_m, double K_per_m) {
+// What one image point gets of each kind of light, where every ray of the port's goes on to the same
+// cones: diffuse light and highlight of every lamp spectrum.
+std::vector<double> light_at(const Rig& rig,
+                           const std::vector<std::size_t>& lamp_of_strobe,
+                           const WaterRay& ray,
+                           const Vector3d& cones_at_m,
+                           double lambda_nm) {
     const Plane floor = floor_plane(rig.sled);
     const auto distance_m = distance_to(floor, ray);
-    if (!distance_m) return std::nullopt;
+    if (!distance_m) return {};
     const Vector3d point_m = ray.origin_m + *distance_m * ray.direction;
     const Vector3d mirrored = ray.direction - 2.0 * ray.direction.dot(floor.normal) * floor.normal;
-    Lit lit;
-    for (const Strobe& strobe : rig.strobes) {
+    const double K_per_m = rig.water.attenuation_per_m(lambda_nm);
+    const double reflectance = rig.seafloor.reflectance.at(lambda_nm);
+    std::vector<double> kinds(2 * rig.strobes.size());
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        const Strobe& strobe = rig.strobes[s];
         const Vector3d towards = point_m - strobe.position_m;
         const double d_m = towards.norm();
         const double cos_theta = strobe.axis.dot(towards) / d_m;
         const double cos_i = -floor.normal.dot(towards) / d_m;
         if (cos_theta <= 0.0 || cos_i <= 0.0) continue;
-        const double cos_of_cones =
-            strobe.axis.dot((cones_at_m - strobe.position_m).normalized());
+        const double cos_of_cones = strobe.axis.dot((cones_at_m - strobe.position_m).normalized());
         double intensity = 0.0;
         for (const Cone& cone : strobe.beam.cones) {
             if (cos_of_cones < std::cos(cone.half_angle_rad)) continue;
             intensity += axial_intensity(cone, strobe.beam.weights) * cos_theta;
         }
-        const double light = strobe.power * intensity / (d_m * d_m) *
-                             std::exp(-K_per_m * (d_m + *distance_m));
-        const double glint = rig.seafloor.phong *
-                             std::pow(std::max(0.0, -mirrored.dot(towards) / d_m), rig.seafloor.phong_size);
-        lit.diffuse += light * cos_i;
-        lit.all += light * (cos_i + glint);
+        const double light = strobe.spectrum.at(lambda_nm) * strobe.power * intensity /
+                             (d_m * d_m) * std::exp(-K_per_m * (d_m + *distance_m));
+        const double cos_mirrored = std::max(0.0, -mirrored.dot(towards) / d_m);
+        const std::size_t lamp = lamp_of_strobe[s];
+        kinds[2 * lamp] += light * cos_i * reflectance;
+        if (rig.seafloor.phong == 0.0) continue;
+        kinds[2 * lamp + 1] +=
+            light * rig.seafloor.phong * std::pow(cos_mirrored, rig.seafloor.phong_size);
     }
-    return lit;
+    return kinds;
 }
 
-// The port's tilt: for each wavelength, the largest |ln| of that change over the image.
+// How much the light of a point may err for its way from one ray to another: each kind's change, by
+// its share of all.
+double change_between(const std::vector<double>& from, const std::vector<double>& to) {
+    double all = 0.0;
+    double change = 0.0;
+    for (std::size_t k = 0; k < from.size() && k < to.size(); ++k) {
+        all += from[k];
+        change += std::abs(to[k] - from[k]);
+    }
+    return all > 0.0 ? std::log1p(change / all) : 0.0;
+}
+
+// Strobes of one lamp spectrum may make up for each other, others may not.
+std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
+    std::vector<std::size_t> lamps;
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        std::size_t first = 0;
+        while (!is_same(rig.strobes[first].spectrum, rig.strobes[s].spectrum)) ++first;
+        lamps.push_back(first);
+    }
+    return lamps;
+}
+
+// The port's tilt: for each wavelength, the largest such change over the image.
 Spectrum port_tilt(const Rig& rig) {
     constexpr int kGrid = 17;
-    constexpr int kWavelengths = 17;
+    constexpr int kWavelengths = 49;
+    constexpr double kBetween = 1.1;  // for what lies between the grid's points
     const WavelengthRange range = rig.camera.range;
     const double middle_nm = std::midpoint(range.first_nm, range.last_nm);
+    const std::vector<std::size_t> lamps = lamps_by_strobe(rig);
     std::vector<double> lambda_nm;
     std::vector<double> tilt;
     for (int j = 0; j < kWavelengths; ++j) {
         const double nm = std::lerp(range.first_nm, range.last_nm, j / (kWavelengths - 1.0));
-        const double K_per_m = rig.water.attenuation_per_m(nm);
         double worst = 0.0;
         for (int v = 0; v < kGrid; ++v) {
             for (int u = 0; u < kGrid; ++u) {
@@ -149,18 +176,15 @@ Spectrum port_tilt(const Rig& rig) {
                 const auto distance_m = distance_to(floor_plane(rig.sled), middle);
                 if (!distance_m) continue;
                 const Vector3d point_m = middle.origin_m + *distance_m * middle.direction;
-                const auto from = lit_at(rig, middle, point_m, K_per_m);
-                const auto to = lit_at(rig, pixel_ray(rig, column, row, nm), point_m, K_per_m);
-                if (!from || !to) continue;
-                if (from->diffuse > 0.0 && to->diffuse > 0.0) {
-                    worst = std::max({worst,
-                                      std::abs(std::log(to->diffuse / from->diffuse)),
-                                      std::abs(std::log(to->all / from->all))});
-                }
+                worst = std::max(
+                    worst,
+                    change_between(
+                        light_at(rig, lamps, middle, point_m, nm),
+                        light_at(rig, lamps, pixel_ray(rig, column, row, nm), point_m, nm)));
             }
         }
         lambda_nm.push_back(nm);
-        tilt.push_back(nm < middle_nm ? -worst : worst);
+        tilt.push_back(kBetween * (nm < middle_nm ? -worst : worst));
     }
     return {"change of light over a port's dispersion", std::move(lambda_nm), std::move(tilt)};
 }

@@ -14,7 +14,8 @@
 // over kDarkShare of the brightest can come.
 //
 // Behind a port, each wavelength shows its own point of the floor: the family's tilt is the largest
-// change of radiance on the way from the middle wavelength's point to it, over the image.
+// change of light on the way from the middle wavelength's point to it, over the image. Diffuse light
+// and highlight, and lamps of different spectra, change by themselves, each counted by its share.
 #pragma once
 
 #include "scene_gen/rig.h"

@@ -162,6 +162,16 @@ ManifestWavelength wavelength_of(const Reader& reader, const Manifest& manifest)
 
 }  // namespace
 
+double Manifest::black(std::size_t channel) const {
+    constexpr double kRoom = 64.0;
+    constexpr int kSmallestNormalHalfLog2 = -14;
+    double sum = 0.0;
+    for (const ManifestWavelength& w : wavelengths) {
+        sum += std::ldexp(std::abs(w.weight[channel]), kSmallestNormalHalfLog2 - w.exposure_log2);
+    }
+    return kRoom * sum;
+}
+
 fs::path manifest_path(const fs::path& folder) {
     return folder / "manifest.json";
 }

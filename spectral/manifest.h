@@ -72,6 +72,11 @@ struct Manifest {
     [[nodiscard]] double promise(std::size_t channel) const {
         return quality[channel].promise(frame_error);
     }
+
+    // The signal under which the promise is of it, not of the pixel's own: 64 sum_j |w_cj|
+    // 2^(-14 - e_j), for a frame's half floats are normal from 2^-14 up, and what is under it
+    // rounds by up to 2^-25 all the same.
+    [[nodiscard]] double black(std::size_t channel) const;
 };
 
 [[nodiscard]] std::filesystem::path manifest_path(const std::filesystem::path& folder);

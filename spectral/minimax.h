@@ -10,8 +10,8 @@
 // Mathematics of Computation 22, 1968.)
 //
 // Columns may depend on one another, or nearly: a ridge on every column, scaled to a
-// largest element of 1, makes the smallest of equally good solutions the answer. It costs an
-// error of about ridge^2 times the solution.
+// largest element of 1, makes the smallest of equally good solutions the answer. Of nearly dependent
+// columns it may cost an error of the ridge times the solution.
 //
 // Under any weights that sum to 1 the least root of sum u_i r_i^2 is no more than the minimax
 // error: a fit that is known to end over `give_up` is given up at once.

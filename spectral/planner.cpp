@@ -48,7 +48,7 @@ class Search {
     // Starts from these wavelengths.
     void start(std::span<const double> lambda_nm) {
         places_ = given_;
-        for (const double nm : lambda_nm) places_.push_back(place_of(fitter_.frame_at(nm)));
+        for (const double nm : lambda_nm) places_.push_back(place_of(fitter_.frame_at(free(nm))));
         hint_ = {};
         cost_ = cost_of(places_, std::numeric_limits<double>::infinity());
     }
@@ -122,6 +122,23 @@ class Search {
         double lambda_nm;
         RuleFitter::Column column;
     };
+
+    [[nodiscard]] bool is_free(double lambda_nm) const {
+        return std::ranges::none_of(places_, [&](const Place& place) {
+            return std::abs(place.lambda_nm - lambda_nm) < kLeastDistanceNm;
+        });
+    }
+
+    // The nearest wavelength, up or down, that no place has yet.
+    [[nodiscard]] double free(double lambda_nm) const {
+        const double width_nm = range_.last_nm - range_.first_nm;
+        for (double away_nm = 0.0; away_nm <= width_nm; away_nm += kLeastDistanceNm) {
+            for (const double nm : {lambda_nm + away_nm, lambda_nm - away_nm}) {
+                if (range_.contains(nm) && is_free(nm)) return nm;
+            }
+        }
+        return lambda_nm;
+    }
 
     [[nodiscard]] Place place_of(const FrameLight& frame) const {
         return {.lambda_nm = frame.lambda_nm, .column = fitter_.column_of({&frame, 1})};
@@ -227,6 +244,13 @@ FittedRule fitted(const RuleFitter& fitter, std::span<const double> lambda_nm, d
     return fitter.fit(frames, frame_error);
 }
 
+// To three digits, so that what is printed can be asked for.
+double rounded_up(double value) {
+    if (!(value > 0.0)) return value;
+    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+    return std::ceil(value / digit) * digit;
+}
+
 }  // namespace
 
 std::vector<double> best_wavelengths(const RuleFitter& fitter,
@@ -235,6 +259,9 @@ std::vector<double> best_wavelengths(const RuleFitter& fitter,
                                      double frame_error,
                                      std::span<const FrameLight> given,
                                      double budget) {
+    // No more than the range has room for.
+    const double room = (range.last_nm - range.first_nm) / (2.0 * kLeastDistanceNm);
+    count = std::max(1, static_cast<int>(std::min<double>(count, room)));
     Search search(fitter, range, frame_error, given);
     // No light at all: any wavelength shows that.
     if (!search.has_candidates()) return {0.5 * (range.first_nm + range.last_nm)};
@@ -267,8 +294,10 @@ std::vector<double> best_wavelengths(const RuleFitter& fitter,
 FittedRule plan_wavelengths(const RuleFitter& fitter,
                             WavelengthRange range,
                             const PlanTarget& target) {
-    const double budget =
-        std::max(0.0, target.tolerance - kFreeAmplification * target.frame_error);
+    // What the frames' own error leaves to the wavelengths, if the weights do not amplify it.
+    constexpr double kLeastShare = 0.01;
+    const double budget = std::max(kLeastShare * target.frame_error,
+                                   target.tolerance - target.frame_error);
     const auto at = [&](int count) {
         return fitted(fitter,
                       best_wavelengths(fitter, range, count, target.frame_error, {}, budget),
@@ -291,7 +320,7 @@ FittedRule plan_wavelengths(const RuleFitter& fitter,
     throw InputError(
         fmt::format("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
                     target.tolerance,
-                    best.promise(target.frame_error),
+                    rounded_up(best.promise(target.frame_error)),
                     best.wavelengths.size()));
 }
 

@@ -24,6 +24,8 @@ constexpr int kMostPaths = 24;
 constexpr int kLeastPaths = 10;
 constexpr int kRows = 240;
 
+const std::vector<double> kNoTilt{0.0};
+
 constexpr int kIterations = 60;
 constexpr int kQuickIterations = 8;
 // Held down harder and harder, until the promise no longer gains.
@@ -86,12 +88,14 @@ RuleFitter::RuleFitter(const Sensor& sensor, const LightFamily& family, Waveleng
         }
     }
     if (nodes > 0) least_attenuation_per_m_ = grid_attenuation_per_m_.minCoeff();
-    tilts_ = family.tilt ? std::vector{-1.0, 0.0, 1.0} : std::vector{0.0};
+    const std::vector<double> fit_tilts = family.tilt ? std::vector{-1.0, 0.0, 1.0} : kNoTilt;
+    const std::vector<double> check_tilts =
+        family.tilt ? std::vector{-1.0, -0.5, 0.0, 0.5, 1.0} : kNoTilt;
 
-    const int curves = static_cast<int>(family.sources.size() * tilts_.size());
+    const int curves = static_cast<int>(family.sources.size() * fit_tilts.size());
     const int paths = std::clamp(kRows / std::max(1, curves), kLeastPaths, kMostPaths);
-    fitting_ = sample(paths_at(family, chebyshev(paths)));
-    checking_ = sample(paths_at(family, ArrayXd::LinSpaced(kCheckPaths, 0.0, 1.0)));
+    fitting_ = sample(paths_at(family, chebyshev(paths)), fit_tilts);
+    checking_ = sample(paths_at(family, ArrayXd::LinSpaced(kCheckPaths, 0.0, 1.0)), check_tilts);
 }
 
 FrameLight RuleFitter::frame_at(double lambda_nm) const {
@@ -105,15 +109,15 @@ FrameLight RuleFitter::frame_at(double lambda_nm) const {
     return frame;
 }
 
-RuleFitter::Sample RuleFitter::sample(ArrayXd paths_m) const {
+RuleFitter::Sample RuleFitter::sample(ArrayXd paths_m, std::vector<double> tilts) const {
     const Index paths = paths_m.size();
     const Index sources = grid_sources_.cols();
-    Sample sample{.path_m = std::move(paths_m), .signals = {}};
-    sample.signals.resize(sources * static_cast<Index>(tilts_.size()) * paths, kChannels);
+    Sample sample{.path_m = std::move(paths_m), .tilts = std::move(tilts), .signals = {}};
+    sample.signals.resize(sources * static_cast<Index>(sample.tilts.size()) * paths, kChannels);
     Index row = 0;
     for (Index s = 0; s < sources; ++s) {
         const MatrixXd weighted = grid_weights_.colwise() * grid_sources_.col(s);
-        for (const double tilt : tilts_) {
+        for (const double tilt : sample.tilts) {
             for (Index p = 0; p < paths; ++p) {
                 const ArrayXd light =
                     ((least_attenuation_per_m_ - grid_attenuation_per_m_) * sample.path_m(p) +
@@ -135,7 +139,7 @@ MatrixXd RuleFitter::light_of(const Sample& sample, std::span<const FrameLight> 
             ((least_attenuation_per_m_ - frame.attenuation_per_m) * sample.path_m).exp();
         Index row = 0;
         for (const double source : frame.sources) {
-            for (const double tilt : tilts_) {
+            for (const double tilt : sample.tilts) {
                 light.col(static_cast<Index>(j)).segment(row, paths) =
                     source * std::exp(tilt * frame.tilt) * left;
                 row += paths;
@@ -192,8 +196,9 @@ FittedRule RuleFitter::fit(std::span<const FrameLight> frames, double frame_erro
         const auto channel = static_cast<Index>(c);
         const MatrixXd rows = relative_light(light, fitting_.signals.col(channel));
         const MatrixXd check = relative_light(checked, checking_.signals.col(channel));
-        if (rows.rows() == 0) continue;
-        double best = std::numeric_limits<double>::infinity();
+        if (check.rows() == 0) continue;
+        rule.quality[c] = {.error = 1.0, .amplification = 0.0};  // of no weights at all
+        double best = 1.0 + kFreeAmplification * frame_error;
         for (const double ridge : kRidges) {
             const MinimaxFit fit =
                 minimax_fit(rows,
@@ -204,7 +209,7 @@ FittedRule RuleFitter::fit(std::span<const FrameLight> frames, double frame_erro
             const double cost =
                 quality.error +
                 std::max(quality.amplification, kFreeAmplification) * frame_error;
-            if (!(cost < best)) break;
+            if (!(cost < best)) continue;
             best = cost;
             rule.quality[c] = quality;
             for (std::size_t j = 0; j < frames.size(); ++j) {
@@ -280,7 +285,7 @@ std::vector<double> RuleFitter::places_of_light(int count) const {
     const Index paths = fitting_.path_m.size();
     Index row = 0;
     for (Index s = 0; s < grid_sources_.cols(); ++s) {
-        for (const double tilt : tilts_) {
+        for (const double tilt : fitting_.tilts) {
             for (Index p = 0; p < paths; ++p, ++row) {
                 if (p != 0 && p != paths / 2 && p != paths - 1) continue;
                 const ArrayXd light =
@@ -318,8 +323,8 @@ std::vector<RuleFitter::PathError> RuleFitter::errors_over_path(
     const FittedRule& rule, std::span<const FrameLight> frames, std::size_t source) const {
     const MatrixXd light = light_of(checking_, frames);
     const Index paths = checking_.path_m.size();
-    // The middle of three tilts, or the only one.
-    const auto tilts = static_cast<Index>(tilts_.size());
+    // The middle tilt, which is none.
+    const auto tilts = static_cast<Index>(checking_.tilts.size());
     const Index first = (static_cast<Index>(source) * tilts + tilts / 2) * paths;
     std::vector<PathError> errors;
     for (Index p = 0; p < paths; ++p) {

@@ -68,7 +68,8 @@ class RuleFitter {
     // A frame of the family's own water, lamps and materials.
     [[nodiscard]] FrameLight frame_at(double lambda_nm) const;
 
-    // The weights, and their error on kCheckPaths paths, apart from those of the fit.
+    // The weights, and their error on kCheckPaths paths, apart from those of the fit, and behind a port
+    // on twice as many tilts.
     [[nodiscard]] FittedRule fit(std::span<const FrameLight> frames, double frame_error) const;
 
     // The same of weights that are given.
@@ -121,10 +122,11 @@ class RuleFitter {
     // too long for a double: only ratios of a member to itself are ever used.
     struct Sample {
         Eigen::ArrayXd path_m;
+        std::vector<double> tilts;
         Eigen::ArrayXXd signals;  // members by channels
     };
 
-    [[nodiscard]] Sample sample(Eigen::ArrayXd paths_m) const;
+    [[nodiscard]] Sample sample(Eigen::ArrayXd paths_m, std::vector<double> tilts) const;
     [[nodiscard]] Eigen::MatrixXd light_of(const Sample& sample,
                                            std::span<const FrameLight> frames) const;
 
@@ -136,7 +138,6 @@ class RuleFitter {
     Eigen::ArrayXd grid_tilt_;
     Eigen::ArrayXXd grid_sources_;  // wavelengths by sources
     Eigen::ArrayXXd grid_weights_;  // wavelengths by channels
-    std::vector<double> tilts_;     // -1, 0, 1 behind a port, else 0
     Sample fitting_;
     Sample checking_;
 };

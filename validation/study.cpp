@@ -483,7 +483,7 @@ std::optional<double> time_ratio(std::span<const StudyMeasure> measures,
                                  std::string_view other) {
     const StudyMeasure* a = find_measure(measures, name);
     const StudyMeasure* b = find_measure(measures, other);
-    if (a == nullptr || b == nullptr) return std::nullopt;
+    if (a == nullptr || b == nullptr || !(b->total_s() > 0.0)) return std::nullopt;
     return a->total_s() / b->total_s();
 }
 

@@ -114,7 +114,8 @@ struct Study {
 [[nodiscard]] const StudyMeasure* find_measure(std::span<const StudyMeasure> measures,
                                                std::string_view name);
 
-// How many times as long one takes as the other; nothing when either was not measured.
+// How many times as long one takes as the other; nothing when either was not measured, or took no
+// time.
 [[nodiscard]] std::optional<double> time_ratio(std::span<const StudyMeasure> measures,
                                                std::string_view name,
                                                std::string_view other);

@@ -77,12 +77,12 @@ std::string tolerance_in_words(double tolerance) {
 
 std::string compared_with_customary(const Study& study, const StudyMeasure& best) {
     const StudyMeasure* customary = find_measure(study.measures, kCustomary);
-    if (customary == nullptr || customary == &best) return "";
-    const double ratio = customary->total_s() / best.total_s();
+    const auto ratio = time_ratio(study.measures, kCustomary, best.setting.name);
+    if (customary == &best || !ratio) return "";
     const std::string words = escaped(customary->setting.words);
-    if (ratio < 1.0)
-        return fmt::format(", {} times as long as {}", ratio_in_words(1.0 / ratio), words);
-    return fmt::format(", {} times as fast as {}", ratio_in_words(ratio), words);
+    if (*ratio < 1.0)
+        return fmt::format(", {} times as long as {}", ratio_in_words(1.0 / *ratio), words);
+    return fmt::format(", {} times as fast as {}", ratio_in_words(*ratio), words);
 }
 
 std::string recommendation(const Study& study) {
@@ -107,20 +107,15 @@ std::string recommendation(const Study& study) {
 
 // What the customary ways cost against the baseline.
 std::string customary_in_words(const Study& study) {
-    const StudyMeasure* baseline = find_measure(study.measures, kBaseline);
-    const StudyMeasure* customary = find_measure(study.measures, kCustomary);
-    if (baseline == nullptr || customary == nullptr) return "";
-    const auto ratio = [&](const StudyMeasure& measure) {
-        return ratio_in_words(measure.total_s() / baseline->total_s());
-    };
-    const StudyMeasure* mono = find_measure(study.measures, kCustomaryMono);
+    const auto ratio = time_ratio(study.measures, kCustomary, kBaseline);
+    if (!ratio) return "";
+    const auto mono = time_ratio(study.measures, kCustomaryMono, kBaseline);
     return html_paragraph(fmt::format(
         "{} take {} times as long as {}{}.",
-        escaped(customary->setting.words),
-        ratio(*customary),
-        escaped(baseline->setting.words),
-        mono == nullptr ? ""
-                        : fmt::format(", with one wavelength a frame {} times", ratio(*mono))));
+        escaped(find_measure(study.measures, kCustomary)->setting.words),
+        ratio_in_words(*ratio),
+        escaped(find_measure(study.measures, kBaseline)->setting.words),
+        mono ? fmt::format(", with one wavelength a frame {} times", ratio_in_words(*mono)) : ""));
 }
 
 std::string verdict(const Study& study) {

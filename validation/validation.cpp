@@ -101,7 +101,7 @@ void compare_signals(const Rig& rig,
     for (std::size_t c = 0; c < kChannels; ++c) {
         const auto a = std::span<const float>(rendered.signals.samples).subspan(c * pixels, pixels);
         const auto b = std::span(traced).subspan(c * pixels, pixels);
-        const double black = kBlackShare * std::ranges::max(b);
+        const double black = std::max(kBlackShare * std::ranges::max(b), rendered.black[c]);
         report.channels.push_back(compare_planes(std::string(kChannelNames[c]),
                                                  a,
                                                  b,

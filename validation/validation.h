@@ -11,7 +11,8 @@
 //   signals    what the plan promised, the frames' rounding included
 //
 // Black, under which a difference is measured against it: for radiance the smallest normal half
-// float of the frame's exposure, for signals kBlackShare of the brightest.
+// float of the frame's exposure, for signals kBlackShare of the brightest, or where the frames' half
+// floats end (Manifest::black), whichever is more.
 #pragma once
 
 #include "validation/report.h"
@@ -31,6 +32,7 @@ struct RenderedImages {
     std::vector<int> exposure_log2;
     std::vector<double> shift_error;  // by wavelength: of a frame with another's indices
     std::array<double, kChannels> promise{};
+    std::array<double, kChannels> black{};
     // The planes of radiance of wavelengths [first, first + count), one after another.
     std::function<std::vector<float>(std::size_t first, std::size_t count)> radiance;
     CameraImage signals;

@@ -11,9 +11,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -177,10 +177,8 @@ Bounds brute_force(const Rig& rig) {
         std::vector<Vector3d> lamps_m{strobe.position_m};
         if (strobe.emitter) {
             const auto all_m = lamp_positions_m(strobe, kCells);
-            for (const int i : {0, 100, 200}) {
-                for (const int j : {0, 100, 200}) {
-                    lamps_m.push_back(all_m[static_cast<std::size_t>(i * kCells.along + j)]);
-                }
+            for (const std::size_t i : {0, 100, 200}) {
+                for (const std::size_t j : {0, 100, 200}) lamps_m.push_back(all_m[i * 201 + j]);
             }
         }
         for (const Vector3d& lamp_m : lamps_m) {
@@ -317,8 +315,8 @@ TEST(PathRange, OfAStrobeAtThePupilIsThereAndBack) {
     }
 }
 
-// The image's mirror in the floor: the shortest way from the lamp to the floor and on to the pupil
-// is the straight line from the lamp's mirror image, if the image sees where it crosses.
+// The shortest way from the lamp to the floor and on to the pupil is the straight line from the
+// lamp's mirror image under the floor, if the image sees where it crosses.
 TEST(PathRange, IsShortestByWayOfTheMirrorPoint) {
     Rig rig = camera_rig();
     rig.strobes = {strobe_at({0.4, -0.3, 0.5})};
@@ -471,13 +469,14 @@ TEST(PathRange, LeavesOutNothingThatANarrowBeamLightsFarAway) {
 }
 
 // Behind a port the rays of an edge's middle reach nearer to the horizon than those of its
-// corners: in water, sideways angles take the more from the cosine down. With x and y the ray's
-// slopes in air and s = 1 + x^2 + y^2, the ray does not come down where
+// corners. With x and y the ray's slopes in air, fore and across, and s = 1 + x^2 + y^2, it does
+// not come down where
 //
 //   x tan(pitch) / n >= sqrt(s - (s - 1) / n^2)
 //
-// x = 13 258 um / 12 mm = 0.2795, y up to 17 258 um / 12 mm = 0.3655, n = 1.345 to 1.331: the
-// middle sees the horizon from 78.5 degrees on, the corner from 78.9 on.
+// At the fore edge x = 13 * 258 um / 12 mm = 0.2795, in its corners y = 17 * 258 um / 12 mm =
+// 0.3655, and n = 1.342 at 550 nm: the middle sees the horizon from 78.4 degrees on, the corners
+// from 78.7 on, red and blue a tenth of a degree sooner and later.
 TEST(PathRange, FindsTheHorizonInTheMiddleOfAnEdgeBehindAPort) {
     for (const double pitch_deg : {78.0, 78.3, 78.5, 78.6, 78.7, 78.8, 79.5}) {
         Rig rig = camera_rig();
@@ -599,18 +598,32 @@ TEST(PortTilt, IsThereOnlyBehindAPort) {
     EXPECT_EQ(family.tilt->at(560.0), 0.0) << "the middle of 400 to 720 nm";
 }
 
-// ln of the diffuse light's change from the middle wavelength's floor point to this one's, on a
-// pixel, at this one's loss: one cone that fills the half space has no edge in view.
+// A strobe's highlight on one floor point, in the same unit as light_of() times the reflectance.
+double highlight_of(const Rig& rig, const Strobe& strobe, const Seen& seen, double K_per_m) {
+    const Vector3d towards = seen.point_m - strobe.position_m;
+    const Vector3d n = floor_plane(rig.sled).normal;
+    const Vector3d mirrored = seen.direction - 2.0 * seen.direction.dot(n) * n;
+    const double cos_r = std::max(0.0, -mirrored.dot(towards) / towards.norm());
+    const double cos_i = -n.dot(towards) / towards.norm();
+    return rig.seafloor.phong * std::pow(cos_r, rig.seafloor.phong_size) / cos_i *
+           light_of(rig, strobe, seen, K_per_m);
+}
+
+// ln of the radiance's change from the middle wavelength's floor point to this one's, on a pixel,
+// at this one's loss and reflectance: one cone that fills the half space has no edge in view.
 double change_of_light(const Rig& rig, double column, double row, double lambda_nm) {
     const double K_per_m = rig.water.attenuation_per_m(lambda_nm);
+    const double rho = rig.seafloor.reflectance.at(lambda_nm);
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
     const auto from = seen_at(rig, column, row, middle_nm);
     const auto to = seen_at(rig, column, row, lambda_nm);
     double before = 0.0;
     double after = 0.0;
     for (const Strobe& strobe : rig.strobes) {
-        before += light_of(rig, strobe, *from, K_per_m);
-        after += light_of(rig, strobe, *to, K_per_m);
+        before +=
+            rho * light_of(rig, strobe, *from, K_per_m) + highlight_of(rig, strobe, *from, K_per_m);
+        after +=
+            rho * light_of(rig, strobe, *to, K_per_m) + highlight_of(rig, strobe, *to, K_per_m);
     }
     return std::log(after / before);
 }
@@ -673,6 +686,23 @@ TEST(PortTilt, BoundsTheChangeOfLightOfSingleLamps) {
         EXPECT_LE(worst, 1.0 + kTiltRoom) << "rig " << n << " of seed " << kSeed << ", strobe at "
                                           << rig.strobes[0].position_m.transpose();
         EXPECT_GT(worst, 0.3) << "the tilt is far over any change; rig " << n;
+    }
+}
+
+// The darker the floor, the more of the change is the highlight's.
+TEST(PortTilt, BoundsTheChangeOfLightOfAGlossyFloor) {
+    Dice dice;
+    Rig rig = rig_of("port.toml");
+    rig.sled.pitch_rad = 0.0;
+    rig.strobes = {strobe_at({0.2, 0.2, 0.2})};
+    rig.seafloor.phong = 0.5;
+    for (const double rho : {1.0, 0.4, 0.05}) {
+        rig.seafloor.reflectance = flat(rho);
+        for (const double size : {5.0, 40.0, 200.0}) {
+            rig.seafloor.phong_size = size;
+            EXPECT_LE(worst_share_of_tilt(rig, 2000, dice), 1.0 + kTiltRoom)
+                << "reflectance " << rho << ", phong_size " << size;
+        }
     }
 }
 

@@ -216,6 +216,26 @@ TEST(Minimax, PaysTheSquareOfTheRidge) {
     }
 }
 
+// It minimises sum u_i r_i^2 + ridge^2 |y|^2, y the solution to columns whose largest element is 1.
+// Where some y solves all rows, that is ridge^2 |y|^2 at most: no row of m, all of one weight, then
+// errs by more than sqrt(m) ridge |y|.
+TEST(Minimax, PaysNoMoreThanTheRidgeTimesTheSolution) {
+    constexpr Index kRows = 12;
+    Dice dice(20);
+    for (int trial = 0; trial < 40; ++trial) {
+        MatrixXd a = dice.matrix(kRows, 3);
+        // All but dependent, to any degree.
+        a.col(2) = a.col(1) + std::pow(10.0, dice.between(-8.0, 0.0)) * a.col(2);
+        a = (a.array().rowwise() / a.array().abs().colwise().maxCoeff()).matrix();
+        const VectorXd y = dice.matrix(3, 1);
+        for (const double ridge : {1e-6, 1e-4, 1e-2}) {
+            const MinimaxFit fit = minimax_fit(a, a * y, {.ridge = ridge, .weights = {}});
+            EXPECT_LE(fit.error, std::sqrt(double{kRows}) * ridge * y.norm() + kRidge)
+                << "trial " << trial << ", ridge " << ridge;
+        }
+    }
+}
+
 // Of all x with x_0 + x_1 + x_2 = 1 the smallest has thirds; columns count in their own scale.
 TEST(Minimax, SharesTheLoadBetweenDependentColumns) {
     // The Gram matrix is singular but for the ridge: rounding over ridge^2.

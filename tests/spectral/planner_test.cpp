@@ -248,7 +248,7 @@ class Dice {
             nm += between(0.1, 2.0) * spacing_nm;
         }
     }
-    // Sources and water of random lines, now and then a point of a path or none at all.
+    // Sources and water of random lines; now and then all paths are of one length.
     LightFamily family() {
         LightFamily family{.sources = {},
                            .water = {.absorption_per_m = curve(0.0, 0.4),
@@ -319,8 +319,8 @@ void expect_promise_kept(const Sensor& sensor,
 
 // --- What is known to be feasible ----------------------------------------------------------------
 
-// Found by a search of the same kind in another language, over every wavelength of the range and
-// with a linear programme for the weights.
+// So many wavelengths can be chosen so that no path and no material errs by more than this: a
+// search is to do as well.
 struct Feasible {
     const std::vector<std::string>& materials;
     double shortest_path_m;
@@ -382,7 +382,7 @@ TEST(Planner, IsNoWorseThanEqualBands) {
 }
 
 // Every fourth nanometre of the range tried in turn, and every 16th with every 16th.
-TEST(Planner, LosesToNoOneAndNoTwoWavelengths) {
+TEST(Planner, LeavesNoBetterPlaceForOneOrTwoWavelengths) {
     // It looks at quick costs, in places an eighth of a nm apart.
     constexpr double kNear = 0.05;
     const RuleFitter fitter(camera(), sea_floor(kSand, 1.0, 8.0), kRange);

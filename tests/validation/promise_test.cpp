@@ -16,8 +16,8 @@
 #include "validation/tracer.h"
 #include "validation/validation.h"
 
-#include <half.h>
 #include <gtest/gtest.h>
+#include <half.h>
 
 #include <algorithm>
 #include <array>
@@ -27,7 +27,10 @@
 #include <cstdint>
 #include <exception>
 #include <iostream>
+#include <limits>
+#include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <string>
@@ -48,28 +51,29 @@ constexpr std::uint64_t kSeed = 20240613;
 constexpr int kRigs = 500;
 constexpr int kRigsOfWavelengths = 100;
 #else
-// Unoptimised, and with sanitizers, a rig takes some fifty times as long.
-constexpr int kRigs = 12;
-constexpr int kRigsOfWavelengths = 6;
+// Unoptimised and with sanitizers the plan of one rig takes half a minute: there it is enough that
+// every line runs.
+constexpr int kRigs = 1;
+constexpr int kRigsOfWavelengths = 1;
 #endif
 constexpr unsigned kThreads = 2;
 
-// Of every rig so many pixels, in rows of so many: a row is what the reference traces.
+// Of every rig so many pixels: the reference traces whole rows.
 constexpr int kRows = 4;
 constexpr int kPixelsPerRow = 10;
 
 constexpr double kTolerance = PlanRequest{}.tolerance;
-// For rigs of which kTolerance asks too much.
+// For rigs of which kTolerance asks too much: none of these 500, nor of 1900 more.
 constexpr double kLooseTolerance = 1e-2;
-// Narrow lamps and long ways in the strongest water; found of 500: see the test's output.
-constexpr double kRareShare = 0.05;
+constexpr double kRareShare = 0.01;
 
-// The issue's own words: on half of the rigs a promise is no more than so many times the error.
+// Promises are to be worth something: on half of the rigs no more than so many times the error.
 constexpr double kMedianRatio = 5.0;
 
-// A rule's error is the largest of kCheckPaths paths; between these it may rise a little, the less
-// the smoother. The reference's own spectrum is exact to kSpectralError.
+// A rule's error is the largest on kCheckPaths paths. Between these it may rise, but the error
+// swings no faster than a sum of some ten falling exponentials can: by far less than this share.
 constexpr double kBetweenPaths = 0.02;
+// What the reference's own spectrum may miss.
 constexpr double kReferenceError = kSpectralError;
 
 // --- Random rigs ---------------------------------------------------------------------------------
@@ -84,13 +88,14 @@ class Dice {
     double over_octaves(double least, double most) {
         return least * std::exp2(std::log2(most / least) * unit());
     }
-    int whole(int least, int most) {
-        return least + static_cast<int>(unit() * (most - least + 1));
-    }
+    int whole(int least, int most) { return least + static_cast<int>(unit() * (most - least + 1)); }
     bool chance(double share) { return unit() < share; }
+    std::size_t index_in(const auto& list) {
+        return static_cast<std::size_t>(unit() * static_cast<double>(list.size()));
+    }
     template <std::size_t N>
     std::string_view one_of(const std::array<std::string_view, N>& names) {
-        return names[static_cast<std::size_t>(whole(0, static_cast<int>(N) - 1))];
+        return names[index_in(names)];
     }
 
   private:
@@ -141,14 +146,13 @@ Sensor random_sensor(Dice& dice) {
     }
     std::vector<Spectrum> responses;
     for (int c = 0; c < kChannels; ++c) responses.push_back(random_curve(dice, 0.0, 1.0));
-    return {std::move(responses),
-            dice.chance(0.5) ? ResponseKind::Energy : ResponseKind::Quantum};
+    return {std::move(responses), dice.chance(0.5) ? ResponseKind::Energy : ResponseKind::Quantum};
 }
 
 Water random_water(Dice& dice) {
     constexpr std::array<std::string_view, 2> kWaters{"pope-fry-1997", "pure-2016"};
-    Water water{.absorption_per_m = load_curve(
-                    std::string(dice.one_of(kWaters)), CurveRole::WaterAbsorption, {})};
+    Water water{.absorption_per_m =
+                    load_curve(std::string(dice.one_of(kWaters)), CurveRole::WaterAbsorption, {})};
     water.multiple = dice.chance(0.1) ? 0.0 : dice.between(0.0, 5.0);
     water.uniform_loss_per_m = dice.chance(0.3) ? dice.between(0.0, 0.5) : 0.0;
     water.salinity_psu = dice.between(0.0, 40.0);
@@ -202,9 +206,9 @@ Vector3d random_position_m(Dice& dice, const Sled& sled) {
     while (true) {
         const double around_rad = dice.between(0.0, 2.0 * std::numbers::pi);
         const double aside_m = dice.between(0.3, 1.0);
-        const Vector3d position_m(aside_m * std::cos(around_rad),
-                                  aside_m * std::sin(around_rad),
-                                  dice.between(-0.3, 0.3));
+        Vector3d position_m(aside_m * std::cos(around_rad),
+                            aside_m * std::sin(around_rad),
+                            dice.between(-0.3, 0.3));
         if (position_m.norm() > 1.0) continue;
         if (height_above(floor_plane(sled), position_m) > kLeastHeight_m) return position_m;
     }
@@ -311,11 +315,12 @@ Signals signals_of(const Rig& rig, const Manifest& manifest, Frames kind) {
 
 struct Trial {
     double tolerance = 0.0;  // 0: none could be kept
-    std::string refusal;     // what the planner said of kTolerance
+    std::string refusal;     // what the planner said last
     std::size_t frames = 0;
     std::size_t wavelengths = 0;
     double plan_s = 0.0;
     bool has_port = false;
+    bool has_highlight = false;
     bool has_horizon = false;
     int compared = 0;  // samples
     double frame_error = 0.0;
@@ -325,59 +330,71 @@ struct Trial {
 
     [[nodiscard]] double promise(std::size_t c) const { return quality[c].promise(frame_error); }
     // The worst channel's.
-    [[nodiscard]] double promise() const {
-        return std::max({promise(0), promise(1), promise(2)});
-    }
+    [[nodiscard]] double promise() const { return std::max({promise(0), promise(1), promise(2)}); }
     [[nodiscard]] double largest_found() const { return std::ranges::max(found); }
 };
 
 std::optional<RenderPlan> try_plan(const Rig& rig, double tolerance, std::string& refusal) {
+    PlanRequest request;
+    request.tolerance = tolerance;
     try {
-        return plan_render(rig, {.tolerance = tolerance});
+        return plan_render(rig, request);
     } catch (const InputError& error) {
         refusal = error.what();
         return std::nullopt;
     }
 }
 
+struct Row {
+    int number = 0;
+    std::vector<std::size_t> columns;  // with light in any channel, off the cones' edges
+};
+
+std::vector<Row> lit_rows(const Tracer& tracer,
+                          const Signals& signals,
+                          const std::array<double, kChannels>& black) {
+    const Camera& camera = tracer.rig().camera;
+    const std::vector<unsigned char> on_edge = tracer.on_cone_edges(camera.range);
+    std::vector<Row> rows;
+    std::size_t i = 0;
+    for (int number = 0; number < camera.height_px; ++number) {
+        Row row{.number = number, .columns = {}};
+        for (std::size_t column = 0; column < static_cast<std::size_t>(camera.width_px); ++column) {
+            bool is_lit = false;
+            for (std::size_t c = 0; c < kChannels; ++c) is_lit |= signals[c][i] > black[c];
+            if (is_lit && on_edge[i] == 0) row.columns.push_back(column);
+            ++i;
+        }
+        if (!row.columns.empty()) rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
 // On random pixels of random rows in which there is light.
 void compare(const Rig& rig, const Manifest& manifest, Frames kind, Dice& dice, Trial& trial) {
-    const auto width = static_cast<std::size_t>(rig.camera.width_px);
     const Signals signals = signals_of(rig, manifest, kind);
     std::array<double, kChannels> black{};
     for (std::size_t c = 0; c < kChannels; ++c) {
         black[c] = kBlackShare * std::ranges::max(signals[c]);
     }
     const Tracer tracer(rig, {.signals = true, .planes_nm = {}});
-    const std::vector<unsigned char> on_edge = tracer.on_cone_edges(rig.camera.range);
-    std::vector<std::vector<std::size_t>> rows;  // columns to ask
-    std::vector<int> row_numbers;
-    for (int row = 0; row < rig.camera.height_px; ++row) {
-        std::vector<std::size_t> columns;
-        for (std::size_t column = 0; column < width; ++column) {
-            const std::size_t i = static_cast<std::size_t>(row) * width + column;
-            bool is_lit = false;
-            for (std::size_t c = 0; c < kChannels; ++c) is_lit |= signals[c][i] > black[c];
-            if (is_lit && on_edge[i] == 0) columns.push_back(column);
-        }
-        if (columns.empty()) continue;
-        rows.push_back(std::move(columns));
-        row_numbers.push_back(row);
-    }
-    for (int k = 0; k < kRows && !rows.empty(); ++k) {
-        const auto r = static_cast<std::size_t>(dice.whole(0, static_cast<int>(rows.size()) - 1));
-        const std::vector<double> traced = tracer.rows(row_numbers[r], 1);
+    const std::vector<Row> rows = lit_rows(tracer, signals, black);
+    if (rows.empty()) return;
+    const auto width = static_cast<std::size_t>(rig.camera.width_px);
+    for (int k = 0; k < kRows; ++k) {
+        const Row& row = rows[dice.index_in(rows)];
+        const std::vector<double> traced = tracer.rows(row.number, 1);
         for (int p = 0; p < kPixelsPerRow; ++p) {
-            const std::size_t column =
-                rows[r][static_cast<std::size_t>(dice.whole(0, static_cast<int>(rows[r].size()) - 1))];
-            const std::size_t i = static_cast<std::size_t>(row_numbers[r]) * width + column;
+            const std::size_t column = row.columns[dice.index_in(row.columns)];
+            const std::size_t i = static_cast<std::size_t>(row.number) * width + column;
             for (std::size_t c = 0; c < kChannels; ++c) {
                 const double right = traced[c * width + column];
                 if (!(right > black[c])) continue;
                 const double e = std::abs(relative_error(signals[c][i], right, black[c]));
                 ++trial.compared;
-                // Not a number is the largest of errors.
-                if (!(e <= trial.found[c])) trial.found[c] = e;
+                // What is no number is the largest of errors.
+                constexpr double kNoNumber = std::numeric_limits<double>::infinity();
+                trial.found[c] = std::max(trial.found[c], std::isnan(e) ? kNoNumber : e);
             }
         }
     }
@@ -387,6 +404,7 @@ Trial try_out(std::uint64_t seed, Frames kind) {
     const Rig rig = random_rig(seed);
     Trial trial;
     trial.has_port = rig.camera.port.has_value();
+    trial.has_highlight = rig.seafloor.phong > 0.0;
     const auto start = std::chrono::steady_clock::now();
     std::optional<RenderPlan> plan;
     for (const double tolerance : {kTolerance, kLooseTolerance}) {
@@ -396,8 +414,7 @@ Trial try_out(std::uint64_t seed, Frames kind) {
             break;
         }
     }
-    trial.plan_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    trial.plan_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (!plan) return trial;
     trial.has_horizon = path_range(rig).has_horizon;
     const SceneSet set = make_scene_set(rig, *plan);
@@ -427,6 +444,116 @@ std::vector<Trial> try_out_all(std::uint64_t first_seed, int count, Frames kind)
     work();
     others.clear();  // joins
     return trials;
+}
+
+// --- Figures -------------------------------------------------------------------------------------
+
+std::string description_of(const std::vector<Trial>& trials, std::size_t i) {
+    const Trial& t = trials[i];
+    std::ostringstream text;
+    text << "rig " << i << ", " << t.wavelengths << " wavelengths in " << t.frames << " frames";
+    if (t.has_port) text << ", behind a port";
+    if (t.has_highlight) text << ", floor with a highlight";
+    if (t.has_horizon) text << ", horizon in view";
+    return text.str();
+}
+
+std::string description_of(const std::vector<Trial>& trials, std::size_t i, std::size_t c) {
+    const RuleQuality& quality = trials[i].quality[c];
+    std::ostringstream text;
+    text << description_of(trials, i) << "; " << kChannelNames[c] << ": error " << quality.error
+         << ", amplification " << quality.amplification << ", promise " << trials[i].promise(c)
+         << ", found " << trials[i].found[c];
+    return text.str();
+}
+
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values.empty() ? 0.0 : values[values.size() / 2];
+}
+
+double median_ratio(const std::vector<Trial>& trials) {
+    std::vector<double> ratios;
+    for (const Trial& t : trials) ratios.push_back(t.promise() / t.largest_found());
+    return median(std::move(ratios));
+}
+
+// The largest error, as a share of what its channel may err.
+template <typename Bound>
+double largest_share(const std::vector<Trial>& trials, const Bound& bound) {
+    double largest = 0.0;
+    for (const Trial& t : trials) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            if (bound(t, c) > 0.0) largest = std::max(largest, t.found[c] / bound(t, c));
+        }
+    }
+    return largest;
+}
+
+std::string frames_taken(const std::vector<Trial>& trials) {
+    std::map<std::size_t, int> rigs;
+    for (const Trial& t : trials) ++rigs[t.frames];
+    std::ostringstream text;
+    for (const auto& [frames, count] : rigs) text << ' ' << count << " x " << frames;
+    return text.str();
+}
+
+// Planned, traced, and within the tolerance that was asked for.
+void expect_sound(const std::vector<Trial>& trials) {
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        EXPECT_EQ(trials[i].fault, "") << description_of(trials, i);
+        EXPECT_GT(trials[i].tolerance, 0.0)
+            << description_of(trials, i) << ": " << trials[i].refusal;
+        EXPECT_LE(trials[i].promise(), trials[i].tolerance) << description_of(trials, i);
+        EXPECT_GT(trials[i].compared, 0) << description_of(trials, i);
+    }
+    const auto refused =
+        std::ranges::count_if(trials, [](const Trial& t) { return t.tolerance != kTolerance; });
+    EXPECT_LE(static_cast<double>(refused), kRareShare * static_cast<double>(trials.size()))
+        << "rigs of which " << kTolerance << " asks too much";
+}
+
+// --- Claims --------------------------------------------------------------------------------------
+
+TEST(Promise, HoldsOnRandomRigsAndIsSeldomFarAboveTheError) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<Trial> trials = try_out_all(kSeed, kRigs, Frames::Halves);
+    expect_sound(trials);
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            EXPECT_LE(trials[i].found[c], trials[i].promise(c)) << description_of(trials, i, c);
+        }
+    }
+    EXPECT_LE(median_ratio(trials), kMedianRatio);
+
+    const double all_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::vector<double> plan_s;
+    for (const Trial& t : trials) plan_s.push_back(t.plan_s);
+    std::cout << trials.size() << " rigs in " << all_s << " s, a plan in " << median(plan_s)
+              << " s (median), " << std::ranges::max(plan_s)
+              << " s (longest)\npromise over error found: " << median_ratio(trials)
+              << " (median)\nerror found over promise: "
+              << largest_share(trials, [](const Trial& t, std::size_t c) { return t.promise(c); })
+              << " (largest)\nframes:" << frames_taken(trials) << '\n';
+}
+
+// Without any rounding a pixel is a sum of members of the family of light with factors that are not
+// negative, so no pixel may err by more than the family's worst member.
+TEST(Promise, OfTheWavelengthsAloneHoldsOnRandomRigs) {
+    // None of the other test's rigs.
+    const std::vector<Trial> trials = try_out_all(kSeed + kRigs, kRigsOfWavelengths, Frames::Exact);
+    expect_sound(trials);
+    const auto allowed = [](const Trial& t, std::size_t c) {
+        return (1.0 + kBetweenPaths) * t.quality[c].error + kReferenceError;
+    };
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            EXPECT_LE(trials[i].found[c], allowed(trials[i], c)) << description_of(trials, i, c);
+        }
+    }
+    std::cout << trials.size() << " rigs: error found over that of the wavelengths: "
+              << largest_share(trials, allowed) << " (largest)\n";
 }
 
 }  // namespace
