@@ -59,7 +59,7 @@ ExitStatus trace_rig(const Options& options) {
     }
     const CameraImage image = images.finish();
     write_preview(image,
-                  lamp_signal(planned.rig, planned.plan.rule.wavelengths),
+                  lamp_signal(planned.rig, planned.plan.family),
                   options.preview,
                   std::filesystem::path(options.folder) / "preview.png");
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

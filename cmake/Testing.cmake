@@ -6,7 +6,7 @@
 #   unit    no other program needed; milliseconds each
 #   povray  runs POV-Ray, which takes every core: CTest counts such a test as two
 #   cli     runs the command as a user would
-#   slow    needs a program beyond POV-Ray, such as a browser
+#   slow    hundreds of plans, or a program beyond POV-Ray, such as a browser
 include(GoogleTest)
 
 function(aphotic_tests label)

@@ -66,6 +66,41 @@ double darkest_path_m(const Rig& rig, double shortest_m) {
     return l_m;
 }
 
+// The corners; behind a port, where rays bend, points all along the image's rim.
+std::vector<std::array<double, 2>> rim_of(const Camera& camera) {
+    const int steps = camera.port ? 32 : 1;
+    std::vector<std::array<double, 2>> rim;
+    for (int i = 0; i <= steps; ++i) {
+        const double share = static_cast<double>(i) / steps;
+        const double column = share * camera.width_px;
+        const double row = share * camera.height_px;
+        rim.push_back({column, 0.0});
+        rim.push_back({column, static_cast<double>(camera.height_px)});
+        rim.push_back({0.0, row});
+        rim.push_back({static_cast<double>(camera.width_px), row});
+    }
+    return rim;
+}
+
+// The shortest path by way of floor that a cone lights; 0 when the grid finds none.
+double first_lit_path_m(const Rig& rig) {
+    constexpr std::size_t kGrid = 65;
+    double first_m = std::numeric_limits<double>::infinity();
+    for (const auto& sample : floor_samples(rig, kGrid)) {
+        if (!sample) continue;
+        for (const Strobe& strobe : rig.strobes) {
+            const Vector3d towards = sample->point_m - strobe.position_m;
+            const double theta_rad =
+                std::acos(std::clamp(strobe.axis.dot(towards.normalized()), -1.0, 1.0));
+            const bool is_lit = std::ranges::any_of(strobe.beam.cones, [&](const Cone& cone) {
+                return strobe.power * cone.weight > 0.0 && theta_rad <= cone.half_angle_rad;
+            });
+            if (is_lit) first_m = std::min(first_m, towards.norm() + sample->camera_leg_m);
+        }
+    }
+    return std::isfinite(first_m) ? first_m : 0.0;
+}
+
 bool is_same(const Spectrum& a, const Spectrum& b) {
     return std::ranges::equal(a.lambda_nm(), b.lambda_nm()) &&
            std::ranges::equal(a.values(), b.values());
@@ -157,8 +192,8 @@ std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
 
 // The port's tilt: for each wavelength, the largest such change over the image.
 Spectrum port_tilt(const Rig& rig) {
-    constexpr int kGrid = 17;
-    constexpr int kWavelengths = 49;
+    constexpr int kGrid = 33;
+    constexpr int kWavelengths = 25;
     constexpr double kBetween = 1.1;  // for what lies between the grid's points
     const WavelengthRange range = rig.camera.range;
     const double middle_nm = std::midpoint(range.first_nm, range.last_nm);
@@ -225,14 +260,10 @@ PathRange path_range(const Rig& rig) {
             const double shortest_m = shortest_path_m(rig, strobe, nm);
             if (shortest_m >= kNoFloor_m) continue;
             paths.shortest_m = std::min(paths.shortest_m, shortest_m - room_m);
-            for (const double column : {0.0, static_cast<double>(camera.width_px)}) {
-                for (const double row : {0.0, static_cast<double>(camera.height_px)}) {
-                    const double corner_m = path_m(rig, strobe, column, row, nm);
-                    paths.has_horizon |= corner_m >= kNoFloor_m;
-                    if (corner_m < kNoFloor_m) {
-                        paths.longest_m = std::max(paths.longest_m, corner_m + room_m);
-                    }
-                }
+            for (const auto& [column, row] : rim_of(camera)) {
+                const double rim_m = path_m(rig, strobe, column, row, nm);
+                paths.has_horizon |= rim_m >= kNoFloor_m;
+                if (rim_m < kNoFloor_m) paths.longest_m = std::max(paths.longest_m, rim_m + room_m);
             }
         }
     }
@@ -240,8 +271,10 @@ PathRange path_range(const Rig& rig) {
     // An emitter may be larger than its distance to the floor.
     constexpr double kLeastPath_m = 1e-6;
     paths.shortest_m = std::max(kLeastPath_m, paths.shortest_m / kPathRoom);
-    paths.longest_m = paths.has_horizon ? darkest_path_m(rig, paths.shortest_m)
-                                        : paths.longest_m * kPathRoom;
+    paths.longest_m *= kPathRoom;
+    // No farther than light comes from, with the horizon in view or nearly so.
+    const double darkest_m = darkest_path_m(rig, std::max(paths.shortest_m, first_lit_path_m(rig)));
+    if (paths.has_horizon || darkest_m < paths.longest_m) paths.longest_m = darkest_m;
     return paths;
 }
 

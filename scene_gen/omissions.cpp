@@ -18,21 +18,23 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::size_t kGrid = 33;
-// How far another wavelength's ray, or another lamp of an emitter, may see a floor point from
-// where the grid has it.
-constexpr double kPortMarginRad = 0.02;
+// How far from where the grid has it another wavelength may see a floor point, as a share of the way
+// through the water.
+constexpr double kPortShift = 0.02;
+// A cell that spans more than this, seen from a lamp close above it, may be widest at no corner.
+constexpr double kWideRad = 1.0;
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-double margin_rad(const Rig& rig, const Strobe& strobe, double distance_m) {
-    double margin = rig.camera.port ? kPortMarginRad : 0.0;
+// The angle off by which other wavelengths' rays and other lamps of an emitter may see a floor point.
+double margin_rad(const Rig& rig, const Strobe& strobe, double distance_m, double camera_leg_m) {
+    double reach_m = rig.camera.port ? kPortShift * camera_leg_m : 0.0;
     if (strobe.emitter) {
-        const double reach_m = 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
-        margin += std::atan2(reach_m, std::max(0.0, distance_m - reach_m));
+        reach_m += 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
     }
-    return margin;
+    return reach_m > 0.0 ? std::atan2(reach_m, std::max(0.0, distance_m - reach_m)) : 0.0;
 }
 
 }  // namespace
@@ -54,13 +56,16 @@ bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone) {
             const Vector3d towards = middle_m - strobe.position_m;
             double reach_rad = 0.0;
             double nearest_m = towards.norm();
+            double camera_leg_m = 0.0;
             for (const auto* sample : cell) {
                 const Vector3d to_corner = (*sample)->point_m - strobe.position_m;
                 reach_rad = std::max(reach_rad, angle_between(towards, to_corner));
                 nearest_m = std::min(nearest_m, to_corner.norm());
+                camera_leg_m = std::max(camera_leg_m, (*sample)->camera_leg_m);
             }
-            if (angle_between(strobe.axis, towards) <=
-                cone.half_angle_rad + reach_rad + margin_rad(rig, strobe, nearest_m)) {
+            const double margin = margin_rad(rig, strobe, nearest_m, camera_leg_m);
+            if (reach_rad + margin > kWideRad || angle_between(strobe.axis, towards) <=
+                                                     cone.half_angle_rad + reach_rad + margin) {
                 return true;
             }
         }

@@ -71,11 +71,7 @@ std::vector<FrameLight> light_in(const Manifest& manifest,
         FrameLight frame{.lambda_nm = w.lambda_nm,
                          .attenuation_per_m = w.attenuation_per_m,
                          .sources = {},
-                         .tilt = family.tilt ? family.tilt->at(std::clamp(
-                                                   w.index_nm,
-                                                   family.tilt->range().first_nm,
-                                                   family.tilt->range().last_nm))
-                                             : 0.0};
+                         .tilt = family.tilt ? family.tilt->at(w.index_nm) : 0.0};
         for (std::size_t s = 0; s < changed.strobes.size(); ++s) {
             const Strobe& strobe = changed.strobes[s];
             if (strobe.power == 0.0) {
@@ -96,6 +92,16 @@ std::vector<FrameLight> light_in(const Manifest& manifest,
 
 Rig with_lit_strobes_only(Rig rig) {
     std::erase_if(rig.strobes, [](const Strobe& strobe) { return strobe.power == 0.0; });
+    return rig;
+}
+
+// Behind a port the frames' wavelengths count too, which another sensor need not see.
+Rig covering_frames(Rig rig, const Manifest& manifest) {
+    if (!rig.camera.port) return rig;
+    for (const ManifestWavelength& w : manifest.wavelengths) {
+        rig.camera.range.first_nm = std::min(rig.camera.range.first_nm, w.index_nm);
+        rig.camera.range.last_nm = std::max(rig.camera.range.last_nm, w.index_nm);
+    }
     return rig;
 }
 
@@ -159,7 +165,8 @@ std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOption
 
 Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolerance) {
     require_same_geometry(changed, manifest);
-    const LightFamily family = light_family_by_strobe(with_lit_strobes_only(changed));
+    const LightFamily family =
+        light_family_by_strobe(covering_frames(with_lit_strobes_only(changed), manifest));
     const RuleFitter fitter(changed.camera.sensor, family, changed.camera.range);
     const std::vector<FrameLight> frames = light_in(manifest, changed, family);
     const FittedRule rule = fitter.fit(frames, manifest.frame_error);
@@ -178,7 +185,7 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
     now.method = "fitted to frames of another rig";
     now.tolerance = tolerance;
     now.quality = rule.quality;
-    now.lamp_signal = lamp_signal(changed, reference_grid(changed.camera.sensor, family, changed.camera.range, 1e-6));
+    now.lamp_signal = lamp_signal(changed, family);
     for (std::size_t j = 0; j < now.wavelengths.size(); ++j) {
         now.wavelengths[j].weight = rule.wavelengths[j].weight;
     }

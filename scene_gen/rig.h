@@ -94,7 +94,7 @@ struct Rig {
     Water water;
     Seafloor seafloor;
     std::vector<Strobe> strobes;
-    std::vector<Spectrum> materials;  // reflectances that the scene uses beside the floor's
+    std::vector<Spectrum> materials{};  // reflectances that the scene uses beside the floor's
     std::string digest;  // SHA-256 of the rig file and of the user's tables that it names
 };
 

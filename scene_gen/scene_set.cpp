@@ -7,8 +7,10 @@
 
 namespace aphotic {
 
-std::array<double, kChannels> lamp_signal(const Rig& rig,
-                                          std::span<const WeightedWavelength> wavelengths) {
+std::array<double, kChannels> lamp_signal(const Rig& rig, const LightFamily& family) {
+    constexpr double kError = 1e-6;
+    const std::vector<WeightedWavelength> wavelengths =
+        reference_grid(rig.camera.sensor, family, rig.camera.range, kError);
     std::array<double, kChannels> signal{};
     for (const WeightedWavelength& w : wavelengths) {
         for (const Strobe& strobe : rig.strobes) {
@@ -63,7 +65,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.tolerance = plan.tolerance;
     manifest.frame_error = plan.frame_error;
     manifest.quality = plan.rule.quality;
-    manifest.lamp_signal = lamp_signal(rig, rule);
+    manifest.lamp_signal = lamp_signal(rig, plan.family);
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         const FrameScene& scene = set.scenes[f];
         // The settings change pixels as much as the scene does: both make the checksum.

@@ -15,7 +15,6 @@
 
 #include <array>
 #include <filesystem>
-#include <span>
 #include <vector>
 
 namespace aphotic {
@@ -28,9 +27,9 @@ struct SceneSet {
 
 [[nodiscard]] SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan);
 
-// What the lamps alone would signal: the sum over strobes of their light, undimmed and white.
-[[nodiscard]] std::array<double, kChannels> lamp_signal(
-    const Rig& rig, std::span<const WeightedWavelength> wavelengths);
+// What the lamps alone would signal: the sum over strobes of their light, undimmed and white, over
+// the full spectrum.
+[[nodiscard]] std::array<double, kChannels> lamp_signal(const Rig& rig, const LightFamily& family);
 
 // Scenes, settings and an empty folder for the frames; not the manifest, in which whoever
 // renders first notes what is there already.

@@ -34,7 +34,7 @@ struct LightFamily {
     Water water;
     double shortest_path_m = 0.0;
     double longest_path_m = 0.0;
-    std::optional<Spectrum> tilt;  // none: no port
+    std::optional<Spectrum> tilt{};  // none: no port
 };
 
 // An integration grid that is exact to the stated error for every member of the family: between

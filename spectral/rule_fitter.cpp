@@ -98,6 +98,10 @@ RuleFitter::RuleFitter(const Sensor& sensor, const LightFamily& family, Waveleng
     checking_ = sample(paths_at(family, ArrayXd::LinSpaced(kCheckPaths, 0.0, 1.0)), check_tilts);
 }
 
+double RuleFitter::tilt_shape_error() const {
+    return grid_tilt_.size() > 0 ? kTiltShape * grid_tilt_.abs().maxCoeff() : 0.0;
+}
+
 FrameLight RuleFitter::frame_at(double lambda_nm) const {
     FrameLight frame{.lambda_nm = lambda_nm,
                      .attenuation_per_m = family_.water.attenuation_per_m(lambda_nm),
@@ -179,8 +183,10 @@ std::array<RuleQuality, kChannels> RuleFitter::judge(std::span<const WeightedWav
         for (std::size_t j = 0; j < rule.size(); ++j) {
             weights(static_cast<Index>(j)) = rule[j].weight[c];
         }
-        quality[c] = quality_of(
-            relative_light(light, checking_.signals.col(static_cast<Index>(c))), weights);
+        const MatrixXd check = relative_light(light, checking_.signals.col(static_cast<Index>(c)));
+        if (check.rows() == 0) continue;
+        quality[c] = quality_of(check, weights);
+        quality[c].error += tilt_shape_error();
     }
     return quality;
 }
@@ -204,7 +210,8 @@ FittedRule RuleFitter::fit(std::span<const FrameLight> frames, double frame_erro
                 minimax_fit(rows,
                             VectorXd::Ones(rows.rows()),
                             {.iterations = kIterations, .ridge = ridge, .weights = {}});
-            const RuleQuality quality = quality_of(check, fit.x);
+            RuleQuality quality = quality_of(check, fit.x);
+            quality.error += tilt_shape_error();
             // Freely amplified rounding is no reason to hold down.
             const double cost =
                 quality.error +

@@ -17,6 +17,9 @@
 // (spectral/minimax.h); where that takes so large weights of either sign that the promise
 // suffers, they are held down.
 //
+// Behind a port pixels change along curves of their own, of which the family's tilt is the largest:
+// kTiltShape of it is added to the error for their shapes.
+//
 // The frames need not be of the family's own water, lamps or materials: whatever light they
 // hold, as long as it came by the same geometry, serves as well as it spans the family.
 #pragma once
@@ -126,6 +129,7 @@ class RuleFitter {
         Eigen::ArrayXXd signals;  // members by channels
     };
 
+    [[nodiscard]] double tilt_shape_error() const;
     [[nodiscard]] Sample sample(Eigen::ArrayXd paths_m, std::vector<double> tilts) const;
     [[nodiscard]] Eigen::MatrixXd light_of(const Sample& sample,
                                            std::span<const FrameLight> frames) const;
@@ -143,6 +147,7 @@ class RuleFitter {
 };
 
 inline constexpr int kCheckPaths = 161;
+inline constexpr double kTiltShape = 0.01;
 inline constexpr double kFreeAmplification = 1.25;
 
 }  // namespace aphotic

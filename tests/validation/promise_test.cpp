@@ -375,7 +375,7 @@ void compare(const Rig& rig, const Manifest& manifest, Frames kind, Dice& dice, 
     const Signals signals = signals_of(rig, manifest, kind);
     std::array<double, kChannels> black{};
     for (std::size_t c = 0; c < kChannels; ++c) {
-        black[c] = kBlackShare * std::ranges::max(signals[c]);
+        black[c] = std::max(kBlackShare * std::ranges::max(signals[c]), manifest.black(c));
     }
     const Tracer tracer(rig, {.signals = true, .planes_nm = {}});
     const std::vector<Row> rows = lit_rows(tracer, signals, black);
