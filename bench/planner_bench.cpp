@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How long a plan takes: HabCam's, that of all its altitudes, and of ten materials over forty metres
-// of paths. (Goals: under 0.2 s for HabCam, under 2 s for the ten.)
+// How long a plan takes: HabCam's, that of all its altitudes, and of ten materials over forty
+// metres of paths. (Goals: under 0.2 s for HabCam, under 2 s for the ten.)
 #include "scene_gen/render_plan.h"
 #include "scene_gen/rig_reader.h"
 #include "spectral/builtin.h"

@@ -35,8 +35,7 @@ std::vector<float> resized(std::vector<float> plane,
                            PlaneSize from,
                            PlaneSize to,
                            const std::string& filter) {
-    using Resize =
-        void (*)(std::vector<float>&, PlaneSize, PlaneSize, const std::string&);
+    using Resize = void (*)(std::vector<float>&, PlaneSize, PlaneSize, const std::string&);
     from_part<Resize>("aphotic_resize")(plane, from, to, filter);
     return plane;
 }

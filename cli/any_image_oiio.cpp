@@ -35,8 +35,8 @@ extern "C" void aphotic_resize(std::vector<float>& plane,
                                aphotic::cli::PlaneSize from,
                                aphotic::cli::PlaneSize to,
                                const std::string& filter) {
-    const OIIO::ImageBuf image(OIIO::ImageSpec(from.width_px, from.height_px, 1, OIIO::TypeDesc::FLOAT),
-                               plane.data());
+    const OIIO::ImageBuf image(
+        OIIO::ImageSpec(from.width_px, from.height_px, 1, OIIO::TypeDesc::FLOAT), plane.data());
     // A width of 0 lets the filter choose its own.
     const OIIO::ImageBuf result = OIIO::ImageBufAlgo::resize(
         image, filter, 0.0F, OIIO::ROI(0, to.width_px, 0, to.height_px, 0, 1, 0, 1));

@@ -141,9 +141,8 @@ void print_for_people(const PlannedRender& planned, const Manifest& manifest) {
                manifest.height_px,
                counted(manifest.wavelengths.size(), "wavelength"),
                counted(manifest.frames.size(), "frame"),
-               plan.tolerance > 0.0
-                   ? fmt::format("fitted to a tolerance of {}", plan.tolerance)
-                   : manifest.method);
+               plan.tolerance > 0.0 ? fmt::format("fitted to a tolerance of {}", plan.tolerance)
+                                    : manifest.method);
     fmt::print("{} of light, on paths of {:.3g} to {:.3g} m from lamp to floor to camera\n\n",
                counted(plan.family.sources.size(), "spectrum"),
                plan.family.shortest_path_m,

@@ -30,10 +30,12 @@ ExitStatus render_rig(const Options& options) {
     const SceneSet scenes = scenes_of(planned, options.planning);
     const PovRay povray = find_povray(options.povray);
 
-    const RenderedFrames frames = render_frames(povray, options.folder, scenes, {.jobs = options.jobs, .report = {}});
+    const RenderedFrames frames =
+        render_frames(povray, options.folder, scenes, {.jobs = options.jobs, .report = {}});
     const RenderResult& result = frames.result;
 
-    auto outcome = integrate_folder(options.folder, result.manifest, options.preview, options.folder);
+    auto outcome =
+        integrate_folder(options.folder, result.manifest, options.preview, options.folder);
     outcome["title"] = planned.rig.title;
     outcome["povray_version"] = povray.version;
     outcome["jobs"] = options.jobs;

@@ -91,12 +91,12 @@ Reference reference_of(const Rig& rig, const fs::path& folder, const std::string
         line.show("tracing", static_cast<double>(row) / height_px);
     }
     reference.trace_s = seconds_since(start);
-    OutputImages images(folder,
-                        rig.camera.width_px,
-                        height_px,
-                        {},
-                        {{"aphotic:key", key},
-                         {"aphotic:trace_s", fmt::format("{}", reference.trace_s)}});
+    OutputImages images(
+        folder,
+        rig.camera.width_px,
+        height_px,
+        {},
+        {{"aphotic:key", key}, {"aphotic:trace_s", fmt::format("{}", reference.trace_s)}});
     for (const std::vector<double>& block : blocks) {
         const auto rows = static_cast<int>(block.size()) / kChannels / rig.camera.width_px;
         images.write_rows(rows, {block.begin(), block.end()});
@@ -287,8 +287,7 @@ ExitStatus study_rig(const Options& options) {
                        study.measures.size() + 1,
                        settings.size(),
                        setting.words);
-            measured = measure(
-                rig, setting, reference, povray, folder / "settings" / setting.name);
+            measured = measure(rig, setting, reference, povray, folder / "settings" / setting.name);
             save_measure(*measured, key, file);
         }
         study.measures.push_back(std::move(*measured));

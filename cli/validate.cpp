@@ -90,8 +90,8 @@ struct Rendering {
 };
 
 Rendering render_here(const Options& options, const SceneSet& scenes) {
-    const RenderedFrames frames =
-        render_frames(find_povray(options.povray), options.folder, scenes, {.jobs = options.jobs, .report = {}});
+    const RenderedFrames frames = render_frames(
+        find_povray(options.povray), options.folder, scenes, {.jobs = options.jobs, .report = {}});
     Rendering rendering{.manifest = frames.result.manifest, .render_s = frames.povray_s};
     const auto outcome = integrate_folder(options.folder, rendering.manifest, {}, options.folder);
     rendering.integrate_s = outcome["integration_s"].get<double>();

@@ -43,7 +43,9 @@ double widened_intensity(const Beam& beam, double theta_rad, double margin_rad) 
 }
 
 // How far another point of the same cell of the grid may lie, in angle, as seen from a place.
-double reach_rad(const std::vector<Vector3d>& neighbours_m, const Vector3d& at_m, const Vector3d& from_m) {
+double reach_rad(const std::vector<Vector3d>& neighbours_m,
+                 const Vector3d& at_m,
+                 const Vector3d& from_m) {
     double reach = 0.0;
     for (const Vector3d& next_m : neighbours_m) {
         reach = std::max(reach, angle_between(at_m - from_m, next_m - from_m));

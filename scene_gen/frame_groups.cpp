@@ -15,8 +15,8 @@ namespace {
 Eigen::Vector3d corner_point_m(const Rig& rig, double inward_px, double lambda_nm) {
     const Camera& camera = rig.camera;
     const double share = inward_px / std::hypot(0.5 * camera.width_px, 0.5 * camera.height_px);
-    const WaterRay ray = pixel_ray(
-        rig, share * 0.5 * camera.width_px, share * 0.5 * camera.height_px, lambda_nm);
+    const WaterRay ray =
+        pixel_ray(rig, share * 0.5 * camera.width_px, share * 0.5 * camera.height_px, lambda_nm);
     const Plane plane{.point_m = {0.0, 0.0, rig.sled.altitude_m}, .normal = {0.0, 0.0, -1.0}};
     return ray.origin_m + distance_to(plane, ray).value_or(0.0) * ray.direction;
 }
@@ -36,10 +36,9 @@ std::vector<FrameGroup> frame_groups(const Rig& rig,
                                      double pixel_shift) {
     std::vector<FrameGroup> groups;
     for (std::size_t i = 0; i < lambda_nm.size(); ++i) {
-        const bool joins = !groups.empty() &&
-                           groups.back().count < static_cast<std::size_t>(per_frame) &&
-                           corner_shift_px(rig, lambda_nm[groups.back().first], lambda_nm[i]) <=
-                               pixel_shift;
+        const bool joins =
+            !groups.empty() && groups.back().count < static_cast<std::size_t>(per_frame) &&
+            corner_shift_px(rig, lambda_nm[groups.back().first], lambda_nm[i]) <= pixel_shift;
         if (!joins) groups.push_back({.first = i, .count = 0, .index_nm = 0.0});
         FrameGroup& group = groups.back();
         ++group.count;

@@ -68,7 +68,7 @@ double darkest_path_m(const Rig& rig, double shortest_m) {
 
 // The corners; behind a port, where rays bend, points all along the image's rim.
 std::vector<std::array<double, 2>> rim_of(const Camera& camera) {
-    const int steps = camera.port ? 32 : 1;
+    const int steps = camera.port ? 512 : 1;
     std::vector<std::array<double, 2>> rim;
     for (int i = 0; i <= steps; ++i) {
         const double share = static_cast<double>(i) / steps;
@@ -127,13 +127,13 @@ std::vector<std::vector<Spectrum>> sources_of(const Rig& rig,
     return sources;
 }
 
-// What one image point gets of each kind of light, where every ray of the port's goes on to the same
-// cones: diffuse light and highlight of every lamp spectrum.
+// What one image point gets of each kind of light, where every ray of the port's goes on to the
+// same cones: diffuse light and highlight of every lamp spectrum.
 std::vector<double> light_at(const Rig& rig,
-                           const std::vector<std::size_t>& lamp_of_strobe,
-                           const WaterRay& ray,
-                           const Vector3d& cones_at_m,
-                           double lambda_nm) {
+                             const std::vector<std::size_t>& lamp_of_strobe,
+                             const WaterRay& ray,
+                             const Vector3d& cones_at_m,
+                             double lambda_nm) {
     const Plane floor = floor_plane(rig.sled);
     const auto distance_m = distance_to(floor, ray);
     if (!distance_m) return {};

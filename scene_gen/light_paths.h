@@ -6,16 +6,17 @@
 //
 // A path l = d + r runs from a lamp to the floor that the image sees and on to the camera, in
 // water. Over the image it is quasi-convex: so the longest is at a corner, and the shortest is
-// found by nested searches along rows and columns. Emitters add and take half their diagonal. Behind a
-// port all of the rim is looked at, at both ends of the range and in its middle; kPathRoom is for what
-// lies between.
+// found by nested searches along rows and columns. Emitters add and take half their diagonal.
+// Behind a port all of the rim is looked at, at both ends of the range and in its middle; kPathRoom
+// is for what lies between.
 //
-// With the horizon in view paths have no end, or nearly so when it is close. The longest that counts
-// is that from which no light over kDarkShare of the brightest can come.
+// With the horizon in view paths have no end, or nearly so when it is close. The longest that
+// counts is that from which no light over kDarkShare of the brightest can come.
 //
 // Behind a port, each wavelength shows its own point of the floor: the family's tilt is the largest
-// change of light on the way from the middle wavelength's point to it, over the image. Diffuse light
-// and highlight, and lamps of different spectra, change by themselves, each counted by its share.
+// change of light on the way from the middle wavelength's point to it, over the image. Diffuse
+// light and highlight, and lamps of different spectra, change by themselves, each counted by its
+// share.
 #pragma once
 
 #include "scene_gen/rig.h"

@@ -3,8 +3,8 @@
 
 #include "scene_gen/geometry.h"
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::size_t kGrid = 33;
-// How far from where the grid has it another wavelength may see a floor point, as a share of the way
-// through the water.
+// How far from where the grid has it another wavelength may see a floor point, as a share of the
+// way through the water.
 constexpr double kPortShift = 0.02;
 // A cell that spans more than this, seen from a lamp close above it, may be widest at no corner.
 constexpr double kWideRad = 1.0;
@@ -28,7 +28,8 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// The angle off by which other wavelengths' rays and other lamps of an emitter may see a floor point.
+// The angle off by which other wavelengths' rays and other lamps of an emitter may see a floor
+// point.
 double margin_rad(const Rig& rig, const Strobe& strobe, double distance_m, double camera_leg_m) {
     double reach_m = rig.camera.port ? kPortShift * camera_leg_m : 0.0;
     if (strobe.emitter) {
@@ -64,8 +65,8 @@ bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone) {
                 camera_leg_m = std::max(camera_leg_m, (*sample)->camera_leg_m);
             }
             const double margin = margin_rad(rig, strobe, nearest_m, camera_leg_m);
-            if (reach_rad + margin > kWideRad || angle_between(strobe.axis, towards) <=
-                                                     cone.half_angle_rad + reach_rad + margin) {
+            if (reach_rad + margin > kWideRad ||
+                angle_between(strobe.axis, towards) <= cone.half_angle_rad + reach_rad + margin) {
                 return true;
             }
         }

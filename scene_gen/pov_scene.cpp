@@ -448,8 +448,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
                                     const SceneOptions& options) {
     require_few_enough_lights(rig, options);
     for (const Strobe& strobe : rig.strobes) {
-        require_place_for_lamps(
-            rig, strobe, lamps_of(rig, strobe, options));
+        require_place_for_lamps(rig, strobe, lamps_of(rig, strobe, options));
     }
     const RadianceBound bound(rig);
     const std::vector<std::string> labels = wavelength_labels(lambda_nm);
@@ -461,14 +460,9 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
         const std::string name = fmt::format(
             "band_{}nm", fmt::join(first, first + static_cast<std::ptrdiff_t>(group.count), "_"));
         const auto part = lambda_nm.subspan(group.first, group.count);
-        scenes.push_back(SceneWriter(rig,
-                                     bound,
-                                     options,
-                                     lit,
-                                     name,
-                                     {part.begin(), part.end()},
-                                     group.index_nm)
-                             .write());
+        scenes.push_back(
+            SceneWriter(rig, bound, options, lit, name, {part.begin(), part.end()}, group.index_nm)
+                .write());
     }
     return scenes;
 }

@@ -38,11 +38,10 @@ void require_same_geometry(const Rig& changed, const Manifest& manifest) {
     for (const auto& [key, value] : found) {
         const auto frames = manifest.geometry.find(key);
         if (frames != manifest.geometry.end() && frames->second == value) continue;
-        throw InputError(
-            fmt::format("{}: found {}; allowed: {}, as the frames were rendered",
-                        key,
-                        value,
-                        frames == manifest.geometry.end() ? "none" : frames->second));
+        throw InputError(fmt::format("{}: found {}; allowed: {}, as the frames were rendered",
+                                     key,
+                                     value,
+                                     frames == manifest.geometry.end() ? "none" : frames->second));
     }
     for (const auto& [key, value] : manifest.geometry) {
         if (!found.contains(key)) {
@@ -113,8 +112,8 @@ std::string lacking(const RuleFitter& fitter,
                     double tolerance) {
     constexpr int kMost = 6;
     for (int count = 1; count <= kMost; ++count) {
-        const std::vector<double> lambda_nm = best_wavelengths(
-            fitter, changed.camera.range, count, frame_error, frames);
+        const std::vector<double> lambda_nm =
+            best_wavelengths(fitter, changed.camera.range, count, frame_error, frames);
         std::vector<FrameLight> all = frames;
         for (const double nm : lambda_nm) all.push_back(fitter.frame_at(nm));
         if (fitter.fit(all, frame_error).promise(frame_error) > tolerance) continue;

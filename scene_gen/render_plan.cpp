@@ -35,8 +35,8 @@ void share_frames(const Rig& rig,
                   const RuleFitter& fitter,
                   std::span<const double> lambda_nm,
                   RenderPlan& plan) {
-    plan.frames = frame_groups(
-        rig, lambda_nm, plan.scene.wavelengths_per_frame, plan.scene.pixel_shift);
+    plan.frames =
+        frame_groups(rig, lambda_nm, plan.scene.wavelengths_per_frame, plan.scene.pixel_shift);
     const std::vector<FrameLight> frames = frames_light(fitter, lambda_nm, plan.frames);
     if (plan.method == PlanMethod::EqualBands) {
         plan.rule.quality = fitter.judge(plan.rule.wavelengths, frames);
@@ -90,13 +90,13 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
         lambda_nm = best_wavelengths(fitter, range, *request.fitted, plan.frame_error);
     } else {
         plan.tolerance = request.tolerance;
-        lambda_nm = wavelengths_of(
-            plan_wavelengths(fitter,
-                             range,
-                             {.tolerance = request.tolerance,
-                              .frame_error = plan.frame_error,
-                              .step = wavelengths_per_step(rig, request.scene)})
-                .wavelengths);
+        lambda_nm =
+            wavelengths_of(plan_wavelengths(fitter,
+                                            range,
+                                            {.tolerance = request.tolerance,
+                                             .frame_error = plan.frame_error,
+                                             .step = wavelengths_per_step(rig, request.scene)})
+                               .wavelengths);
     }
     share_frames(rig, fitter, lambda_nm, plan);
     if (plan.tolerance > 0.0 && plan.promise() > plan.tolerance) {

@@ -25,9 +25,12 @@ namespace {
 
 std::string method_name(PlanMethod method) {
     switch (method) {
-        case PlanMethod::Fitted: return "fitted";
-        case PlanMethod::EqualBands: return "equal bands";
-        case PlanMethod::Listed: return "listed";
+        case PlanMethod::Fitted:
+            return "fitted";
+        case PlanMethod::EqualBands:
+            return "equal bands";
+        case PlanMethod::Listed:
+            return "listed";
     }
     return "";
 }

@@ -70,8 +70,8 @@ std::vector<Member> members_of(const LightFamily& family, int paths) {
     return members;
 }
 
-// Scaled by exp(K_0 l), K_0 the least loss among the knots, so that no path is too long for a double:
-// errors are relative to a member's own signal.
+// Scaled by exp(K_0 l), K_0 the least loss among the knots, so that no path is too long for a
+// double: errors are relative to a member's own signal.
 double light(const LightFamily& family,
              const Member& member,
              double least_K_per_m,

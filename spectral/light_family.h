@@ -11,7 +11,8 @@
 // Q_c     response of channel c          T_c  signal that such light gives
 //
 // Behind a dispersing port every wavelength shows a point of the floor of its own, where it may be
-// lit more or less by up to a factor exp(tilt(lambda)): then f takes in exp(t tilt), t from -1 to 1.
+// lit more or less by up to a factor exp(tilt(lambda)): then f takes in exp(t tilt), t from -1
+// to 1.
 //
 // A pixel's signal is a sum of such T_c with factors that are not negative. So a rule of
 // wavelengths and weights that errs by at most e on every member of the family errs by at most

@@ -42,7 +42,8 @@ MinimaxFit minimax_fit(const MatrixXd& a, const VectorXd& b, const MinimaxOption
         const Eigen::LLT<Eigen::Ref<MatrixXd>> cholesky(gram);  // in place
         VectorXd y = cholesky.solve(weighted.transpose() * b);
         for (int k = 0; k < kCorrections; ++k) {
-            y += cholesky.solve(weighted.transpose() * (b - scaled * y) - options.ridge*options.ridge*y);
+            y += cholesky.solve(weighted.transpose() * (b - scaled * y) -
+                                options.ridge * options.ridge * y);
         }
         const VectorXd x = y.array() / scale;
         const ArrayXd residual = (a * x - b).array().abs();

@@ -10,8 +10,8 @@
 // Mathematics of Computation 22, 1968.)
 //
 // Columns may depend on one another, or nearly: a ridge on every column, scaled to a
-// largest element of 1, makes the smallest of equally good solutions the answer. Of nearly dependent
-// columns it may cost an error of the ridge times the solution.
+// largest element of 1, makes the smallest of equally good solutions the answer. Of nearly
+// dependent columns it may cost an error of the ridge times the solution.
 //
 // Under any weights that sum to 1 the least root of sum u_i r_i^2 is no more than the minimax
 // error: a fit that is known to end over `give_up` is given up at once.
@@ -25,8 +25,8 @@ namespace aphotic {
 
 struct MinimaxFit {
     Eigen::VectorXd x;
-    double error = 0.0;       // infinite: given up before any fit
-    Eigen::ArrayXd weights;   // u_i of the last iteration
+    double error = 0.0;      // infinite: given up before any fit
+    Eigen::ArrayXd weights;  // u_i of the last iteration
 };
 
 struct MinimaxOptions {

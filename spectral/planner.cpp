@@ -81,7 +81,8 @@ class Search {
         std::vector<double> lambda_nm;
         for (int j = 0; j < count; ++j) {
             const double share = (j + offset) / count;
-            const auto place = static_cast<std::size_t>(share * static_cast<double>(candidates_.size()));
+            const auto place =
+                static_cast<std::size_t>(share * static_cast<double>(candidates_.size()));
             lambda_nm.push_back(candidates_[place].lambda_nm);
         }
         return lambda_nm;
@@ -90,8 +91,7 @@ class Search {
     [[nodiscard]] std::vector<double> over_the_range(int count, double offset) const {
         std::vector<double> lambda_nm;
         for (int j = 0; j < count; ++j) {
-            lambda_nm.push_back(
-                std::lerp(range_.first_nm, range_.last_nm, (j + offset) / count));
+            lambda_nm.push_back(std::lerp(range_.first_nm, range_.last_nm, (j + offset) / count));
         }
         return lambda_nm;
     }
@@ -296,8 +296,8 @@ FittedRule plan_wavelengths(const RuleFitter& fitter,
                             const PlanTarget& target) {
     // What the frames' own error leaves to the wavelengths, if the weights do not amplify it.
     constexpr double kLeastShare = 0.01;
-    const double budget = std::max(kLeastShare * target.frame_error,
-                                   target.tolerance - target.frame_error);
+    const double budget =
+        std::max(kLeastShare * target.frame_error, target.tolerance - target.frame_error);
     const auto at = [&](int count) {
         return fitted(fitter,
                       best_wavelengths(fitter, range, count, target.frame_error, {}, budget),

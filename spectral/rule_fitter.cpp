@@ -99,7 +99,8 @@ RuleFitter::RuleFitter(const Sensor& sensor, const LightFamily& family, Waveleng
 }
 
 double RuleFitter::tilt_shape_error() const {
-    return grid_tilt_.size() > 0 ? kTiltShape * grid_tilt_.abs().maxCoeff() : 0.0;
+    if (grid_tilt_.size() == 0) return 0.0;
+    return 0.5 * kTiltShape * (grid_tilt_.maxCoeff() - grid_tilt_.minCoeff());
 }
 
 FrameLight RuleFitter::frame_at(double lambda_nm) const {
@@ -214,8 +215,7 @@ FittedRule RuleFitter::fit(std::span<const FrameLight> frames, double frame_erro
             quality.error += tilt_shape_error();
             // Freely amplified rounding is no reason to hold down.
             const double cost =
-                quality.error +
-                std::max(quality.amplification, kFreeAmplification) * frame_error;
+                quality.error + std::max(quality.amplification, kFreeAmplification) * frame_error;
             if (!(cost < best)) continue;
             best = cost;
             rule.quality[c] = quality;
@@ -271,10 +271,10 @@ double RuleFitter::quick_cost(std::span<const Column* const> columns,
         const MatrixXd rows = joined(columns, c);
         const Index members = rows.rows();
         if (members == 0) continue;
-        const MinimaxFit fit = minimax_fit(
-            rows,
-            VectorXd::Ones(members),
-            {.iterations = kQuickIterations, .give_up = give_up, .weights = hint[c]});
+        const MinimaxFit fit =
+            minimax_fit(rows,
+                        VectorXd::Ones(members),
+                        {.iterations = kQuickIterations, .give_up = give_up, .weights = hint[c]});
         const RuleQuality quality = quality_of(rows, fit.x);
         const double cost =
             quality.error + std::max(0.0, quality.amplification - kFreeAmplification) * frame_error;
@@ -326,8 +326,9 @@ std::vector<double> RuleFitter::places_of_light(int count) const {
     return places;
 }
 
-std::vector<RuleFitter::PathError> RuleFitter::errors_over_path(
-    const FittedRule& rule, std::span<const FrameLight> frames, std::size_t source) const {
+std::vector<RuleFitter::PathError> RuleFitter::errors_over_path(const FittedRule& rule,
+                                                                std::span<const FrameLight> frames,
+                                                                std::size_t source) const {
     const MatrixXd light = light_of(checking_, frames);
     const Index paths = checking_.path_m.size();
     // The middle tilt, which is none.

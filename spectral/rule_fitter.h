@@ -18,7 +18,7 @@
 // suffers, they are held down.
 //
 // Behind a port pixels change along curves of their own, of which the family's tilt is the largest:
-// kTiltShape of it is added to the error for their shapes.
+// kTiltShape of half its span is added to the error for their shapes.
 //
 // The frames need not be of the family's own water, lamps or materials: whatever light they
 // hold, as long as it came by the same geometry, serves as well as it spans the family.
@@ -71,8 +71,8 @@ class RuleFitter {
     // A frame of the family's own water, lamps and materials.
     [[nodiscard]] FrameLight frame_at(double lambda_nm) const;
 
-    // The weights, and their error on kCheckPaths paths, apart from those of the fit, and behind a port
-    // on twice as many tilts.
+    // The weights, and their error on kCheckPaths paths, apart from those of the fit, and behind a
+    // port on twice as many tilts.
     [[nodiscard]] FittedRule fit(std::span<const FrameLight> frames, double frame_error) const;
 
     // The same of weights that are given.

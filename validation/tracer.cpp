@@ -282,28 +282,28 @@ std::vector<unsigned char> Tracer::on_cone_edges(WavelengthRange range, double w
     const double rounding_rad = rig_.camera.port ? kEdgeBehindPortRad : kEdgeRad;
     const std::array<Index, 2> ends{index_at(range.first_nm), index_at(range.last_nm)};
     // The signed angle from a cone's edge, and how far a strobe's lamps spread about it.
-    const auto is_on_edge =
-        [&](const Strobe& strobe, const Cone& cone, const std::array<View, 2>& views) {
-            std::array<double, 2> beyond_rad{};
-            // A pixel covers more of a floor that is seen aslant.
-            constexpr double kAslant = 1.5;
-            const double pixel_rad = rig_.camera.pixel_pitch_m / rig_.camera.focal_length_m;
-            double spread_rad = rounding_rad;
-            for (std::size_t e = 0; e < ends.size(); ++e) {
-                const Vector3d path = views[e].point_m - strobe.position_m;
-                beyond_rad[e] = std::atan2(path.cross(strobe.axis).norm(), path.dot(strobe.axis)) -
-                                cone.half_angle_rad;
-                spread_rad = std::max(spread_rad,
-                                      kAslant * within_px * pixel_rad * views[e].distance_m /
-                                          path.norm());
-                if (!strobe.emitter) continue;
-                const double reach_m =
-                    0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
-                spread_rad = std::max(spread_rad, std::asin(std::min(1.0, reach_m / path.norm())));
-            }
-            return std::abs(beyond_rad[0]) <= spread_rad || std::abs(beyond_rad[1]) <= spread_rad ||
-                   (beyond_rad[0] > 0.0) != (beyond_rad[1] > 0.0);
-        };
+    const auto is_on_edge = [&](const Strobe& strobe,
+                                const Cone& cone,
+                                const std::array<View, 2>& views) {
+        std::array<double, 2> beyond_rad{};
+        // A pixel covers more of a floor that is seen aslant.
+        constexpr double kAslant = 1.5;
+        const double pixel_rad = rig_.camera.pixel_pitch_m / rig_.camera.focal_length_m;
+        double spread_rad = rounding_rad;
+        for (std::size_t e = 0; e < ends.size(); ++e) {
+            const Vector3d path = views[e].point_m - strobe.position_m;
+            beyond_rad[e] = std::atan2(path.cross(strobe.axis).norm(), path.dot(strobe.axis)) -
+                            cone.half_angle_rad;
+            spread_rad = std::max(
+                spread_rad, kAslant * within_px * pixel_rad * views[e].distance_m / path.norm());
+            if (!strobe.emitter) continue;
+            const double reach_m =
+                0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
+            spread_rad = std::max(spread_rad, std::asin(std::min(1.0, reach_m / path.norm())));
+        }
+        return std::abs(beyond_rad[0]) <= spread_rad || std::abs(beyond_rad[1]) <= spread_rad ||
+               (beyond_rad[0] > 0.0) != (beyond_rad[1] > 0.0);
+    };
 
     std::vector<unsigned char> marks;
     for (int row = 0; row < rig_.camera.height_px; ++row) {

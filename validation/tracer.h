@@ -60,8 +60,8 @@ class Tracer {
     // 1 for every pixel, row by row, that lies on the edge of a cone at some wavelength of the
     // range: its centre is within kEdgeRad of the edge (kEdgeBehindPortRad behind a port, whose
     // index POV-Ray keeps in single precision), an emitter of a size has lamps on both sides of
-    // it, or dispersion takes it across. within_px: also pixels about so many from an edge, for images
-    // that blur it.
+    // it, or dispersion takes it across. within_px: also pixels about so many from an edge, for
+    // images that blur it.
     [[nodiscard]] std::vector<unsigned char> on_cone_edges(WavelengthRange range,
                                                            double within_px = 0.0) const;
 

@@ -11,8 +11,8 @@
 //   signals    what the plan promised, the frames' rounding included
 //
 // Black, under which a difference is measured against it: for radiance the smallest normal half
-// float of the frame's exposure, for signals kBlackShare of the brightest, or where the frames' half
-// floats end (Manifest::black), whichever is more.
+// float of the frame's exposure, for signals kBlackShare of the brightest, or where the frames'
+// half floats end (Manifest::black), whichever is more.
 #pragma once
 
 #include "validation/report.h"

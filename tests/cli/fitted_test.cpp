@@ -68,8 +68,7 @@ TEST_F(Fitted, OnePlanServesAltitudesFromOneToSixMetres) {
     for (const auto& [count, error] : {std::pair{"3", 1e-3}, std::pair{"6", 1e-6}}) {
         Json first;
         for (const std::string altitude : {"1.0", "2.5", "6.0"}) {
-            write_rig("rig.toml",
-                      replaced(habcam, "altitude_m = 2.0", "altitude_m = " + altitude));
+            write_rig("rig.toml", replaced(habcam, "altitude_m = 2.0", "altitude_m = " + altitude));
             const std::vector<std::string> options{
                 "rig.toml", "--fitted", count, "--paths-m", "2,16"};
             std::vector<std::string> arguments{"plan", "--json"};
@@ -96,10 +95,9 @@ TEST_F(Fitted, FiveMaterialsTakeThreeFramesAtMost) {
     for (const std::string material :
          {"sand", "green-algae", "brown-algae", "red-algae", "grey-card.csv"}) {
         const std::string rig = replaced(five, "materials = \\[", "materials = [\"sand\", ");
-        write_rig("rig.toml",
-                  material == "sand"
-                      ? rig
-                      : replaced(rig, floor, "reflectance = \"" + material + "\""));
+        write_rig(
+            "rig.toml",
+            material == "sand" ? rig : replaced(rig, floor, "reflectance = \"" + material + "\""));
         const Json plan = json({"plan", "rig.toml", "--json"});
         EXPECT_EQ(plan.at("sources"), 5);
         EXPECT_LE(plan.at("frames"), 3);
@@ -158,7 +156,8 @@ TEST_F(Fitted, FramesThatCannotServeAreRefusedByWhatIsLacking) {
     EXPECT_EQ(murky.status, 2);
     EXPECT_TRUE(std::regex_search(
         murky.err,
-        std::regex(R"(murky.toml: the frames can be this rig's image to \S+ only; allowed: 0.001)")))
+        std::regex(
+            R"(murky.toml: the frames can be this rig's image to \S+ only; allowed: 0.001)")))
         << murky.err;
     EXPECT_NE(murky.err.find("it lacks"), std::string::npos) << murky.err;
     EXPECT_FALSE(fs::exists(folder_.path() / "out" / "as-murky"));

@@ -18,7 +18,7 @@ constexpr double kBlack = 6.103515625e-5;
 
 std::vector<float> frame_of(const Rig& rig, bool omit, SceneSet& set) {
     const TempFolder folder;
-    set = scenes_of(rig, {450.0, 550.0, 650.0}, {.omit = omit});
+    set = scenes_of(rig, {450.0, 550.0, 650.0}, {.emitter_lamps = {}, .omit = omit});
     const Manifest manifest =
         render(find_povray(""), folder.path(), set, {.jobs = 2, .report = {}}).manifest;
     ExrReader frame(image_path(folder.path(), manifest.frames.at(0)));

@@ -138,7 +138,8 @@ TEST(PovScene, IsNamedAfterItsWavelengths) {
 }
 
 TEST(PovScene, NamesHaveDecimalsWhereWholeNumbersWouldBeAlike) {
-    const auto scenes = scenes_of(odd_rig(), {500.0, 500.21, 500.24}, {.wavelengths_per_frame = 1});
+    const auto scenes = scenes_of(
+        odd_rig(), {500.0, 500.21, 500.24}, {.wavelengths_per_frame = 1, .emitter_lamps = {}});
     ASSERT_EQ(scenes.size(), 3U);
     EXPECT_EQ(scenes[0].name, "band_500.00nm");
     EXPECT_EQ(scenes[1].name, "band_500.21nm");
@@ -148,7 +149,8 @@ TEST(PovScene, NamesHaveDecimalsWhereWholeNumbersWouldBeAlike) {
 TEST(PovScene, KeepsTheWavelengthsInTheirOrder) {
     const std::vector<double> lambda_nm{450.0, 500.0, 550.0, 600.0, 650.0};
     for (const int per_frame : {1, 2, 3}) {
-        const auto scenes = scenes_of(odd_rig(), lambda_nm, {.wavelengths_per_frame = per_frame});
+        const auto scenes = scenes_of(
+            odd_rig(), lambda_nm, {.wavelengths_per_frame = per_frame, .emitter_lamps = {}});
         std::vector<double> found_nm;
         for (const FrameScene& scene : scenes) {
             EXPECT_LE(scene.wavelengths.size(), static_cast<std::size_t>(per_frame));
@@ -245,7 +247,8 @@ TEST(PovScene, LightsWithTheStrobesPowerTimesTheExposure) {
     rig.strobes[1].emitter = Emitter{.across_m = 0.1, .along_m = 0.05};
     for (const std::optional<LampGrid> grid :
          {std::optional<LampGrid>(), std::optional(LampGrid{.across = 3, .along = 2})}) {
-        const FrameScene scene = scenes_of(rig, {450.0, 550.0, 650.0}, {.emitter_lamps = grid}).front();
+        const FrameScene scene =
+            scenes_of(rig, {450.0, 550.0, 650.0}, {.emitter_lamps = grid}).front();
         ASSERT_TRUE(holds(scene.sdl,
                           "Position, rgb Flux * Axial_Intensity / (2 * pi * Fade_Distance * "
                           "Fade_Distance)"));
@@ -361,7 +364,8 @@ TEST(PovScene, HasNoPortWhereNoneIsGiven) {
 
 TEST(PovScene, BehindAPortHasOneWavelengthAndItsIndices) {
     const Rig rig = with_port(odd_rig());
-    const auto scenes = scenes_of(rig);
+    const auto scenes =
+        scenes_of(rig, {450.0, 550.0, 650.0}, {.pixel_shift = 0.0, .emitter_lamps = {}});
     ASSERT_EQ(scenes.size(), 3U);
     for (const FrameScene& scene : scenes) {
         ASSERT_EQ(scene.wavelengths.size(), 1U);
@@ -426,7 +430,8 @@ TEST(PovScene, RefusesAnEmitterThatReachesUnderTheFloor) {
     rig.strobes[0].emitter = Emitter{.across_m = 0.01, .along_m = 0.3};
     EXPECT_EQ(input_error(rig, {.emitter_lamps = LampGrid{.across = 1, .along = 2}}), "no error")
         << "lamps at 7.5 cm from the middle";
-    const std::string message = input_error(rig, {.emitter_lamps = LampGrid{.across = 1, .along = 4}});
+    const std::string message =
+        input_error(rig, {.emitter_lamps = LampGrid{.across = 1, .along = 4}});
     EXPECT_TRUE(message.starts_with("strobe 'fore' has a lamp at or under the sea floor"))
         << message;
 }
