@@ -56,6 +56,7 @@ RenderedImages images_in(const fs::path& folder,
                          const LightFamily& family) {
     RenderedImages images{.lambda_nm = {},
                           .exposure_log2 = {},
+                          .index_nm = {},
                           .shift_error = {},
                           .promise = {},
                           .black = {},
@@ -66,6 +67,7 @@ RenderedImages images_in(const fs::path& folder,
         images.lambda_nm.push_back(w.lambda_nm);
         images.exposure_log2.push_back(w.exposure_log2);
         channels.push_back(spectral_channel(w.lambda_nm));
+        images.index_nm.push_back(w.index_nm);
         images.shift_error.push_back(
             family.tilt ? std::abs(family.tilt->at(w.lambda_nm) - family.tilt->at(w.index_nm))
                         : 0.0);

@@ -276,6 +276,7 @@ Columns columns_of(const Study& study, const StudyMeasure& measure, bool on_fron
     add("max_error", measure.max_error());
     add("percentile_999", measure.percentile_999());
     add("rms_error", measure.rms_error());
+    add("max_error_off_edges", measure.max_error_off_edges());
     add("max_error_on_edges", measure.max_error_on_edges());
     for (std::size_t c = 0; c < measure.channels.size(); ++c) {
         add(fmt::format("max_error_{}", kChannelNames[c]), measure.channels[c].max_error);
@@ -341,6 +342,7 @@ Json json_of(const Study& study, const StudyMeasure& measure, bool on_front) {
             {"max_error", measure.max_error()},
             {"percentile_999", measure.percentile_999()},
             {"rms_error", measure.rms_error()},
+            {"max_error_off_edges", measure.max_error_off_edges()},
             {"max_error_on_edges", measure.max_error_on_edges()},
             {"channels", channels_of(measure)}};
 }
@@ -407,7 +409,16 @@ bool StudyMeasure::promise_applies() const {
     return setting.shrink == 1 && !setting.one_soft_lamp && !setting.png && !setting.antialias;
 }
 
+bool StudyMeasure::blurs_edges() const {
+    return setting.shrink > 1 || setting.one_soft_lamp || setting.antialias;
+}
+
 double StudyMeasure::max_error() const {
+    return blurs_edges() ? std::max(max_error_off_edges(), max_error_on_edges())
+                         : max_error_off_edges();
+}
+
+double StudyMeasure::max_error_off_edges() const {
     return worst(channels, &Comparison::max_error);
 }
 

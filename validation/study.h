@@ -74,8 +74,12 @@ struct StudyMeasure {
     [[nodiscard]] double total_s() const { return render_s + integrate_s; }
     // A plan knows of wavelengths and half-float frames, not of what else may be changed.
     [[nodiscard]] bool promise_applies() const;
-    // The worst channel's, off the edges and on them.
+    // Edges of cones come out blurred: then they count in the largest error.
+    [[nodiscard]] bool blurs_edges() const;
+
+    // The worst channel's; off the edges, where these are not blurred.
     [[nodiscard]] double max_error() const;
+    [[nodiscard]] double max_error_off_edges() const;
     [[nodiscard]] double percentile_999() const;
     [[nodiscard]] double rms_error() const;
     [[nodiscard]] double max_error_on_edges() const;

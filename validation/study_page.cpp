@@ -242,7 +242,9 @@ std::string table_row(const Study& study, const std::vector<bool>& front, const 
            cell("× baseline", ratio ? ratio_in_words(*ratio) : "–") +
            cell("largest error", scientific(measure.max_error())) +
            cell("99.9 %", scientific(measure.percentile_999())) +
-           cell("rms", scientific(measure.rms_error())) + cell("on edges", edge_error(measure)) +
+           cell("rms", scientific(measure.rms_error())) +
+           cell("off edges", scientific(measure.max_error_off_edges())) +
+           cell("on edges", edge_error(measure)) +
            fmt::format("<td class=\"mark\">{}</td></tr>\n",
                        is_best            ? "★ recommended"
                        : front[row.index] ? "✓ front"
@@ -283,7 +285,7 @@ std::string table(const Study& study, const std::vector<bool>& front, const std:
         "<th>wave&#173;lengths</th><th>frames</th><th>render [s]</th><th>integrate "
         "[s]</th><th>time [s]</th>"
         "<th class=\"at\">× baseline</th><th>largest error</th><th>99.9 %</th><th>rms</th>"
-        "<th>on edges</th><th "
+        "<th>off edges</th><th>on edges</th><th "
         "class=\"mark\"></th></tr></thead>\n<tbody>\n{}</tbody>\n</table></div>\n",
         escaped(words.heading),
         words.words.empty() ? "" : html_paragraph(words.words),

@@ -47,12 +47,14 @@ void compare_radiance(const Rig& rig,
         const std::vector<float> found = rendered.radiance(first, part);
         for (std::size_t k = 0; k < part; ++k) {
             const double lambda_nm = rendered.lambda_nm[first + k];
+            const double index_nm = rendered.index_nm[first + k];
             report.wavelengths.push_back(compare_planes(
                 wavelength_name(lambda_nm),
                 std::span(found).subspan(k * pixels, pixels),
                 std::span(traced).subspan(k * pixels, pixels),
                 rig.camera.width_px,
-                tracer.on_cone_edges({.first_nm = lambda_nm, .last_nm = lambda_nm}),
+                tracer.on_cone_edges({.first_nm = std::min(lambda_nm, index_nm),
+                                      .last_nm = std::max(lambda_nm, index_nm)}),
                 std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[first + k]),
                 kHalfFloatBound + rendered.shift_error[first + k]));
         }

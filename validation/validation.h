@@ -30,7 +30,9 @@ inline constexpr double kBlackShare = 1e-8;
 struct RenderedImages {
     std::vector<double> lambda_nm;
     std::vector<int> exposure_log2;
-    std::vector<double> shift_error;  // by wavelength: of a frame with another's indices
+    // By wavelength: whose refractive indices its frame has, and what that may change.
+    std::vector<double> index_nm;
+    std::vector<double> shift_error;
     std::array<double, kChannels> promise{};
     std::array<double, kChannels> black{};
     // The planes of radiance of wavelengths [first, first + count), one after another.

@@ -211,7 +211,9 @@ void expect_range_of(const Rig& rig, const std::string& what) {
     const double K_per_m = rig.water.attenuation_per_m(550.0);
     const double left = std::exp(-K_per_m * (paths.longest_m - paths.shortest_m)) *
                         std::pow(paths.shortest_m / paths.longest_m, 3);
-    if (paths.longest_m < all.longest_m) EXPECT_LE(left, kDarkShare) << what;
+    if (paths.longest_m < all.longest_m) {
+        EXPECT_LE(left, kDarkShare) << what;
+    }
     EXPECT_LE(paths.longest_m, (all.longest_m + half_m) * kPathRoom * (1.0 + kRounding)) << what;
 }
 

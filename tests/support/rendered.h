@@ -44,7 +44,7 @@ inline Rig small_habcam(int width_px = 68, int height_px = 51) {
 
 inline SceneSet scenes_of(const Rig& rig,
                           const std::vector<double>& lambda_nm,
-                          const SceneOptions& options = {}) {
+                          const SceneOptions& options = {.pixel_shift = 0.0, .emitter_lamps = {}}) {
     PlanRequest request;
     request.wavelengths_nm = lambda_nm;
     request.scene = options;
