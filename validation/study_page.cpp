@@ -242,7 +242,6 @@ std::string table_row(const Study& study, const std::vector<bool>& front, const 
            cell("× baseline", ratio ? ratio_in_words(*ratio) : "–") +
            cell("largest error", scientific(measure.max_error())) +
            cell("99.9 %", scientific(measure.percentile_999())) +
-           cell("rms", scientific(measure.rms_error())) +
            cell("off edges", scientific(measure.max_error_off_edges())) +
            cell("on edges", edge_error(measure)) +
            fmt::format("<td class=\"mark\">{}</td></tr>\n",
@@ -284,7 +283,7 @@ std::string table(const Study& study, const std::vector<bool>& front, const std:
         "<h3>{}</h3>\n{}<div class=\"wide\"><table>\n<thead><tr><th>setting</th>"
         "<th>wave&#173;lengths</th><th>frames</th><th>render [s]</th><th>integrate "
         "[s]</th><th>time [s]</th>"
-        "<th class=\"at\">× baseline</th><th>largest error</th><th>99.9 %</th><th>rms</th>"
+        "<th class=\"at\">× baseline</th><th>largest error</th><th>99.9 %</th>"
         "<th>off edges</th><th>on edges</th><th "
         "class=\"mark\"></th></tr></thead>\n<tbody>\n{}</tbody>\n</table></div>\n",
         escaped(words.heading),
