@@ -74,22 +74,22 @@ std::vector<Member> members_of(const LightFamily& family, int paths) {
 // double: errors are relative to a member's own signal.
 double light(const LightFamily& family,
              const Member& member,
-             double least_K_per_m,
+             double least_loss_per_m,
              double lambda_nm) {
     // One sign of it stands for both: its size is what asks for points.
     const double tilt = family.tilt ? family.tilt->at(lambda_nm) : 0.0;
     return source_at(*member.source, lambda_nm) *
-           std::exp((least_K_per_m - family.water.attenuation_per_m(lambda_nm)) * member.path_m +
+           std::exp((least_loss_per_m - family.water.attenuation_per_m(lambda_nm)) * member.path_m +
                     tilt);
 }
 
 Signals signals_of(const LightFamily& family,
                    const Member& member,
-                   double least_K_per_m,
+                   double least_loss_per_m,
                    std::span<const WeightedWavelength> rule) {
     Signals signals{};
     for (const WeightedWavelength& w : rule) {
-        const double f = light(family, member, least_K_per_m, w.lambda_nm);
+        const double f = light(family, member, least_loss_per_m, w.lambda_nm);
         for (std::size_t c = 0; c < kChannels; ++c) signals[c] += w.weight[c] * f;
     }
     return signals;
@@ -150,9 +150,9 @@ std::vector<WeightedWavelength> reference_grid(const Sensor& sensor,
     const std::vector<double> knots = knots_of(sensor, family, range);
     const std::vector<Member> members = members_of(family, kExactPaths);
     const std::size_t intervals = knots.size() - 1;
-    double least_K_per_m = std::numeric_limits<double>::infinity();
+    double least_loss_per_m = std::numeric_limits<double>::infinity();
     for (const double nm : knots) {
-        least_K_per_m = std::min(least_K_per_m, family.water.attenuation_per_m(nm));
+        least_loss_per_m = std::min(least_loss_per_m, family.water.attenuation_per_m(nm));
     }
 
     std::vector<std::vector<Signals>> exact(intervals);  // by interval and member
@@ -160,7 +160,7 @@ std::vector<WeightedWavelength> reference_grid(const Sensor& sensor,
     for (std::size_t i = 0; i < intervals; ++i) {
         const auto nodes = nodes_between(sensor, knots[i], knots[i + 1], kExactPoints);
         for (std::size_t m = 0; m < members.size(); ++m) {
-            exact[i].push_back(signals_of(family, members[m], least_K_per_m, nodes));
+            exact[i].push_back(signals_of(family, members[m], least_loss_per_m, nodes));
             for (std::size_t c = 0; c < kChannels; ++c) total[m][c] += exact[i][m][c];
         }
     }
@@ -173,7 +173,7 @@ std::vector<WeightedWavelength> reference_grid(const Sensor& sensor,
             nodes = nodes_between(sensor, knots[i], knots[i + 1], points);
             bool is_enough = true;
             for (std::size_t m = 0; m < members.size() && is_enough; ++m) {
-                const Signals found = signals_of(family, members[m], least_K_per_m, nodes);
+                const Signals found = signals_of(family, members[m], least_loss_per_m, nodes);
                 for (std::size_t c = 0; c < kChannels; ++c) {
                     is_enough &= std::abs(found[c] - exact[i][m][c]) <= share * total[m][c];
                 }
