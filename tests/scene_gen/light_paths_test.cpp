@@ -177,8 +177,8 @@ Bounds brute_force(const Rig& rig) {
         std::vector<Vector3d> lamps_m{strobe.position_m};
         if (strobe.emitter) {
             const auto all_m = lamp_positions_m(strobe, kCells);
-            for (const std::size_t i : {0, 100, 200}) {
-                for (const std::size_t j : {0, 100, 200}) lamps_m.push_back(all_m[i * 201 + j]);
+            for (const std::size_t i : {0U, 100U, 200U}) {
+                for (const std::size_t j : {0U, 100U, 200U}) lamps_m.push_back(all_m[i * 201 + j]);
             }
         }
         for (const Vector3d& lamp_m : lamps_m) {

@@ -24,7 +24,6 @@ namespace aphotic {
 namespace {
 
 constexpr unsigned kSeed = 20240615;
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTolerance = 1e-3;
 // Between the paths on which a fitter judges itself an error may peak this much higher.
 constexpr double kBetweenPaths = 0.02;
