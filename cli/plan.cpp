@@ -144,7 +144,7 @@ void print_for_people(const PlannedRender& planned, const Manifest& manifest) {
                plan.tolerance > 0.0 ? fmt::format("fitted to a tolerance of {}", plan.tolerance)
                                     : manifest.method);
     fmt::print("{} of light, on paths of {:.3g} to {:.3g} m from lamp to floor to camera\n\n",
-               counted(plan.family.sources.size(), "spectrum"),
+               counted(plan.family.sources.size(), "kind"),
                plan.family.shortest_path_m,
                plan.family.longest_path_m);
     print_promise(plan);

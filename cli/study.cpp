@@ -54,17 +54,6 @@ struct Reference {
     double trace_s = 0.0;
 };
 
-CameraImage read_signals(const fs::path& file) {
-    ExrReader reader(file);
-    CameraImage image{
-        .width_px = reader.width_px(), .height_px = reader.height_px(), .samples = {}};
-    image.samples.resize(kChannels * static_cast<std::size_t>(image.width_px) *
-                         static_cast<std::size_t>(image.height_px));
-    const std::vector<std::string> channels(kChannelNames.begin(), kChannelNames.end());
-    reader.read_rows(0, image.height_px, channels, image.samples);
-    return image;
-}
-
 // The time of a trace is kept in its image: a study that goes on later does not trace again.
 Reference reference_of(const Rig& rig, const fs::path& folder, const std::string& key, int cores) {
     const Tracer tracer(rig, {.signals = true, .planes_nm = {}, .threads = cores});

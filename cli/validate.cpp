@@ -43,14 +43,6 @@ std::vector<float> radiance_planes(const fs::path& file, const std::vector<std::
     return samples;
 }
 
-CameraImage signals_in(const fs::path& file) {
-    ExrReader image(file);
-    CameraImage signals{
-        .width_px = image.width_px(), .height_px = image.height_px(), .samples = {}};
-    signals.samples = radiance_planes(file, {kChannelNames.begin(), kChannelNames.end()});
-    return signals;
-}
-
 RenderedImages images_in(const fs::path& folder,
                          const Manifest& manifest,
                          const LightFamily& family) {
@@ -61,7 +53,7 @@ RenderedImages images_in(const fs::path& folder,
                           .promise = {},
                           .black = {},
                           .radiance = {},
-                          .signals = signals_in(folder / "image.exr")};
+                          .signals = read_signals(folder / "image.exr")};
     std::vector<std::string> channels;
     for (const ManifestWavelength& w : manifest.wavelengths) {
         images.lambda_nm.push_back(w.lambda_nm);

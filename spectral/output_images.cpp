@@ -13,6 +13,16 @@ const std::vector<std::string> kSignalChannels(kChannelNames.begin(), kChannelNa
 
 }  // namespace
 
+CameraImage read_signals(const std::filesystem::path& file) {
+    ExrReader reader(file);
+    CameraImage image{
+        .width_px = reader.width_px(), .height_px = reader.height_px(), .samples = {}};
+    image.samples.resize(kChannels * static_cast<std::size_t>(image.width_px) *
+                         static_cast<std::size_t>(image.height_px));
+    reader.read_rows(0, image.height_px, kSignalChannels, image.samples);
+    return image;
+}
+
 std::string spectral_channel(double lambda_nm) {
     std::string number = fmt::format("{:.6f}", lambda_nm);
     std::replace(number.begin(), number.end(), '.', ',');

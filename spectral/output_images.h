@@ -29,6 +29,9 @@ struct CameraImage {
     std::vector<float> samples;
 };
 
+// The signals of an image.exr or a spectral.exr.
+[[nodiscard]] CameraImage read_signals(const std::filesystem::path& file);
+
 // The channel of a wavelength in spectral.exr, such as S0.550,000000nm.
 [[nodiscard]] std::string spectral_channel(double lambda_nm);
 
