@@ -160,6 +160,7 @@ namespace {
 MatrixXd relative_light(const MatrixXd& light, const ArrayXd& signals) {
     const auto seen = (signals > 0.0).count();
     MatrixXd relative(seen, light.cols());
+    if (light.cols() == 0) return relative;  // Eigen's rows would step off a null pointer
     Index row = 0;
     for (Index i = 0; i < signals.size(); ++i) {
         if (signals(i) > 0.0) relative.row(row++) = light.row(i) / signals(i);
