@@ -6,6 +6,10 @@
 #include "cli/planning.h"
 #include "cli/words.h"
 #include "plugin/render.h"
+#include "scene_gen/quick_look.h"
+#include "scene_gen/rig_reader.h"
+#include "spectral/atomic_file.h"
+#include "spectral/error.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,10 +22,22 @@ namespace {
 struct Options {
     PlanningOptions planning;
     std::string folder;
+    std::string quick_look;
     bool json = false;
 };
 
+ExitStatus write_quick_look(const Options& options) {
+    const Rig rig = read_rig(options.planning.rig_file);
+    write_text_file(options.quick_look, quick_look_sdl(rig));
+    fmt::print("{}: what aphotic.inc takes of this rig for a quick look\n", options.quick_look);
+    return kDone;
+}
+
 ExitStatus generate_scenes(const Options& options) {
+    if (!options.quick_look.empty()) return write_quick_look(options);
+    if (options.folder.empty()) {
+        throw InputError("found neither --output nor --quick-look; allowed: one of them");
+    }
     const SceneSet scenes = scenes_of(plan_rig(options.planning), options.planning);
     const Manifest manifest = generate(options.folder, scenes);
     if (options.json) {
@@ -53,9 +69,14 @@ ExitStatus generate_scenes(const Options& options) {
 Action configure_generate(CLI::App& app) {
     const auto options = std::make_shared<Options>();
     add_planning_options(app, options->planning);
-    app.add_option("-o,--output", options->folder, "the folder to write to")
-        ->required()
-        ->type_name("DIR");
+    auto* folder =
+        app.add_option("-o,--output", options->folder, "the folder to write to")->type_name("DIR");
+    app.add_option("--quick-look",
+                   options->quick_look,
+                   "instead, write the rig to this file, aphotic_quick.inc beside a "
+                   "scene of your own: plain povray then shows it by this rig's light")
+        ->type_name("FILE")
+        ->excludes(folder);
     app.add_flag("--json", options->json, "say what was written as JSON");
     return [options] { return generate_scenes(*options); };
 }

@@ -74,7 +74,7 @@ bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone) {
     return false;
 }
 
-std::vector<Omission> omissions(const Rig& rig) {
+std::vector<Omission> omissions(const Rig& rig, bool is_user_scene) {
     std::vector<Omission> left_out;
     if (rig.water.is_clear()) {
         left_out.push_back({"the water's medium", "clear water takes no light"});
@@ -82,7 +82,7 @@ std::vector<Omission> omissions(const Rig& rig) {
     if (!rig.camera.port) {
         left_out.push_back({"a port", "none is given: the pupil is in the water"});
     }
-    if (rig.seafloor.phong == 0.0) {
+    if (!is_user_scene && rig.seafloor.phong == 0.0) {
         left_out.push_back({"the floor's highlight", "its strength is 0"});
     }
     for (const Strobe& strobe : rig.strobes) {
@@ -95,7 +95,7 @@ std::vector<Omission> omissions(const Rig& rig) {
                 fmt::format("the {} cone of strobe '{}'", cone.part, strobe.name);
             if (cone.weight == 0.0) {
                 left_out.push_back({what, "its weight is 0"});
-            } else if (!lights_the_view(rig, strobe, cone)) {
+            } else if (!is_user_scene && !lights_the_view(rig, strobe, cone)) {
                 left_out.push_back({what, "it lights nothing in view"});
             }
         }

@@ -15,7 +15,9 @@ struct Omission {
     std::string reason;
 };
 
-[[nodiscard]] std::vector<Omission> omissions(const Rig& rig);
+// is_user_scene: what stands in the water is not known here, so of strobes only what never shines
+// is left out.
+[[nodiscard]] std::vector<Omission> omissions(const Rig& rig, bool is_user_scene = false);
 
 // Whether the cone's light can fall on floor that the image sees. The image is looked at in cells
 // of a grid: a cell counts as lit when any of it may be within the cone, so that a yes may be

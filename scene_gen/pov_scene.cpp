@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/pov_scene.h"
 
+#include "scene_gen/band_sdl.h"
 #include "scene_gen/omissions.h"
+#include "scene_gen/rig_sdl.h"
 #include "spectral/error.h"
 #include "spectral/refraction.h"
 
@@ -9,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -25,30 +26,8 @@ namespace {
 // POV-Ray's law 2/(1 + (d/f)^2) is 2 f^2/d^2 (1 - (f/d)^2 + ...): with f under a thousandth of
 // the least distance the inverse square holds to 1e-6.
 constexpr double kFadeShare = 1e-3;
-
-using Channels = std::array<double, 3>;
-
-// Seventeen significant digits carry a double through text unchanged.
-std::string number(double value) {
-    return fmt::format("{:.17g}", value);
-}
-
-std::string vector(const Channels& v) {
-    return fmt::format("<{}, {}, {}>", number(v[0]), number(v[1]), number(v[2]));
-}
-
-// In POV-Ray's frame.
-std::string point(const Vector3d& sled) {
-    const Vector3d pov = to_povray(sled);
-    return vector({pov.x(), pov.y(), pov.z()});
-}
-
-// What a rig says in words may hold anything; in a comment it must stay on its line.
-std::string comment_text(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-    return text;
-}
+// A user's scene may hold anything: so it does from a millimetre on.
+constexpr double kUserFade_m = 0x1p-20;
 
 // Wavelengths as they stand in file names: with as few decimals as tell all of them apart.
 std::vector<std::string> wavelength_labels(std::span<const double> lambda_nm) {
@@ -64,7 +43,8 @@ std::vector<std::string> wavelength_labels(std::span<const double> lambda_nm) {
 }
 
 // Fade distance: a power of two, so that 1/(2 f^2) scales the light without rounding it.
-double fade_distance_m(const Rig& rig) {
+double fade_distance_m(const Rig& rig, const SceneOptions& options) {
+    if (options.user_scene) return kUserFade_m;
     const Plane floor = floor_plane(rig.sled);
     double least_m = std::numeric_limits<double>::infinity();
     for (const Strobe& strobe : rig.strobes) {
@@ -102,8 +82,8 @@ LampGrid lamps_of(const Rig& rig, const Strobe& strobe, const SceneOptions& opti
 }
 
 // Half the angle that an emitter spans, seen from the floor below it.
-double soft_edge_deg(const Rig& rig, const Strobe& strobe, const SceneOptions& options) {
-    if (!options.soft_edges || !strobe.emitter) return 0.0;
+double soft_edge_deg(const Rig& rig, const Strobe& strobe) {
+    if (!strobe.emitter) return 0.0;
     const double size_m = 0.5 * (strobe.emitter->across_m + strobe.emitter->along_m);
     const double distance_m = height_above(floor_plane(rig.sled), strobe.position_m);
     return std::atan(0.5 * size_m / distance_m) * 180.0 / std::numbers::pi;
@@ -164,282 +144,154 @@ void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid
     }
 }
 
-// By strobe and cone: whether the scene needs it.
-using LitCones = std::vector<std::vector<bool>>;
-
-LitCones lit_cones(const Rig& rig, const SceneOptions& options) {
-    LitCones lit;
+// By strobe of the rig. A user's own scene may hold anything, so there all that shines is in it.
+std::vector<StrobeInScene> strobes_in_scene(const Rig& rig, const SceneOptions& options) {
+    std::vector<StrobeInScene> strobes;
     for (const Strobe& strobe : rig.strobes) {
-        lit.emplace_back();
+        StrobeInScene in_scene{.cones = {}, .lamps = lamps_of(rig, strobe, options)};
         for (const Cone& cone : strobe.beam.cones) {
-            lit.back().push_back(!options.omit || (strobe.power > 0.0 && cone.weight > 0.0 &&
-                                                   lights_the_view(rig, strobe, cone)));
+            const bool shines = strobe.power > 0.0 && cone.weight > 0.0 &&
+                                (options.user_scene || lights_the_view(rig, strobe, cone));
+            if (shines || !options.omit) in_scene.cones.push_back(cone);
         }
+        if (options.soft_edges) in_scene.soft_edge_deg = soft_edge_deg(rig, strobe);
+        strobes.push_back(std::move(in_scene));
     }
-    return lit;
+    return strobes;
 }
 
-// One scene's text, written part by part.
-class SceneWriter {
-  public:
-    SceneWriter(const Rig& rig,
-                const RadianceBound& bound,
-                const SceneOptions& options,
-                const LitCones& lit_cones,
-                std::string name,
-                std::vector<double> lambda_nm,
-                double index_nm)
-        : rig_(rig),
-          options_(options),
-          lit_cones_(lit_cones),
-          fade_m_(fade_distance_m(rig)),
-          lambda_nm_(std::move(lambda_nm)) {
-        scene_.name = std::move(name);
-        scene_.index_nm = index_nm;
-        for (const double l : lambda_nm_) {
-            scene_.wavelengths.push_back(
-                {.lambda_nm = l,
-                 .exposure_log2 =
-                     exposure_log2(bound.at(l), brightest_colour(l), options.peak_log2)});
+std::vector<NamedSpectrum> lamps_of(const Rig& rig) {
+    std::vector<Spectrum> spectra;
+    for (const Strobe& strobe : rig.strobes) spectra.push_back(strobe.spectrum);
+    return named(spectra);
+}
+
+// The floor's first; a user's scene calls its own by the names that it gave them.
+std::vector<NamedSpectrum> reflectances_of(const Rig& rig, const SceneOptions& options) {
+    std::vector<NamedSpectrum> names = named({&rig.seafloor.reflectance, 1});
+    if (!options.user_scene) return names;
+    for (const NamedSpectrum& material : options.user_scene->materials) {
+        if (std::ranges::find(names, material.name, &NamedSpectrum::name) == names.end()) {
+            names.push_back(material);
         }
     }
+    return names;
+}
 
-    FrameScene write() {
-        write_header();
-        write_camera();
-        write_port();
-        write_water();
-        write_floor();
-        write_strobes();
-        return std::move(scene_);
-    }
-
-  private:
-    // A frame of fewer than three wavelengths repeats its last one.
-    [[nodiscard]] std::size_t wavelength_of(std::size_t channel) const {
-        return std::min(channel, lambda_nm_.size() - 1);
-    }
-
-    template <typename Function>
-    [[nodiscard]] Channels per_channel(Function function) const {
-        Channels values{};
-        for (std::size_t c = 0; c < 3; ++c) values[c] = function(lambda_nm_[wavelength_of(c)]);
-        return values;
-    }
-
-    [[nodiscard]] LampGrid grid_of(const Strobe& strobe) const {
-        return lamps_of(rig_, strobe, options_);
-    }
-
-    [[nodiscard]] bool shines(const Strobe& strobe) const {
-        const Channels flux = per_channel([&](double l) { return strobe.spectrum.at(l); });
-        return strobe.power > 0.0 &&
-               std::any_of(flux.begin(), flux.end(), [](double f) { return f > 0.0; });
-    }
-
-    // The largest component of any light's colour, at exposure 0.
-    [[nodiscard]] double brightest_colour(double lambda_nm) const {
-        double brightest = 0.0;
-        for (const Strobe& strobe : rig_.strobes) {
-            for (const Cone& cone : strobe.beam.cones) {
-                brightest = std::max(brightest,
-                                     strobe.spectrum.at(lambda_nm) * strobe.power *
-                                         axial_intensity(cone, strobe.beam.weights));
-            }
-        }
-        return brightest / (2.0 * std::numbers::pi * fade_m_ * fade_m_);
-    }
-
-    void line(std::string_view text = "") {
-        scene_.sdl += text;
-        scene_.sdl += '\n';
-    }
-
-    void write_header() {
-        constexpr std::array kChannelWord{"red  ", "green", "blue "};
-        line("// Persistence of Vision Ray Tracer Scene Description File");
-        line(fmt::format("// File: {}.pov", scene_.name));
-        line(fmt::format("// Description: {}", comment_text(rig_.title)));
-        line("//");
-        line(
-            "// Written by aphotic. Each channel of the image is one wavelength's radiance, times "
-            "the");
-        line("// power of two with which the frame is exposed:");
-        for (std::size_t c = 0; c < 3; ++c) {
-            const FrameWavelength& w = scene_.wavelengths[wavelength_of(c)];
-            line(fmt::format(
-                "//   {}  {} nm, times 2^{}", kChannelWord[c], w.lambda_nm, w.exposure_log2));
-        }
-        line("//");
-        line(fmt::format("// Render in this folder with: povray render.ini +I{}.pov", scene_.name));
-        line("//");
-        line(
-            "// Metres. x starboard, y forward, z down; the camera's entrance pupil is the "
-            "origin.");
-        line();
-        line("#version 3.7;");
-        line(
-            "global_settings { assumed_gamma 1.0  adc_bailout 0  ambient_light rgb 0  "
-            "max_trace_level 20 }");
-        line("#default { finish { ambient 0  emission 0  diffuse 1 } }");
-        line("background { rgb 0 }");
-        line();
-    }
-
-    void write_camera() {
-        const Camera& camera = rig_.camera;
-        line("// Top row forward, right column starboard.");
-        line("camera {");
-        line("   perspective  location <0, 0, 0>");
-        line(fmt::format("   direction z * {}   // focal length", number(camera.focal_length_m)));
-        line(fmt::format("   right x * {}", number(camera.width_px * camera.pixel_pitch_m)));
-        line(fmt::format("   up y * {}", number(camera.height_px * camera.pixel_pitch_m)));
-        line("}");
-        line();
-    }
-
-    void write_port() {
-        if (!rig_.camera.port) return;
-        const FlatPort& port = *rig_.camera.port;
-        const double lambda_nm = scene_.index_nm;
-        const double n_water =
-            seawater_index(lambda_nm, rig_.water.salinity_psu, rig_.water.temperature_c);
-        const double n_glass = port.glass.index(lambda_nm);
-        const Housing h = housing(rig_.camera);
-        line(
-            "// Flat port: a block of glass and, strictly inside it, the air that holds the "
-            "camera.");
-        line(
-            "// The water around is index 1 to POV-Ray, so indices are relative to it. Neither "
-            "block is");
-        line("// hollow, so neither holds water; no_shadow, so the lamps' light takes no notice.");
-        line(fmt::format("#declare N_Water = {};", number(n_water)));
-        line(fmt::format("#declare N_Glass = {};   // {}", number(n_glass), port.glass.name()));
-        const auto block =
-            [&](double x, double y, double back, double front, std::string_view ior) {
-                line(fmt::format("box {{ <{}, {}, {}>, <{}, {}, {}>",
-                                 number(-x),
-                                 number(-y),
-                                 number(-back),
-                                 number(x),
-                                 number(y),
-                                 number(front)));
-                line(
-                    fmt::format("   pigment {{ rgbt 1 }}  finish {{ ambient 0  diffuse 0 }}  "
-                                "interior {{ ior {} }}  no_shadow }}",
-                                ior));
-            };
-        block(h.block_x_m,
-              h.block_y_m,
-              h.back_m + port.thickness_m,
-              port.distance_m + port.thickness_m,
-              "N_Glass / N_Water");
-        block(h.cavity_x_m, h.cavity_y_m, h.back_m, port.distance_m, "1 / N_Water");
-        line();
-    }
-
-    [[nodiscard]] bool has_medium() const { return !options_.omit || !rig_.water.is_clear(); }
-
-    void write_water() {
-        if (!has_medium()) return;
-        const Channels k = per_channel([&](double l) { return rig_.water.attenuation_per_m(l); });
-        line(
-            "// Water: one absorbing medium everywhere. A constant medium is evaluated in closed "
-            "form,");
-        line("// so one sample is exact.");
-        line(fmt::format("media {{ method 1  intervals 1  samples 1, 1  absorption rgb {} }}",
-                         vector(k)));
-        line();
-    }
-
-    void write_floor() {
-        const Plane floor = floor_plane(rig_.sled);
-        const Channels rho = per_channel([&](double l) { return rig_.seafloor.reflectance.at(l); });
-        line("// Floor: level in the world, so tilted as the sled sees it.");
-        line(fmt::format(
-            "plane {{ {}, {}", point(floor.normal), number(floor.normal.dot(floor.point_m))));
-        line(fmt::format("   pigment {{ rgb {} }}", vector(rho)));
-        if (!options_.omit || rig_.seafloor.phong > 0.0) {
-            line(fmt::format("   finish {{ phong {}  phong_size {} }}",
-                             number(rig_.seafloor.phong),
-                             number(rig_.seafloor.phong_size)));
-        }
-        line("}");
-        line();
-    }
-
-    void write_strobes() {
-        line(
-            "// A cone shines Flux * Axial_Intensity * cos(theta) within Half_Angle degrees of its "
-            "axis.");
-        line(
-            "// fade_power 2 with a fade_distance far below all distances is the inverse square "
-            "law;");
-        line("// the 1/pi turns irradiance into the radiance of a white floor.");
-        line(fmt::format("#declare Fade_Distance = {};", number(fade_m_)));
-        line("#macro Cone_Lamp (Position, Axis, Half_Angle, Axial_Intensity, Flux)");
-        line("   light_source {");
-        line(
-            "      Position, rgb Flux * Axial_Intensity / (2 * pi * Fade_Distance * "
-            "Fade_Distance)");
-        line("      spotlight  point_at Position + Axis");
-        line(options_.soft_edges
-                 ? "      radius max(0, Half_Angle - Soft_Edge)  falloff min(90, Half_Angle + "
-                   "Soft_Edge)  tightness 1"
-                 : "      radius Half_Angle  falloff Half_Angle  tightness 1");
-        line("      fade_distance Fade_Distance  fade_power 2");
-        // shadowless would spare clear water its shadow rays, but it makes a point light of a
-        // spotlight: POV-Ray knows one type a light.
-        if (has_medium()) line("      media_attenuation on");
-        line("   }");
-        line("#end");
-        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-            write_strobe(rig_.strobes[s], lit_cones_[s]);
+// The largest component of any light's colour, at exposure 0.
+double brightest_colour(const Rig& rig, double lambda_nm, double fade_m) {
+    double brightest = 0.0;
+    for (const Strobe& strobe : rig.strobes) {
+        for (const Cone& cone : strobe.beam.cones) {
+            brightest = std::max(brightest,
+                                 strobe.spectrum.at(lambda_nm) * strobe.power *
+                                     axial_intensity(cone, strobe.beam.weights));
         }
     }
+    return brightest / (2.0 * std::numbers::pi * fade_m * fade_m);
+}
 
-    void write_strobe(const Strobe& strobe, const std::vector<bool>& lit) {
-        line();
-        line(fmt::format("// Strobe: {}", comment_text(strobe.name)));
-        if (std::ranges::none_of(lit, std::identity{}) || (options_.omit && !shines(strobe))) {
-            line("// lights nothing in view at these wavelengths");
-            return;
-        }
-        const auto lamps_m = lamp_positions_m(strobe, grid_of(strobe));
-        const auto share = 1.0 / static_cast<double>(lamps_m.size());
-        Channels flux{};
-        for (std::size_t c = 0; c < 3; ++c) {
-            const FrameWavelength& w = scene_.wavelengths[wavelength_of(c)];
-            flux[c] =
-                std::ldexp(strobe.spectrum.at(w.lambda_nm) * strobe.power * share, w.exposure_log2);
-        }
-        line(fmt::format("#declare Flux = {};", vector(flux)));
-        line(fmt::format("#declare Axis = {};", point(strobe.axis)));
-        if (options_.soft_edges) {
-            line(fmt::format("#declare Soft_Edge = {};   // degrees",
-                             number(soft_edge_deg(rig_, strobe, options_))));
-        }
-        for (std::size_t k = 0; k < lit.size(); ++k) {
-            if (!lit[k]) continue;
-            const Cone& cone = strobe.beam.cones[k];
-            const double half_angle_deg = cone.half_angle_rad * 180.0 / std::numbers::pi;
-            for (const Vector3d& lamp_m : lamps_m) {
-                line(fmt::format("Cone_Lamp ({}, Axis, {}, {}, Flux)   // {}",
-                                 point(lamp_m),
-                                 number(half_angle_deg),
-                                 number(axial_intensity(cone, strobe.beam.weights)),
-                                 comment_text(cone.part)));
-            }
-        }
-    }
-
-    const Rig& rig_;
-    const SceneOptions& options_;
-    const LitCones& lit_cones_;
-    double fade_m_;
-    std::vector<double> lambda_nm_;
-    FrameScene scene_;
+// What all frames of a rig have in common.
+struct Parts {
+    std::vector<NamedSpectrum> lamps;
+    std::vector<NamedSpectrum> reflectances;
+    std::string rig;
+    double fade_m;
+    std::function<double(double)> brightest;  // bound of the radiance at a wavelength [nm]
 };
+
+// A frame of fewer than three wavelengths repeats its last one.
+template <typename Function>
+Channels per_channel(std::span<const FrameWavelength> wavelengths, Function function) {
+    Channels values{};
+    for (std::size_t c = 0; c < values.size(); ++c) {
+        values[c] = function(wavelengths[std::min(c, wavelengths.size() - 1)]);
+    }
+    return values;
+}
+
+Band band_of(const Rig& rig, const Parts& parts, const FrameScene& scene) {
+    const auto per = [&](auto function) { return per_channel(scene.wavelengths, function); };
+    Band band{
+        .lambda_nm = per([](const FrameWavelength& w) { return w.lambda_nm; }),
+        .exposure = per([](const FrameWavelength& w) { return std::ldexp(1.0, w.exposure_log2); }),
+        .attenuation_per_m =
+            per([&](const FrameWavelength& w) { return rig.water.attenuation_per_m(w.lambda_nm); }),
+        .water_index = 1.0,
+        .glasses = {},
+        .lamps = parts.lamps,
+        .reflectances = parts.reflectances};
+    if (!rig.camera.port) return band;
+    band.water_index =
+        seawater_index(scene.index_nm, rig.water.salinity_psu, rig.water.temperature_c);
+    const Glass& glass = rig.camera.port->glass;
+    band.glasses = {{.name = glass.name(), .index = glass.index(scene.index_nm)}};
+    return band;
+}
+
+std::string header_of(const Rig& rig, const FrameScene& scene, const SceneOptions& options) {
+    std::string header = fmt::format(
+        "// Persistence of Vision Ray Tracer Scene Description File\n"
+        "// File: {}.pov\n"
+        "// Description: {}\n"
+        "//\n"
+        "// Written by aphotic. Each channel of the image is one wavelength's radiance, times the\n"
+        "// power of two with which the frame is exposed:\n",
+        scene.name,
+        sdl_comment(rig.title));
+    constexpr std::array kChannelWord{"red  ", "green", "blue "};
+    for (std::size_t c = 0; c < kChannelWord.size(); ++c) {
+        const FrameWavelength& w = scene.wavelengths[std::min(c, scene.wavelengths.size() - 1)];
+        header += fmt::format(
+            "//   {}  {} nm, times 2^{}\n", kChannelWord[c], w.lambda_nm, w.exposure_log2);
+    }
+    if (options.user_scene) {
+        return header + fmt::format("//\n// Render in the folder of {}, see render.ini.\n",
+                                    sdl_comment(options.user_scene->file.filename().string()));
+    }
+    return header +
+           fmt::format(
+               "//\n// Render in this folder with: povray render.ini +I{}.pov\n"
+               "//\n// Metres. x starboard, y forward, z down; the camera's entrance pupil is the "
+               "origin.\n",
+               scene.name);
+}
+
+std::string scene_sdl(const Rig& rig,
+                      const Parts& parts,
+                      const FrameScene& scene,
+                      const SceneOptions& options) {
+    std::string sdl = header_of(rig, scene, options);
+    sdl += "\n#version 3.7;\n" + band_sdl(band_of(rig, parts, scene));
+    sdl += fmt::format("#declare Aphotic_Fade_Distance = {};\n", sdl_number(parts.fade_m));
+    if (!options.omit) sdl += "#declare Aphotic_Everything = true;\n";
+    sdl += "#include \"aphotic.inc\"\n\n" + parts.rig + "\n";
+    if (options.user_scene) {
+        sdl += fmt::format("#include {}\n", sdl_text(options.user_scene->file.filename().string()));
+    } else {
+        sdl += "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n";
+    }
+    return sdl + "Aphotic_End ()\n";
+}
+
+Parts parts_of(const Rig& rig, const SceneOptions& options) {
+    Parts parts{.lamps = lamps_of(rig),
+                .reflectances = reflectances_of(rig, options),
+                .rig = "",
+                .fade_m = fade_distance_m(rig, options),
+                .brightest = {}};
+    parts.rig = rig_sdl(rig, strobes_in_scene(rig, options), parts.lamps, parts.reflectances);
+    if (options.user_scene) {
+        parts.brightest = [&rig, &scene = *options.user_scene](double lambda_nm) {
+            return scene.brightest_radiance(rig, lambda_nm);
+        };
+    } else {
+        parts.brightest = [bound = RadianceBound(rig)](double lambda_nm) {
+            return bound.at(lambda_nm);
+        };
+    }
+    return parts;
+}
 
 }  // namespace
 
@@ -450,24 +302,50 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
     for (const Strobe& strobe : rig.strobes) {
         require_place_for_lamps(rig, strobe, lamps_of(rig, strobe, options));
     }
-    const RadianceBound bound(rig);
+    const Parts parts = parts_of(rig, options);
     const std::vector<std::string> labels = wavelength_labels(lambda_nm);
-    const LitCones lit = lit_cones(rig, options);
     std::vector<FrameScene> scenes;
     for (const FrameGroup& group :
          frame_groups(rig, lambda_nm, options.wavelengths_per_frame, options.pixel_shift)) {
         const auto first = labels.begin() + static_cast<std::ptrdiff_t>(group.first);
-        const std::string name = fmt::format(
-            "band_{}nm", fmt::join(first, first + static_cast<std::ptrdiff_t>(group.count), "_"));
-        const auto part = lambda_nm.subspan(group.first, group.count);
-        scenes.push_back(
-            SceneWriter(rig, bound, options, lit, name, {part.begin(), part.end()}, group.index_nm)
-                .write());
+        FrameScene scene{
+            .name = fmt::format(
+                "band_{}nm",
+                fmt::join(first, first + static_cast<std::ptrdiff_t>(group.count), "_")),
+            .wavelengths = {},
+            .index_nm = group.index_nm,
+            .sdl = ""};
+        for (const double l : lambda_nm.subspan(group.first, group.count)) {
+            scene.wavelengths.push_back(
+                {.lambda_nm = l,
+                 .exposure_log2 = exposure_log2(parts.brightest(l),
+                                                brightest_colour(rig, l, parts.fade_m),
+                                                options.peak_log2)});
+        }
+        scene.sdl = scene_sdl(rig, parts, scene, options);
+        scenes.push_back(std::move(scene));
     }
     return scenes;
 }
 
-std::string render_ini(const Rig& rig) {
+namespace {
+
+// Always so many rays: POV-Ray's threshold looks at the three wavelengths together, and none must
+// change for another's sake.
+std::string antialias_ini(int rays) {
+    if (rays == 0) return "; One ray through each pixel's centre.\nAntialias=off\n";
+    return fmt::format(
+        "; {} x {} rays to each pixel beside the one through its centre.\n"
+        "Antialias=on\nSampling_Method=1\nAntialias_Threshold=0.0\nAntialias_Depth={}\n"
+        "Jitter=off\n",
+        rays,
+        rays,
+        rays);
+}
+
+}  // namespace
+
+std::string render_ini(const Rig& rig, const SceneOptions& options) {
     return fmt::format(
         "; POV-Ray's settings for the scenes of this folder: povray render.ini +I<scene>.pov\n"
         "; Every option that changes pixels is set here, none is left to the user's own ini.\n"
@@ -476,11 +354,9 @@ std::string render_ini(const Rig& rig) {
         "; OpenEXR: half floats, linear, unclipped.\n"
         "Output_To_File=on\n"
         "Output_File_Type=E\n"
-        "Output_File_Name=frames/\n"
         "Output_Alpha=off\n"
         "File_Gamma=1.0\n"
-        "; One ray through each pixel's centre.\n"
-        "Antialias=off\n"
+        "{}"
         "; Media need full quality.\n"
         "Quality=9\n"
         "Start_Row=0\n"
@@ -492,7 +368,8 @@ std::string render_ini(const Rig& rig) {
         "Render_Console=off\n"
         "Statistic_Console=off\n",
         rig.camera.width_px,
-        rig.camera.height_px);
+        rig.camera.height_px,
+        antialias_ini(options.antialias));
 }
 
 }  // namespace aphotic

@@ -15,13 +15,19 @@
 //
 // What a scene does not hold is not in it (omissions.h): no media in clear water, no port, no cone
 // of weight or power 0 or that lights nothing in view, no highlight of strength 0.
+//
+// A scene says what stands in the water; water, strobes, camera and port come to it through the
+// macros of plugin/include/aphotic.inc (include_library.h), fed with the frame's band (band_sdl.h).
+// That holds for a rig's floor and for a scene of the user's own alike.
 #pragma once
 
 #include "scene_gen/exposure.h"
 #include "scene_gen/frame_groups.h"
 #include "scene_gen/geometry.h"
 #include "scene_gen/rig.h"
+#include "scene_gen/user_scene.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,6 +56,8 @@ struct SceneOptions {
     // One lamp for every emitter: each cone's edge falls from one end of what the emitter spans,
     // seen from the floor below it, to the other.
     bool soft_edges = false;
+    std::shared_ptr<const UserScene> user_scene{};  // none: the rig's own floor
+    int antialias = 0;  // n x n rays to a pixel, beside the one through its centre
 };
 
 // The frames for these wavelengths, in their order. Throws InputError when a strobe stands
@@ -60,6 +68,6 @@ struct SceneOptions {
                                                   const SceneOptions& options = {});
 
 // The settings under which every scene of the rig renders, as a POV-Ray INI file.
-[[nodiscard]] std::string render_ini(const Rig& rig);
+[[nodiscard]] std::string render_ini(const Rig& rig, const SceneOptions& options = {});
 
 }  // namespace aphotic

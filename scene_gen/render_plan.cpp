@@ -17,10 +17,13 @@ std::vector<double> wavelengths_of(std::span<const WeightedWavelength> rule) {
 }
 
 LightFamily family_of(const Rig& rig, const PlanRequest& request) {
-    LightFamily family = light_family(rig);
-    if (request.paths) {
-        family.shortest_path_m = request.paths->shortest_m;
-        family.longest_path_m = request.paths->longest_m;
+    const UserScene* scene = request.scene.user_scene.get();
+    LightFamily family = light_family(scene != nullptr ? rig_of_scene(rig, *scene) : rig);
+    std::optional<PathRange> paths = request.paths;
+    if (!paths && scene != nullptr) paths = scene->paths;
+    if (paths) {
+        family.shortest_path_m = paths->shortest_m;
+        family.longest_path_m = paths->longest_m;
     }
     return family;
 }
@@ -75,7 +78,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                     .frame_error = frame_error(rig),
                     .scene = request.scene,
                     .frames = {},
-                    .omissions = omissions(rig)};
+                    .omissions = omissions(rig, request.scene.user_scene != nullptr)};
     const RuleFitter fitter(rig.camera.sensor, plan.family, range);
     std::vector<double> lambda_nm;
     if (request.bands) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/scene_set.h"
 
+#include "scene_gen/include_library.h"
 #include "scene_gen/reintegration.h"
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
+
+#include <fmt/format.h>
 
 namespace aphotic {
 
@@ -47,6 +50,13 @@ void note_light(const Rig& rig, ManifestWavelength& w) {
     }
 }
 
+// All that the scenes include.
+std::string include_text() {
+    std::string text;
+    for (const IncludeFile& file : include_library()) text += file.text;
+    return text;
+}
+
 }  // namespace
 
 SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
@@ -56,7 +66,11 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
 
     SceneSet set;
     set.scenes = make_scenes(rig, lambda_nm, plan.scene);
-    set.ini = render_ini(rig);
+    set.ini = render_ini(rig, plan.scene);
+    const UserScene* own = plan.scene.user_scene.get();
+    if (own != nullptr) set.scene_file = own->file;
+    const Rig lit = own != nullptr ? rig_of_scene(rig, *own) : rig;
+    const std::string around = set.ini + include_text() + (own != nullptr ? own->digest : "");
     Manifest& manifest = set.manifest;
     manifest.aphotic_version = APHOTIC_VERSION;
     manifest.rig_title = rig.title;
@@ -71,9 +85,9 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.lamp_signal = lamp_signal(rig, plan.family);
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         const FrameScene& scene = set.scenes[f];
-        // The settings change pixels as much as the scene does: both make the checksum.
+        // Settings and includes change pixels as much as the scene does: all make the checksum.
         manifest.frames.push_back({.name = scene.name,
-                                   .scene_sha256 = sha256_of_text(scene.sdl + set.ini),
+                                   .scene_sha256 = sha256_of_text(scene.sdl + around),
                                    .image_sha256 = ""});
         for (std::size_t c = 0; c < scene.wavelengths.size(); ++c) {
             const WeightedWavelength& weighted = rule[manifest.wavelengths.size()];
@@ -83,16 +97,37 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
                                  .channel = std::string(kChannelNames[c]),
                                  .exposure_log2 = scene.wavelengths[c].exposure_log2,
                                  .index_nm = scene.index_nm};
-            note_light(rig, w);
+            note_light(lit, w);
             manifest.wavelengths.push_back(std::move(w));
         }
     }
     return set;
 }
 
+namespace {
+
+// In the user's scene's folder, where its own includes and pictures are found.
+std::string ini_for(const std::filesystem::path& povray, const SceneSet& set) {
+    if (set.scene_file.empty()) return set.ini + "Output_File_Name=frames/\n";
+    const std::string here =
+        std::filesystem::relative(povray, set.scene_file.parent_path()).generic_string();
+    return fmt::format(
+        "; To be run in the folder of {0}, with +I\"{1}/<frame>.pov\".\n"
+        "{2}Library_Path=\"{1}\"\nOutput_File_Name=\"{1}/frames/\"\n",
+        set.scene_file.filename().string(),
+        here,
+        set.ini);
+}
+
+}  // namespace
+
 void write_scenes(const std::filesystem::path& folder, const SceneSet& set) {
-    make_folder(folder / "povray" / "frames");
-    write_text_file(folder / "povray" / "render.ini", set.ini);
+    const std::filesystem::path povray = folder / "povray";
+    make_folder(povray / "frames");
+    write_text_file(povray / "render.ini", ini_for(povray, set));
+    for (const IncludeFile& file : include_library()) {
+        write_text_file(povray / file.name, std::string(file.text));
+    }
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         write_text_file(scene_path(folder, set.manifest.frames[f]), set.scenes[f].sdl);
     }

@@ -4,7 +4,7 @@
 // that says how their frames become images. Written to a folder DIR:
 //
 //   DIR/manifest.json
-//   DIR/povray/render.ini, DIR/povray/band_*.pov, DIR/povray/frames/
+//   DIR/povray/render.ini, DIR/povray/band_*.pov, DIR/povray/*.inc, DIR/povray/frames/
 #pragma once
 
 #include "scene_gen/pov_scene.h"
@@ -20,9 +20,10 @@
 namespace aphotic {
 
 struct SceneSet {
-    std::vector<FrameScene> scenes;  // in the order of manifest.frames
-    Manifest manifest;               // nothing rendered yet
-    std::string ini;
+    std::vector<FrameScene> scenes;      // in the order of manifest.frames
+    Manifest manifest;                   // nothing rendered yet
+    std::string ini;                     // less the paths, which change no pixel
+    std::filesystem::path scene_file{};  // of the user's own, absolute; none: the rig's floor
 };
 
 [[nodiscard]] SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan);

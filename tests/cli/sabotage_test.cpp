@@ -66,12 +66,19 @@ class Sabotage : public testing::Test {
         write_file(folder_.path() / "rig.toml", rig);
         EXPECT_EQ(validate(kWavelengths).status, 0) << "the honest render must pass";
         std::filesystem::remove_all(folder_.path() / "out");
+        // The first of several at once edits, the others wait.
         write_script(folder_.path() / "povray",
-                     "scene=${1#+I}\nif [ -f \"$scene\" ]; then\n"
-                     "  cp \"$scene\" before && sed -i '" +
+                     "if [ -f aphotic.inc ]; then\n"
+                     "  if mkdir editing 2>/dev/null; then\n"
+                     "    cat *.pov *.inc > before && sed -i '" +
                          sed_program +
-                         "' \"$scene\"\n"
-                         "  cmp -s before \"$scene\" && exit 9\nfi\nexec povray \"$@\"\n");
+                         "' *.pov *.inc\n"
+                         "    cat *.pov *.inc | cmp -s - before && exit 9\n"
+                         "    touch edited\n"
+                         "  fi\n"
+                         "  while [ ! -f edited ]; do sleep 0.05; done\n"
+                         "fi\n"
+                         "exec povray \"$@\"\n");
         expect_no(
             validate(kWavelengths, {{"APHOTIC_POVRAY", (folder_.path() / "povray").string()}}));
     }
@@ -114,7 +121,7 @@ class Sabotage : public testing::Test {
 
 TEST_F(Sabotage, WaterAsAContainersMedia) {
     expect_no_when_scenes_are(
-        "s/^media {\\(.*\\)}$/sphere { 0, 100 hollow pigment { rgbt 1 } interior { media {\\1} } "
+        "s/^ *media {\\(.*\\)}$/sphere { 0, 100 hollow pigment { rgbt 1 } interior { media {\\1} } "
         "}/");
 }
 
@@ -128,7 +135,8 @@ TEST_F(Sabotage, ShadowlessLamps) {
 
 // Two metres of altitude: a fade distance of 0.2 m.
 TEST_F(Sabotage, FadeDistanceATenthOfTheRange) {
-    expect_no_when_scenes_are("s/#declare Fade_Distance = .*/#declare Fade_Distance = 0.2;/");
+    expect_no_when_scenes_are(
+        "s/#declare Aphotic_Fade_Distance = .*;$/#declare Aphotic_Fade_Distance = 0.2;/");
 }
 
 TEST_F(Sabotage, HollowHousing) {

@@ -41,30 +41,25 @@ const std::vector<Trap> kTraps{
     // A container of water around all of it: the camera's leg only.
     {"ContainerAsWater",
      {{"media {", "sphere { 0, 100 hollow pigment { rgbt 1 } interior { media {"},
-      {"// Floor", "} } // Floor"}}},
+      {"Aphotic_Attenuation * Aphotic_Unit }", "Aphotic_Attenuation * Aphotic_Unit } } }"}}},
     // POV-Ray makes a point light of it, without a cone.
     {"Shadowless", {{"media_attenuation on", "media_attenuation on shadowless"}}},
-    {"FadeDistanceZeroFadesNothing", {{"fade_distance Fade_Distance", "fade_distance 0"}}},
+    {"FadeDistanceZeroFadesNothing",
+     {{"fade_distance Aphotic_Fade_Distance / Aphotic_Unit", "fade_distance 0"}}},
     {"FadeDistanceATenthOfTheRange",
-     {{"#declare Fade_Distance =", "#declare Fade_Distance = 0.2; #declare Unused ="}}},
-    {"DefaultFinish", {{"#default {", "#declare Unused = texture {"}}},
-    {"DefaultRight", {{"right x *", "right x * 1.33 //"}}},
+     {{"#declare Aphotic_Fade_Distance =",
+       "#declare Aphotic_Fade_Distance = 0.2; #declare Unused ="}}},
+    {"DefaultFinish",
+     {{"#default {", "#declare Unused = texture {"}, {"ambient 0  emission 0  diffuse 1\n", "\n"}}},
+    {"DefaultRight", {{"right x *", "right x * 1.33 * Focal_Length //"}}},
     {"RightOfTheWrongSign", {{"right x *", "right -x *"}}},
     {"GammaOfTheDisplay", {{"assumed_gamma 1.0", "assumed_gamma 2.2"}}},
-    {"SoftConeEdge", {{"falloff Half_Angle", "falloff Half_Angle + 5"}}},
+    {"SoftConeEdge", {{"falloff min(90, Half_Angle", "falloff min(90, 5 + Half_Angle"}}},
     {"NoCosineInTheCone", {{"tightness 1", "tightness 0"}}},
     {"PointAtIsNoDirection", {{"point_at Position + Axis", "point_at Axis"}}},
-    {"WaterInTheHousing", {{"no_shadow }", "no_shadow hollow }"}}, give_port},
-    {"IndexOfAirForWater", {{"1 / N_Water", "1"}}, give_port},
+    {"WaterInTheHousing", {{"no_shadow\n", "no_shadow hollow\n"}}, give_port},
+    {"IndexOfAirForWater", {{"1 / Aphotic_Water_Index", "1"}}, give_port},
 };
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    EXPECT_NE(text.find(from), std::string::npos) << "the scene has no '" << from << "'";
-    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-        text.replace(at, from.size(), to);
-    }
-    return text;
-}
 
 // Without symmetry between fore and aft or port and starboard.
 Rig trap_rig() {
@@ -85,6 +80,7 @@ TEST_P(Traps, AreSeen) {
     ASSERT_LE(against_closed_form(rig, set).worst, kHalfFloatError) << "the scene itself is wrong";
 
     std::string& sdl = set.scenes.front().sdl;
+    sdl = with_library(sdl);
     for (const Change& change : trap.changes) sdl = replaced(sdl, change.text, change.replacement);
     try {
         EXPECT_GT(against_closed_form(rig, set).worst, kSeen);
@@ -140,9 +136,9 @@ TEST(Traps, WithoutExposuresDarkWavelengthsLoseTheirDigits) {
     const int exposure = set.manifest.wavelengths[0].exposure_log2;
     ASSERT_GT(exposure, 0);
     std::string& sdl = set.scenes.front().sdl;
-    sdl = replaced(sdl,
-                   "rgb Flux * Axial_Intensity",
-                   "rgb pow(2, -" + std::to_string(exposure) + ") * Flux * Axial_Intensity");
+    sdl = replaced(with_library(sdl),
+                   "Position, rgb Colour",
+                   "Position, rgb pow(2, -" + std::to_string(exposure) + ") * Colour");
     set.manifest.wavelengths[0].exposure_log2 = 0;
     const Difference found = against_closed_form(rig, set);
     EXPECT_LT(found.brightest_sample, kSmallestNormalHalf);

@@ -6,6 +6,7 @@
 
 #include "plugin/render.h"
 #include "scene_gen/exposure.h"
+#include "scene_gen/include_library.h"
 #include "scene_gen/rig_reader.h"
 #include "scene_gen/scene_set.h"
 #include "spectral/atomic_file.h"
@@ -49,6 +50,19 @@ inline SceneSet scenes_of(const Rig& rig,
     request.wavelengths_nm = lambda_nm;
     request.scene = options;
     return make_scene_set(rig, plan_render(rig, request));
+}
+
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    EXPECT_NE(text.find(from), std::string::npos) << "the scene has no '" << from << "'";
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+        text.replace(at, from.size(), to);
+    }
+    return text;
+}
+
+// The scene as POV-Ray reads it, with aphotic.inc in its place, for tests that change it.
+inline std::string with_library(const std::string& sdl) {
+    return replaced(sdl, "#include \"aphotic.inc\"\n", std::string(include_library().front().text));
 }
 
 struct Difference {

@@ -62,7 +62,7 @@ constexpr unsigned kThreads = 2;
 constexpr int kRows = 4;
 constexpr int kPixelsPerRow = 10;
 
-constexpr double kTolerance = PlanRequest{}.tolerance;
+const double kTolerance = PlanRequest{}.tolerance;
 // For rigs of which kTolerance asks too much: none of these 500, nor of 1900 more.
 constexpr double kLooseTolerance = 1e-2;
 constexpr double kRareShare = 0.01;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/band_sdl.h"
+
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace aphotic {
+
+namespace {
+
+bool is_same(const Spectrum& a, const Spectrum& b) {
+    return std::ranges::equal(a.lambda_nm(), b.lambda_nm()) &&
+           std::ranges::equal(a.values(), b.values());
+}
+
+std::string array_sdl(std::string_view name, const std::vector<std::string>& elements) {
+    return fmt::format("#declare {} = array[{}] {{{}}}\n",
+                       name,
+                       elements.size(),
+                       fmt::format("{}", fmt::join(elements, ", ")));
+}
+
+std::string spectra_sdl(std::string_view kind,
+                        const std::vector<NamedSpectrum>& spectra,
+                        const Channels& lambda_nm) {
+    std::vector<std::string> names;
+    std::vector<std::string> values;
+    for (const NamedSpectrum& named : spectra) {
+        names.push_back(sdl_text(named.name));
+        Channels value{};
+        for (std::size_t c = 0; c < value.size(); ++c) {
+            value[c] = named.spectrum.at(lambda_nm[c]);
+        }
+        values.push_back(sdl_vector(value));
+    }
+    return array_sdl(fmt::format("Aphotic_{}_Names", kind), names) +
+           array_sdl(fmt::format("Aphotic_{}_Values", kind), values);
+}
+
+}  // namespace
+
+std::string short_name(const Spectrum& spectrum) {
+    const std::string& name = spectrum.name();
+    const std::size_t first = name.find('\'');
+    const std::size_t last = name.rfind('\'');
+    const std::string quoted = first < last ? name.substr(first + 1, last - first - 1) : name;
+    return std::filesystem::path(quoted).filename().string();
+}
+
+std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra) {
+    std::vector<NamedSpectrum> names;
+    for (const Spectrum& spectrum : spectra) {
+        const std::string name = short_name(spectrum);
+        int same_name = 1;
+        bool is_there = false;
+        for (const NamedSpectrum& other : names) {
+            if (short_name(other.spectrum) != name) continue;
+            is_there |= is_same(other.spectrum, spectrum);
+            ++same_name;
+        }
+        if (is_there) continue;
+        names.push_back({.name = same_name == 1 ? name : fmt::format("{} {}", name, same_name),
+                         .spectrum = spectrum});
+    }
+    return names;
+}
+
+const std::string& name_of(const Spectrum& spectrum, std::span<const NamedSpectrum> names) {
+    for (const NamedSpectrum& named : names) {
+        if (short_name(named.spectrum) == short_name(spectrum) &&
+            is_same(named.spectrum, spectrum)) {
+            return named.name;
+        }
+    }
+    throw InputError(fmt::format("{}: has no name in the scene", spectrum.name()));
+}
+
+std::string band_sdl(const Band& band) {
+    std::string sdl = fmt::format("#declare Aphotic_Band_Version = {};\n", kBandVersion);
+    const auto declare = [&](std::string_view name, const std::string& value) {
+        sdl += fmt::format("#declare Aphotic_{} = {};\n", name, value);
+    };
+    declare("Lambda", sdl_vector(band.lambda_nm));
+    declare("Exposure", sdl_vector(band.exposure));
+    declare("Attenuation", sdl_vector(band.attenuation_per_m));
+    declare("Water_Index", sdl_number(band.water_index));
+    if (!band.glasses.empty()) {
+        std::vector<std::string> names;
+        std::vector<std::string> indices;
+        for (const GlassIndex& glass : band.glasses) {
+            names.push_back(sdl_text(glass.name));
+            indices.push_back(sdl_number(glass.index));
+        }
+        sdl +=
+            array_sdl("Aphotic_Glass_Names", names) + array_sdl("Aphotic_Glass_Indices", indices);
+    }
+    return sdl + spectra_sdl("Lamp", band.lamps, band.lambda_nm) +
+           spectra_sdl("Reflectance", band.reflectances, band.lambda_nm);
+}
+
+}  // namespace aphotic

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A band: what plugin/include/aphotic.inc must be told of the wavelengths of a frame, one in each
+// channel, before it is included. Everything that depends on wavelength reaches a scene this way.
+#pragma once
+
+#include "scene_gen/sdl.h"
+#include "spectral/spectrum.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+// The version of aphotic.inc for which bands are written.
+inline constexpr int kBandVersion = 1;
+
+// A spectrum as scenes call it.
+struct NamedSpectrum {
+    std::string name;
+    Spectrum spectrum;
+};
+
+// The name in a spectrum's own: sand of "reflectance 'sand'", mud.csv of a file.
+[[nodiscard]] std::string short_name(const Spectrum& spectrum);
+
+// Each spectrum once, under its short name; of different ones with the same name, the later have a
+// number behind it.
+[[nodiscard]] std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra);
+
+// The name under which it stands there.
+[[nodiscard]] const std::string& name_of(const Spectrum& spectrum,
+                                         std::span<const NamedSpectrum> names);
+
+struct GlassIndex {
+    std::string name;
+    double index;
+};
+
+struct Band {
+    Channels lambda_nm{};
+    Channels exposure{};  // factor on radiance
+    Channels attenuation_per_m{};
+    double water_index = 1.0;         // relative to air
+    std::vector<GlassIndex> glasses;  // relative to air; none: no port
+    std::vector<NamedSpectrum> lamps;
+    std::vector<NamedSpectrum> reflectances;
+};
+
+[[nodiscard]] std::string band_sdl(const Band& band);
+
+}  // namespace aphotic

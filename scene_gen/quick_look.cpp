@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/quick_look.h"
+
+#include "scene_gen/exposure.h"
+#include "scene_gen/rig_sdl.h"
+#include "spectral/builtin.h"
+#include "spectral/error.h"
+#include "spectral/refraction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace aphotic {
+
+namespace {
+
+// In the middle of the three: one index serves all of them.
+constexpr double kIndex_nm = kQuickLambda_nm[1];
+
+std::vector<NamedSpectrum> all_of(CurveRole role, std::vector<Spectrum> own) {
+    for (const std::string& name : builtin_names(role_name(role))) {
+        own.push_back(load_curve(name, role, {}));
+    }
+    return named(own);
+}
+
+std::vector<NamedSpectrum> lamps_for(const Rig& rig) {
+    std::vector<Spectrum> own;
+    for (const Strobe& strobe : rig.strobes) own.push_back(strobe.spectrum);
+    return all_of(CurveRole::LampSpectrum, std::move(own));
+}
+
+std::vector<NamedSpectrum> reflectances_for(const Rig& rig) {
+    std::vector<Spectrum> own{rig.seafloor.reflectance};
+    own.insert(own.end(), rig.materials.begin(), rig.materials.end());
+    return all_of(CurveRole::Reflectance, std::move(own));
+}
+
+std::vector<GlassIndex> glasses() {
+    std::vector<GlassIndex> all;
+    for (const char* name : {"bk7", "fused-silica", "pmma", "polycarbonate", "sapphire"}) {
+        all.push_back({.name = name, .index = builtin_glass(name).index(kIndex_nm)});
+    }
+    return all;
+}
+
+Channels exposure_of(const Rig& rig) {
+    const RadianceBound bound(rig);
+    Channels exposure{};
+    double brightest = 0.0;
+    for (std::size_t c = 0; c < exposure.size(); ++c) {
+        double flux = 0.0;
+        for (const Strobe& strobe : rig.strobes) {
+            flux += strobe.power * strobe.spectrum.at(kQuickLambda_nm[c]);
+        }
+        exposure[c] = flux > 0.0 ? 1.0 / flux : 0.0;
+        brightest = std::max(brightest, bound.at(kQuickLambda_nm[c]) * exposure[c]);
+    }
+    if (brightest > 0.0) {
+        for (double& e : exposure) e *= kQuickPeak / brightest;
+    }
+    return exposure;
+}
+
+std::vector<StrobeInScene> strobes_of(const Rig& rig) {
+    std::vector<StrobeInScene> strobes;
+    for (const Strobe& strobe : rig.strobes) {
+        strobes.push_back({.cones = strobe.beam.cones, .lamps = lamp_grid(rig, strobe)});
+    }
+    return strobes;
+}
+
+}  // namespace
+
+std::string quick_look_sdl(const Rig& rig) {
+    Band band{
+        .lambda_nm = kQuickLambda_nm,
+        .exposure = exposure_of(rig),
+        .attenuation_per_m = {},
+        .water_index = seawater_index(kIndex_nm, rig.water.salinity_psu, rig.water.temperature_c),
+        .glasses = glasses(),
+        .lamps = lamps_for(rig),
+        .reflectances = reflectances_for(rig)};
+    for (std::size_t c = 0; c < kQuickLambda_nm.size(); ++c) {
+        band.attenuation_per_m[c] = rig.water.attenuation_per_m(kQuickLambda_nm[c]);
+    }
+    const std::string rig_text = rig_sdl(rig, strobes_of(rig), band.lamps, band.reflectances);
+    return fmt::format(
+        "// This work is licensed under the BSD 3-Clause License "
+        "(SPDX-License-Identifier: BSD-3-Clause).\n"
+        "//\n"
+        "//    Persistence of Vision Ray Tracer version 3.7 Include File\n"
+        "//    File: aphotic_quick.inc\n"
+        "//    Description: What aphotic.inc takes for a quick look: three wavelengths, and the\n"
+        "//                 rig '{}'. Written by: aphotic generate RIG --quick-look FILE\n"
+        "\n"
+        "#ifndef (Aphotic_Quick_Inc_Temp)\n"
+        "#declare Aphotic_Quick_Inc_Temp = version;\n"
+        "#version 3.7;\n"
+        "#ifdef (View_POV_Include_Stack)\n"
+        "   #debug \"including aphotic_quick.inc\\n\"\n"
+        "#end\n"
+        "\n"
+        "#declare Aphotic_Quick_Look = true;\n"
+        "{}\n"
+        "{}"
+        "\n"
+        "#version Aphotic_Quick_Inc_Temp;\n"
+        "#end   // aphotic_quick.inc\n",
+        sdl_comment(rig.title),
+        band_sdl(band),
+        rig_text);
+}
+
+}  // namespace aphotic

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/rig_sdl.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace aphotic {
+
+namespace {
+
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+
+// The share of its lamp's flux that a cone carries.
+double flux_share(const Cone& cone, ConeWeights weights) {
+    const double sine = std::sin(cone.half_angle_rad);
+    return axial_intensity(cone, weights) * std::numbers::pi * sine * sine;
+}
+
+std::string camera_sdl(const Camera& camera) {
+    std::string sdl = fmt::format("#macro Aphotic_Rig_Camera ()\n   Aphotic_Camera ({}, {})\n",
+                                  sdl_number(camera.focal_length_m),
+                                  sdl_number(camera.pixel_pitch_m * camera.width_px));
+    if (camera.port) {
+        sdl += fmt::format("   Aphotic_Port ({} / Aphotic_Unit, {} / Aphotic_Unit, {})\n",
+                           sdl_number(camera.port->distance_m),
+                           sdl_number(camera.port->thickness_m),
+                           sdl_text(camera.port->glass.name()));
+    }
+    return sdl + "#end\n";
+}
+
+std::string emitter_sdl(const Strobe& strobe, LampGrid lamps) {
+    if (!strobe.emitter) return "0";
+    return fmt::format("<{} / Aphotic_Unit, {} / Aphotic_Unit, {}, {}>",
+                       sdl_number(strobe.emitter->across_m),
+                       sdl_number(strobe.emitter->along_m),
+                       lamps.across,
+                       lamps.along);
+}
+
+std::string strobe_sdl(const Strobe& strobe,
+                       const StrobeInScene& in_scene,
+                       std::span<const NamedSpectrum> lamps) {
+    std::string sdl = fmt::format("   // Strobe: {}\n", sdl_comment(strobe.name));
+    if (in_scene.cones.empty()) return sdl + "   // lights nothing in view\n";
+    sdl += fmt::format("   #local Beam = array[{}][2] {{\n", in_scene.cones.size());
+    for (const Cone& cone : in_scene.cones) {
+        sdl += fmt::format("      {{{}, {}}}{}   // {}\n",
+                           sdl_number(cone.half_angle_rad * kDegreesPerRadian),
+                           sdl_number(flux_share(cone, strobe.beam.weights)),
+                           &cone == &in_scene.cones.back() ? "" : ",",
+                           sdl_comment(cone.part));
+    }
+    sdl += "   }\n";
+    if (in_scene.soft_edge_deg) {
+        sdl += fmt::format("   #declare Aphotic_Soft_Edge = {};\n",
+                           sdl_number(*in_scene.soft_edge_deg));
+    }
+    return sdl + fmt::format("   Aphotic_Strobe ({} / Aphotic_Unit, {}, Beam, {}, {}, {})\n",
+                             sdl_point(strobe.position_m),
+                             sdl_point(strobe.axis),
+                             sdl_text(name_of(strobe.spectrum, lamps)),
+                             sdl_number(strobe.power),
+                             emitter_sdl(strobe, in_scene.lamps));
+}
+
+std::string seafloor_sdl(const Rig& rig, std::span<const NamedSpectrum> reflectances) {
+    const Seafloor& floor = rig.seafloor;
+    return fmt::format(
+        "#macro Aphotic_Rig_Seafloor ()\n"
+        "   #declare Aphotic_Seafloor_Finish = finish {{ Aphotic_Finish ({}, {}) }}\n"
+        "   Aphotic_Seafloor ({} / Aphotic_Unit, {}, {}, {})\n"
+        "#end\n",
+        sdl_number(floor.phong),
+        sdl_number(floor.phong_size),
+        sdl_number(rig.sled.altitude_m),
+        sdl_number(rig.sled.pitch_rad * kDegreesPerRadian),
+        sdl_number(rig.sled.roll_rad * kDegreesPerRadian),
+        sdl_text(name_of(floor.reflectance, reflectances)));
+}
+
+}  // namespace
+
+std::string rig_sdl(const Rig& rig,
+                    const std::vector<StrobeInScene>& strobes,
+                    std::span<const NamedSpectrum> lamps,
+                    std::span<const NamedSpectrum> reflectances) {
+    std::string sdl = fmt::format("// The rig: {}\n", sdl_comment(rig.title));
+    sdl += camera_sdl(rig.camera);
+    sdl += "#macro Aphotic_Rig_Strobes ()\n";
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        sdl += strobe_sdl(rig.strobes[s], strobes[s], lamps);
+    }
+    sdl += "#end\n" + seafloor_sdl(rig, reflectances);
+    return sdl +
+           "#macro Aphotic_Rig ()\n"
+           "   Aphotic_Rig_Camera ()\n"
+           "   Aphotic_Water ()\n"
+           "   Aphotic_Rig_Strobes ()\n"
+           "#end\n";
+}
+
+}  // namespace aphotic

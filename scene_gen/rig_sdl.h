@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A rig as macros for POV-Ray, in the words of plugin/include/aphotic.inc:
+//
+//   Aphotic_Rig_Camera ()    its camera and port
+//   Aphotic_Rig_Strobes ()   its strobes
+//   Aphotic_Rig ()           both, and the water
+//   Aphotic_Rig_Seafloor ()  its floor
+//
+// in the sled's frame, in the scene's unit.
+#pragma once
+
+#include "scene_gen/band_sdl.h"
+#include "scene_gen/geometry.h"
+#include "scene_gen/rig.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+// One strobe as the scene is to have it.
+struct StrobeInScene {
+    std::vector<Cone> cones;  // none: it lights nothing in view
+    LampGrid lamps;           // of its emitter
+    std::optional<double> soft_edge_deg{};
+};
+
+// lamps and reflectances: the names of the rig's spectra, as the scene's band has them.
+[[nodiscard]] std::string rig_sdl(const Rig& rig,
+                                  const std::vector<StrobeInScene>& strobes,
+                                  std::span<const NamedSpectrum> lamps,
+                                  std::span<const NamedSpectrum> reflectances);
+
+}  // namespace aphotic

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A POV-Ray scene of the user's own, and what was learnt of it before it is rendered: which
+// spectra it uses, the paths that its light goes, and how bright it is.
+//
+//   L(lambda) <= Phi(lambda) max over pixels  sum_s G_s exp(-K l_s)
+//
+// Phi  the strongest of the rig's lamps        K  loss of the water [1/m]
+// G_s  radiance of the scene, all white, by strobe s at lamp flux 1 [1/(m^2 sr)]
+// l_s  path of that light, lamp to surface to camera [m]
+//
+// G_s and l_s are measured by rendering the scene small (plugin/scene_survey.h): what is smaller
+// than one of those pixels is not seen.
+#pragma once
+
+#include "scene_gen/band_sdl.h"
+#include "scene_gen/light_paths.h"
+#include "scene_gen/rig.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct UserScene {
+    // The light of one strobe on what one pixel shows.
+    struct Lit {
+        double radiance_per_flux = 0.0;
+        double path_m = 0.0;
+    };
+
+    std::filesystem::path file;            // absolute
+    std::string digest;                    // SHA-256 of it and of the files that it names
+    std::vector<NamedSpectrum> materials;  // under the names that the scene gives them
+    PathRange paths;
+    std::vector<std::vector<Lit>> pixels;  // by pixel, those strobes that light it
+
+    [[nodiscard]] double brightest_radiance(const Rig& rig, double lambda_nm) const;
+};
+
+// Room on both sides of the measured paths, for what lies between the survey's pixels.
+inline constexpr double kSurveyRoom = 1.05;
+
+// Of what the pixels show, with kSurveyRoom; both zero when nothing is lit.
+[[nodiscard]] PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels);
+
+// The rig with the scene's materials in place of its floor, and white, for what has a colour or a
+// highlight of POV-Ray's own.
+[[nodiscard]] Rig rig_of_scene(Rig rig, const UserScene& scene);
+
+}  // namespace aphotic
