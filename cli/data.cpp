@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic data [NAME]: list the built-in tables, or show, plot or hand on one of them, or check
-// a table of the user's own.
+// a table of the user's own, or make tables of POV-Ray's splines.
 #include "cli/command.h"
+#include "cli/spline_tables.h"
 #include "spectral/builtin.h"
 #include "spectral/error.h"
 #include "spectral/plot.h"
@@ -49,6 +50,7 @@ struct Options {
     bool csv = false;
     bool json = false;
     std::string plot_file;
+    SplineOptions splines;
 };
 
 struct Entry {
@@ -225,6 +227,7 @@ Plot plot_of(const Entry& entry) {
 }
 
 ExitStatus show_data(const Options& options) {
+    if (!options.splines.file.empty()) return write_spline_tables(options.splines, options.json);
     if (options.name.empty()) {
         list_tables(options.json);
         return kDone;
@@ -243,6 +246,29 @@ ExitStatus show_data(const Options& options) {
     return kDone;
 }
 
+void add_spline_options(CLI::App& app, CLI::Option* name, CLI::Option* csv, Options& options) {
+    SplineOptions& splines = options.splines;
+    auto* from = app.add_option("--from-spline",
+                                splines.file,
+                                "make tables of the spectra in FILE, a scene or include file of "
+                                "POV-Ray: splines, and SpectralRender's arrays")
+                     ->type_name("FILE")
+                     ->excludes(name)
+                     ->excludes(csv);
+    app.add_option(
+           "-o,--output", splines.folder, "the folder for these tables, by default this one")
+        ->type_name("DIR")
+        ->needs(from);
+    app.add_option("--role", splines.role, "what they are: reflectance (the default) or lamp")
+        ->type_name("ROLE")
+        ->check(CLI::IsMember({"reflectance", "lamp"}))
+        ->needs(from);
+    app.add_option("--only", splines.only, "only those whose name fits PATTERN, such as 'D_CC_*'")
+        ->type_name("PATTERN")
+        ->needs(from);
+    app.add_flag("--force", splines.force, "overwrite tables that are there")->needs(from);
+}
+
 }  // namespace
 
 Action configure_data(CLI::App& app) {
@@ -254,6 +280,7 @@ Action configure_data(CLI::App& app) {
         ->type_name("FILE")
         ->needs(name);
     csv->needs(name);
+    add_spline_options(app, name, csv, *options);
     return [options] { return show_data(*options); };
 }
 

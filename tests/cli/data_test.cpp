@@ -86,6 +86,79 @@ TEST_F(CommandData, PlotsAreDrawn) {
     EXPECT_FALSE(fs::exists(folder_.path() / "sand.pdf"));
 }
 
+constexpr const char* kSplines =
+    "#declare D_Clay_01 = spline { linear_spline 380, 0.021 // blue\n"
+    "  400, 0.03, 730 .5 }\n"
+    "#declare D_Mud = spline { cubic_spline 380, 0.1 400, 0.2 500, 0.3 730, 0.4 }\n";
+
+TEST_F(CommandData, MakesTablesOfSplines) {
+    write_file(folder_.path() / "things.inc", kSplines);
+    const CommandResult run = data({"--from-spline", "things.inc", "-o", "tables"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.out,
+              "wrote tables/d-clay-01.csv: D_Clay_01, 380 to 730 nm, 3 rows\n"
+              "wrote tables/d-mud.csv: D_Mud, 380 to 730 nm, 4 rows\n");
+    EXPECT_EQ(run.err,
+              "aphotic: things.inc:3: D_Mud is a cubic_spline: its knots are taken, and joined by "
+              "straight lines\n");
+    const CommandResult checked = data({"tables/d-clay-01.csv", "--json"});
+    ASSERT_EQ(checked.status, 0) << checked.err;
+    const auto json = nlohmann::json::parse(checked.out);
+    EXPECT_EQ(json["role"], "reflectance");
+    EXPECT_EQ(json["values"][1], (std::vector<double>{400.0, 0.03}));
+    EXPECT_EQ(json["metadata"]["source"], "things.inc, line 1, #declare D_Clay_01");
+}
+
+TEST_F(CommandData, SplinesGoToThisFolderAsLampsWhenAsked) {
+    write_file(folder_.path() / "lamp.inc", "#declare ES_Lamp = spline { 400, 0.5 700, 4.1 }");
+    const CommandResult run = data({"--from-spline", "lamp.inc", "--role", "lamp", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json[0]["file"], "./es-lamp.csv");
+    EXPECT_EQ(json[0]["range_nm"], (std::vector<double>{400.0, 700.0}));
+    EXPECT_NE(data({"es-lamp.csv"}).out.find("lamp spectrum"), std::string::npos);
+}
+
+TEST_F(CommandData, WritesNoTableUnlessAllCanBe) {
+    write_file(folder_.path() / "a.inc",
+               std::string(kSplines) + "#declare IOR_Water = spline { 400, 1.34 700, 1.33 }\n");
+    const CommandResult refused = data({"--from-spline", "a.inc", "-o", "tables"});
+    EXPECT_EQ(refused.status, kBadInput);
+    EXPECT_NE(refused.err.find("a.inc:4: IOR_Water: found 1.34 at 400 nm; allowed for "
+                               "reflectance: 0 to 1"),
+              std::string::npos)
+        << refused.err;
+    EXPECT_FALSE(fs::exists(folder_.path() / "tables"));
+    const CommandResult some =
+        data({"--from-spline", "a.inc", "-o", "tables", "--only", "D_Clay*"});
+    EXPECT_EQ(some.status, 0) << some.err;
+    EXPECT_TRUE(fs::exists(folder_.path() / "tables/d-clay-01.csv"));
+    EXPECT_FALSE(fs::exists(folder_.path() / "tables/d-mud.csv"));
+}
+
+TEST_F(CommandData, OverwritesNoTableUnlessToldTo) {
+    write_file(folder_.path() / "a.inc", kSplines);
+    write_file(folder_.path() / "d-mud.csv", "mine");
+    const CommandResult refused = data({"--from-spline", "a.inc"});
+    EXPECT_EQ(refused.status, kBadInput);
+    EXPECT_NE(refused.err.find("d-mud.csv: found a file of this name; allowed: none, unless "
+                               "--force is given"),
+              std::string::npos)
+        << refused.err;
+    EXPECT_EQ(read_text_file(folder_.path() / "d-mud.csv"), "mine");
+    EXPECT_FALSE(fs::exists(folder_.path() / "d-clay-01.csv"));
+    EXPECT_EQ(data({"--from-spline", "a.inc", "--force"}).status, 0);
+    EXPECT_NE(read_text_file(folder_.path() / "d-mud.csv"), "mine");
+}
+
+TEST_F(CommandData, SplineOptionsNeedASplineFile) {
+    EXPECT_EQ(data({"sand", "--role", "lamp"}).status, kBadInput);
+    EXPECT_EQ(data({"sand", "--from-spline", "a.inc"}).status, kBadInput);
+    EXPECT_EQ(data({"--from-spline", "none.inc"}).status, kBadInput);
+    write_file(folder_.path() / "a.inc", kSplines);
+    EXPECT_EQ(data({"--from-spline", "a.inc", "--role", "paint"}).status, kBadInput);
+}
+
 TEST_F(CommandData, UnknownNameNamesTheNearest) {
     const CommandResult run = data({"pope-fry-1979"});
     EXPECT_EQ(run.status, kBadInput);

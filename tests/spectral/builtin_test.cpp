@@ -7,6 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
 #include <set>
 
 namespace aphotic {
@@ -156,6 +160,56 @@ TEST(LoadCurve, NeedsNoMetadataInAUsersFile) {
     write_file(folder.path() / "a.csv",
                "# role: something else\nwavelength_nm,reflectance\n400,0.1\n700,0.2\n");
     EXPECT_NO_THROW(static_cast<void>(load_curve("a.csv", CurveRole::Reflectance, folder.path())));
+}
+
+// The patches of the colour chart that lie beside the scenes.
+std::vector<Spectrum> chart_patches() {
+    const std::filesystem::path folder =
+        std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/chart/patches";
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    std::vector<Spectrum> patches;
+    for (const auto& file : files) {
+        patches.push_back(load_curve(file.string(), CurveRole::Reflectance, {}));
+    }
+    return patches;
+}
+
+double lightness(double luminance_factor) {
+    return 116.0 * std::cbrt(luminance_factor) - 16.0;  // CIE 015, L*
+}
+
+TEST(ChartPatches, Are24ReflectancesFrom400To720nm) {
+    const std::vector<Spectrum> patches = chart_patches();
+    EXPECT_EQ(patches.size(), 24U);
+    for (const Spectrum& patch : patches) {
+        EXPECT_TRUE(patch.range().contains(400.0) && patch.range().contains(720.0)) << patch.name();
+    }
+}
+
+// McCamy, Marcus and Davidson (1976) state Y of the chart's last row, white to black, under
+// illuminant C; of greys it is the same under D65.
+TEST(ChartPatches, GreysAreAsLightAsPublished) {
+    constexpr std::array kLuminanceFactors{0.9001, 0.5910, 0.3620, 0.1977, 0.0900, 0.0313};
+    constexpr double kBetweenCharts = 1.5;  // of L*, from one chart to another
+    const std::vector<Spectrum> patches = chart_patches();
+    const Spectrum lamp = built_in("cie-d65", CurveRole::LampSpectrum);
+    const Spectrum ybar = load_curves("cie-1931", CurveRole::ColourMatching, {})[1];
+    for (std::size_t i = 0; i < kLuminanceFactors.size(); ++i) {
+        const Spectrum& patch = patches.at(18 + i);
+        double reflected = 0.0;
+        double lit = 0.0;
+        for (int lambda_nm = 380; lambda_nm <= 780; lambda_nm += 5) {
+            const double light = lamp.at(lambda_nm) * ybar.at(lambda_nm);
+            lit += light;
+            reflected += light * patch.at(lambda_nm);
+        }
+        EXPECT_NEAR(lightness(reflected / lit), lightness(kLuminanceFactors[i]), kBetweenCharts)
+            << patch.name();
+    }
 }
 
 }  // namespace

@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spectral/spline_import.h"
+
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <utility>
+
+namespace aphotic {
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kSplineForms{
+    "linear_spline", "cubic_spline", "natural_spline", "quadratic_spline"};
+constexpr std::string_view kArraySize = "36";
+constexpr double kArrayFirst_nm = 380.0;  // as SpectralRender has it
+constexpr double kArrayStep_nm = 10.0;
+constexpr std::size_t kMaxVector = 5;  // POV-Ray's longest
+constexpr int kMaxDepth = 100;         // of brackets in brackets
+
+[[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& what) {
+    throw InputError(fmt::format("{}:{}: {}", file, line, what));
+}
+
+struct Token {
+    enum class Kind { End, Number, Word, Text, Symbol };
+    Kind kind = Kind::End;
+    std::string_view text;
+    std::size_t line = 0;
+    double number = 0.0;
+};
+
+bool is_letter(char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+bool is_digit(char c) {
+    return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+// A scene file's tokens, one at a time.
+class Lexer {
+  public:
+    Lexer(const std::string& file, std::string_view text) : file_(file), rest_(text) {
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+        if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+    }
+
+    Token next() {
+        pass_over_blanks();
+        if (rest_.empty()) return {.kind = Token::Kind::End, .text = {}, .line = line_};
+        if (rest_[0] == '"') return text();
+        if (is_letter(rest_[0])) return word();
+        const bool fraction = rest_[0] == '.' && rest_.size() > 1 && is_digit(rest_[1]);
+        if (is_digit(rest_[0]) || fraction) return number();
+        return cut(Token::Kind::Symbol, 1);
+    }
+
+  private:
+    Token cut(Token::Kind kind, std::size_t length) {
+        const Token token{.kind = kind, .text = rest_.substr(0, length), .line = line_};
+        pass_over(length);
+        return token;
+    }
+
+    void pass_over(std::size_t length) {
+        const std::string_view passed = rest_.substr(0, length);
+        line_ += static_cast<std::size_t>(std::count(passed.begin(), passed.end(), '\n'));
+        rest_.remove_prefix(passed.size());
+    }
+
+    void pass_over_blanks() {
+        while (!rest_.empty()) {
+            if (rest_.starts_with("//")) {
+                pass_over(std::min(rest_.find_first_of("\r\n"), rest_.size()));
+            } else if (rest_.starts_with("/*")) {
+                pass_over_comment();
+            } else if (std::isspace(static_cast<unsigned char>(rest_[0])) != 0) {
+                pass_over(1);
+            } else {
+                return;
+            }
+        }
+    }
+
+    void pass_over_comment() {
+        const std::size_t first_line = line_;
+        int depth = 0;
+        do {
+            if (rest_.empty()) fail(file_, first_line, "the comment that begins here never ends");
+            const bool opens = rest_.starts_with("/*");
+            const bool closes = rest_.starts_with("*/");
+            depth += opens ? 1 : closes ? -1 : 0;
+            pass_over(opens || closes ? 2 : 1);
+        } while (depth > 0);
+    }
+
+    Token text() {
+        std::size_t end = 1;
+        while (end < rest_.size() && rest_[end] != '"') end += rest_[end] == '\\' ? 2 : 1;
+        if (end >= rest_.size()) fail(file_, line_, "the text that begins here never ends");
+        return cut(Token::Kind::Text, end + 1);
+    }
+
+    Token word() {
+        std::size_t end = 1;
+        while (end < rest_.size() && (is_letter(rest_[end]) || is_digit(rest_[end]))) ++end;
+        return cut(Token::Kind::Word, end);
+    }
+
+    // One out of range is not a number: it may stand where nobody asks for it.
+    Token number() {
+        double value = 0.0;
+        const auto [stop, error] =
+            std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
+        Token token = cut(Token::Kind::Number, static_cast<std::size_t>(stop - rest_.data()));
+        token.number = error == std::errc() ? value : std::numeric_limits<double>::quiet_NaN();
+        return token;
+    }
+
+    const std::string& file_;
+    std::string_view rest_;
+    std::size_t line_ = 1;
+};
+
+class Parser {
+  public:
+    Parser(const std::string& file, std::string_view text, const std::string& only)
+        : file_(file), only_(only), lexer_(file, text) {
+        advance();
+    }
+
+    SplineFile read() {
+        while (token_.kind != Token::Kind::End) {
+            const std::size_t line = token_.line;
+            if (take("#")) {
+                if (take("declare") || take("local")) read_declaration();
+            } else if (take("spline")) {
+                if (take("{")) found_.anonymous_lines.push_back(line);
+            } else {
+                advance();
+            }
+        }
+        if (found_.spectra.empty()) fail_for_want_of_spectra();
+        return std::move(found_);
+    }
+
+  private:
+    void advance() { token_ = lexer_.next(); }
+
+    bool take(std::string_view text) {
+        if (token_.kind == Token::Kind::End || token_.text != text) return false;
+        advance();
+        return true;
+    }
+
+    [[noreturn]] void refuse(const std::string& allowed) const {
+        const bool printable = token_.text.size() != 1 ||
+                               std::isprint(static_cast<unsigned char>(token_.text[0])) != 0;
+        const std::string found =
+            token_.kind == Token::Kind::End ? "the end of the file"
+            : printable
+                ? fmt::format("'{}'", token_.text)
+                : fmt::format("the byte 0x{:02X}", static_cast<unsigned char>(token_.text[0]));
+        fail(file_, token_.line, fmt::format("{}: found {}; allowed: {}", where_, found, allowed));
+    }
+
+    [[noreturn]] void fail_for_want_of_spectra() const {
+        const std::string fitting =
+            only_ == "*" ? "" : fmt::format(", with a NAME that fits '{}'", only_);
+        throw InputError(
+            fmt::format("{}: found no spectrum; allowed: #declare NAME = spline {{ ... }} or "
+                        "#declare NAME = array[36] {{ ... }}{}",
+                        file_,
+                        fitting));
+    }
+
+    void read_declaration() {
+        SplineSpectrum spectrum;
+        spectrum.identifier = token_.text;
+        spectrum.line = token_.line;
+        if (token_.kind != Token::Kind::Word) return;
+        advance();
+        if (!take("=")) return;
+        const bool is_spline = take("spline") && take("{");
+        if (!is_spline && !takes_array_head()) return;
+        if (::fnmatch(only_.c_str(), spectrum.identifier.c_str(), 0) != 0) return;
+        where_ = spectrum.identifier;
+        is_spline ? read_spline(spectrum) : read_array(spectrum);
+        add(std::move(spectrum));
+    }
+
+    bool takes_array_head() {
+        return take("array") && take("[") && take(kArraySize) && take("]") && take("{");
+    }
+
+    void read_spline(SplineSpectrum& spectrum) {
+        spectrum.form = kSplineForms.front();
+        while (std::count(kSplineForms.begin(), kSplineForms.end(), token_.text) > 0) {
+            spectrum.form = token_.text;
+            advance();
+        }
+        while (!take("}")) {
+            SplineKnot knot{.line = token_.line};
+            knot.lambda_nm = sum(0);
+            check_wavelength(knot);
+            take(",");
+            knot.value = value();
+            take(",");
+            spectrum.knots.push_back(knot);
+        }
+        sort_knots(spectrum);
+    }
+
+    void read_array(SplineSpectrum& spectrum) {
+        spectrum.form = "array[36]";
+        while (!take("}")) {
+            const auto i = static_cast<double>(spectrum.knots.size());
+            SplineKnot knot{.line = token_.line, .lambda_nm = kArrayFirst_nm + i * kArrayStep_nm};
+            knot.value = value();
+            take(",");
+            spectrum.knots.push_back(knot);
+        }
+        if (fmt::format("{}", spectrum.knots.size()) != kArraySize) {
+            fail(
+                file_,
+                spectrum.line,
+                fmt::format(
+                    "{}: found {} values; allowed: {}", where_, spectrum.knots.size(), kArraySize));
+        }
+    }
+
+    void check_wavelength(const SplineKnot& knot) const {
+        if (kSplineRange.contains(knot.lambda_nm)) return;
+        fail(file_,
+             knot.line,
+             fmt::format("{}: found the wavelength {}; allowed: {} to {}, in nm",
+                         where_,
+                         knot.lambda_nm,
+                         kSplineRange.first_nm,
+                         kSplineRange.last_nm));
+    }
+
+    void sort_knots(SplineSpectrum& spectrum) const {
+        auto& knots = spectrum.knots;
+        if (knots.size() < 2) {
+            fail(file_,
+                 spectrum.line,
+                 fmt::format("{}: found {} knots; a curve needs 2 or more", where_, knots.size()));
+        }
+        std::stable_sort(knots.begin(), knots.end(), [](const auto& a, const auto& b) {
+            return a.lambda_nm < b.lambda_nm;
+        });
+        const auto twice =
+            std::adjacent_find(knots.begin(), knots.end(), [](const auto& a, const auto& b) {
+                return !(a.lambda_nm < b.lambda_nm);
+            });
+        if (twice == knots.end()) return;
+        fail(file_,
+             std::next(twice)->line,
+             fmt::format("{}: found the wavelength {} again, first in line {}; allowed: once",
+                         where_,
+                         twice->lambda_nm,
+                         twice->line));
+    }
+
+    // Two spectra may not go to one file, on disks that know no case either.
+    void add(SplineSpectrum spectrum) {
+        const std::string table = spline_table_name(spectrum.identifier);
+        for (const SplineSpectrum& other : found_.spectra) {
+            if (spline_table_name(other.identifier) != table) continue;
+            fail(file_,
+                 spectrum.line,
+                 fmt::format("{}: found a second spectrum for {}, the first is {} in line {}; "
+                             "allowed: one",
+                             where_,
+                             table,
+                             other.identifier,
+                             other.line));
+        }
+        found_.spectra.push_back(std::move(spectrum));
+    }
+
+    double value() {
+        const std::size_t line = token_.line;
+        if (!take("<")) return finite(sum(0), line);
+        std::vector<double> components;
+        while (!take(">")) {
+            components.push_back(finite(sum(0), line));
+            take(",");
+        }
+        const bool unequal =
+            std::adjacent_find(components.begin(), components.end(), std::not_equal_to<>()) !=
+            components.end();
+        if (unequal || components.size() < 2 || components.size() > kMaxVector) {
+            fail(file_,
+                 line,
+                 fmt::format("{}: found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
+                             where_,
+                             fmt::join(components, ", "),
+                             kMaxVector));
+        }
+        return components.front();
+    }
+
+    [[nodiscard]] double finite(double number, std::size_t line) const {
+        if (std::isfinite(number)) return number;
+        fail(file_, line, fmt::format("{}: found a number out of range; allowed: finite", where_));
+    }
+
+    double sum(int depth) {
+        double result = product(depth);
+        for (;;) {
+            if (take("+")) {
+                result += product(depth);
+            } else if (take("-")) {
+                result -= product(depth);
+            } else {
+                return result;
+            }
+        }
+    }
+
+    double product(int depth) {
+        double result = factor(depth);
+        for (;;) {
+            if (take("*")) {
+                result *= factor(depth);
+            } else if (take("/")) {
+                result /= factor(depth);
+            } else {
+                return result;
+            }
+        }
+    }
+
+    double factor(int depth) {
+        double sign = 1.0;
+        while (token_.text == "-" || token_.text == "+") {
+            if (token_.text == "-") sign = -sign;
+            advance();
+        }
+        if (depth < kMaxDepth && take("(")) {
+            const double result = sum(depth + 1);
+            if (!take(")")) refuse("')'");
+            return sign * result;
+        }
+        if (token_.kind != Token::Kind::Number) {
+            refuse("numbers, vectors of equal numbers, and + - * / ( ) between numbers");
+        }
+        const double result = token_.number;
+        advance();
+        return sign * result;
+    }
+
+    const std::string& file_;
+    const std::string& only_;
+    Lexer lexer_;
+    Token token_;
+    std::string where_;  // the spectrum that is being read
+    SplineFile found_;
+};
+
+bool is_lamp(CurveRole role) {
+    return role == CurveRole::LampSpectrum;
+}
+
+void check_values(const std::string& file, const SplineSpectrum& spectrum, CurveRole role) {
+    for (const SplineKnot& knot : spectrum.knots) {
+        const bool fits = knot.value >= 0.0 && (is_lamp(role) || knot.value <= 1.0);
+        if (fits) continue;
+        fail(file,
+             knot.line,
+             fmt::format("{}: found {} at {} nm; allowed for {}: {}",
+                         spectrum.identifier,
+                         knot.value,
+                         knot.lambda_nm,
+                         role_name(role),
+                         is_lamp(role) ? "0 or more" : "0 to 1"));
+    }
+}
+
+std::string obtained_text(const SplineSpectrum& spectrum) {
+    if (spectrum.form == "array[36]") {
+        return "the values of an array[36], taken to stand at 380 to 730 nm by 10 nm, as in "
+               "SpectralRender";
+    }
+    std::string text = fmt::format("the knots of a {}", spectrum.form);
+    if (!spectrum.is_linear())
+        text += ", here joined by straight lines, which POV-Ray's curve is not";
+    return text;
+}
+
+}  // namespace
+
+SplineFile parse_splines(const std::string& file_name,
+                         std::string_view text,
+                         const std::string& only) {
+    return Parser(file_name, text, only).read();
+}
+
+std::string spline_table_name(const std::string& identifier) {
+    std::string name;
+    for (const char c : identifier) {
+        const auto lower = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (c != '_') {
+            name += lower;
+        } else if (!name.empty()) {  // a name that begins with a dash looks like an option
+            name += '-';
+        }
+    }
+    return name + ".csv";
+}
+
+std::string spline_table(const std::string& file_name,
+                         const SplineSpectrum& spectrum,
+                         CurveRole role) {
+    check_values(file_name, spectrum, role);
+    std::string text = fmt::format("# title: {}\n", spectrum.identifier);
+    text += fmt::format("# source: {}, line {}, #declare {}\n",
+                        std::filesystem::path(file_name).filename().string(),
+                        spectrum.line,
+                        spectrum.identifier);
+    text += fmt::format("# obtained: {}\n", obtained_text(spectrum));
+    text += is_lamp(role) ? "wavelength_nm,relative_power\n" : "wavelength_nm,reflectance\n";
+    for (const SplineKnot& knot : spectrum.knots) {
+        text += fmt::format("{},{}\n", knot.lambda_nm, knot.value);
+    }
+    // The file's name comes from outside and stands in the table.
+    const std::string table_name = spline_table_name(spectrum.identifier);
+    static_cast<void>(curves_of(parse_table(table_name, text), role));
+    return text;
+}
+
+}  // namespace aphotic
