@@ -33,6 +33,28 @@ ExitStatus write_quick_look(const Options& options) {
     return kDone;
 }
 
+// Plain povray runs in the scene's folder: paths from there, so that both may be carried elsewhere.
+void print_own_scene(const SceneSet& scenes, const Manifest& manifest, const std::string& folder) {
+    const std::filesystem::path home = scenes.scene_file.parent_path();
+    const std::string here = std::filesystem::relative(folder, home).generic_string();
+    fmt::print(
+        "{}: {} for {} of {} in {}/povray\n"
+        "Render them in the scene's folder, for example with\n"
+        "  (cd {} && for scene in {}/povray/band_*.pov; do povray {}/povray/render.ini +I$scene; "
+        "done)\n"
+        "and then say\n"
+        "  aphotic integrate {}\n",
+        manifest.rig_title,
+        counted(manifest.frames.size(), "frame"),
+        counted(manifest.wavelengths.size(), "wavelength"),
+        scenes.scene_file.filename().string(),
+        folder,
+        home.string(),
+        here,
+        here,
+        folder);
+}
+
 ExitStatus generate_scenes(const Options& options) {
     if (!options.quick_look.empty()) return write_quick_look(options);
     if (options.folder.empty()) {
@@ -47,6 +69,10 @@ ExitStatus generate_scenes(const Options& options) {
             json["scenes"].push_back(scene_path(options.folder, frame).string());
         }
         fmt::print("{}\n", json.dump(2));
+        return kDone;
+    }
+    if (!scenes.scene_file.empty()) {
+        print_own_scene(scenes, manifest, options.folder);
         return kDone;
     }
     fmt::print(

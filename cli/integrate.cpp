@@ -39,7 +39,12 @@ fs::path images_folder(const Options& options) {
 Manifest manifest_of(const Options& options) {
     Manifest manifest = read_manifest(options.folder);
     if (options.rig_file.empty()) return manifest;
-    const Rig rig = read_rig(options.rig_file);
+    Rig rig = read_rig(options.rig_file);
+    if (manifest.scene) {
+        UserScene scene;
+        scene.materials = scene_materials(manifest.scene->materials, rig, manifest.scene->file);
+        rig = rig_of_scene(std::move(rig), scene);
+    }
     try {
         return reintegrate(rig, manifest, options.tolerance);
     } catch (const InputError& error) {

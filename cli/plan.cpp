@@ -143,6 +143,14 @@ void print_for_people(const PlannedRender& planned, const Manifest& manifest) {
                counted(manifest.frames.size(), "frame"),
                plan.tolerance > 0.0 ? fmt::format("fitted to a tolerance of {}", plan.tolerance)
                                     : manifest.method);
+    if (const UserScene* scene = plan.scene.user_scene.get()) {
+        std::vector<std::string> names;
+        for (const NamedSpectrum& material : scene->materials) names.push_back(material.name);
+        fmt::print(
+            "The scene {} uses {}; its paths were measured on it\n",
+            scene->file.string(),
+            names.empty() ? "no spectrum by name" : fmt::format("{}", fmt::join(names, ", ")));
+    }
     fmt::print("{} of light, on paths of {:.3g} to {:.3g} m from lamp to floor to camera\n\n",
                counted(plan.family.sources.size(), "kind"),
                plan.family.shortest_path_m,

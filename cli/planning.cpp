@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/planning.h"
 
+#include "cli/progress.h"
+#include "plugin/scene_survey.h"
 #include "scene_gen/rig_reader.h"
 #include "spectral/error.h"
 
 #include <fmt/format.h>
+
+#include <memory>
+#include <thread>
 
 namespace aphotic::cli {
 namespace {
@@ -18,6 +23,7 @@ PlanRequest request_of(const PlanningOptions& options) {
                         .scene = {.wavelengths_per_frame = options.per_frame,
                                   .pixel_shift = options.pixel_shift,
                                   .emitter_lamps = std::nullopt}};
+    request.scene.antialias = options.antialias;
     if (options.fitted > 0) request.fitted = options.fitted;
     if (options.bands > 0) request.bands = options.bands;
     if (!options.paths_m.empty()) {
@@ -42,6 +48,20 @@ auto naming_the_file(const PlanningOptions& options, Function function) {
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
     }
+}
+
+std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions& options) {
+    const std::filesystem::path scene =
+        options.scene.empty() ? rig.scene : std::filesystem::path(options.scene);
+    if (!options.renders || scene.empty()) return nullptr;
+    ProgressLine line;
+    return std::make_shared<const UserScene>(survey_scene(
+        find_povray(options.povray),
+        rig,
+        scene,
+        {.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
+         .library_paths = options.library_paths,
+         .progress = [&](double share) { line.show("looking at the scene", share); }}));
 }
 
 }  // namespace
@@ -88,8 +108,28 @@ void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
 
 void add_planning_options(CLI::App& app, PlanningOptions& options) {
     constexpr int kMostLamps = 64;
+    constexpr int kMostAntialias = 9;
     constexpr double kMostShift_px = 100.0;
     add_wavelength_options(app, options);
+    options.renders = true;
+    app.add_option("--scene",
+                   options.scene,
+                   "a POV-Ray scene of your own that includes aphotic.inc, instead of the rig's "
+                   "bare floor; by default what the rig's `scene` names")
+        ->type_name("FILE.pov");
+    app.add_option(
+           "--library-path",
+           options.library_paths,
+           "where that scene's includes are, beside its own folder and what povray.ini says")
+        ->type_name("DIR");
+    app.add_option("--antialias",
+                   options.antialias,
+                   "so many by so many further rays to each pixel: edges are smooth, and no longer "
+                   "those that the reference traces; costs their number in time")
+        ->check(CLI::Range(0, kMostAntialias));
+    app.add_option(
+           "--povray", options.povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
+        ->type_name("PROGRAM");
     app.add_option("--per-frame",
                    options.per_frame,
                    "wavelengths that share a frame at most, one a channel")
@@ -113,7 +153,8 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
 
 PlannedRender plan_rig(const PlanningOptions& options) {
     Rig rig = read_rig(options.rig_file);
-    const PlanRequest request = request_of(options);
+    PlanRequest request = request_of(options);
+    request.scene.user_scene = surveyed(rig, options);
     RenderPlan plan = naming_the_file(options, [&] { return plan_render(rig, request); });
     return {.rig = std::move(rig), .plan = std::move(plan)};
 }

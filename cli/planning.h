@@ -24,9 +24,14 @@ struct PlanningOptions {
     int per_frame = 3;
     double pixel_shift = kPixelShift;
     std::vector<int> emitter_lamps;
+    bool renders = false;  // otherwise a scene that the rig names is left alone
+    std::string scene;
+    std::vector<std::string> library_paths;
+    int antialias = 0;
+    std::string povray;
 };
 
-// The rig and its wavelengths.
+// The rig and its wavelengths, without POV-Ray.
 void add_wavelength_options(CLI::App& app, PlanningOptions& options);
 
 // These, and how POV-Ray is to render them.
@@ -37,7 +42,8 @@ struct PlannedRender {
     RenderPlan plan;
 };
 
-// Reads the rig and plans. Messages name the rig's file.
+// Reads the rig, surveys the user's own scene where there is one, and plans. Messages name the
+// rig's file.
 [[nodiscard]] PlannedRender plan_rig(const PlanningOptions& options);
 
 // The scenes of the plan.

@@ -19,7 +19,6 @@ namespace {
 struct Options {
     PlanningOptions planning;
     std::string folder;
-    std::string povray;
     int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     PreviewOptions preview;
     bool json = false;
@@ -28,10 +27,13 @@ struct Options {
 ExitStatus render_rig(const Options& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const SceneSet scenes = scenes_of(planned, options.planning);
-    const PovRay povray = find_povray(options.povray);
+    const PovRay povray = find_povray(options.planning.povray);
 
-    const RenderedFrames frames =
-        render_frames(povray, options.folder, scenes, {.jobs = options.jobs, .report = {}});
+    const RenderedFrames frames = render_frames(
+        povray,
+        options.folder,
+        scenes,
+        {.jobs = options.jobs, .report = {}, .library_paths = options.planning.library_paths});
     const RenderResult& result = frames.result;
 
     auto outcome =
@@ -68,9 +70,6 @@ Action configure_render(CLI::App& app) {
     app.add_option("--jobs", options->jobs, "frames at a time; by default the cores")
         ->check(CLI::Range(1, kMostJobs))
         ->capture_default_str();
-    app.add_option(
-           "--povray", options->povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
-        ->type_name("PROGRAM");
     add_preview_options(app, options->preview);
     app.add_flag("--json", options->json, "say what was done as JSON");
     return [options] { return render_rig(*options); };

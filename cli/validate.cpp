@@ -29,7 +29,6 @@ struct Options {
     PlanningOptions planning;
     std::string folder;
     std::string rendered_folder;
-    std::string povray;
     int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     bool json = false;
 };
@@ -85,7 +84,10 @@ struct Rendering {
 
 Rendering render_here(const Options& options, const SceneSet& scenes) {
     const RenderedFrames frames = render_frames(
-        find_povray(options.povray), options.folder, scenes, {.jobs = options.jobs, .report = {}});
+        find_povray(options.planning.povray),
+        options.folder,
+        scenes,
+        {.jobs = options.jobs, .report = {}, .library_paths = options.planning.library_paths});
     Rendering rendering{.manifest = frames.result.manifest, .render_s = frames.povray_s};
     const auto outcome = integrate_folder(options.folder, rendering.manifest, {}, options.folder);
     rendering.integrate_s = outcome["integration_s"].get<double>();
@@ -202,9 +204,6 @@ Action configure_validate(CLI::App& app) {
     app.add_option("--jobs", options->jobs, "frames and threads at a time; by default the cores")
         ->check(CLI::Range(1, kMostJobs))
         ->capture_default_str();
-    app.add_option(
-           "--povray", options->povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
-        ->type_name("PROGRAM");
     app.add_flag("--json", options->json, "print validation.json");
     app.footer("Exit status 0 when every wavelength and channel is within its bound, 1 when not.");
     return [options] { return validate_rig(*options); };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/frame_runner.h"
 
+#include "plugin/library_paths.h"
+#include "plugin/povray_log.h"
 #include "plugin/process.h"
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
@@ -37,26 +39,52 @@ fs::path part_path(const fs::path& folder, const ManifestFrame& frame) {
     return folder / "povray" / "frames" / (frame.name + ".part.exr");
 }
 
+// A scene of the user's own is read in its folder, with the includes that it would find there.
+ProcessRequest in_scene_folder(ProcessRequest request,
+                               const PovRay& povray,
+                               const ManifestFrame& frame,
+                               const fs::path& part,
+                               const RunOptions& options) {
+    const fs::path work = request.folder;
+    const auto quoted = [](const std::string& option, const fs::path& path) {
+        return fmt::format("{}\"{}\"", option, path.string());
+    };
+    request.arguments[0] = quoted("+I", work / (frame.name + ".pov"));
+    request.arguments[1] = quoted("+O", work / "frames" / part.filename());
+    request.arguments.push_back(quoted("+L", work));
+    for (const std::string& path : options.library_paths) {
+        request.arguments.push_back(quoted("+L", fs::absolute(path)));
+    }
+    for (const std::string& path : library_paths(options.scene_folder, povray.version)) {
+        request.arguments.push_back(quoted("+L", path));
+    }
+    request.environment.erase("POVINC");
+    request.folder = options.scene_folder;
+    return request;
+}
+
 Running start(const PovRay& povray,
               const fs::path& folder,
               const ManifestFrame& frame,
-              int threads) {
+              int threads,
+              const RunOptions& options) {
     const fs::path work = fs::absolute(folder / "povray");
     const fs::path log = fs::absolute(log_path(folder, frame));
     const fs::path part = part_path(folder, frame);
     std::error_code ignored;
     fs::remove(part, ignored);
-    return {.frame = frame,
-            .log = log,
-            .part = part,
-            .process = Process(
-                {.executable = povray.executable,
-                 .arguments = {fmt::format("+I{}.pov", frame.name),
-                               fmt::format("+Oframes/{}", part.filename().string()),
-                               fmt::format("+WT{}", threads)},
-                 .folder = work,
-                 .environment = {{"POVINI", (work / "render.ini").string()}, {"POVINC", ""}},
-                 .log = log})};
+    ProcessRequest request{
+        .executable = povray.executable,
+        .arguments = {fmt::format("+I{}.pov", frame.name),
+                      fmt::format("+Oframes/{}", part.filename().string()),
+                      fmt::format("+WT{}", threads)},
+        .folder = work,
+        .environment = {{"POVINI", (work / "render.ini").string()}, {"POVINC", ""}},
+        .log = log};
+    if (!options.scene_folder.empty()) {
+        request = in_scene_folder(std::move(request), povray, frame, part, options);
+    }
+    return {.frame = frame, .log = log, .part = part, .process = Process(request)};
 }
 
 // The last share of a frame that POV-Ray reported, from the end of its log.
@@ -108,30 +136,6 @@ void take_in(const Running& run,
 
 }  // namespace
 
-std::string error_in_log(const std::string& log) {
-    // POV-Ray wraps at 80 columns and indents what goes on with one blank.
-    std::istringstream lines(log);
-    std::vector<std::string> statements;
-    for (std::string line; std::getline(lines, line);) {
-        line = line.substr(line.rfind('\r') + 1);  // progress overwrites itself
-        if (line.starts_with(' ') && !line.starts_with("  ") && !statements.empty()) {
-            statements.back() += line;
-        } else {
-            statements.push_back(line);
-        }
-    }
-    std::string said;
-    for (const std::string& statement : statements) {
-        if (statement.find("rror") == std::string::npos &&
-            statement.find("Problem with option") == std::string::npos) {
-            continue;
-        }
-        if (!said.empty()) said += '\n';
-        said += statement;
-    }
-    return said;
-}
-
 void run_frames(const PovRay& povray,
                 const fs::path& folder,
                 const std::vector<ManifestFrame>& frames,
@@ -151,7 +155,7 @@ void run_frames(const PovRay& povray,
     auto next_report = std::chrono::steady_clock::now();
     while (done < frames.size()) {
         while (running.size() < slots && started < frames.size()) {
-            running.push_back(start(povray, folder, frames[started++], threads));
+            running.push_back(start(povray, folder, frames[started++], threads, options));
         }
         for (auto run = running.begin(); run != running.end();) {
             const auto end = run->process.poll();
@@ -163,7 +167,7 @@ void run_frames(const PovRay& povray,
             run = running.erase(run);
             // Start the next one first: the cores need not wait for the check.
             if (started < frames.size()) {
-                running.push_back(start(povray, folder, frames[started++], threads));
+                running.push_back(start(povray, folder, frames[started++], threads, options));
             }
             take_in(ended, *end, folder, width_px, height_px, options);
             arrived(ended.frame);

@@ -2,10 +2,10 @@
 //
 // Runs POV-Ray on the scenes of a folder, several at a time.
 //
-// POV-Ray runs inside DIR/povray, so that its restrictions on files never bite, with our
-// render.ini as its only settings file. Each frame is rendered beside its place, checked
-// (spectral/frame_check.h) and then renamed into it. POV-Ray's own words go to
-// DIR/povray/logs/NAME.log.
+// POV-Ray runs inside DIR/povray, so that its restrictions on files never bite, or in the folder of
+// the user's own scene, so that it finds what that includes; with our render.ini as its only
+// settings file. Each frame is rendered beside its place, checked (spectral/frame_check.h) and then
+// renamed into it. POV-Ray's own words go to DIR/povray/logs/NAME.log.
 //
 // Frames are files, not an animation of one scene: a process costs 0.45 s more than a further
 // frame of an animation, half of it asleep, against seconds for a frame of useful size; and a
@@ -35,6 +35,10 @@ struct RunOptions {
     // Called with the name of each image before it is checked: for scenes whose settings ask
     // POV-Ray for another format than EXR, makes the EXR of what stands beside it.
     std::function<void(const std::filesystem::path&)> convert{};
+    // For a scene of the user's own: its folder, in which POV-Ray runs, and where it looks for
+    // includes beside the user's own library_paths.
+    std::filesystem::path scene_folder{};
+    std::vector<std::string> library_paths{};
 };
 
 // Renders the frames, and calls `arrived` for each when its image stands checked in its place,
@@ -47,8 +51,5 @@ void run_frames(const PovRay& povray,
                 int height_px,
                 const RunOptions& options,
                 const std::function<void(const ManifestFrame&)>& arrived);
-
-// What POV-Ray says went wrong, from its log: the error with its file and line, unwrapped.
-[[nodiscard]] std::string error_in_log(const std::string& log);
 
 }  // namespace aphotic

@@ -2,6 +2,7 @@
 #include "plugin/povray.h"
 
 #include "plugin/process.h"
+#include "plugin/scratch_folder.h"
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
 
@@ -45,29 +46,6 @@ fs::path find_executable(const std::string& named) {
     }
     return located("povray", "looked for on PATH");
 }
-
-// A folder of our own for the length of the probe.
-class ScratchFolder {
-  public:
-    ScratchFolder() {
-        std::string pattern = (fs::temp_directory_path() / "aphotic-XXXXXX").string();
-        if (::mkdtemp(pattern.data()) == nullptr) {
-            throw RunError(fmt::format("{}: no temporary folder can be made", pattern));
-        }
-        path_ = pattern;
-    }
-    ~ScratchFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-    [[nodiscard]] const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
 
 }  // namespace
 

@@ -97,12 +97,14 @@ RenderResult render(const PovRay& povray,
     write_scenes(folder, set);
     write_manifest(folder, result.manifest);
 
+    RunOptions run = options;
+    run.scene_folder = set.scene_file.parent_path();
     run_frames(povray,
                folder,
                missing,
                set.manifest.width_px,
                set.manifest.height_px,
-               options,
+               run,
                [&](const ManifestFrame& frame) {
                    for (ManifestFrame& noted : result.manifest.frames) {
                        if (noted.name != frame.name) continue;

@@ -257,21 +257,28 @@ std::string header_of(const Rig& rig, const FrameScene& scene, const SceneOption
                scene.name);
 }
 
+// own_scene: the user's, by name; none: the rig's floor.
+std::string body_sdl(const Band& band,
+                     const Parts& parts,
+                     const SceneOptions& options,
+                     const std::string& own_scene) {
+    std::string sdl = band_sdl(band);
+    sdl += fmt::format("#declare Aphotic_Fade_Distance = {};\n", sdl_number(parts.fade_m));
+    if (!options.omit) sdl += "#declare Aphotic_Everything = true;\n";
+    sdl += "#include \"aphotic.inc\"\n\n" + parts.rig + "\n";
+    sdl += own_scene.empty() ? "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"
+                             : fmt::format("#include {}\n", sdl_text(own_scene));
+    return sdl + "Aphotic_End ()\n";
+}
+
 std::string scene_sdl(const Rig& rig,
                       const Parts& parts,
                       const FrameScene& scene,
                       const SceneOptions& options) {
-    std::string sdl = header_of(rig, scene, options);
-    sdl += "\n#version 3.7;\n" + band_sdl(band_of(rig, parts, scene));
-    sdl += fmt::format("#declare Aphotic_Fade_Distance = {};\n", sdl_number(parts.fade_m));
-    if (!options.omit) sdl += "#declare Aphotic_Everything = true;\n";
-    sdl += "#include \"aphotic.inc\"\n\n" + parts.rig + "\n";
-    if (options.user_scene) {
-        sdl += fmt::format("#include {}\n", sdl_text(options.user_scene->file.filename().string()));
-    } else {
-        sdl += "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n";
-    }
-    return sdl + "Aphotic_End ()\n";
+    const std::string own =
+        options.user_scene ? options.user_scene->file.filename().string() : std::string();
+    return header_of(rig, scene, options) + "\n#version 3.7;\n" +
+           body_sdl(band_of(rig, parts, scene), parts, options, own);
 }
 
 Parts parts_of(const Rig& rig, const SceneOptions& options) {
@@ -326,6 +333,25 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
         scenes.push_back(std::move(scene));
     }
     return scenes;
+}
+
+std::string survey_sdl(const Rig& rig, const std::string& scene_name, const SurveyFrame& frame) {
+    SceneOptions options;
+    options.emitter_lamps = LampGrid{.across = 1, .along = 1};
+    options.user_scene = std::make_shared<UserScene>();
+    const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
+    const Parts parts = parts_of(rig, options);
+    Band band =
+        band_of(rig,
+                parts,
+                {.name = "", .wavelengths = {{middle_nm, 0}}, .index_nm = middle_nm, .sdl = ""});
+    band.exposure.fill(std::ldexp(1.0, frame.exposure_log2));
+    band.attenuation_per_m = {0.0, frame.attenuation_per_m, -frame.attenuation_per_m};
+    std::string sdl = "#version 3.7;\n#declare Aphotic_Probe = true;\n";
+    if (frame.only_strobe > 0) {
+        sdl += fmt::format("#declare Aphotic_Only_Strobe = {};\n", frame.only_strobe);
+    }
+    return sdl + body_sdl(band, parts, options, scene_name);
 }
 
 namespace {

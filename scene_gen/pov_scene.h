@@ -67,6 +67,17 @@ struct SceneOptions {
                                                   std::span<const double> lambda_nm,
                                                   const SceneOptions& options = {});
 
+// A frame by which a scene is measured (plugin/scene_survey.h): everything white, all lamps alike,
+// losses of 0, K and -K in its channels.
+struct SurveyFrame {
+    double attenuation_per_m = 0.0;  // K
+    int exposure_log2 = 0;
+    int only_strobe = 0;  // counted from 1; 0: all
+};
+[[nodiscard]] std::string survey_sdl(const Rig& rig,
+                                     const std::string& scene_name,
+                                     const SurveyFrame& frame);
+
 // The settings under which every scene of the rig renders, as a POV-Ray INI file.
 [[nodiscard]] std::string render_ini(const Rig& rig, const SceneOptions& options = {});
 

@@ -164,8 +164,12 @@ std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOption
 
 Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolerance) {
     require_same_geometry(changed, manifest);
-    const LightFamily family =
+    LightFamily family =
         light_family_by_strobe(covering_frames(with_lit_strobes_only(changed), manifest));
+    if (manifest.scene) {
+        family.shortest_path_m = manifest.scene->shortest_path_m;
+        family.longest_path_m = manifest.scene->longest_path_m;
+    }
     const RuleFitter fitter(changed.camera.sensor, family, changed.camera.range);
     const std::vector<FrameLight> frames = light_in(manifest, changed, family);
     const FittedRule rule = fitter.fit(frames, manifest.frame_error);

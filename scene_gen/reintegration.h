@@ -23,6 +23,8 @@ namespace aphotic {
 [[nodiscard]] std::map<std::string, std::string> geometry_of(const Rig& rig,
                                                              const SceneOptions& options);
 
+// For frames of a user's scene `changed` is what rig_of_scene makes of the changed rig.
+//
 // The manifest with the weights, promises and names of the changed rig. Throws InputError when the
 // geometry differs, naming what; and when the promise is over the tolerance, naming the
 // wavelengths whose frames are lacking.

@@ -16,6 +16,7 @@
 
 #include <Eigen/Core>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -95,6 +96,7 @@ struct Rig {
     Seafloor seafloor;
     std::vector<Strobe> strobes;
     std::vector<Spectrum> materials{};  // reflectances that the scene uses beside the floor's
+    std::filesystem::path scene{};      // a POV-Ray scene of the user's own; none: the bare floor
     std::string digest;  // SHA-256 of the rig file and of the user's tables that it names
 };
 

@@ -534,6 +534,8 @@ Rig RigReader::read(Section top) {
         }
     }
     std::vector<Spectrum> materials = read_materials(top);
+    fs::path scene;
+    if (top.has("scene")) scene = folder_ / top.text("scene", "a POV-Ray scene beside the rig");
     top.refuse_unknown_keys();
 
     Rig rig{.title = std::move(title),
@@ -543,6 +545,7 @@ Rig RigReader::read(Section top) {
             .seafloor = std::move(seafloor),
             .strobes = std::move(strobes),
             .materials = std::move(materials),
+            .scene = std::move(scene),
             .digest = sha256_of_text(digested_)};
     const Section camera_section = top.section("camera", "a table [camera]");
     (void)camera_section.at_key("range_nm", [&] {

@@ -38,6 +38,16 @@ std::string method_name(PlanMethod method) {
     return "";
 }
 
+ManifestScene noted(const UserScene& scene, const LightFamily& family) {
+    ManifestScene note{.file = scene.file.string(),
+                       .sha256 = scene.digest,
+                       .materials = {},
+                       .shortest_path_m = family.shortest_path_m,
+                       .longest_path_m = family.longest_path_m};
+    for (const NamedSpectrum& material : scene.materials) note.materials.push_back(material.name);
+    return note;
+}
+
 // What a frame knows of light at a wavelength, for later weights (reintegration.h).
 void note_light(const Rig& rig, ManifestWavelength& w) {
     w.attenuation_per_m = rig.water.attenuation_per_m(w.lambda_nm);
@@ -77,7 +87,8 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.rig_sha256 = rig.digest;
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
-    manifest.geometry = geometry_of(rig, plan.scene);
+    manifest.geometry = geometry_of(lit, plan.scene);
+    if (own != nullptr) manifest.scene = noted(*own, plan.family);
     manifest.method = method_name(plan.method);
     manifest.tolerance = plan.tolerance;
     manifest.frame_error = plan.frame_error;

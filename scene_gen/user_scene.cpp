@@ -1,11 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/user_scene.h"
 
+#include "spectral/atomic_file.h"
+#include "spectral/builtin.h"
+#include "spectral/digest.h"
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
+#include <regex>
+#include <set>
 
 namespace aphotic {
+
+namespace fs = std::filesystem;
 
 double UserScene::brightest_radiance(const Rig& rig, double lambda_nm) const {
     double flux = 0.0;
@@ -31,6 +45,64 @@ PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels) {
         }
     }
     return range.longest_m > 0.0 ? range : PathRange{};
+}
+
+namespace {
+
+std::optional<Spectrum> of_the_rig(const std::string& name, const Rig& rig) {
+    if (short_name(rig.seafloor.reflectance) == name) return rig.seafloor.reflectance;
+    for (const Spectrum& material : rig.materials) {
+        if (short_name(material) == name) return material;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
+                                           const Rig& rig,
+                                           const fs::path& scene_file) {
+    std::vector<NamedSpectrum> materials;
+    for (const std::string& name : names) {
+        try {
+            std::optional<Spectrum> spectrum = of_the_rig(name, rig);
+            if (!spectrum) {
+                spectrum = load_curve(name, CurveRole::Reflectance, scene_file.parent_path());
+            }
+            const Spectrum* curve = &*spectrum;
+            require_cover({&curve, 1}, rig.camera.range);
+            materials.push_back({.name = name, .spectrum = std::move(*spectrum)});
+        } catch (const InputError& error) {
+            throw InputError(fmt::format(
+                "{}: Aphotic_Pigment (\"{}\"): {}", scene_file.string(), name, error.what()));
+        }
+    }
+    return materials;
+}
+
+std::string digest_of_scene(const fs::path& scene_file) {
+    static const std::regex kQuoted(R"re("([^"\n]+)")re");
+    constexpr std::array kLanguage{".pov", ".inc", ".mac", ".mcr"};
+    std::set<fs::path> seen;
+    std::vector<fs::path> open{fs::absolute(scene_file).lexically_normal()};
+    const fs::path folder = open.front().parent_path();
+    std::map<std::string, std::string> digests;  // in an order that no listing changes
+    while (!open.empty()) {
+        const fs::path file = open.back();
+        open.pop_back();
+        if (!seen.insert(file).second) continue;
+        digests[file.lexically_relative(folder).generic_string()] = sha256_of_file(file);
+        if (std::ranges::find(kLanguage, file.extension().string()) == kLanguage.end()) continue;
+        const std::string text = read_text_file(file);
+        for (std::sregex_iterator at(text.begin(), text.end(), kQuoted), end; at != end; ++at) {
+            const fs::path named = (folder / (*at)[1].str()).lexically_normal();
+            std::error_code ignored;
+            if (fs::is_regular_file(named, ignored)) open.push_back(named);
+        }
+    }
+    std::string all;
+    for (const auto& [name, digest] : digests) all += name + ' ' + digest + '\n';
+    return sha256_of_text(all);
 }
 
 Rig rig_of_scene(Rig rig, const UserScene& scene) {

@@ -18,6 +18,7 @@
 #include "scene_gen/rig.h"
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,18 @@ inline constexpr double kSurveyRoom = 1.05;
 
 // Of what the pixels show, with kSurveyRoom; both zero when nothing is lit.
 [[nodiscard]] PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels);
+
+// The spectra by the names that the scene gives them: of the rig's floor or materials, built-in, or
+// in a CSV file beside the scene. Throws InputError for a name that is none, or a table that does
+// not cover the rig's range.
+[[nodiscard]] std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
+                                                         const Rig& rig,
+                                                         const std::filesystem::path& scene_file);
+
+// SHA-256 of the scene and of every file that it, or a file so found, names in quotes and that is
+// there, beside the scene: its includes, pictures and meshes. Names that the scene puts together
+// are not seen.
+[[nodiscard]] std::string digest_of_scene(const std::filesystem::path& scene_file);
 
 // The rig with the scene's materials in place of its floor, and white, for what has a colour or a
 // highlight of POV-Ray's own.

@@ -81,6 +81,23 @@ class Reader {
         return value.get<std::map<std::string, std::string>>();
     }
 
+    [[nodiscard]] bool has(const std::string& key) const { return object_.contains(key); }
+
+    [[nodiscard]] Reader object(const std::string& key) const {
+        const Json& value = at(key, "an object");
+        if (!value.is_object()) fail(key, "an object");
+        return {value, fmt::format("{}: {}", where_, key)};
+    }
+
+    [[nodiscard]] std::vector<std::string> list_of_texts(const std::string& key) const {
+        const Json& value = at(key, "a list of texts");
+        const auto is_text = [](const Json& item) { return item.is_string(); };
+        if (!value.is_array() || !std::all_of(value.begin(), value.end(), is_text)) {
+            fail(key, "a list of texts");
+        }
+        return value.get<std::vector<std::string>>();
+    }
+
     [[nodiscard]] std::vector<Reader> objects(const std::string& key) const {
         const Json& value = at(key, "a list of objects");
         if (!value.is_array()) fail(key, "a list of objects");
@@ -128,6 +145,19 @@ ManifestFrame frame_of(const Reader& reader) {
     if (state == "done") frame.image_sha256 = reader.text("image_sha256");
     if (state == "done" && !frame.done()) reader.fail("image_sha256", "a checksum");
     return frame;
+}
+
+ManifestScene scene_of(const Reader& reader) {
+    ManifestScene scene{.file = reader.text("file"),
+                        .sha256 = reader.text("sha256"),
+                        .materials = reader.list_of_texts("materials"),
+                        .shortest_path_m = reader.number("shortest_path_m"),
+                        .longest_path_m = reader.number("longest_path_m")};
+    if (!(scene.shortest_path_m > 0.0)) reader.fail("shortest_path_m", "a number over 0");
+    if (!(scene.longest_path_m >= scene.shortest_path_m)) {
+        reader.fail("longest_path_m", "a number not under shortest_path_m");
+    }
+    return scene;
 }
 
 ManifestWavelength wavelength_of(const Reader& reader, const Manifest& manifest) {
@@ -208,6 +238,13 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
         json["amplification"].push_back(manifest.quality[c].amplification);
     }
     json["geometry"] = manifest.geometry;
+    if (manifest.scene) {
+        json["scene"] = {{"file", manifest.scene->file},
+                         {"sha256", manifest.scene->sha256},
+                         {"materials", manifest.scene->materials},
+                         {"shortest_path_m", manifest.scene->shortest_path_m},
+                         {"longest_path_m", manifest.scene->longest_path_m}};
+    }
     json["frames"] = Json::array();
     for (const ManifestFrame& frame : manifest.frames) {
         json["frames"].push_back({{"name", frame.name},
@@ -257,6 +294,7 @@ Manifest read_manifest(const fs::path& folder) {
         manifest.quality[c] = {.error = error[c], .amplification = amplification[c]};
     }
     manifest.geometry = reader.texts("geometry");
+    if (reader.has("scene")) manifest.scene = scene_of(reader.object("scene"));
     for (const Reader& frame : reader.objects("frames")) {
         manifest.frames.push_back(frame_of(frame));
         for (std::size_t i = 0; i + 1 < manifest.frames.size(); ++i) {

@@ -21,6 +21,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,15 @@ struct ManifestWavelength {
     std::vector<double> reflectance{};  // of the floor, then of each further material
 };
 
+// A scene of the user's own that the frames show.
+struct ManifestScene {
+    std::string file;
+    std::string sha256;                  // of it and what it includes
+    std::vector<std::string> materials;  // the names that it gives reflectances
+    double shortest_path_m = 0.0;        // of the light that it shows
+    double longest_path_m = 0.0;
+};
+
 struct Manifest {
     std::string aphotic_version;
     std::string povray_version;  // empty: not rendered by us
@@ -66,6 +76,7 @@ struct Manifest {
     double frame_error = 0.0;
     // The rig's geometry in words and numbers: frames serve another rig when it is equal.
     std::map<std::string, std::string> geometry;
+    std::optional<ManifestScene> scene{};         // none: the rig's own floor
     std::vector<ManifestWavelength> wavelengths;  // increasing
     std::vector<ManifestFrame> frames;
 

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Looks at a user's scene before it is planned, by running POV-Ray on it: first to read it, which
+// tells the spectra that it asks aphotic.inc for, then small, once for each strobe, to measure the
+// paths of its light and how bright it is.
+//
+// In such a frame everything is white, all lamps shine alike, and the three channels have the
+// absorption 0, K and -K. So of a pixel that strobe lights over a path l,
+//
+//   red = G,   green = G exp(-K l),   blue = G exp(K l),   l = ln(blue / green) / (2 K)
+//
+// exact for light that a surface reflects once; of several paths at once (mirrors, an emitter's
+// lamps) it is a mean of them.
+#pragma once
+
+#include "plugin/povray.h"
+#include "scene_gen/user_scene.h"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct SurveyOptions {
+    int jobs = 1;
+    std::vector<std::string> library_paths;  // beside the user's own
+    std::function<void(double)> progress{};  // share of the work
+};
+
+// Pixels of a survey along the longer side of the image.
+inline constexpr int kSurveyPixels = 160;
+
+// Throws InputError for a scene that cannot be rendered spectrally, saying what of it: no water in
+// it, lights that are not strobes of aphotic.inc, a lamp that the rig does not have, a spectrum
+// that is not found, nothing lit. Errors of POV-Ray's parser come as it says them, with file and
+// line.
+[[nodiscard]] UserScene survey_scene(const PovRay& povray,
+                                     const Rig& rig,
+                                     const std::filesystem::path& scene_file,
+                                     const SurveyOptions& options);
+
+}  // namespace aphotic
