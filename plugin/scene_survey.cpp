@@ -65,6 +65,7 @@ class Survey {
         scene_.digest = digest_of_scene(scene_.file);
         const Asked asked = read_scene();
         require_ours(asked);
+        has_water_ = asked.has_water;
         const std::vector<std::string> names(asked.reflectances.begin(), asked.reflectances.end());
         scene_.materials = scene_materials(names, rig_, scene_.file);
         measure(asked.strobes);
@@ -104,6 +105,7 @@ class Survey {
     const SurveyOptions& options_;
     ScratchFolder folder_;
     UserScene scene_;
+    bool has_water_ = false;
     double attenuation_per_m_ = 1.0;
     int exposure_log2_ = 0;
 };
@@ -259,6 +261,7 @@ std::vector<UserScene::Lit> Survey::lit_in(const Task& task) const {
     std::vector<float> samples(channels.size() * pixels);
     ExrReader(file_of(task, ".exr")).read_rows(0, task.height_px, channels, samples);
     std::vector<UserScene::Lit> lit(pixels);
+    const double any_path_m = has_water_ ? 0.0 : path_range(rig_).shortest_m;
     for (std::size_t i = 0; i < pixels; ++i) {
         const double bare = samples[i];
         const double dimmed = samples[pixels + i];
@@ -266,8 +269,11 @@ std::vector<UserScene::Lit> Survey::lit_in(const Task& task) const {
         if (!(bare > 0.0) || !std::isfinite(bare)) continue;
         lit[i].radiance_per_flux = std::ldexp(bare, -exposure_log2_);
         const bool is_within = dimmed > 0.0 && std::isfinite(raised) && raised > dimmed;
-        // Beyond what half floats hold, or nothing to tell apart: not a path to plan for.
-        if (is_within) lit[i].path_m = std::log(raised / dimmed) / (2.0 * attenuation_per_m_);
+        // Without water a path has no length that would count: the rig's own stands for it.
+        if (!has_water_) lit[i].path_m = any_path_m;
+        // Beyond what half floats hold: not a path to plan for.
+        if (has_water_ && is_within)
+            lit[i].path_m = std::log(raised / dimmed) / (2.0 * attenuation_per_m_);
     }
     return lit;
 }

@@ -1,0 +1,482 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// plugin/include/aphotic.inc, by real POV-Ray: every macro in a scene, against closed forms; every
+// error provoked.
+#include "scene_gen/quick_look.h"
+#include "scene_gen/rig_reader.h"
+#include "support/povray_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace aphotic {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+// A half float's rounding, and a little for single-precision colours.
+constexpr double kHalfFloatError = 6e-4;
+// Two half floats of nearly equal light.
+constexpr double kTwoHalfFloats = 2.0 * kHalfFloatError;
+
+class AphoticInc : public testing::Test {
+  protected:
+    PovRayRun run(const std::string& sdl, int width_px = 8, int height_px = 8) {
+        return run_povray(folder_.path(), sdl, width_px, height_px);
+    }
+    PovRayRun well(const std::string& sdl, int width_px = 8, int height_px = 8) {
+        PovRayRun result = run(sdl, width_px, height_px);
+        EXPECT_TRUE(result.end.succeeded()) << result.said() << sdl;
+        EXPECT_EQ(result.said(), "") << "nothing is printed when all is well";
+        if (result.samples.empty()) result.samples.resize(3U * 64U);
+        return result;
+    }
+    // One floating-point expression, as POV-Ray evaluates it.
+    double value(const std::string& expression) {
+        const PovRayRun result =
+            run(in_band(odd_band(),
+                        "#debug concat(\"value \", str(" + expression +
+                            ", 0, 15), \"\\n\")\ncamera { location 0 } sphere { 9, 1 }\n"));
+        const std::size_t at = result.said().find("value ");
+        EXPECT_NE(at, std::string::npos) << result.said();
+        return at == std::string::npos ? 0.0 : std::stod(result.said().substr(at + 6));
+    }
+    void expect_equal_images(const PovRayRun& a, const PovRayRun& b, double bound) {
+        ASSERT_EQ(a.samples.size(), b.samples.size());
+        for (std::size_t i = 0; i < a.samples.size(); ++i) {
+            ASSERT_NEAR(a.samples[i], b.samples[i], bound * std::abs(b.samples[i])) << i;
+        }
+        EXPECT_GT(b.at(1, 4, 4), 0.0F);
+    }
+
+    TempFolder folder_;
+};
+
+// A lamp beside the camera at the origin, a plane at distance 2 facing both; one pixel on the axis.
+constexpr const char* kCamera = "Aphotic_Camera (1, 0.01)\n";
+constexpr const char* kFloor =
+    "plane { -z, -2 pigment { Aphotic_Pigment (\"light\") } finish { Aphotic_Finish (0, 40) } }\n";
+
+// --- The closed form ----------------------------------------------------------------------------
+
+// L = Flux P A cos(theta) / (pi d^2) rho cos(i) exp(-K (d + r)) E at the image's middle.
+TEST_F(AphoticInc, AConeInWaterIsTheClosedForm) {
+    const Band band = odd_band();
+    const PovRayRun image = well(in_band(band,
+                                         std::string(kCamera) + "Aphotic_Water ()\n" +
+                                             "Aphotic_Cone (<0.5, 0, 0>, <-0.1, 0, 2>, 40, 0.25, "
+                                             "\"arc\", 3)\n" +
+                                             kFloor + "Aphotic_End ()\n"),
+                                 1,
+                                 1);
+    const double d_m = std::hypot(0.5, 2.0);
+    const double cos_theta = (0.5 * 0.1 + 2.0 * 2.0) / (d_m * std::hypot(0.1, 2.0));
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double nm = band.lambda_nm[c];
+        const double expected = band.lamps[1].spectrum.at(nm) * 3.0 * 0.25 * cos_theta /
+                                (kPi * d_m * d_m) * band.reflectances[0].spectrum.at(nm) *
+                                (2.0 / d_m) * std::exp(-band.attenuation_per_m[c] * (d_m + 2.0)) *
+                                band.exposure[c];
+        EXPECT_NEAR(image.samples[c] / expected, 1.0, kHalfFloatError) << "channel " << c;
+    }
+}
+
+// A highlight adds phong max(0, r.l)^size, whatever the reflectance: here seen in the mirror's
+// direction.
+TEST_F(AphoticInc, AFinishHasPovraysPhong) {
+    const std::string lamp = "Aphotic_Cone (<0, 0, 0.5>, z, 90, 0.25, \"flash\", 1)\n";
+    const std::string floor =
+        "plane { -z, -2 pigment { rgb 0 } finish { Aphotic_Finish (0.3, 12) } }\n";
+    const Band band = odd_band();
+    const PovRayRun image = well(in_band(band, kCamera + lamp + floor), 1, 1);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double expected = band.lamps[0].spectrum.at(band.lambda_nm[c]) * 0.25 * 0.3 /
+                                (kPi * 1.5 * 1.5) * band.exposure[c];
+        EXPECT_NEAR(image.samples[c] / expected, 1.0, kHalfFloatError);
+    }
+}
+
+TEST_F(AphoticInc, AxialIntensityCarriesItsShareOfTheFlux) {
+    constexpr double kDigits = 1e-12;  // of those printed
+    EXPECT_NEAR(value("Aphotic_Axial_Intensity (90, 0.5)"), 0.5 / kPi, kDigits);
+    EXPECT_NEAR(value("Aphotic_Axial_Intensity (30, 1)"), 4.0 / kPi, kDigits);
+}
+
+TEST_F(AphoticInc, ReflectanceIsTheBandsAsAVector) {
+    constexpr double kDigits = 1e-12;
+    const Band band = odd_band();
+    EXPECT_NEAR(value("Aphotic_Reflectance (\"dark\").x"),
+                band.reflectances[1].spectrum.at(450.0),
+                kDigits);
+    EXPECT_NEAR(value("Aphotic_Reflectance (\"dark\").z"),
+                band.reflectances[1].spectrum.at(650.0),
+                kDigits);
+}
+
+// A strobe is its cones, an emitter its lamps, at the centres of the rectangle's cells.
+TEST_F(AphoticInc, AStrobeIsItsConesFromItsLamps) {
+    const std::string before = std::string("Aphotic_Camera (1, 2)\nAphotic_Water ()\n") + kFloor +
+                               "#declare Beam = array[2][2] {{20, 0.3}, {90, 0.7}}\n";
+    const PovRayRun strobe =
+        well(in_band(odd_band(),
+                     before + "Aphotic_Strobe (<0.3, 0.1, 0>, z, Beam, \"flash\", "
+                              "2, <0.2, 0.1, 2, 1>)\n"));
+    std::string cones = before;
+    for (const char* x : {"0.25", "0.35"}) {
+        for (const char* cone :
+             {"20, Aphotic_Axial_Intensity (20, 0.3)", "90, Aphotic_Axial_Intensity (90, 0.7)"}) {
+            cones += fmt::format("Aphotic_Cone (<{}, 0.1, 0>, z, {}, \"flash\", 1)\n", x, cone);
+        }
+    }
+    expect_equal_images(strobe, well(in_band(odd_band(), cones)), kTwoHalfFloats);
+}
+
+TEST_F(AphoticInc, APointStrobeIsAnEmitterOfOneLamp) {
+    const std::string before =
+        std::string("Aphotic_Camera (1, 2)\n") + kFloor + "#declare Beam = array[1][2] {{60, 1}}\n";
+    const std::string strobe = "Aphotic_Strobe (<0.3, 0.1, 0>, <0.1, 0, 1>, Beam, \"flash\", 2, ";
+    expect_equal_images(well(in_band(odd_band(), before + strobe + "0)\n")),
+                        well(in_band(odd_band(), before + strobe + "<0.2, 0.1, 1, 1>)\n")),
+                        0.0);
+}
+
+// --- Places and units ---------------------------------------------------------------------------
+
+const std::string kSledScene =
+    "Aphotic_Camera (1, 1)\nAphotic_Water ()\n"
+    "Aphotic_Cone (<0.5, 0.2, 0>, <-0.2, 0.1, 2>, 50, 0.25, \"flash\", 1)\n";
+
+// The floor through (0, 0, 2) in the sled's frame is a level plane 2 below the camera in a world
+// whose y is up, and a sphere at (0.2, 0.1, 1.9) is one at (0.2, 0.1, 0.1) of it.
+TEST_F(AphoticInc, PlaceTransPutsTheSledIntoAWorldOfAnotherFrame) {
+    const std::string things = "pigment { Aphotic_Pigment (\"light\") } }\n";
+    const PovRayRun sled = well(in_band(
+        odd_band(),
+        kSledScene + "plane { -z, -2 " + things + "sphere { <0.2, 0.1, 1.9>, 0.15 " + things));
+    const PovRayRun world = well(in_band(
+        odd_band(),
+        "#declare Aphotic_Sled = Aphotic_Place_Trans (<0, 2, 0>, <0, 0, 0>, z)\n" + kSledScene +
+            "plane { y, 0 " + things + "sphere { <0.2, 0.1, 0.1>, 0.15 " + things));
+    expect_equal_images(world, sled, kTwoHalfFloats);
+}
+
+TEST_F(AphoticInc, UnitScalesWaterAndLight) {
+    const std::string things = " pigment { Aphotic_Pigment (\"light\") } }\n";
+    const PovRayRun metres = well(in_band(odd_band(), kSledScene + "plane { -z, -2" + things));
+    const PovRayRun centimetres =
+        well(in_band(odd_band(),
+                     "#declare Aphotic_Unit = 0.01;\nAphotic_Camera (1, 1)\nAphotic_Water ()\n"
+                     "Aphotic_Cone (<50, 20, 0>, <-20, 10, 200>, 50, 0.25, \"flash\", 1)\n"
+                     "plane { -z, -200" +
+                         things));
+    expect_equal_images(centimetres, metres, kTwoHalfFloats);
+}
+
+// Straight down, the floor at Altitude along z; with pitch it falls away forward: the top of the
+// image sees it farther off, so darker.
+TEST_F(AphoticInc, TheSeafloorTiltsWithTheSled) {
+    const std::string before =
+        "Aphotic_Camera (1, 0.5)\nAphotic_Cone (<0, 0, 0>, z, 90, 0.25, \"flash\", 1)\n";
+    const PovRayRun level =
+        well(in_band(odd_band(), before + "Aphotic_Seafloor (2, 0, 0, \"light\")\n"));
+    const PovRayRun plane = well(in_band(odd_band(), before + kFloor));
+    expect_equal_images(level, plane, 0.0);
+    const PovRayRun bow_up =
+        well(in_band(odd_band(), before + "Aphotic_Seafloor (2, 20, 0, \"light\")\n"));
+    EXPECT_LT(bow_up.at(1, 4, 0), bow_up.at(1, 4, 7));
+    const PovRayRun starboard_down =
+        well(in_band(odd_band(), before + "Aphotic_Seafloor (2, 0, 20, \"light\")\n"));
+    EXPECT_LT(starboard_down.at(1, 0, 4), starboard_down.at(1, 7, 4));
+}
+
+// The field of view does not depend on the size of the image.
+TEST_F(AphoticInc, TheCameraShowsTheSameFieldAtAnySize) {
+    const std::string scene =
+        "Aphotic_Camera (12, 9)\nAphotic_Cone (0, z, 90, 1, \"flash\", 1)\n"
+        "plane { -z, -2 pigment { checker Aphotic_Pigment (\"light\") "
+        "Aphotic_Pigment (\"dark\") scale 0.375 } }\n";
+    // Nine pixels' centres of one are those of a third of the other's.
+    const PovRayRun coarse = well(in_band(odd_band(), scene), 4, 4);
+    const PovRayRun fine = well(in_band(odd_band(), scene), 12, 12);
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) {
+            EXPECT_EQ(coarse.at(1, column, row), fine.at(1, 3 * column + 1, 3 * row + 1));
+        }
+    }
+}
+
+// Of index 1, a port is not there; in glass and air no water dims.
+TEST_F(AphoticInc, APortHoldsNoWater) {
+    Band band = odd_band();
+    band.water_index = 1.0;
+    band.glasses = {{.name = "air", .index = 1.0}};
+    const std::string cone = "Aphotic_Cone (<1.5, 0, 0>, <-0.7, 0, 1>, 90, 0.25, \"flash\", 1)\n";
+    const std::string before = kCamera + std::string("Aphotic_Water ()\n");
+    const PovRayRun bare = well(in_band(band, before + cone + kFloor), 1, 1);
+    const PovRayRun port =
+        well(in_band(band, before + "Aphotic_Port (0.1, 0.05, \"air\")\n" + cone + kFloor), 1, 1);
+    for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(port.samples[c] / bare.samples[c],
+                    std::exp(band.attenuation_per_m[c] * 0.15),
+                    kTwoHalfFloats);
+    }
+}
+
+// --- Spectra over a surface ---------------------------------------------------------------------
+
+// A mask of two materials is each of them where it says so, to the last bit.
+TEST_F(AphoticInc, AMaskOfTwoMaterialsIsTheTwoRendersPutTogether) {
+    constexpr int kSide = 24;
+    // A plain PGM as mask: columns and rows in a pattern without symmetry.
+    std::string mask = fmt::format("P2\n{} {}\n255\n", kSide, kSide);
+    const auto is_dark = [](int column, int row) { return (column * 5 + row * 3) % 7 < 3; };
+    for (int row = 0; row < kSide; ++row) {
+        for (int column = 0; column < kSide; ++column) mask += is_dark(column, row) ? "255 " : "0 ";
+        mask += "\n";
+    }
+    write_file(folder_.path() / "mask.pgm", mask);
+    const auto scene = [](const std::string& pigment) {
+        return in_band(odd_band(),
+                       "Aphotic_Camera (1, 1)\nAphotic_Water ()\n"
+                       "Aphotic_Cone (<0.5, 0.2, 0>, <-0.2, 0.1, 2>, 50, 0.25, \"flash\", 1)\n"
+                       "plane { -z, -2 pigment { " +
+                           pigment + " } }\n");
+    };
+    // The picture lies over the floor's 2 x 2 that the camera sees.
+    const PovRayRun both =
+        well(scene("image_pattern { pgm \"mask.pgm\" gamma 1.0 once } pigment_map { "
+                   "[0 Aphotic_Pigment (\"light\")] [1 Aphotic_Pigment (\"dark\")] } "
+                   "translate <-0.5, -0.5, 0> scale 2"),
+             kSide,
+             kSide);
+    const PovRayRun light = well(scene("Aphotic_Pigment (\"light\")"), kSide, kSide);
+    const PovRayRun dark = well(scene("Aphotic_Pigment (\"dark\")"), kSide, kSide);
+    for (int row = 0; row < kSide; ++row) {
+        for (int column = 0; column < kSide; ++column) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                const PovRayRun& one = is_dark(column, row) ? dark : light;
+                ASSERT_EQ(both.at(c, column, row), one.at(c, column, row)) << column << ", " << row;
+            }
+        }
+    }
+}
+
+// --- What would spoil ---------------------------------------------------------------------------
+
+TEST_F(AphoticInc, TheSceneCannotBringBackPovraysOwnLight) {
+    const std::string scene = std::string(kCamera) +
+                              "Aphotic_Cone (<0.5, 0, 0>, z, 90, 0.25, \"flash\", 1)\n" +
+                              "plane { -z, -2 pigment { Aphotic_Pigment (\"light\") } "
+                              "finish { ambient 0.5 diffuse 1 } }\n";
+    const PovRayRun plain = well(in_band(odd_band(), scene + "Aphotic_End ()\n"));
+    const PovRayRun spoilt = well(
+        in_band(odd_band(),
+                "global_settings { ambient_light rgb 9 adc_bailout 0.5 }\nbackground { rgb 1 }\n" +
+                    scene + "Aphotic_End ()\n"));
+    expect_equal_images(spoilt, plain, 0.0);
+}
+
+// The first word on gamma counts, and it is the library's: POV-Ray itself says so.
+TEST_F(AphoticInc, AnotherGammaIsIgnoredAloud) {
+    const std::string scene =
+        std::string(kCamera) + "Aphotic_Cone (<0.5, 0, 0>, z, 90, 0.25, \"flash\", 1)\n" + kFloor;
+    const PovRayRun spoilt =
+        run(in_band(odd_band(), "global_settings { assumed_gamma 2.2 }\n" + scene));
+    EXPECT_NE(spoilt.said().find("New instance of assumed_gamma ignored"), std::string::npos);
+    expect_equal_images(spoilt, well(in_band(odd_band(), scene)), 0.0);
+}
+
+TEST_F(AphoticInc, KeepsTheLanguageVersionOfTheScene) {
+    const std::string sdl =
+        "#version 3.6;\n" + band_sdl(odd_band()) +
+        "#include \"aphotic.inc\"\n#include \"aphotic.inc\"\n#debug concat(\"version \", "
+        "str(version, 0, 1), \"\\n\")\ncamera { location 0 } sphere { 9, 1 }\n";
+    EXPECT_NE(run(sdl).said().find("version 3.6"), std::string::npos);
+}
+
+TEST_F(AphoticInc, TellsOfItselfWhenAsked) {
+    const PovRayRun result =
+        run("#version 3.7;\n#declare View_POV_Include_Stack = true;\n"
+            "#include \"aphotic.inc\"\ncamera { location 0 } sphere { 9, 1 }\n");
+    EXPECT_NE(result.said().find("including aphotic.inc"), std::string::npos);
+    EXPECT_NE(result.said().find("including aphotic_quick.inc"), std::string::npos);
+}
+
+// --- The quick look -----------------------------------------------------------------------------
+
+TEST_F(AphoticInc, WithoutABandIsAQuickLookByHabcam) {
+    const std::string begin = "#version 3.7;\n#include \"aphotic.inc\"\n";
+    const std::string floor = "Aphotic_Rig_Seafloor ()\n";
+    const PovRayRun whole = well(begin + "Aphotic_Rig ()\n" + floor);
+    const PovRayRun parts =
+        well(begin + "Aphotic_Rig_Camera ()\nAphotic_Water ()\nAphotic_Rig_Strobes ()\n" + floor);
+    expect_equal_images(parts, whole, 0.0);
+    // For the eye: within 0 and 1, and water takes the red.
+    for (const float sample : whole.samples) {
+        EXPECT_GT(sample, 0.0F);
+        EXPECT_LT(sample, 1.0F);
+    }
+    EXPECT_LT(whole.at(0, 4, 4), whole.at(1, 4, 4));
+    const PovRayRun brighter =
+        well(begin + "#declare Aphotic_Quick_Exposure = 0.5;\nAphotic_Rig ()\n" + floor);
+    EXPECT_NEAR(brighter.at(1, 4, 4) / whole.at(1, 4, 4), 0.5, kTwoHalfFloats);
+}
+
+TEST_F(AphoticInc, AQuickLookShowsAnUnknownSpectrumAsGreyAloud) {
+    const PovRayRun result =
+        run("#version 3.7;\n#include \"aphotic.inc\"\nAphotic_Rig ()\n"
+            "plane { -z, -2 pigment { Aphotic_Pigment (\"rust.csv\") } }\n");
+    EXPECT_TRUE(result.end.succeeded());
+    EXPECT_NE(result.said().find("a quick look shows \"rust.csv\" as grey. It knows: sand"),
+              std::string::npos)
+        << result.said();
+}
+
+// The file in the repository is the generator's.
+TEST(QuickLook, IsWhatTheGeneratorWrites) {
+    const std::string source = APHOTIC_SOURCE_DIR;
+    EXPECT_EQ(read_text_file(source + "/plugin/include/aphotic_quick.inc"),
+              quick_look_sdl(read_rig(source + "/scenes/habcam.toml")))
+        << "write it anew: aphotic generate scenes/habcam.toml --quick-look "
+           "plugin/include/aphotic_quick.inc";
+}
+
+// --- Errors -------------------------------------------------------------------------------------
+
+struct Misuse {
+    const char* name;
+    std::string sdl;      // after the include
+    std::string message;  // in POV-Ray's words
+};
+
+void PrintTo(const Misuse& misuse, std::ostream* out) {
+    *out << misuse.name;
+}
+
+const std::string kBeam = "#declare Beam = array[1][2] {{60, 1}}\n";
+
+const std::vector<Misuse> kMisuses{
+    {"UnknownReflectance",
+     "plane { z, 1 pigment { Aphotic_Pigment (\"sandy\") } }",
+     "Aphotic_Pigment: found \"sandy\"; allowed in this frame: light dark"},
+    {"LongReflectance",
+     "plane { z, 1 pigment { Aphotic_Pigment (\"" + std::string(61, 'x') + "\") } }",
+     "allowed: a name of at most 60 characters"},
+    {"NegativePhong",
+     "plane { z, 1 finish { Aphotic_Finish (-1, 40) } }",
+     "Aphotic_Finish: found Phong -1"},
+    {"NegativePhongSize",
+     "plane { z, 1 finish { Aphotic_Finish (1, -40) } }",
+     "Aphotic_Finish: found Phong_Size -40"},
+    {"WaterTwice", "Aphotic_Water () Aphotic_Water ()", "Aphotic_Water: called twice"},
+    {"WaterInAContainer",
+     "sphere { 0, 9 hollow pigment { rgbt 1 } interior { Aphotic_Water () } }",
+     "in 'interior', background found instead"},
+    {"HalfAngleOfIntensity",
+     "#declare A = Aphotic_Axial_Intensity (91, 1);",
+     "Aphotic_Axial_Intensity: found Half_Angle 91"},
+    {"UnknownLamp",
+     "Aphotic_Cone (0, z, 90, 1, \"sun\", 1)",
+     "Aphotic_Cone: found the lamp \"sun\"; allowed here: flash arc"},
+    {"LongLamp",
+     "Aphotic_Cone (0, z, 90, 1, \"" + std::string(61, 'x') + "\", 1)",
+     "allowed: a name of at most 60 characters"},
+    {"ConeWithoutAxis",
+     "Aphotic_Cone (0, <0, 0, 0>, 90, 1, \"arc\", 1)",
+     "Aphotic_Cone: found an Axis of length 0"},
+    {"ConeTooWide",
+     "Aphotic_Cone (0, z, 90.1, 1, \"arc\", 1)",
+     "Aphotic_Cone: found Half_Angle 90.1"},
+    {"ConeTooNarrow", "Aphotic_Cone (0, z, 0, 1, \"arc\", 1)", "Aphotic_Cone: found Half_Angle 0"},
+    {"NegativeIntensity",
+     "Aphotic_Cone (0, z, 90, -1, \"arc\", 1)",
+     "Aphotic_Cone: found an intensity or Power under 0"},
+    {"NegativePower",
+     "Aphotic_Cone (0, z, 90, 1, \"arc\", -1)",
+     "Aphotic_Cone: found an intensity or Power under 0"},
+    {"StrobeInTheHousing",
+     "Aphotic_Camera (1, 1) Aphotic_Port (0.1, 0.1, \"bk7\")\n"
+     "Aphotic_Cone (<0.1, 0, 0>, z, 90, 1, \"arc\", 1)",
+     "Aphotic_Cone: stands inside the camera's housing"},
+    {"BeamOfOneDimension",
+     "#declare Beam = array[2] {60, 1}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
+     "Aphotic_Strobe: Beam must be an array [n][2]"},
+    {"BeamOfThreeColumns",
+     "#declare Beam = array[1][3] {{60, 1, 2}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
+     "Aphotic_Strobe: Beam must be an array [n][2]"},
+    {"StrobeWithoutAxis",
+     kBeam + "Aphotic_Strobe (0, <0, 0, 0>, Beam, \"arc\", 1, 0)",
+     "Aphotic_Strobe: found an Axis of length 0"},
+    {"EmitterOfHalfALamp",
+     kBeam + "Aphotic_Strobe (0, z, Beam, \"arc\", 1, <1, 1, 2.5, 1>)",
+     "Aphotic_Strobe: Emitter must be 0 or"},
+    {"CameraTwice", "Aphotic_Camera (1, 1) Aphotic_Camera (1, 1)", "Aphotic_Camera: called twice"},
+    {"CameraWithoutWidth",
+     "Aphotic_Camera (1, 0)",
+     "Aphotic_Camera: Focal_Length and Sensor_Width"},
+    {"PortWithoutCamera",
+     "Aphotic_Port (0.1, 0.1, \"bk7\")",
+     "Aphotic_Port: call Aphotic_Camera first"},
+    {"PortAfterStrobes",
+     "Aphotic_Camera (1, 1) Aphotic_Cone (0, z, 90, 1, \"arc\", 1)\n"
+     "Aphotic_Port (0.1, 0.1, \"bk7\")",
+     "Aphotic_Port: call it before the strobes"},
+    {"PortWithoutThickness",
+     "Aphotic_Camera (1, 1) Aphotic_Port (0.1, 0, \"bk7\")",
+     "Aphotic_Port: Distance and Thickness must be over 0"},
+    {"UnknownGlass",
+     "Aphotic_Camera (1, 1) Aphotic_Port (0.1, 0.1, \"bk8\")",
+     "Aphotic_Port: found the glass \"bk8\"; allowed here: bk7"},
+    {"PortThatTheRigDoesNotHave",
+     "#undef Aphotic_Glass_Names\nAphotic_Camera (1, 1) Aphotic_Port (0.1, 0.1, \"bk7\")",
+     "Aphotic_Port: found a port in the scene; allowed: none"},
+    {"PlaceOfNoDirection",
+     "#declare Aphotic_Sled = Aphotic_Place_Trans (0, 0, y)",
+     "Aphotic_Place_Trans: Look_At must differ from Location"},
+    {"SeafloorAboveTheSled",
+     "Aphotic_Seafloor (-1, 0, 0, \"light\")",
+     "Aphotic_Seafloor: found Altitude -1"},
+    {"SeafloorUpright",
+     "Aphotic_Seafloor (1, 90, 0, \"light\")",
+     "Aphotic_Seafloor: Pitch and Roll must be under 90"},
+};
+
+class AphoticIncMisuse : public testing::TestWithParam<Misuse> {};
+
+TEST_P(AphoticIncMisuse, IsNamed) {
+    const TempFolder folder;
+    const PovRayRun result = run_povray(
+        folder.path(), in_band(odd_band(), GetParam().sdl + "\ncamera { location 0 }\n"));
+    EXPECT_EQ(result.end.exit_code, 1);
+    EXPECT_NE(result.said().find(GetParam().message), std::string::npos) << result.said();
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         AphoticIncMisuse,
+                         testing::ValuesIn(kMisuses),
+                         [](const auto& misuse) { return std::string(misuse.param.name); });
+
+// One that is added wants an entry above. Each entry provokes one of its own but for three: too
+// wide and too narrow share theirs, so do intensity and power, and of water in a container POV-Ray
+// itself complains. The frame of another version is below.
+TEST(AphoticIncErrors, AreAllProvoked) {
+    const std::string_view text = include_library().front().text;
+    std::size_t errors = 0;
+    for (auto at = text.find("#error"); at != std::string_view::npos;
+         at = text.find("#error", at + 1)) {
+        ++errors;
+    }
+    EXPECT_EQ(errors, kMisuses.size() - 3 + 1);
+}
+
+TEST_F(AphoticInc, RefusesAFrameOfAnotherVersion) {
+    std::string sdl = in_band(odd_band(), "camera { location 0 }\n");
+    const std::string version = fmt::format("Aphotic_Band_Version = {}", kBandVersion);
+    sdl.replace(sdl.find(version), version.size(), "Aphotic_Band_Version = 99");
+    EXPECT_NE(run(sdl).said().find("the frame was written for 99"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace aphotic

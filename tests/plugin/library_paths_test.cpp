@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plugin/library_paths.h"
+
+#include "support/temp_folder.h"
+
+#include <gtest/gtest.h>
+
+namespace aphotic {
+namespace {
+
+using Paths = std::vector<std::string>;
+
+TEST(LibraryPaths, AreThoseOfAnIniFilesLines) {
+    EXPECT_EQ(
+        library_paths_in("; Library_Path=no\nWidth=3\nLibrary_Path=\"/a b/c\"\n"
+                         "library_path = /d/e ; a comment\n  Library_Path=/f\r\nLibrary_Path=\n"),
+        (Paths{"/a b/c", "/d/e", "/f"}));
+    EXPECT_EQ(library_paths_in(""), Paths{});
+}
+
+// Only the first file found counts: what POVINI names, then the folder's own.
+TEST(LibraryPaths, AreOfTheFileThatPovrayWouldRead) {
+    const TempFolder scene;
+    const TempFolder home;
+    write_file(scene.path() / "povray.ini", "Library_Path=here\n");
+    std::filesystem::create_directories(home.path() / ".povray" / "3.7");
+    write_file(home.path() / ".povray" / "3.7" / "povray.ini", "Library_Path=home\n");
+    write_file(home.path() / "mine.ini", "Library_Path=mine\n");
+    ::setenv("HOME", home.path().c_str(), 1);
+    ::unsetenv("POVINI");
+    EXPECT_EQ(library_paths(scene.path(), "3.7.0.10"), Paths{"here"});
+    std::filesystem::remove(scene.path() / "povray.ini");
+    EXPECT_EQ(library_paths(scene.path(), "3.7.0.10"), Paths{"home"});
+    ::setenv("POVINI", (home.path() / "mine.ini").c_str(), 1);
+    EXPECT_EQ(library_paths(scene.path(), "3.7.0.10"), Paths{"mine"});
+    ::unsetenv("POVINI");
+}
+
+}  // namespace
+}  // namespace aphotic

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is learnt of a user's scene before it is planned, and the scenes that are refused.
+#include "plugin/scene_survey.h"
+
+#include "scene_gen/rig_reader.h"
+#include "spectral/error.h"
+#include "support/temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace aphotic {
+namespace {
+
+// Half floats round the two channels whose ratio tells a path.
+constexpr double kPathError = 2e-3;
+
+Rig habcam() {
+    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    rig.camera.pixel_pitch_m *= 20.0;
+    rig.camera.width_px /= 20;
+    rig.camera.height_px /= 20;
+    return rig;
+}
+
+class SceneSurvey : public testing::Test {
+  protected:
+    UserScene survey(const std::string& scene, const Rig& rig = habcam()) {
+        write_file(folder_.path() / "reef.pov",
+                   "#version 3.7;\n#include \"aphotic.inc\"\n" + scene);
+        return survey_scene(
+            find_povray(""), rig, folder_.path() / "reef.pov", {.jobs = 2, .library_paths = {}});
+    }
+    std::string refusal(const std::string& scene, const Rig& rig = habcam()) {
+        try {
+            static_cast<void>(survey(scene, rig));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "no error";
+    }
+    void expect_refusal(const std::string& message, const std::string& part) {
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+    }
+
+    TempFolder folder_;
+};
+
+// The rig's own floor, whose paths its geometry tells: the survey's are these, with its room.
+TEST_F(SceneSurvey, MeasuresThePathsThatTheRigsOwnFloorHas) {
+    const Rig rig = habcam();
+    const UserScene scene = survey("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n");
+    const PathRange known = path_range(rig);
+    // The corners' pixels lie half a pixel inside the image.
+    constexpr double kHalfPixel = 0.01;
+    EXPECT_NEAR(scene.paths.shortest_m * kSurveyRoom / known.shortest_m, 1.0, kPathError);
+    EXPECT_LE(scene.paths.longest_m / kSurveyRoom, known.longest_m * (1.0 + kPathError));
+    EXPECT_GE(scene.paths.longest_m / kSurveyRoom, known.longest_m * (1.0 - kHalfPixel));
+}
+
+// One strobe at the camera and a plane that faces both: l = 2 d on the axis.
+TEST_F(SceneSurvey, MeasuresBrightnessAndPathInClosedForm) {
+    Rig rig = habcam();
+    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+    const UserScene scene = survey(
+        "Aphotic_Camera (1, 0.01)\nAphotic_Water ()\n"
+        "Aphotic_Cone (0, z, 90, 0.25, \"xenon-flash\", 3)\n"
+        "plane { -z, -1.5 pigment { Aphotic_Pigment (\"sand\") } }\n",
+        rig);
+    ASSERT_EQ(scene.pixels.size(), 68U * 51U);
+    const auto& middle = scene.pixels[68U * 25U + 34U];
+    ASSERT_EQ(middle.size(), 1U);
+    constexpr double kHalfFloatError = 6e-4;
+    EXPECT_NEAR(middle[0].path_m / 3.0, 1.0, kPathError);
+    EXPECT_NEAR(middle[0].radiance_per_flux / (3.0 * 0.25 / (std::numbers::pi * 1.5 * 1.5)),
+                1.0,
+                kHalfFloatError);
+    // Phi G exp(-K l), everything white.
+    const double nm = 550.0;
+    EXPECT_NEAR(scene.brightest_radiance(rig, nm) /
+                    (rig.strobes[0].spectrum.at(nm) * middle[0].radiance_per_flux *
+                     std::exp(-rig.water.attenuation_per_m(nm) * 3.0)),
+                1.0,
+                5.0 * kPathError);
+}
+
+TEST_F(SceneSurvey, FindsTheSpectraWhereverTheyAreAskedFor) {
+    write_file(folder_.path() / "mud.csv", "wavelength_nm,reflectance\n380,0.1\n780,0.3\n");
+    write_file(folder_.path() / "things.inc",
+               "#macro Thing (Name) sphere { <0, 0, 1.9>, 0.1 pigment { Aphotic_Pigment (Name) } } "
+               "#end\n");
+    const UserScene scene = survey(
+        "#include \"things.inc\"\nAphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"
+        "#for (I, 0, 1) Thing (concat(\"green\", \"-algae\")) #end\n"
+        "#if (false) Thing (\"red-algae\") #end\n"
+        "box { <0.2, 0.2, 1.9>, 2.1 pigment { granite pigment_map { "
+        "[0 Aphotic_Pigment (\"mud.csv\")] [1 Aphotic_Pigment (\"sand\")] } } }\n");
+    std::vector<std::string> names;
+    for (const NamedSpectrum& material : scene.materials) names.push_back(material.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"green-algae", "mud.csv", "sand"}));
+    EXPECT_EQ(scene.materials[1].spectrum.at(580.0), 0.2);
+}
+
+// --- Refusals -----------------------------------------------------------------------------------
+
+constexpr const char* kScene = "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n";
+
+TEST_F(SceneSurvey, RefusesLightsThatAreNotOurs) {
+    expect_refusal(refusal(std::string(kScene) + "light_source { <0, 0, -9>, rgb 1 }\n"),
+                   "reef.pov: found 1 light sources that are no strobes of aphotic.inc");
+}
+
+TEST_F(SceneSurvey, RefusesASceneWithoutStrobes) {
+    expect_refusal(refusal("Aphotic_Rig_Camera ()\nAphotic_Water ()\nAphotic_Rig_Seafloor ()\n"),
+                   "found no strobe");
+}
+
+TEST_F(SceneSurvey, RefusesASceneWithoutWater) {
+    const std::string scene =
+        "Aphotic_Rig_Camera ()\nAphotic_Rig_Strobes ()\nAphotic_Rig_Seafloor ()\n";
+    expect_refusal(refusal(scene), "found no water");
+    Rig clear = habcam();
+    clear.water.multiple = 0.0;
+    EXPECT_EQ(refusal(scene, clear), "no error");
+}
+
+TEST_F(SceneSurvey, RefusesASceneWithoutTheRigsPort) {
+    Rig rig = habcam();
+    rig.camera.port =
+        FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+    EXPECT_EQ(refusal(kScene, rig), "no error");
+    expect_refusal(refusal("Aphotic_Camera (1, 1)\nAphotic_Water ()\nAphotic_Rig_Strobes ()\n"
+                           "Aphotic_Rig_Seafloor ()\n",
+                           rig),
+                   "found no port, and the rig has one");
+}
+
+TEST_F(SceneSurvey, RefusesALampThatTheRigDoesNotHave) {
+    expect_refusal(refusal(std::string(kScene) + "Aphotic_Cone (0, z, 90, 1, \"xenon-arc\", 1)\n"),
+                   "found the lamp \"xenon-arc\"; allowed: the spectra of the rig's strobes, "
+                   "\"xenon-flash\"");
+}
+
+TEST_F(SceneSurvey, RefusesASpectrumThatIsNotThere) {
+    const std::string ball = "sphere { <0, 0, 1.9>, 0.1 pigment { Aphotic_Pigment (\"";
+    expect_refusal(refusal(kScene + ball + "snad\") } }\n"),
+                   "reef.pov: Aphotic_Pigment (\"snad\"): ");
+    expect_refusal(refusal(kScene + ball + "rust.csv\") } }\n"), "rust.csv");
+    write_file(folder_.path() / "short.csv", "wavelength_nm,reflectance\n500,0.1\n600,0.3\n");
+    expect_refusal(refusal(kScene + ball + "short.csv\") } }\n"), "range_nm");
+}
+
+TEST_F(SceneSurvey, RefusesASceneOfWhichNothingIsLit) {
+    expect_refusal(refusal("Aphotic_Rig ()\nsphere { <0, 0, -5>, 1 }\n"),
+                   "found nothing in view that a strobe lights");
+}
+
+TEST_F(SceneSurvey, ParseErrorsComeWithTheUsersFileAndLine) {
+    expect_refusal(refusal(std::string(kScene) + "sphere { nonsense }\n"),
+                   "File 'reef.pov' line 5: Parse Error");
+    write_file(folder_.path() / "things.inc", "\n\nsphere { nonsense }\n");
+    expect_refusal(refusal(std::string(kScene) + "#include \"things.inc\"\n"),
+                   "File 'things.inc' line 3: Parse Error");
+}
+
+TEST_F(SceneSurvey, LeavesTheUsersFolderAsItWas) {
+    static_cast<void>(survey(kScene));
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+        names.push_back(entry.path().filename().string());
+    }
+    EXPECT_EQ(names, std::vector<std::string>{"reef.pov"});
+}
+
+}  // namespace
+}  // namespace aphotic
