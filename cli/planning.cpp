@@ -7,12 +7,49 @@
 #include "spectral/error.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <memory>
 #include <thread>
 
 namespace aphotic::cli {
 namespace {
+
+// Settings of POV-Ray's own that change its speed. Others would change what a frame holds: Quality
+// below 9 leaves out the water, gamma and format are the integrator's.
+constexpr std::array kSpeedKeys{"Bounding",
+                                "Bounding_Method",
+                                "Bounding_Threshold",
+                                "BSP_BaseAccessCost",
+                                "BSP_ChildAccessCost",
+                                "BSP_IsectCost",
+                                "BSP_MaxDepth",
+                                "BSP_MissChance",
+                                "Light_Buffer",
+                                "Remove_Bounds",
+                                "Render_Block_Size",
+                                "Split_Unions",
+                                "Vista_Buffer"};
+
+std::string ini_line(const std::string& setting) {
+    const std::size_t sign = setting.find('=');
+    const std::string key = setting.substr(0, sign);
+    const bool is_plain = sign != std::string::npos &&
+                          std::ranges::all_of(setting.substr(sign + 1), [](unsigned char c) {
+                              return std::isalnum(c) != 0 || c == '.' || c == '-';
+                          });
+    if (!is_plain || std::ranges::find(kSpeedKeys, key) == kSpeedKeys.end()) {
+        throw InputError(
+            fmt::format("--povray-ini: found {}; allowed: KEY=VALUE with one of {}. "
+                        "Others would change what a frame holds; --antialias is apart",
+                        setting,
+                        fmt::join(kSpeedKeys, ", ")));
+    }
+    return setting + "\n";
+}
 
 PlanRequest request_of(const PlanningOptions& options) {
     PlanRequest request{.tolerance = options.tolerance,
@@ -24,6 +61,9 @@ PlanRequest request_of(const PlanningOptions& options) {
                                   .pixel_shift = options.pixel_shift,
                                   .emitter_lamps = std::nullopt}};
     request.scene.antialias = options.antialias;
+    for (const std::string& setting : options.povray_ini) {
+        request.scene.ini_lines.push_back(ini_line(setting));
+    }
     if (options.fitted > 0) request.fitted = options.fitted;
     if (options.bands > 0) request.bands = options.bands;
     if (!options.paths_m.empty()) {
@@ -127,6 +167,10 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
                    "so many by so many further rays to each pixel: edges are smooth, and no longer "
                    "those that the reference traces; costs their number in time")
         ->check(CLI::Range(0, kMostAntialias));
+    app.add_option("--povray-ini",
+                   options.povray_ini,
+                   "a setting of POV-Ray's own that changes its speed, such as Bounding_Method=2")
+        ->type_name("KEY=VALUE");
     app.add_option(
            "--povray", options.povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
         ->type_name("PROGRAM");

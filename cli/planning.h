@@ -28,6 +28,7 @@ struct PlanningOptions {
     std::string scene;
     std::vector<std::string> library_paths;
     int antialias = 0;
+    std::vector<std::string> povray_ini;
     std::string povray;
 };
 

@@ -4,7 +4,8 @@
 # folder/Suite.Case, under a label:
 #
 #   unit    no other program needed; milliseconds each
-#   povray  runs POV-Ray, which takes every core: CTest counts such a test as two
+#   povray  runs POV-Ray, which takes every core: CTest counts such a test as two. Under the name
+#           povray_of_few_pixels it gets the same label and counts as one: POV-Ray mostly waits
 #   cli     runs the command as a user would
 #   slow    hundreds of plans, or a program beyond POV-Ray, such as a browser
 include(GoogleTest)
@@ -12,6 +13,9 @@ include(GoogleTest)
 function(aphotic_tests label)
     if(label STREQUAL "povray")
         set(limits TIMEOUT 300 PROCESSORS 2)
+    elseif(label STREQUAL "povray_of_few_pixels")
+        set(label povray)
+        set(limits TIMEOUT 300)
     elseif(label STREQUAL "slow")
         set(limits TIMEOUT 600)
     else()

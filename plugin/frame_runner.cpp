@@ -46,17 +46,14 @@ ProcessRequest in_scene_folder(ProcessRequest request,
                                const fs::path& part,
                                const RunOptions& options) {
     const fs::path work = request.folder;
-    const auto quoted = [](const std::string& option, const fs::path& path) {
-        return fmt::format("{}\"{}\"", option, path.string());
-    };
-    request.arguments[0] = quoted("+I", work / (frame.name + ".pov"));
-    request.arguments[1] = quoted("+O", work / "frames" / part.filename());
-    request.arguments.push_back(quoted("+L", work));
+    request.arguments[0] = path_option("+I", work / (frame.name + ".pov"));
+    request.arguments[1] = path_option("+O", work / "frames" / part.filename());
+    request.arguments.push_back(path_option("+L", work));
     for (const std::string& path : options.library_paths) {
-        request.arguments.push_back(quoted("+L", fs::absolute(path)));
+        request.arguments.push_back(path_option("+L", fs::absolute(path)));
     }
     for (const std::string& path : library_paths(options.scene_folder, povray.version)) {
-        request.arguments.push_back(quoted("+L", path));
+        request.arguments.push_back(path_option("+L", path));
     }
     request.environment.erase("POVINC");
     request.folder = options.scene_folder;

@@ -69,6 +69,16 @@ std::string version_from(std::string_view printed) {
     return version[1].str() + "." + version[2].str() + version[3].str();
 }
 
+std::string path_option(std::string_view option, const fs::path& path) {
+    if (path.string().find('"') != std::string::npos) {
+        throw InputError(
+            fmt::format("{}: found a quotation mark in the path; allowed: none, for "
+                        "POV-Ray cannot read it",
+                        path.string()));
+    }
+    return fmt::format("{}\"{}\"", option, path.string());
+}
+
 PovRay find_povray(const std::string& named) {
     const fs::path executable = find_executable(named);
     const ScratchFolder scratch;

@@ -21,6 +21,10 @@ struct PovRay {
 // named: a path or a command's name, "" for none. Throws RunError, which says where was looked.
 [[nodiscard]] PovRay find_povray(const std::string& named);
 
+// An option such as +I with a path behind it, as one argument of POV-Ray's. Throws InputError when
+// the path holds a quotation mark, which POV-Ray has no way to read.
+[[nodiscard]] std::string path_option(std::string_view option, const std::filesystem::path& path);
+
 // What is wrong with a POV-Ray that prints this for --version, or its version number.
 [[nodiscard]] std::string version_from(std::string_view printed);
 

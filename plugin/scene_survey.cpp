@@ -129,21 +129,18 @@ void Survey::scale_measurement() {
 }
 
 ProcessRequest Survey::request_for(const Task& task) const {
-    const auto quoted = [](const std::string& option, const fs::path& path) {
-        return fmt::format("{}\"{}\"", option, path.string());
-    };
-    std::vector<std::string> arguments{quoted("+I", file_of(task, ".pov")),
-                                       quoted("+O", file_of(task, ".exr")),
-                                       quoted("+L", folder_.path()),
+    std::vector<std::string> arguments{path_option("+I", file_of(task, ".pov")),
+                                       path_option("+O", file_of(task, ".exr")),
+                                       path_option("+L", folder_.path()),
                                        fmt::format("+W{}", task.width_px),
                                        fmt::format("+H{}", task.height_px),
                                        "+WT1",
                                        "+GS"};
     for (const std::string& path : options_.library_paths) {
-        arguments.push_back(quoted("+L", fs::absolute(path)));
+        arguments.push_back(path_option("+L", fs::absolute(path)));
     }
     for (const std::string& path : library_paths(scene_.file.parent_path(), povray_.version)) {
-        arguments.push_back(quoted("+L", path));
+        arguments.push_back(path_option("+L", path));
     }
     return {.executable = povray_.executable,
             .arguments = std::move(arguments),

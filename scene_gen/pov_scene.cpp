@@ -392,10 +392,12 @@ std::string render_ini(const Rig& rig, const SceneOptions& options) {
         "Continue_Trace=off\n"
         "Verbose=on\n"
         "Render_Console=off\n"
-        "Statistic_Console=off\n",
+        "Statistic_Console=off\n"
+        "{}",
         rig.camera.width_px,
         rig.camera.height_px,
-        antialias_ini(options.antialias));
+        antialias_ini(options.antialias),
+        fmt::join(options.ini_lines, ""));
 }
 
 }  // namespace aphotic

@@ -58,6 +58,8 @@ struct SceneOptions {
     bool soft_edges = false;
     std::shared_ptr<const UserScene> user_scene{};  // none: the rig's own floor
     int antialias = 0;  // n x n rays to a pixel, beside the one through its centre
+    // Lines for POV-Ray's INI file, of keys that change how fast it is and no pixel.
+    std::vector<std::string> ini_lines{};
 };
 
 // The frames for these wavelengths, in their order. Throws InputError when a strobe stands

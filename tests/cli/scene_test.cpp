@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Scenes of the user's own through the command, from a folder with a blank in its name.
+#include "plugin/povray.h"
+#include "spectral/exr.h"
+#include "spectral/manifest.h"
+#include "spectral/output_images.h"
+#include "support/run_command.h"
+#include "support/small_scene.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <regex>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFloor = "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n";
+
+class UserScenes : public testing::Test {
+  protected:
+    UserScenes() : home_(folder_.path() / "my scenes") {
+        fs::create_directory(home_);
+        put("rig.toml", small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
+    }
+    void put(const std::string& name, const std::string& text) { write_file(home_ / name, text); }
+    void put_scene(const std::string& text, const std::string& name = "reef.pov") {
+        put(name, "#version 3.7;\n#include \"aphotic.inc\"\n" + text);
+    }
+    CommandResult aphotic(const std::vector<std::string>& arguments) {
+        return run_aphotic(home_, arguments);
+    }
+    nlohmann::json rendered(const std::string& folder, std::vector<std::string> more = {}) {
+        more.insert(more.begin(),
+                    {"render", "rig.toml", "--scene", "reef.pov", "-o", folder, "--json"});
+        const CommandResult run = aphotic(more);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return run.status == 0 ? nlohmann::json::parse(run.out) : nlohmann::json();
+    }
+    [[nodiscard]] std::vector<float> signals(const std::string& folder) const {
+        return read_signals(home_ / folder / "image.exr").samples;
+    }
+
+    TempFolder folder_;
+    fs::path home_;
+};
+
+// The rig's floor as a scene of the user's own is the rig's floor.
+TEST_F(UserScenes, TheRigsOwnFloorIsTheSameEitherWay) {
+    put_scene(kFloor);
+    const std::vector<std::string> wavelengths{"--wavelengths", "470,550,620"};
+    rendered("scene", wavelengths);
+    ASSERT_EQ(aphotic({"render", "rig.toml", "-o", "floor", wavelengths[0], wavelengths[1]}).status,
+              0);
+    ExrReader scene(home_ / "scene" / "spectral.exr");
+    ExrReader floor(home_ / "floor" / "spectral.exr");
+    std::vector<float> a(3U * 34U * 25U);
+    std::vector<float> b(a.size());
+    const std::vector<std::string> channels{
+        spectral_channel(470.0), spectral_channel(550.0), spectral_channel(620.0)};
+    scene.read_rows(0, 25, channels, a);
+    floor.read_rows(0, 25, channels, b);
+    // Two half floats, exposed differently.
+    constexpr double kTwoHalfFloats = 1e-3;
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i] / b[i], 1.0, kTwoHalfFloats) << i;
+}
+
+TEST_F(UserScenes, ValidateLikeAnyOther) {
+    put_scene(kFloor);
+    const CommandResult run = aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"});
+    EXPECT_EQ(run.status, 0) << run.out << run.err;
+    // A floor that is farther than the rig says must not pass.
+    put_scene("Aphotic_Rig ()\nAphotic_Seafloor (2.05, 5, 0, \"sand\")\n");
+    EXPECT_EQ(aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"}).status, 1);
+}
+
+TEST_F(UserScenes, ARigMayNameItsScene) {
+    put_scene(kFloor);
+    const std::string rig = read_text_file(home_ / "rig.toml");
+    put("rig.toml", "scene = \"reef.pov\"\n" + rig);
+    const CommandResult plan = aphotic({"plan", "rig.toml"});
+    EXPECT_EQ(plan.status, 0) << plan.err;
+    EXPECT_NE(plan.out.find("reef.pov uses sand"), std::string::npos) << plan.out;
+    // The reference knows no scene, and needs no POV-Ray.
+    EXPECT_EQ(
+        run_aphotic(home_, {"trace", "rig.toml", "-o", "t"}, {{"APHOTIC_POVRAY", "none"}}).status,
+        0);
+}
+
+TEST_F(UserScenes, AreRenderedAgainWhenWhatTheyIncludeChanges) {
+    put("things.inc", "#declare Size = 0.1;\n");
+    put_scene(std::string(kFloor) +
+              "#include \"things.inc\"\n"
+              "sphere { <0, 0, 1.9>, Size pigment { Aphotic_Pigment (\"red-algae\") } }\n");
+    const std::string scene = read_text_file(home_ / "reef.pov");
+    const auto first = rendered("out");
+    EXPECT_GT(first["frames_rendered"], 0);
+    const std::vector<float> small = signals("out");
+    EXPECT_EQ(rendered("out")["frames_rendered"], 0);
+    EXPECT_EQ(signals("out"), small);
+    put("things.inc", "#declare Size = 0.2;\n");
+    EXPECT_EQ(rendered("out")["frames_kept"], 0);
+    EXPECT_NE(signals("out"), small);
+    EXPECT_EQ(read_text_file(home_ / "reef.pov"), scene) << "scenes are never modified";
+}
+
+// What plain povray renders from `generate` is what `render` renders.
+TEST_F(UserScenes, GeneratedFramesRenderInPlainPovray) {
+    put_scene(std::string(kFloor) +
+              "#include \"colors.inc\"\n"
+              "sphere { <0, 0, 1.9>, 0.2 pigment { Aphotic_Pigment (\"red-algae\") } }\n");
+    rendered("out");
+    const CommandResult generated =
+        aphotic({"generate", "rig.toml", "--scene", "reef.pov", "-o", "gen"});
+    ASSERT_EQ(generated.status, 0) << generated.err;
+    for (const ManifestFrame& frame : read_manifest(home_ / "gen").frames) {
+        const ProcessEnd end = run_process(
+            {.executable = find_povray("").executable,
+             .arguments = {"gen/povray/render.ini", "+Igen/povray/" + frame.name + ".pov"},
+             .folder = home_,
+             .environment = {},
+             .log = folder_.path() / "log"},
+            60.0);
+        ASSERT_TRUE(end.succeeded()) << read_text_file(folder_.path() / "log");
+    }
+    ASSERT_EQ(aphotic({"integrate", "gen"}).status, 0);
+    EXPECT_EQ(signals("gen"), signals("out"));
+}
+
+// The frames serve other water, and say what they cannot do.
+TEST_F(UserScenes, FramesOutliveTheRig) {
+    put_scene(std::string(kFloor) +
+              "sphere { <0, 0, 1.9>, 0.2 pigment { Aphotic_Pigment (\"red-algae\") } }\n");
+    const std::string rig = read_text_file(home_ / "rig.toml");
+    put("murky.toml", std::regex_replace(rig, std::regex("multiple   = 1.0"), "multiple = 1.1"));
+    rendered("out", {"--fitted", "12"});
+    const CommandResult run = aphotic({"integrate", "out", "--rig", "murky.toml", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    ASSERT_EQ(aphotic({"render", "murky.toml", "--scene", "reef.pov", "-o", "murky"}).status, 0);
+    const std::vector<float> integrated = signals("out/as-murky");
+    const std::vector<float> direct = signals("murky");
+    constexpr double kTwoTolerances = 2e-3;
+    for (std::size_t i = 0; i < direct.size(); ++i) {
+        ASSERT_NEAR(integrated[i], direct[i], kTwoTolerances * direct[i]) << i;
+    }
+}
+
+TEST_F(UserScenes, ErrorsNameTheUsersFile) {
+    put_scene(std::string(kFloor) + "sphere { nonsense }\n");
+    const CommandResult parse = aphotic({"render", "rig.toml", "--scene", "reef.pov", "-o", "out"});
+    EXPECT_EQ(parse.status, 2);
+    EXPECT_NE(parse.err.find("File 'reef.pov' line 5: Parse Error"), std::string::npos)
+        << parse.err;
+    EXPECT_FALSE(fs::exists(home_ / "out"));
+    const CommandResult none = aphotic({"render", "rig.toml", "--scene", "wreck.pov", "-o", "out"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("wreck.pov: found no such file"), std::string::npos) << none.err;
+}
+
+TEST_F(UserScenes, PassOnOnlyWhatChangesSpeed) {
+    put_scene(kFloor);
+    rendered("out", {"--povray-ini", "Bounding_Method=2"});
+    EXPECT_NE(read_text_file(home_ / "out" / "povray" / "render.ini").find("Bounding_Method=2\n"),
+              std::string::npos);
+    for (const char* setting :
+         {"Quality=8", "File_Gamma=2.2", "Bounding", "Bounding=on\nQuality=1"}) {
+        const CommandResult run = aphotic(
+            {"render", "rig.toml", "--scene", "reef.pov", "-o", "out", "--povray-ini", setting});
+        EXPECT_EQ(run.status, 2) << setting;
+        EXPECT_NE(run.err.find("--povray-ini: found"), std::string::npos) << run.err;
+    }
+}
+
+// Smooth light is the same however many rays; edges are not.
+TEST_F(UserScenes, AntialiasingSmoothsEdgesAlone) {
+    put_scene(kFloor);
+    rendered("plain");
+    rendered("smooth", {"--antialias", "3"});
+    const std::vector<float> plain = signals("plain");
+    const std::vector<float> smooth = signals("smooth");
+    constexpr double kSmoothLight = 5e-3;  // the light's own curvature over pixels of 25 mm
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        differ += std::abs(smooth[i] / plain[i] - 1.0F) > kSmoothLight ? 1 : 0;
+    }
+    EXPECT_GT(differ, 0U);
+    EXPECT_LT(differ, plain.size() / 2);
+}
+
+}  // namespace
+}  // namespace aphotic
