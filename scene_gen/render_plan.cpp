@@ -33,6 +33,14 @@ int wavelengths_per_step(const Rig& rig, const SceneOptions& scene) {
     return rig.camera.port ? 1 : scene.wavelengths_per_frame;
 }
 
+// As many wavelengths as kinds of light tell all of them apart on one path; a few more serve the
+// others.
+int most_wavelengths(const LightFamily& family) {
+    constexpr int kUsual = PlanTarget{}.most;
+    constexpr int kFewMore = 8;
+    return std::max(kUsual, static_cast<int>(family.sources.size()) + kFewMore);
+}
+
 // Puts the wavelengths into frames, and fits or judges the weights with what these hold.
 void share_frames(const Rig& rig,
                   const RuleFitter& fitter,
@@ -98,7 +106,8 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                                             range,
                                             {.tolerance = request.tolerance,
                                              .frame_error = plan.frame_error,
-                                             .step = wavelengths_per_step(rig, request.scene)})
+                                             .step = wavelengths_per_step(rig, request.scene),
+                                             .most = most_wavelengths(plan.family)})
                                .wavelengths);
     }
     share_frames(rig, fitter, lambda_nm, plan);

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The 24 patches of scenes/user/chart, in air, against their own integration by hand: the signal of
+// a patch is int Phi rho Q dlambda times what the geometry makes of a white one.
+#include "scene_gen/rig_reader.h"
+#include "spectral/builtin.h"
+#include "spectral/manifest.h"
+#include "spectral/output_images.h"
+#include "support/closed_form.h"
+#include "support/run_command.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <regex>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kColumns = 6;
+constexpr int kRows = 4;
+constexpr int kPatch_px = 12;  // each way
+// A half float's rounding, 4.9e-4 at most, averages out over a patch's 144 pixels; the rest is the
+// plan's own error.
+constexpr double kChartError = 1e-4;
+
+std::string rig_text() {
+    std::string rig = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    const auto set = [&](const std::string& key, const std::string& value) {
+        rig = std::regex_replace(
+            rig, std::regex("\\n" + key + " *=[^\\n]*"), "\n" + key + " = " + value);
+    };
+    set("altitude_m", "1.0");
+    set("pitch_deg", "0.0");
+    set("multiple", "0.0");
+    set("resolution", fmt::format("[{}, {}]", kColumns * kPatch_px, kRows * kPatch_px));
+    set("pixel_pitch_um", "100.0");
+    return rig;
+}
+
+std::vector<std::string> patches() {
+    std::vector<std::string> names;
+    for (const auto& entry :
+         fs::directory_iterator(std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/chart/patches")) {
+        names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+// Pixels of 0.1 mm behind 12 mm: at 1 m each is 1/120 m, and a patch twelve of them.
+std::string scene_text(const std::vector<std::string>& names) {
+    constexpr double kSize_m = kPatch_px * 0.1 / 12.0;
+    std::string scene = "#version 3.7;\n#include \"aphotic.inc\"\nAphotic_Rig ()\n";
+    for (int i = 0; i < static_cast<int>(names.size()); ++i) {
+        const double left_m = (i % kColumns - 0.5 * kColumns) * kSize_m;
+        const double top_m = (0.5 * kRows - i / kColumns) * kSize_m;
+        scene += fmt::format(
+            "box {{ <{}, {}, 1>, <{}, {}, 1.1> pigment {{ Aphotic_Pigment (\"{}\") }} "
+            "finish {{ Aphotic_Finish (0, 40) }} }}\n",
+            left_m,
+            top_m - kSize_m,
+            left_m + kSize_m,
+            top_m,
+            names[static_cast<std::size_t>(i)]);
+    }
+    return scene;
+}
+
+// Midpoints of steps far finer than the tables' knots.
+std::array<double, 3> integrated_by_hand(const Spectrum& reflectance) {
+    constexpr double kStep_nm = 0.05;
+    constexpr int kSteps = 6400;  // 400 to 720 nm
+    const Spectrum flash = load_curve("xenon-flash", CurveRole::LampSpectrum, {});
+    const auto response = load_curves("nikon-d5100", CurveRole::SensorResponse, {});
+    std::array<double, 3> sum{};
+    for (int i = 0; i < kSteps; ++i) {
+        const double nm = 400.0 + (i + 0.5) * kStep_nm;
+        for (std::size_t c = 0; c < sum.size(); ++c) {
+            sum[c] += flash.at(nm) * reflectance.at(nm) * response[c].at(nm) * kStep_nm;
+        }
+    }
+    return sum;
+}
+
+TEST(Chart, InAirIsItsSpectraIntegratedByHand) {
+    const TempFolder folder;
+    const std::vector<std::string> names = patches();
+    ASSERT_EQ(names.size(), 24U);
+    for (const std::string& name : names) {
+        fs::copy_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/chart/patches/" + name,
+                      folder.path() / name);
+    }
+    write_file(folder.path() / "rig.toml", rig_text());
+    write_file(folder.path() / "chart.pov", scene_text(names));
+    const CommandResult run =
+        run_aphotic(folder.path(),
+                    {"render", "rig.toml", "--scene", "chart.pov", "-o", "out", "--fitted", "27"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    // As many wavelengths as kinds of light, and two: the plan's own error is nothing.
+    for (const RuleQuality& quality : read_manifest(folder.path() / "out").quality) {
+        EXPECT_LT(quality.error, 1e-9);
+    }
+
+    Rig rig = read_rig(folder.path() / "rig.toml");
+    rig.seafloor.reflectance = {"white", {300.0, 900.0}, {1.0, 1.0}};
+    const double some_nm = 550.0;
+    const double flux = rig.strobes[0].spectrum.at(some_nm);
+    const CameraImage image = read_signals(folder.path() / "out" / "image.exr");
+    const auto pixels = static_cast<std::size_t>(image.width_px * image.height_px);
+    for (int i = 0; i < static_cast<int>(names.size()); ++i) {
+        const std::string& name = names[static_cast<std::size_t>(i)];
+        const auto by_hand =
+            integrated_by_hand(load_curve(name, CurveRole::Reflectance, folder.path()));
+        std::array<double, 3> ratio{};
+        for (int k = 0; k < kPatch_px * kPatch_px; ++k) {
+            const int column = i % kColumns * kPatch_px + k % kPatch_px;
+            const int row = i / kColumns * kPatch_px + k / kPatch_px;
+            const double white = closed_form::radiance(rig, column, row, some_nm).radiance / flux;
+            for (std::size_t c = 0; c < ratio.size(); ++c) {
+                const double signal =
+                    image.samples[c * pixels +
+                                  static_cast<std::size_t>(row * image.width_px + column)];
+                ratio[c] += signal / (white * by_hand[c]) / (kPatch_px * kPatch_px);
+            }
+        }
+        for (std::size_t c = 0; c < ratio.size(); ++c) {
+            EXPECT_NEAR(ratio[c], 1.0, kChartError) << name << ", channel " << c;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace aphotic
