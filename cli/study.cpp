@@ -259,6 +259,13 @@ void print_study(const Study& study, const fs::path& folder) {
 ExitStatus study_rig(const Options& options) {
     const fs::path folder = options.folder;
     Rig rig = read_rig(options.rig_file);
+    if (!rig.scene.empty()) {
+        throw InputError(
+            fmt::format("{}: scene: found {}; allowed: none, for a study is of the rig's "
+                        "own floor, which the reference knows",
+                        options.rig_file,
+                        rig.scene.string()));
+    }
     if (options.quick) rig = quick_rig(std::move(rig));
     const PovRay povray = find_povray(options.povray);
     Study study{.rig_title = rig.title,

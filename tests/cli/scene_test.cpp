@@ -191,5 +191,45 @@ TEST_F(UserScenes, AntialiasingSmoothsEdgesAlone) {
     EXPECT_LT(differ, plain.size() / 2);
 }
 
+// --- Those that come with the project -----------------------------------------------------------
+
+class ShippedUserScenes : public testing::TestWithParam<fs::path> {};
+
+TEST_P(ShippedUserScenes, RenderSmallAndInAQuickLook) {
+    const TempFolder folder;
+    const fs::path home = folder.path() / "scene";
+    fs::copy(GetParam().parent_path(), home, fs::copy_options::recursive);
+    const std::string rig = small_scene(GetParam());
+    write_file(home / "rig.toml", rig);
+    const CommandResult run = run_aphotic(home, {"render", "rig.toml", "-o", "out", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_GT(nlohmann::json::parse(run.out)["signals"]["G"]["mean"], 0.0);
+
+    std::smatch scene;
+    ASSERT_TRUE(std::regex_search(rig, scene, std::regex(R"re(\nscene *= *"([^"]+)")re")));
+    const ProcessEnd end =
+        run_process({.executable = find_povray("").executable,
+                     .arguments = {"+I" + scene[1].str(),
+                                   "+Oquick.png",
+                                   std::string("+L") + APHOTIC_SOURCE_DIR + "/plugin/include",
+                                   "+W34",
+                                   "+H26",
+                                   "-D"},
+                     .folder = home,
+                     .environment = {},
+                     .log = folder.path() / "log"},
+                    120.0);
+    EXPECT_TRUE(end.succeeded());
+    EXPECT_EQ(read_text_file(folder.path() / "log").find("Warning"), std::string::npos)
+        << "a quick look of ours knows all its spectra";
+}
+
+INSTANTIATE_TEST_SUITE_P(All,
+                         ShippedUserScenes,
+                         testing::ValuesIn(user_scenes()),
+                         [](const auto& scene) { return scene.param.stem().string(); });
+// Until there are some.
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ShippedUserScenes);
+
 }  // namespace
 }  // namespace aphotic

@@ -476,7 +476,7 @@ TEST(RigReader, NamesMissingTablesOfLists) {
 TEST(RigReader, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(error_of("tittle = \"x\"\n" + std::string(kMinimal)),
               "rig.toml:1: tittle: is no known key; did you mean 'title'? Known here: title, sled, "
-              "camera, water, seafloor, beam, strobe, materials");
+              "camera, water, seafloor, beam, strobe, materials, scene");
     EXPECT_EQ(error_of(with(2, "altitude_m = 2\nrol_deg = 1")),
               "rig.toml:3: sled.rol_deg: is no known key; did you mean 'roll_deg'? Known here: "
               "altitude_m, pitch_deg, roll_deg");
@@ -685,6 +685,13 @@ TEST(RigReader, ReadsMaterialsByNameAndFromFiles) {
     EXPECT_EQ(rig.materials[1].at(550.0), 0.5);
     EXPECT_EQ(rig.materials[2].name(), "reflectance 'sand'");
     EXPECT_TRUE(parse("materials = []\n" + std::string(kMinimal)).materials.empty());
+}
+
+TEST(RigReader, ReadsTheSceneBesideTheRig) {
+    EXPECT_TRUE(parse(std::string(kMinimal)).scene.empty());
+    EXPECT_EQ(parse("scene = \"reef.pov\"\n" + std::string(kMinimal)).scene.filename(), "reef.pov");
+    EXPECT_EQ(error_of("scene = 7\n" + std::string(kMinimal)),
+              "rig.toml:1: scene: found 7; allowed: a POV-Ray scene beside the rig");
 }
 
 TEST(RigReader, ChecksMaterials) {

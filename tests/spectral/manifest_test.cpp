@@ -56,6 +56,16 @@ Json some_json() {
     return Json::parse(read_text_file(folder.path() / "manifest.json"));
 }
 
+Manifest of_a_user_scene() {
+    Manifest manifest = some_manifest();
+    manifest.scene = ManifestScene{.file = "/a b/reef.pov",
+                                   .sha256 = "c3",
+                                   .materials = {"sand", "rust.csv"},
+                                   .shortest_path_m = 1.0 / 3.0,
+                                   .longest_path_m = 5.0};
+    return manifest;
+}
+
 // What reading says of the manifest that change makes of a good one, after the file's name.
 std::string error_after(const std::function<void(Json&)>& change) {
     Json json = some_json();
@@ -126,6 +136,39 @@ TEST(Manifest, ComesBackWhole) {
         EXPECT_EQ(read.wavelengths[j].flux, written.wavelengths[j].flux);
         EXPECT_EQ(read.wavelengths[j].reflectance, written.wavelengths[j].reflectance);
     }
+}
+
+TEST(Manifest, ComesBackWithItsScene) {
+    const TempFolder folder;
+    write_manifest(folder.path(), some_manifest());
+    EXPECT_FALSE(read_manifest(folder.path()).scene);
+    const Manifest written = of_a_user_scene();
+    write_manifest(folder.path(), written);
+    const Manifest read = read_manifest(folder.path());
+    ASSERT_TRUE(read.scene);
+    EXPECT_EQ(read.scene->file, written.scene->file);
+    EXPECT_EQ(read.scene->sha256, written.scene->sha256);
+    EXPECT_EQ(read.scene->materials, written.scene->materials);
+    EXPECT_EQ(read.scene->shortest_path_m, written.scene->shortest_path_m);
+    EXPECT_EQ(read.scene->longest_path_m, written.scene->longest_path_m);
+}
+
+TEST(Manifest, RefusesASceneWithoutPaths) {
+    const auto error_of = [](const Json& paths, const Json& materials) {
+        return error_after([&](Json& json) {
+            json["scene"] = {{"file", "f"}, {"sha256", "s"}, {"materials", materials}};
+            json["scene"]["shortest_path_m"] = paths[0];
+            json["scene"]["longest_path_m"] = paths[1];
+        });
+    };
+    EXPECT_EQ(error_of({1.0, 1.0}, Json::array()), "no error");
+    EXPECT_EQ(error_of({0.0, 1.0}, Json::array()),
+              "scene: shortest_path_m: found 0.0; allowed: a number over 0");
+    EXPECT_EQ(error_of({2.0, 1.0}, Json::array()),
+              "scene: longest_path_m: found 1.0; allowed: a number not under shortest_path_m");
+    EXPECT_EQ(error_of({1.0, 2.0}, Json{{"a", 1}}),
+              "scene: materials: found {\"a\":1}; allowed: a list of texts");
+    EXPECT_EQ(error_with("scene", 7), "scene: found 7; allowed: an object");
 }
 
 TEST(Manifest, ReplacesBytesOfATitleThatAreNoText) {

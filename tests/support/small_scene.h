@@ -16,13 +16,28 @@
 
 namespace aphotic {
 
-inline std::vector<std::filesystem::path> all_scenes() {
-    std::vector<std::filesystem::path> scenes;
-    const std::filesystem::path folder = std::string(APHOTIC_SOURCE_DIR) + "/scenes";
+inline std::vector<std::filesystem::path> rigs_under(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> rigs;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-        if (entry.path().extension() == ".toml") scenes.push_back(entry.path());
+        if (entry.path().extension() == ".toml") rigs.push_back(entry.path());
     }
-    std::sort(scenes.begin(), scenes.end());
+    std::sort(rigs.begin(), rigs.end());
+    return rigs;
+}
+
+// Those that POV-Ray scenes of the users' own come with.
+inline std::vector<std::filesystem::path> user_scenes() {
+    return rigs_under(std::string(APHOTIC_SOURCE_DIR) + "/scenes/user");
+}
+
+// All others: what they show is in the rig.
+inline std::vector<std::filesystem::path> all_scenes() {
+    std::vector<std::filesystem::path> scenes =
+        rigs_under(std::string(APHOTIC_SOURCE_DIR) + "/scenes");
+    const std::vector<std::filesystem::path> apart = user_scenes();
+    std::erase_if(scenes, [&](const auto& scene) {
+        return std::binary_search(apart.begin(), apart.end(), scene);
+    });
     return scenes;
 }
 
