@@ -10,6 +10,7 @@
 #include <unistd.h>
 #include <boost/process/search_path.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <regex>
 #include <system_error>
@@ -70,10 +71,12 @@ std::string version_from(std::string_view printed) {
 }
 
 std::string path_option(std::string_view option, const fs::path& path) {
-    if (path.string().find('"') != std::string::npos) {
+    const bool is_readable = std::ranges::all_of(
+        path.string(), [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"'; });
+    if (!is_readable) {
         throw InputError(
-            fmt::format("{}: found a quotation mark in the path; allowed: none, for "
-                        "POV-Ray cannot read it",
+            fmt::format("{}: found a path with letters beyond ASCII or a quotation mark; "
+                        "allowed: none, for POV-Ray cannot read them",
                         path.string()));
     }
     return fmt::format("{}\"{}\"", option, path.string());

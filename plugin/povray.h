@@ -22,7 +22,7 @@ struct PovRay {
 [[nodiscard]] PovRay find_povray(const std::string& named);
 
 // An option such as +I with a path behind it, as one argument of POV-Ray's. Throws InputError when
-// the path holds a quotation mark, which POV-Ray has no way to read.
+// the path holds a quotation mark or letters beyond ASCII, which POV-Ray has no way to read.
 [[nodiscard]] std::string path_option(std::string_view option, const std::filesystem::path& path);
 
 // What is wrong with a POV-Ray that prints this for --version, or its version number.

@@ -10,7 +10,11 @@
 //   red = G,   green = G exp(-K l),   blue = G exp(K l),   l = ln(blue / green) / (2 K)
 //
 // exact for light that a surface reflects once; of several paths at once (mirrors, an emitter's
-// lamps) it is a mean of them.
+// lamps) it is a mean of them. A pixel that half floats cannot hold so is measured again, with less
+// light or loss.
+//
+// Three frames more tell what a plan could not serve: light with all strobes off, colours by
+// numbers, a camera in an object that holds no water.
 #pragma once
 
 #include "plugin/povray.h"
@@ -32,10 +36,10 @@ struct SurveyOptions {
 // Pixels of a survey along the longer side of the image.
 inline constexpr int kSurveyPixels = 160;
 
-// Throws InputError for a scene that cannot be rendered spectrally, saying what of it: no water in
-// it, lights that are not strobes of aphotic.inc, a lamp that the rig does not have, a spectrum
-// that is not found, nothing lit. Errors of POV-Ray's parser come as it says them, with file and
-// line.
+// Throws InputError for a scene that cannot be rendered spectrally, saying what of it: no water or
+// no camera of ours in it, lights that are not strobes of aphotic.inc, a lamp that the rig does not
+// have, a spectrum that is not found, nothing lit. Errors of POV-Ray's parser come as it says them,
+// with file and line.
 [[nodiscard]] UserScene survey_scene(const PovRay& povray,
                                      const Rig& rig,
                                      const std::filesystem::path& scene_file,

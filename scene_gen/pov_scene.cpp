@@ -89,9 +89,8 @@ double soft_edge_deg(const Rig& rig, const Strobe& strobe) {
     return std::atan(0.5 * size_m / distance_m) * 180.0 / std::numbers::pi;
 }
 
-// POV-Ray gives up inside a medium when it meets more lights than this.
-constexpr std::size_t kMostLightsInMedia = 1024;
-// Elsewhere it is patience and memory that end: a scene of this many is 15 MB of text.
+// Where there is no medium it is patience and memory that end: a scene of this many is 15 MB of
+// text.
 constexpr std::size_t kMostLights = 100'000;
 
 void require_few_enough_lights(const Rig& rig, const SceneOptions& options) {
@@ -102,7 +101,7 @@ void require_few_enough_lights(const Rig& rig, const SceneOptions& options) {
             static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.along);
         lights += strobe.beam.cones.size() * (strobe.emitter ? lamps : 1);
     }
-    const std::size_t most = rig.water.is_clear() ? kMostLights : kMostLightsInMedia;
+    const std::size_t most = rig.water.is_clear() ? kMostLights : std::size_t{kMostLightsInMedia};
     if (lights <= most) return;
     throw InputError(
         fmt::format("strobes: {} lights, one for every cone of every lamp; allowed: {}, "
@@ -346,9 +345,10 @@ std::string survey_sdl(const Rig& rig, const std::string& scene_name, const Surv
                 parts,
                 {.name = "", .wavelengths = {{middle_nm, 0}}, .index_nm = middle_nm, .sdl = ""});
     band.exposure.fill(std::ldexp(1.0, frame.exposure_log2));
-    band.attenuation_per_m = {0.0, frame.attenuation_per_m, -frame.attenuation_per_m};
+    band.attenuation_per_m = frame.attenuation_per_m;
     std::string sdl = "#version 3.7;\n#declare Aphotic_Probe = true;\n";
-    if (frame.only_strobe > 0) {
+    if (!frame.dims_lamps) sdl += "#declare Aphotic_No_Lamp_Leg = true;\n";
+    if (frame.only_strobe != 0) {
         sdl += fmt::format("#declare Aphotic_Only_Strobe = {};\n", frame.only_strobe);
     }
     return sdl + body_sdl(band, parts, options, scene_name);

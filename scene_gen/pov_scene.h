@@ -69,12 +69,15 @@ struct SceneOptions {
                                                   std::span<const double> lambda_nm,
                                                   const SceneOptions& options = {});
 
-// A frame by which a scene is measured (plugin/scene_survey.h): everything white, all lamps alike,
-// losses of 0, K and -K in its channels.
+// POV-Ray gives up inside a medium when it meets more lights than this.
+inline constexpr int kMostLightsInMedia = 1024;
+
+// A frame by which a scene is measured (plugin/scene_survey.h): everything white, all lamps alike.
 struct SurveyFrame {
-    double attenuation_per_m = 0.0;  // K
+    Channels attenuation_per_m{};
     int exposure_log2 = 0;
-    int only_strobe = 0;  // counted from 1; 0: all
+    int only_strobe = 0;     // counted from 1; 0: all, -1: none
+    bool dims_lamps = true;  // false: the water dims the camera's leg alone
 };
 [[nodiscard]] std::string survey_sdl(const Rig& rig,
                                      const std::string& scene_name,

@@ -535,7 +535,10 @@ Rig RigReader::read(Section top) {
     }
     std::vector<Spectrum> materials = read_materials(top);
     fs::path scene;
-    if (top.has("scene")) scene = folder_ / top.text("scene", "a POV-Ray scene beside the rig");
+    if (top.has("scene")) {
+        scene = folder_ / top.text("scene", "a POV-Ray scene beside the rig");
+        if (!fs::is_regular_file(scene)) top.found_but("scene", "a POV-Ray scene beside the rig");
+    }
     top.refuse_unknown_keys();
 
     Rig rig{.title = std::move(title),

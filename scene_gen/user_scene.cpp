@@ -5,8 +5,10 @@
 #include "spectral/builtin.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
+#include "spectral/nearest.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -57,6 +59,21 @@ std::optional<Spectrum> of_the_rig(const std::string& name, const Rig& rig) {
     return std::nullopt;
 }
 
+void require_known(const std::string& name, const Rig& rig) {
+    std::vector<std::string> known = builtin_names(role_name(CurveRole::Reflectance));
+    if (std::ranges::find(known, name) != known.end()) return;
+    known.push_back(short_name(rig.seafloor.reflectance));
+    for (const Spectrum& material : rig.materials) known.push_back(short_name(material));
+    std::ranges::sort(known);
+    known.erase(std::unique(known.begin(), known.end()), known.end());
+    const std::string nearest = nearest_name(name, known);
+    throw InputError(
+        fmt::format("is no known reflectance{}; allowed: {}, or a .csv file beside the "
+                    "scene",
+                    nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest),
+                    fmt::join(known, ", ")));
+}
+
 }  // namespace
 
 std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
@@ -66,6 +83,7 @@ std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
     for (const std::string& name : names) {
         try {
             std::optional<Spectrum> spectrum = of_the_rig(name, rig);
+            if (!spectrum && !names_a_file(name)) require_known(name, rig);
             if (!spectrum) {
                 spectrum = load_curve(name, CurveRole::Reflectance, scene_file.parent_path());
             }

@@ -31,10 +31,13 @@ struct UserScene {
         double path_m = 0.0;
     };
 
-    std::filesystem::path file;            // absolute
-    std::string digest;                    // SHA-256 of it and of the files that it names
+    std::filesystem::path file;  // absolute
+    // SHA-256 of it, of the files that it names, and of the survey's pictures.
+    std::string digest;
     std::vector<NamedSpectrum> materials;  // under the names that the scene gives them
     PathRange paths;
+    // Something has a colour by numbers: a reflectance in each channel, and no spectrum.
+    bool has_own_colours = false;
     std::vector<std::vector<Lit>> pixels;  // by pixel, those strobes that light it
 
     [[nodiscard]] double brightest_radiance(const Rig& rig, double lambda_nm) const;

@@ -111,7 +111,7 @@ constexpr const char* kScene = "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n";
 
 TEST_F(SceneSurvey, RefusesLightsThatAreNotOurs) {
     expect_refusal(refusal(std::string(kScene) + "light_source { <0, 0, -9>, rgb 1 }\n"),
-                   "reef.pov: found 1 light sources that are no strobes of aphotic.inc");
+                   "reef.pov: found 1 light source that is no strobe of aphotic.inc");
 }
 
 TEST_F(SceneSurvey, RefusesASceneWithoutStrobes) {
@@ -152,6 +152,69 @@ TEST_F(SceneSurvey, RefusesASpectrumThatIsNotThere) {
     expect_refusal(refusal(kScene + ball + "rust.csv\") } }\n"), "rust.csv");
     write_file(folder_.path() / "short.csv", "wavelength_nm,reflectance\n500,0.1\n600,0.3\n");
     expect_refusal(refusal(kScene + ball + "short.csv\") } }\n"), "range_nm");
+}
+
+TEST_F(SceneSurvey, RefusesASpectrumsNameThatIsMisspelt) {
+    expect_refusal(refusal(std::string(kScene) +
+                           "sphere { <0, 0, 1.9>, 0.1 pigment { Aphotic_Pigment (\"snad\") } }\n"),
+                   "is no known reflectance (did you mean \"sand\"?); allowed: brown-algae");
+}
+
+TEST_F(SceneSurvey, RefusesAnotherCamera) {
+    expect_refusal(refusal(std::string(kScene) + "camera { location <0, 0, 0> direction z }\n"),
+                   "found a second camera");
+    expect_refusal(refusal("Aphotic_Rig_Strobes ()\nAphotic_Water ()\nAphotic_Rig_Seafloor ()\n"
+                           "camera { location <0, 0, 0> direction z }\n"),
+                   "found no camera of aphotic.inc");
+}
+
+TEST_F(SceneSurvey, RefusesLightThatNoStrobeGives) {
+    expect_refusal(
+        refusal(std::string(kScene) +
+                "sphere { <0, 0, 1.9>, 0.1 finish { emission 0.01 } pigment { rgb 1 } }\n"),
+        "found light with all strobes off");
+    expect_refusal(
+        refusal(std::string(kScene) + "light_group { light_source { <0, 0, 0>, rgb 1 } "
+                                      "sphere { <0, 0, 1.9>, 0.1 pigment { rgb 1 } } }\n"),
+        "found light with all strobes off");
+}
+
+TEST_F(SceneSurvey, RefusesACameraInAnObjectWithoutWater) {
+    expect_refusal(refusal(std::string(kScene) + "sphere { 0, 50 pigment { rgbt 1 } }\n"),
+                   "found no water between the camera and what it sees");
+    EXPECT_EQ(refusal(std::string(kScene) + "sphere { 0, 50 pigment { rgbt 1 } hollow }\n"),
+              "no error");
+}
+
+TEST_F(SceneSurvey, NoticesColoursByNumbers) {
+    EXPECT_FALSE(survey(kScene).has_own_colours);
+    EXPECT_FALSE(survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb 0.5 } }\n")
+                     .has_own_colours);
+    EXPECT_TRUE(
+        survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb <1, 0.5, 0> } }\n")
+            .has_own_colours);
+}
+
+// Thirty times deeper than the rig's floor, and a lamp a hand's breadth over it: neither is lost.
+TEST_F(SceneSurvey, MeasuresWhatIsFarFromTheRigsOwnFloor) {
+    const UserScene deep = survey(
+        "Aphotic_Rig ()\n"
+        "plane { -z, -60 pigment { Aphotic_Pigment (\"sand\") } }\n"
+        "box { <0, -9, 1.9>, <9, 9, 2> pigment { Aphotic_Pigment (\"sand\") } }\n");
+    EXPECT_GT(deep.paths.longest_m, 120.0);
+    EXPECT_LT(deep.paths.shortest_m, 4.0);
+    const UserScene bright = survey(
+        "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"
+        "Aphotic_Cone (<0, 0, 1.9>, z, 89, 30000, \"xenon-flash\", 1)\n");
+    double brightest = 0.0;
+    for (const auto& pixel : bright.pixels) {
+        for (const UserScene::Lit& lit : pixel) {
+            brightest = std::max(brightest, lit.radiance_per_flux);
+        }
+    }
+    // A / (pi d^2), a tenth of a metre under the lamp.
+    constexpr double kTilt = 0.03;  // of a floor at 5 degrees, seen by pixels of 25 mm
+    EXPECT_NEAR(brightest / (30000.0 / (std::numbers::pi * 0.01)), 1.0, kTilt);
 }
 
 TEST_F(SceneSurvey, RefusesASceneOfWhichNothingIsLit) {

@@ -689,7 +689,12 @@ TEST(RigReader, ReadsMaterialsByNameAndFromFiles) {
 
 TEST(RigReader, ReadsTheSceneBesideTheRig) {
     EXPECT_TRUE(parse(std::string(kMinimal)).scene.empty());
-    EXPECT_EQ(parse("scene = \"reef.pov\"\n" + std::string(kMinimal)).scene.filename(), "reef.pov");
+    const TempFolder folder;
+    write_file(folder.path() / "reef.pov", "");
+    const std::string text = "scene = \"reef.pov\"\n" + std::string(kMinimal);
+    EXPECT_EQ(parse_rig(text, "rig.toml", folder.path()).scene, folder.path() / "reef.pov");
+    EXPECT_EQ(error_of("scene = \"none.pov\"\n" + std::string(kMinimal)),
+              "rig.toml:1: scene: found none.pov; allowed: a POV-Ray scene beside the rig");
     EXPECT_EQ(error_of("scene = 7\n" + std::string(kMinimal)),
               "rig.toml:1: scene: found 7; allowed: a POV-Ray scene beside the rig");
 }
