@@ -2,6 +2,8 @@
 #include "scene_gen/pov_scene.h"
 
 #include "scene_gen/omissions.h"
+#include "scene_gen/pov_objects.h"
+#include "scene_gen/solid.h"
 #include "spectral/error.h"
 #include "spectral/refraction.h"
 
@@ -65,11 +67,10 @@ std::vector<std::string> wavelength_labels(std::span<const double> lambda_nm) {
 
 // Fade distance: a power of two, so that 1/(2 f^2) scales the light without rounding it.
 double fade_distance_m(const Rig& rig) {
-    const Plane floor = floor_plane(rig.sled);
     double least_m = std::numeric_limits<double>::infinity();
     for (const Strobe& strobe : rig.strobes) {
         for (const Vector3d& lamp_m : lamp_positions_m(strobe, {.across = 2, .along = 2})) {
-            least_m = std::min(least_m, height_above(floor, lamp_m));
+            least_m = std::min(least_m, least_throw_m(rig, strobe, lamp_m));
         }
     }
     return std::exp2(std::floor(std::log2(kFadeShare * least_m)));
@@ -164,6 +165,27 @@ void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid
     }
 }
 
+void require_place_for_objects(const Rig& rig) {
+    if (!rig.camera.port) return;
+    const Housing h = housing(rig.camera);
+    const double front_m = rig.camera.port->distance_m + rig.camera.port->thickness_m;
+    const double behind_m = h.back_m + rig.camera.port->thickness_m;
+    const Eigen::AlignedBox3d block(Vector3d(-h.block_y_m, -h.block_x_m, -behind_m),
+                                    Vector3d(h.block_y_m, h.block_x_m, front_m));
+    for (const Object& object : rig.objects) {
+        if (!block.intersects(bounds_m(object.shape))) continue;
+        throw InputError(
+            fmt::format("object '{}' reaches into the camera's housing, which reaches {:.3f} m to "
+                        "the side, {:.3f} m fore and aft, and from {:.3f} m above the pupil to "
+                        "{:.3f} m below it",
+                        object.name,
+                        h.block_x_m,
+                        h.block_y_m,
+                        behind_m,
+                        front_m));
+    }
+}
+
 // By strobe and cone: whether the scene needs it.
 using LitCones = std::vector<std::vector<bool>>;
 
@@ -210,6 +232,7 @@ class SceneWriter {
         write_port();
         write_water();
         write_floor();
+        write_objects();
         write_strobes();
         return std::move(scene_);
     }
@@ -368,6 +391,12 @@ class SceneWriter {
         line();
     }
 
+    void write_objects() {
+        scene_.sdl += pov_objects(rig_, [&](const Spectrum& reflectance) {
+            return vector(per_channel([&](double l) { return reflectance.at(l); }));
+        });
+    }
+
     void write_strobes() {
         line(
             "// A cone shines Flux * Axial_Intensity * cos(theta) within Half_Angle degrees of its "
@@ -447,6 +476,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
                                     std::span<const double> lambda_nm,
                                     const SceneOptions& options) {
     require_few_enough_lights(rig, options);
+    require_place_for_objects(rig);
     for (const Strobe& strobe : rig.strobes) {
         require_place_for_lamps(rig, strobe, lamps_of(rig, strobe, options));
     }

@@ -76,6 +76,8 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                     .scene = request.scene,
                     .frames = {},
                     .omissions = omissions(rig)};
+    // What a shift changes on an object has no bound.
+    if (!rig.objects.empty()) plan.scene.pixel_shift = 0.0;
     const RuleFitter fitter(rig.camera.sensor, plan.family, range);
     std::vector<double> lambda_nm;
     if (request.bands) {
