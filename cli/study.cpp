@@ -57,9 +57,8 @@ struct Reference {
 // The time of a trace is kept in its image: a study that goes on later does not trace again.
 Reference reference_of(const Rig& rig, const fs::path& folder, const std::string& key, int cores) {
     const Tracer tracer(rig, {.signals = true, .planes_nm = {}, .threads = cores});
-    Reference reference{.image = {},
-                        .on_edge = tracer.on_cone_edges(rig.camera.range),
-                        .grid_size = tracer.grid_size()};
+    Reference reference{
+        .image = {}, .on_edge = tracer.on_edges(rig.camera.range), .grid_size = tracer.grid_size()};
     const fs::path file = folder / "image.exr";
     if (fs::exists(file)) {
         const ExrReader traced(file);
@@ -151,13 +150,12 @@ CameraImage enlarged(const CameraImage& image, const Rig& rig, const std::string
     return large;
 }
 
-// Pixels that the setting mixes with what lies beyond a cone's edge.
+// Pixels that the setting mixes with what lies beyond an edge.
 std::vector<unsigned char> blurred_edges(const Rig& rig, const StudySetting& setting) {
     // The widest filter, lanczos3, reaches three pixels of the small image.
     constexpr double kReach_px = 4.0;
     const Tracer tracer(rig, {.signals = false, .planes_nm = {}});
-    return tracer.on_cone_edges(rig.camera.range,
-                                setting.shrink > 1 ? kReach_px * setting.shrink : 1.0);
+    return tracer.on_edges(rig.camera.range, setting.shrink > 1 ? kReach_px * setting.shrink : 1.0);
 }
 
 // Renders the setting in the folder, from nothing, and takes the folder away again.

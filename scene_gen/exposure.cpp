@@ -2,6 +2,7 @@
 #include "scene_gen/exposure.h"
 
 #include "scene_gen/geometry.h"
+#include "scene_gen/solid.h"
 
 #include <Eigen/Geometry>
 
@@ -17,9 +18,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::size_t kGrid = 33;      // points along each side of the image
-constexpr double kMarginView = 1.5;    // a point this far outside the image may still count
-constexpr int kColourLimitLog2 = 120;  // colours are single precision: 2^128 overflows
+constexpr std::size_t kGrid = 33;              // points along each side of the image
+constexpr double kMarginView = 1.5;            // a point this far outside the image may still count
+constexpr double kLeastLampDistance_m = 1e-3;  // as the reader of rigs allows it
+constexpr int kColourLimitLog2 = 120;          // colours are single precision: 2^128 overflows
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -57,6 +59,16 @@ double reach_rad(const std::vector<Vector3d>& neighbours_m,
 double widened_highlight(const Seafloor& floor, double angle_rad, double margin_rad) {
     const double cos_angle = std::cos(std::max(0.0, angle_rad - margin_rad));
     return cos_angle > 0.0 ? floor.phong * std::pow(cos_angle, floor.phong_size) : 0.0;
+}
+
+// From the nearest of the strobe's lamps, taken for a grid of them.
+double least_object_distance_m(const Strobe& strobe, const Object& object) {
+    constexpr LampGrid kGridOfLamps{.across = 9, .along = 9};
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const Vector3d& lamp_m : lamp_positions_m(strobe, kGridOfLamps)) {
+        least_m = std::min(least_m, distance_m(object.shape, lamp_m));
+    }
+    return std::max(kLeastLampDistance_m, least_m);
 }
 
 }  // namespace
@@ -99,6 +111,9 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
             rig.camera.port ? rig.camera.port->distance_m + rig.camera.port->thickness_m : 0.0;
         add_point(foot_m, std::max(0.0, foot_m.norm() - 2.0 * port_m), neighbours_m);
     }
+    for (const Object& object : rig.objects) {
+        if (may_be_in_view(rig, object)) add_object(object);
+    }
 }
 
 void RadianceBound::add_point(const Vector3d& point_m,
@@ -111,7 +126,7 @@ void RadianceBound::add_point(const Vector3d& point_m,
     const Vector3d mirrored = view - 2.0 * view.dot(floor.normal) * floor.normal;
     const double camera_reach_rad = reach_rad(neighbours_m, point_m, Vector3d::Zero()) +
                                     (rig_.camera.port ? kPortMarginRad : 0.0);
-    LitPoint lit;
+    std::vector<Lit> lit;
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
         const Strobe& strobe = rig_.strobes[s];
         const Vector3d towards = point_m - strobe.position_m;
@@ -128,16 +143,38 @@ void RadianceBound::add_point(const Vector3d& point_m,
                        .diffuse_per_m2 = irradiance * cos_incidence / std::numbers::pi,
                        .specular_per_m2 = irradiance * highlight / std::numbers::pi});
     }
-    points_.push_back(std::move(lit));
+    points_.push_back({.reflectance = &rig_.seafloor.reflectance, .lit = std::move(lit)});
+}
+
+void RadianceBound::add_object(const Object& object) {
+    const double camera_leg_m =
+        std::max(0.0, distance_m(object.shape, Vector3d::Zero()) - port_reach_m(rig_));
+    std::vector<Lit> lit;
+    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+        const Strobe& strobe = rig_.strobes[s];
+        double intensity = 0.0;
+        for (const Cone& cone : strobe.beam.cones) {
+            if (!may_light(strobe, cone, object)) continue;
+            intensity += axial_intensity(cone, strobe.beam.weights);
+        }
+        if (intensity == 0.0) continue;
+        const double d_m = least_object_distance_m(strobe, object);
+        const double irradiance = strobe.power * intensity / (d_m * d_m);
+        lit.push_back({.strobe = s,
+                       .path_m = d_m + camera_leg_m,
+                       .diffuse_per_m2 = irradiance / std::numbers::pi,
+                       .specular_per_m2 = irradiance * object.phong / std::numbers::pi});
+    }
+    points_.push_back({.reflectance = &object.reflectance, .lit = std::move(lit)});
 }
 
 double RadianceBound::at(double lambda_nm) const {
     const double attenuation_per_m = rig_.water.attenuation_per_m(lambda_nm);
-    const double reflectance = rig_.seafloor.reflectance.at(lambda_nm);
     double bound = 0.0;
     for (const LitPoint& point : points_) {
+        const double reflectance = point.reflectance->at(lambda_nm);
         double radiance = 0.0;
-        for (const Lit& lit : point) {
+        for (const Lit& lit : point.lit) {
             radiance += rig_.strobes[lit.strobe].spectrum.at(lambda_nm) *
                         (reflectance * lit.diffuse_per_m2 + lit.specular_per_m2) *
                         std::exp(-attenuation_per_m * lit.path_m);

@@ -14,6 +14,10 @@
 //        grid's step
 //        [unit of the lamp's spectrum / (m^2 sr)]
 //
+// An object counts with all that may light it at once, each strobe at its least distance, straight
+// on, and mirrored if the object has a highlight: more than any of its points can be, so that it
+// needs no grid.
+//
 // The factor of four between 2^kTargetLog2 and the largest half float is the grid's margin.
 #pragma once
 
@@ -41,12 +45,16 @@ class RadianceBound {
         double diffuse_per_m2;
         double specular_per_m2;
     };
-    using LitPoint = std::vector<Lit>;
+    struct LitPoint {
+        const Spectrum* reflectance;  // of the rig's
+        std::vector<Lit> lit;
+    };
 
     // neighbours_m: the next points of the grid, between which light may peak.
     void add_point(const Eigen::Vector3d& point_m,
                    double camera_leg_m,
                    const std::vector<Eigen::Vector3d>& neighbours_m);
+    void add_object(const Object& object);
 
     const Rig& rig_;
     std::vector<LitPoint> points_;

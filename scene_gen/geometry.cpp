@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/geometry.h"
 
+#include "scene_gen/solid.h"
 #include "spectral/refraction.h"
 
 #include <Eigen/Geometry>
@@ -79,7 +80,7 @@ std::vector<std::optional<FloorSample>> floor_samples(const Rig& rig, std::size_
 
 LampGrid lamp_grid(const Rig& rig, const Strobe& strobe) {
     if (!strobe.emitter) return {};
-    const double spacing_m = kLampSpacing * height_above(floor_plane(rig.sled), strobe.position_m);
+    const double spacing_m = kLampSpacing * least_throw_m(rig, strobe, strobe.position_m);
     constexpr double kMostLamps = 1e6;  // far more than any scene can hold: it will be refused
     const auto lamps = [&](double size_m) {
         return static_cast<int>(std::clamp(std::ceil(size_m / spacing_m), 1.0, kMostLamps));

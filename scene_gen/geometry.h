@@ -66,9 +66,10 @@ struct LampGrid {
 };
 
 // The coarsest grid whose lamps are closer together than kLampSpacing times the distance from
-// the emitter to the floor below it. A midpoint rule of spacing h errs on a smooth integrand
-// by h^2 f''/24, and f''/f of the light on a plane is at most about 20/d^2, so this spacing
-// keeps the error under 1e-4; shadows and cone edges turn from one step into as many as lamps.
+// the emitter to the floor below it, or to an object that is nearer. A midpoint rule of spacing h
+// errs on a smooth integrand by h^2 f''/24, and f''/f of the light on a plane is at most about
+// 20/d^2, so this spacing keeps the error under 1e-4; shadows and cone edges turn from one step
+// into as many as lamps.
 [[nodiscard]] LampGrid lamp_grid(const Rig& rig, const Strobe& strobe);
 inline constexpr double kLampSpacing = 0.011;
 

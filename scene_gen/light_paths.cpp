@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/light_paths.h"
 
+#include "scene_gen/frame_groups.h"
 #include "scene_gen/geometry.h"
+#include "scene_gen/solid.h"
 
 #include <boost/math/tools/minima.hpp>
 
@@ -21,6 +23,8 @@ namespace {
 constexpr int kBits = 20;
 // More than any path, and rising away from the floor, so that a search finds its way back.
 constexpr double kNoFloor_m = 1e30;
+// An emitter may be larger than its distance to the floor.
+constexpr double kLeastPath_m = 1e-6;
 
 // The path by way of the floor point that (column, row) shows at lambda_nm.
 double path_m(const Rig& rig, const Strobe& strobe, double column, double row, double lambda_nm) {
@@ -122,7 +126,7 @@ std::vector<std::vector<Spectrum>> sources_of(const Rig& rig,
     std::vector<std::vector<Spectrum>> sources;
     for (const Spectrum& lamp : lamps) {
         for (const Spectrum& material : materials) sources.push_back({lamp, material});
-        if (rig.seafloor.phong > 0.0) sources.push_back({lamp});
+        if (has_highlight(rig)) sources.push_back({lamp});
     }
     return sources;
 }
@@ -218,6 +222,13 @@ Spectrum port_tilt(const Rig& rig) {
                         light_at(rig, lamps, pixel_ray(rig, column, row, nm), point_m, nm)));
             }
         }
+        if (!rig.objects.empty()) {
+            const double blue_px = corner_shift_px(rig, range.first_nm, middle_nm);
+            const double red_px = corner_shift_px(rig, range.last_nm, middle_nm);
+            worst = std::max(
+                worst,
+                kObjectTilt * corner_shift_px(rig, nm, middle_nm) / std::max(blue_px, red_px));
+        }
         lambda_nm.push_back(nm);
         tilt.push_back(kBetween * (nm < middle_nm ? -worst : worst));
     }
@@ -233,21 +244,33 @@ LightFamily family_of(const Rig& rig, std::vector<std::vector<Spectrum>> sources
             .tilt = rig.camera.port ? std::optional(port_tilt(rig)) : std::nullopt};
 }
 
-std::vector<Spectrum> materials_of(const Rig& rig) {
-    std::vector<Spectrum> materials{rig.seafloor.reflectance};
-    materials.insert(materials.end(), rig.materials.begin(), rig.materials.end());
-    return materials;
-}
-
 std::vector<Spectrum> lamps_of(const Rig& rig) {
     std::vector<Spectrum> lamps;
     for (const Strobe& strobe : rig.strobes) lamps.push_back(strobe.spectrum);
     return lamps;
 }
 
-}  // namespace
+double farthest_m(const Eigen::AlignedBox3d& box, const Vector3d& from_m) {
+    return (box.max() - from_m).cwiseAbs().cwiseMax((box.min() - from_m).cwiseAbs()).norm();
+}
 
-PathRange path_range(const Rig& rig) {
+void widen_by(const Rig& rig, const Object& object, PathRange& paths) {
+    const Eigen::AlignedBox3d box = bounds_m(object.shape);
+    const double port_m = port_reach_m(rig);
+    const Vector3d pupil_m = Vector3d::Zero();
+    const double nearest_leg_m = std::max(0.0, box.exteriorDistance(pupil_m) - port_m);
+    const double farthest_leg_m = farthest_m(box, pupil_m) + port_m;
+    for (const Strobe& strobe : rig.strobes) {
+        const double room_m = half_diagonal_m(strobe);
+        const double shortest_m = box.exteriorDistance(strobe.position_m) + nearest_leg_m - room_m;
+        const double longest_m = farthest_m(box, strobe.position_m) + farthest_leg_m + room_m;
+        paths.shortest_m = std::min(paths.shortest_m, std::max(kLeastPath_m, shortest_m));
+        paths.longest_m = std::max(paths.longest_m, longest_m);
+    }
+}
+
+// Of the floor alone; infinity and 0 when the image sees none.
+PathRange floor_path_range(const Rig& rig) {
     const Camera& camera = rig.camera;
     std::vector<double> wavelengths{std::midpoint(camera.range.first_nm, camera.range.last_nm)};
     if (camera.port) {
@@ -267,15 +290,31 @@ PathRange path_range(const Rig& rig) {
             }
         }
     }
-    if (paths.shortest_m == std::numeric_limits<double>::infinity()) return {};
-    // An emitter may be larger than its distance to the floor.
-    constexpr double kLeastPath_m = 1e-6;
+    if (paths.shortest_m == std::numeric_limits<double>::infinity()) return paths;
     paths.shortest_m = std::max(kLeastPath_m, paths.shortest_m / kPathRoom);
     paths.longest_m *= kPathRoom;
     // No farther than light comes from, with the horizon in view or nearly so.
     const double darkest_m = darkest_path_m(rig, std::max(paths.shortest_m, first_lit_path_m(rig)));
     if (paths.has_horizon || darkest_m < paths.longest_m) paths.longest_m = darkest_m;
     return paths;
+}
+
+}  // namespace
+
+PathRange path_range(const Rig& rig) {
+    PathRange paths = floor_path_range(rig);
+    for (const Object& object : rig.objects) {
+        if (may_be_in_view(rig, object)) widen_by(rig, object, paths);
+    }
+    if (paths.shortest_m == std::numeric_limits<double>::infinity()) return {};
+    return paths;
+}
+
+std::vector<Spectrum> materials_of(const Rig& rig) {
+    std::vector<Spectrum> materials{rig.seafloor.reflectance};
+    materials.insert(materials.end(), rig.materials.begin(), rig.materials.end());
+    for (const Object& object : rig.objects) materials.push_back(object.reflectance);
+    return materials;
 }
 
 LightFamily light_family(const Rig& rig) {

@@ -2,6 +2,7 @@
 #include "scene_gen/omissions.h"
 
 #include "scene_gen/geometry.h"
+#include "scene_gen/solid.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -41,6 +42,10 @@ double margin_rad(const Rig& rig, const Strobe& strobe, double distance_m, doubl
 }  // namespace
 
 bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone) {
+    const bool lights_an_object = std::ranges::any_of(rig.objects, [&](const Object& object) {
+        return may_light(strobe, cone, object) && may_be_in_view(rig, object);
+    });
+    if (lights_an_object) return true;
     const std::vector<std::optional<FloorSample>> samples = floor_samples(rig, kGrid);
     for (std::size_t row = 0; row + 1 < kGrid; ++row) {
         for (std::size_t column = 0; column + 1 < kGrid; ++column) {
@@ -84,6 +89,11 @@ std::vector<Omission> omissions(const Rig& rig, bool is_user_scene) {
     }
     if (!is_user_scene && rig.seafloor.phong == 0.0) {
         left_out.push_back({"the floor's highlight", "its strength is 0"});
+    }
+    for (const Object& object : rig.objects) {
+        if (object.phong > 0.0) continue;
+        left_out.push_back(
+            {fmt::format("the highlight of object '{}'", object.name), "its strength is 0"});
     }
     for (const Strobe& strobe : rig.strobes) {
         if (strobe.power == 0.0) {

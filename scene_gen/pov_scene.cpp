@@ -4,6 +4,7 @@
 #include "scene_gen/band_sdl.h"
 #include "scene_gen/omissions.h"
 #include "scene_gen/rig_sdl.h"
+#include "scene_gen/solid.h"
 #include "spectral/error.h"
 #include "spectral/refraction.h"
 
@@ -45,11 +46,10 @@ std::vector<std::string> wavelength_labels(std::span<const double> lambda_nm) {
 // Fade distance: a power of two, so that 1/(2 f^2) scales the light without rounding it.
 double fade_distance_m(const Rig& rig, const SceneOptions& options) {
     if (options.user_scene) return kUserFade_m;
-    const Plane floor = floor_plane(rig.sled);
     double least_m = std::numeric_limits<double>::infinity();
     for (const Strobe& strobe : rig.strobes) {
         for (const Vector3d& lamp_m : lamp_positions_m(strobe, {.across = 2, .along = 2})) {
-            least_m = std::min(least_m, height_above(floor, lamp_m));
+            least_m = std::min(least_m, least_throw_m(rig, strobe, lamp_m));
         }
     }
     return std::exp2(std::floor(std::log2(kFadeShare * least_m)));
@@ -143,6 +143,27 @@ void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid
     }
 }
 
+void require_place_for_objects(const Rig& rig) {
+    if (!rig.camera.port) return;
+    const Housing h = housing(rig.camera);
+    const double front_m = rig.camera.port->distance_m + rig.camera.port->thickness_m;
+    const double behind_m = h.back_m + rig.camera.port->thickness_m;
+    const Eigen::AlignedBox3d block(Vector3d(-h.block_y_m, -h.block_x_m, -behind_m),
+                                    Vector3d(h.block_y_m, h.block_x_m, front_m));
+    for (const Object& object : rig.objects) {
+        if (!block.intersects(bounds_m(object.shape))) continue;
+        throw InputError(
+            fmt::format("object '{}' reaches into the camera's housing, which reaches {:.3f} m to "
+                        "the side, {:.3f} m fore and aft, and from {:.3f} m above the pupil to "
+                        "{:.3f} m below it",
+                        object.name,
+                        h.block_x_m,
+                        h.block_y_m,
+                        behind_m,
+                        front_m));
+    }
+}
+
 // By strobe of the rig. A user's own scene may hold anything, so there all that shines is in it.
 std::vector<StrobeInScene> strobes_in_scene(const Rig& rig, const SceneOptions& options) {
     std::vector<StrobeInScene> strobes;
@@ -167,7 +188,9 @@ std::vector<NamedSpectrum> lamps_of(const Rig& rig) {
 
 // The floor's first; a user's scene calls its own by the names that it gave them.
 std::vector<NamedSpectrum> reflectances_of(const Rig& rig, const SceneOptions& options) {
-    std::vector<NamedSpectrum> names = named({&rig.seafloor.reflectance, 1});
+    std::vector<Spectrum> own{rig.seafloor.reflectance};
+    for (const Object& object : rig.objects) own.push_back(object.reflectance);
+    std::vector<NamedSpectrum> names = named(own);
     if (!options.user_scene) return names;
     for (const NamedSpectrum& material : options.user_scene->materials) {
         if (std::ranges::find(names, material.name, &NamedSpectrum::name) == names.end()) {
@@ -265,7 +288,7 @@ std::string body_sdl(const Band& band,
     sdl += fmt::format("#declare Aphotic_Fade_Distance = {};\n", sdl_number(parts.fade_m));
     if (!options.omit) sdl += "#declare Aphotic_Everything = true;\n";
     sdl += "#include \"aphotic.inc\"\n\n" + parts.rig + "\n";
-    sdl += own_scene.empty() ? "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"
+    sdl += own_scene.empty() ? "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\nAphotic_Rig_Objects ()\n"
                              : fmt::format("#include {}\n", sdl_text(own_scene));
     return sdl + "Aphotic_End ()\n";
 }
@@ -305,6 +328,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
                                     std::span<const double> lambda_nm,
                                     const SceneOptions& options) {
     require_few_enough_lights(rig, options);
+    require_place_for_objects(rig);
     for (const Strobe& strobe : rig.strobes) {
         require_place_for_lamps(rig, strobe, lamps_of(rig, strobe, options));
     }

@@ -2,6 +2,7 @@
 #include "scene_gen/quick_look.h"
 
 #include "scene_gen/exposure.h"
+#include "scene_gen/light_paths.h"
 #include "scene_gen/rig_sdl.h"
 #include "spectral/builtin.h"
 #include "spectral/error.h"
@@ -32,9 +33,7 @@ std::vector<NamedSpectrum> lamps_for(const Rig& rig) {
 }
 
 std::vector<NamedSpectrum> reflectances_for(const Rig& rig) {
-    std::vector<Spectrum> own{rig.seafloor.reflectance};
-    own.insert(own.end(), rig.materials.begin(), rig.materials.end());
-    return all_of(CurveRole::Reflectance, std::move(own));
+    return all_of(CurveRole::Reflectance, materials_of(rig));
 }
 
 std::vector<GlassIndex> glasses() {

@@ -2,6 +2,8 @@
 #include "scene_gen/reintegration.h"
 
 #include "scene_gen/scene_set.h"
+#include "scene_gen/solid.h"
+#include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/planner.h"
 
@@ -26,6 +28,35 @@ std::string beam_text(const Beam& beam) {
             "{} rad {} 1/sr", cone.half_angle_rad, axial_intensity(cone, beam.weights)));
     }
     return fmt::format("{}", fmt::join(cones, ", "));
+}
+
+// A mesh may be long: what it holds is told by its digest.
+std::string mesh_text(const Mesh& mesh) {
+    std::string text;
+    for (const Eigen::Vector3d& vertex_m : mesh.vertices_m) text += vector_text(vertex_m) + "\n";
+    for (const auto& [a, b, c] : mesh.triangles) text += fmt::format("{} {} {}\n", a, b, c);
+    return fmt::format(
+        "mesh of {} triangles, SHA-256 {}", mesh.triangles.size(), sha256_of_text(text));
+}
+
+std::string shape_text(const Shape& shape) {
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+        return fmt::format(
+            "sphere at {} m of radius {} m", vector_text(sphere->centre_m), sphere->radius_m);
+    }
+    if (const auto* box = std::get_if<Box>(&shape)) {
+        return fmt::format(
+            "box from {} m to {} m", vector_text(box->least_m), vector_text(box->most_m));
+    }
+    return mesh_text(std::get<Mesh>(shape));
+}
+
+std::string object_text(const Object& object) {
+    std::string text = shape_text(object.shape);
+    if (object.phong > 0.0) {
+        text += fmt::format(", phong {}, phong_size {}", object.phong, object.phong_size);
+    }
+    return text;
 }
 
 void require_same_geometry(const Rig& changed, const Manifest& manifest) {
@@ -56,14 +87,14 @@ std::vector<FrameLight> light_in(const Manifest& manifest,
                                  const Rig& changed,
                                  const LightFamily& family) {
     std::vector<FrameLight> frames;
+    const std::size_t materials = materials_of(changed).size();
     for (const ManifestWavelength& w : manifest.wavelengths) {
-        if (w.flux.size() != changed.strobes.size() ||
-            w.reflectance.size() != changed.materials.size() + 1) {
+        if (w.flux.size() != changed.strobes.size() || w.reflectance.size() != materials) {
             throw InputError(
                 fmt::format("found {} strobes and {} further materials; allowed: {} and {}, as "
                             "the frames were rendered",
                             changed.strobes.size(),
-                            changed.materials.size(),
+                            materials - 1,
                             w.flux.size(),
                             static_cast<int>(w.reflectance.size()) - 1));
         }
@@ -82,7 +113,7 @@ std::vector<FrameLight> light_in(const Manifest& manifest,
             for (const double reflectance : w.reflectance) {
                 frame.sources.push_back(w.flux[s] / strobe.power * reflectance);
             }
-            if (changed.seafloor.phong > 0.0) frame.sources.push_back(w.flux[s] / strobe.power);
+            if (has_highlight(changed)) frame.sources.push_back(w.flux[s] / strobe.power);
         }
         frames.push_back(std::move(frame));
     }
@@ -158,6 +189,9 @@ std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOption
         all[key + " emitter"] =
             fmt::format("{} x {} m", strobe.emitter->across_m, strobe.emitter->along_m);
         all[key + " lamps"] = fmt::format("{} x {}", grid.across, grid.along);
+    }
+    for (const Object& object : rig.objects) {
+        all[fmt::format("object '{}'", object.name)] = object_text(object);
     }
     return all;
 }

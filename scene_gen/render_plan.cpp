@@ -87,6 +87,8 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                     .scene = request.scene,
                     .frames = {},
                     .omissions = omissions(rig, request.scene.user_scene != nullptr)};
+    // What a shift changes on an object has no bound.
+    if (!rig.objects.empty() || request.scene.user_scene) plan.scene.pixel_shift = 0.0;
     const RuleFitter fitter(rig.camera.sensor, plan.family, range);
     std::vector<double> lambda_nm;
     if (request.bands) {

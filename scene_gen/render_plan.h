@@ -8,8 +8,8 @@
 //   promise = error + amplification frame_error
 //
 // (spectral/rule_fitter.h). frame_error is kFrameError, and kLampError more where point lamps
-// stand for an emitter. It holds for every pixel off the cones' edges that is brighter than black
-// (1e-8 of the brightest), relative to its own signal.
+// stand for an emitter. It holds for every pixel off the edges of cones and objects that is
+// brighter than black (1e-8 of the brightest), relative to its own signal.
 #pragma once
 
 #include "scene_gen/light_paths.h"

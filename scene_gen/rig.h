@@ -16,9 +16,11 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace aphotic {
@@ -88,6 +90,34 @@ struct Strobe {
     std::optional<Emitter> emitter;  // none: a point
 };
 
+struct Sphere {
+    Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+    double radius_m = 0.0;
+};
+
+// Its faces are perpendicular to the sled's axes.
+struct Box {
+    Eigen::Vector3d least_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d most_m = Eigen::Vector3d::Zero();
+};
+
+// Flat triangles, each lit on the side that the camera sees, whichever way round its corners go.
+struct Mesh {
+    std::vector<Eigen::Vector3d> vertices_m;
+    std::vector<std::array<int, 3>> triangles;  // of vertices
+};
+
+using Shape = std::variant<Sphere, Box, Mesh>;
+
+// A solid thing: opaque, it reflects as the floor does and casts shadows.
+struct Object {
+    std::string name;
+    Shape shape;
+    Spectrum reflectance;
+    double phong = 0.0;
+    double phong_size = 40.0;
+};
+
 struct Rig {
     std::string title;
     Sled sled;
@@ -95,8 +125,9 @@ struct Rig {
     Water water;
     Seafloor seafloor;
     std::vector<Strobe> strobes;
-    std::vector<Spectrum> materials{};  // reflectances that the scene uses beside the floor's
-    std::filesystem::path scene{};      // a POV-Ray scene of the user's own; none: the bare floor
+    std::vector<Spectrum> materials{};  // further reflectances that the plan serves
+    std::vector<Object> objects{};
+    std::filesystem::path scene{};  // a POV-Ray scene of the user's own; none: floor and objects
     std::string digest;  // SHA-256 of the rig file and of the user's tables that it names
 };
 

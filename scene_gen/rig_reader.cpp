@@ -2,6 +2,8 @@
 #include "scene_gen/rig_reader.h"
 
 #include "scene_gen/geometry.h"
+#include "scene_gen/mesh_reader.h"
+#include "scene_gen/solid.h"
 #include "spectral/atomic_file.h"
 #include "spectral/builtin.h"
 #include "spectral/digest.h"
@@ -57,6 +59,9 @@ constexpr Bounds kAimTiltDeg{0.0, 180.0};
 constexpr Bounds kPower{0.0, 1e12};
 constexpr Bounds kEmitterMm{0.0, 10000.0};
 constexpr double kLeastHeightM = 0.001;
+// An object's size: POV-Ray passes over blockers within a millimetre of what they shade.
+constexpr Bounds kRadiusM{0.001, 1000.0};
+constexpr double kLeastSideM = 0.001;
 
 // As the user wrote it: 0.1 and not 0.10000000000000001, and on one line.
 std::string shown(const toml::node& node) {
@@ -263,6 +268,10 @@ class RigReader {
     Water read_water(Section section);
     Seafloor read_seafloor(Section section);
     Strobe read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled);
+    Object read_object(Section section, const std::vector<Strobe>& strobes);
+    Shape read_shape(Section& object, std::string_view key);
+    Mesh read_mesh_of(Section& object);
+    std::vector<Object> read_objects(Section& top, const std::vector<Strobe>& strobes);
     Spectrum curve(Section& section,
                    std::string_view key,
                    CurveRole role,
@@ -487,6 +496,92 @@ Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, c
     return strobe;
 }
 
+Box read_box(Section& object) {
+    const auto from_m = object.numbers<3>("from_m", kPositionM);
+    const auto to_m = object.numbers<3>("to_m", kPositionM);
+    const Eigen::Vector3d a(from_m.data());
+    const Eigen::Vector3d b(to_m.data());
+    if ((a - b).cwiseAbs().minCoeff() < kLeastSideM) {
+        object.found_but("to_m",
+                         fmt::format("a corner at least {} m from that of from_m along every axis",
+                                     kLeastSideM));
+    }
+    return {.least_m = a.cwiseMin(b), .most_m = a.cwiseMax(b)};
+}
+
+Mesh RigReader::read_mesh_of(Section& object) {
+    const std::string allowed = "the name of a Wavefront .obj file beside the rig";
+    const std::string name = object.text("file", allowed);
+    if (!name.ends_with(".obj")) object.found_but("file", allowed);
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+    if (object.has("position_m")) {
+        position_m = Eigen::Vector3d(object.numbers<3>("position_m", kPositionM).data());
+    }
+    return object.at_key("file", [&] {
+        digested_ += sha256_of_text(read_text_file(folder_ / name));
+        return read_mesh(folder_ / name, position_m);
+    });
+}
+
+// The key says where the object is, and so where a message about that stands.
+constexpr std::string_view place_key(const std::string_view shape) {
+    if (shape == "sphere") return "centre_m";
+    return shape == "box" ? "from_m" : "file";
+}
+
+Shape RigReader::read_shape(Section& object, std::string_view key) {
+    if (key == place_key("box")) return read_box(object);
+    if (key == place_key("mesh")) return read_mesh_of(object);
+    const auto centre_m = object.numbers<3>("centre_m", kPositionM);
+    return Sphere{.centre_m = Eigen::Vector3d(centre_m.data()),
+                  .radius_m = object.number("radius_m", kRadiusM)};
+}
+
+void require_place(const Shape& shape, const std::vector<Strobe>& strobes) {
+    if (holds(shape, Eigen::Vector3d::Zero())) {
+        throw InputError("found the camera's pupil inside of the object; allowed: outside");
+    }
+    for (const Strobe& strobe : strobes) {
+        const double away_m = distance_m(shape, strobe.position_m);
+        if (away_m >= kLeastHeightM && !holds(shape, strobe.position_m)) continue;
+        throw InputError(
+            fmt::format("found strobe '{}' inside of the object or {:.3g} m off it; allowed: at "
+                        "least {} m off",
+                        strobe.name,
+                        away_m,
+                        kLeastHeightM));
+    }
+}
+
+Object RigReader::read_object(Section section, const std::vector<Strobe>& strobes) {
+    std::string name = section.text("name", "a name in quotes");
+    const std::string_view key = place_key(section.word("shape", {"sphere", "box", "mesh"}));
+    Object object{.name = std::move(name),
+                  .shape = read_shape(section, key),
+                  .reflectance = curves(section, "reflectance", CurveRole::Reflectance).front(),
+                  .phong = section.number_or("phong", kPhong, 0.0),
+                  .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
+    section.refuse_unknown_keys();
+    (void)section.at_key(key, [&] {
+        require_place(object.shape, strobes);
+        return true;
+    });
+    return object;
+}
+
+std::vector<Object> RigReader::read_objects(Section& top, const std::vector<Strobe>& strobes) {
+    std::vector<Object> objects;
+    if (!top.has("object")) return objects;
+    for (Section& section : top.sections("object", "one or more tables [[object]]")) {
+        objects.push_back(read_object(section, strobes));
+        for (std::size_t i = 0; i + 1 < objects.size(); ++i) {
+            if (objects[i].name == objects.back().name)
+                section.found_but("name", "a name that no other object has");
+        }
+    }
+    return objects;
+}
+
 // A refractive index stands in the list as the line between its range's ends: only the range
 // counts there.
 Spectrum range_of_index(const std::string& what, WavelengthRange range) {
@@ -499,6 +594,7 @@ void require_tables_to_cover_the_range(const Rig& rig) {
     std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
     curves.push_back(&rig.seafloor.reflectance);
     for (const Spectrum& material : rig.materials) curves.push_back(&material);
+    for (const Object& object : rig.objects) curves.push_back(&object.reflectance);
     if (rig.water.multiple != 0.0) curves.push_back(&rig.water.absorption_per_m);
     for (const Strobe& strobe : rig.strobes) curves.push_back(&strobe.spectrum);
     std::vector<Spectrum> indices;
@@ -534,6 +630,7 @@ Rig RigReader::read(Section top) {
         }
     }
     std::vector<Spectrum> materials = read_materials(top);
+    std::vector<Object> objects = read_objects(top, strobes);
     fs::path scene;
     if (top.has("scene")) {
         scene = folder_ / top.text("scene", "a POV-Ray scene beside the rig");
@@ -548,6 +645,7 @@ Rig RigReader::read(Section top) {
             .seafloor = std::move(seafloor),
             .strobes = std::move(strobes),
             .materials = std::move(materials),
+            .objects = std::move(objects),
             .scene = std::move(scene),
             .digest = sha256_of_text(digested_)};
     const Section camera_section = top.section("camera", "a table [camera]");

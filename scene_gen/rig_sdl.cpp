@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/rig_sdl.h"
 
+#include "scene_gen/pov_objects.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -94,7 +96,7 @@ std::string rig_sdl(const Rig& rig,
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         sdl += strobe_sdl(rig.strobes[s], strobes[s], lamps);
     }
-    sdl += "#end\n" + seafloor_sdl(rig, reflectances);
+    sdl += "#end\n" + seafloor_sdl(rig, reflectances) + pov_objects(rig, reflectances);
     return sdl +
            "#macro Aphotic_Rig ()\n"
            "   Aphotic_Rig_Camera ()\n"

@@ -6,6 +6,7 @@
 //   Aphotic_Rig_Strobes ()   its strobes
 //   Aphotic_Rig ()           both, and the water
 //   Aphotic_Rig_Seafloor ()  its floor
+//   Aphotic_Rig_Objects ()   its objects
 //
 // in the sled's frame, in the scene's unit.
 #pragma once

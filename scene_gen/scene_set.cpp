@@ -54,8 +54,7 @@ void note_light(const Rig& rig, ManifestWavelength& w) {
     for (const Strobe& strobe : rig.strobes) {
         w.flux.push_back(strobe.power * strobe.spectrum.at(w.lambda_nm));
     }
-    w.reflectance.push_back(rig.seafloor.reflectance.at(w.lambda_nm));
-    for (const Spectrum& material : rig.materials) {
+    for (const Spectrum& material : materials_of(rig)) {
         w.reflectance.push_back(material.at(w.lambda_nm));
     }
 }

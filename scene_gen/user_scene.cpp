@@ -52,8 +52,7 @@ PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels) {
 namespace {
 
 std::optional<Spectrum> of_the_rig(const std::string& name, const Rig& rig) {
-    if (short_name(rig.seafloor.reflectance) == name) return rig.seafloor.reflectance;
-    for (const Spectrum& material : rig.materials) {
+    for (const Spectrum& material : materials_of(rig)) {
         if (short_name(material) == name) return material;
     }
     return std::nullopt;
@@ -128,6 +127,7 @@ Rig rig_of_scene(Rig rig, const UserScene& scene) {
     rig.seafloor = {
         .reflectance = {"reflectance 'white'", {range.first_nm, range.last_nm}, {1.0, 1.0}}};
     rig.materials.clear();
+    rig.objects.clear();
     for (const NamedSpectrum& material : scene.materials) {
         rig.materials.push_back(material.spectrum);
     }

@@ -197,10 +197,9 @@ std::string swatch(std::uint32_t colour, std::string_view words) {
 }
 
 std::string map_legend(const Comparison& channel) {
-    std::string legend =
-        swatch(error_colour((kColourSteps - 1) / 2), "POV-Ray is brighter") +
-        swatch(error_colour(-(kColourSteps - 1) / 2), "POV-Ray is darker") +
-        swatch(kEdgeColour, "on the edge of a cone: " + counted(channel.on_edges, "pixel"));
+    std::string legend = swatch(error_colour((kColourSteps - 1) / 2), "POV-Ray is brighter") +
+                         swatch(error_colour(-(kColourSteps - 1) / 2), "POV-Ray is darker") +
+                         swatch(kEdgeColour, "on edges: " + counted(channel.on_edges, "pixel"));
     if (channel.not_finite > 0)
         legend += swatch(kNotFiniteColour, "not finite: " + counted(channel.not_finite, "sample"));
     if (channel.max_error > 0.0) {
@@ -300,9 +299,11 @@ std::string rule() {
                "A comparison holds when the largest |<i>e</i>| off the edges is within its bound "
                "and "
                "every sample, on edges too, is finite. No factor is fitted: the absolute scale is "
-               "part of it. On the edge of a cone, where rounding, dispersion or the size of an "
-               "emitter puts a pixel on both sides, samples are counted and measured on their "
-               "own. The 99.9 percentile and the root mean square are of |<i>e</i>|, the mean is "
+               "part of it. On the edge of a cone, of a shadow or of an object’s face, where "
+               "rounding, "
+               "dispersion or the size of an emitter puts a pixel on both sides, samples are "
+               "counted and measured on their own. The 99.9 percentile and the root mean square "
+               "are of |<i>e</i>|, the mean is "
                "of <i>e</i> with its sign.");
 }
 

@@ -74,7 +74,7 @@ struct StudyMeasure {
     [[nodiscard]] double total_s() const { return render_s + integrate_s; }
     // A plan knows of wavelengths and half-float frames, not of what else may be changed.
     [[nodiscard]] bool promise_applies() const;
-    // Edges of cones come out blurred: then they count in the largest error.
+    // Edges come out blurred: then they count in the largest error.
     [[nodiscard]] bool blurs_edges() const;
 
     // The worst channel's; off the edges, where these are not blurred.

@@ -320,7 +320,8 @@ std::string notes(const Study& study) {
     return rule() +
            html_paragraph(
                "Errors are of |<i>e</i>| in the worst of the three channels, over all pixels off "
-               "the edges of the cones: the largest, the 99.9 percentile and the root mean square. "
+               "the edges of cones, shadows and objects: the largest, the 99.9 percentile and the "
+               "root mean square. "
                "No factor is fitted: the absolute scale is part of it. Pixels on the edge of a "
                "cone, which lie on both sides of it, are measured on their own.") +
            html_paragraph(

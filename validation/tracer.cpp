@@ -35,8 +35,8 @@ Vector3d vertical(const Sled& sled) {
 // spacing it errs by h^2/24 of the second derivative, which for light on a plane at distance d is
 // at most 20/d^2 of the value, shared between the two sides. A highlight, cos^n of an angle that
 // turns by h/d, adds n/d^2.
-int lamps_for(double side_m, double distance_m, const Seafloor& seafloor) {
-    const double curvature = 20.0 + (seafloor.phong > 0.0 ? seafloor.phong_size : 0.0);
+int lamps_for(double side_m, double distance_m, double phong_size) {
+    const double curvature = 20.0 + phong_size;
     const double spacing_m = distance_m * std::sqrt(0.5 * kEmitterError * 24.0 / curvature);
     return std::max(1, static_cast<int>(std::ceil(side_m / spacing_m)));
 }
@@ -55,41 +55,65 @@ Tracer::Tracer(const Rig& rig, const TraceOptions& options)
             cos_edge_.back().push_back(std::cos(cone.half_angle_rad));
         }
     }
+    surfaces_.push_back({.reflectance = rig_.seafloor.reflectance,
+                         .phong = rig_.seafloor.phong,
+                         .phong_size = rig_.seafloor.phong_size});
+    for (const Object& object : rig_.objects) {
+        surfaces_.push_back({.reflectance = object.reflectance,
+                             .phong = object.phong,
+                             .phong_size = object.phong_size});
+        shapes_.emplace_back(object.shape);
+    }
     place_lamps();
     tabulate_spectra();
 }
 
 void Tracer::place_lamps() {
+    double phong_size = 0.0;
+    for (const Surface& surface : surfaces_) {
+        if (surface.phong > 0.0) phong_size = std::max(phong_size, surface.phong_size);
+    }
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
         const Strobe& strobe = rig_.strobes[s];
         if (!strobe.emitter) {
             lamps_.push_back({.strobe = s, .position_m = strobe.position_m});
+            rim_lamps_.push_back(lamps_.back());
             lamps_of_strobe_.push_back(1.0);
             continue;
         }
-        const double height_m =
-            down_.dot(Vector3d(0.0, 0.0, rig_.sled.altitude_m) - strobe.position_m);
+        double throw_m = down_.dot(Vector3d(0.0, 0.0, rig_.sled.altitude_m) - strobe.position_m);
+        for (const TracedShape& shape : shapes_) {
+            throw_m = std::min(throw_m, shape.least_distance_m(strobe.position_m));
+        }
         const int across = options_.lamps_across > 0
                                ? options_.lamps_across
-                               : lamps_for(strobe.emitter->across_m, height_m, rig_.seafloor);
+                               : lamps_for(strobe.emitter->across_m, throw_m, phong_size);
         const int along = options_.lamps_along > 0
                               ? options_.lamps_along
-                              : lamps_for(strobe.emitter->along_m, height_m, rig_.seafloor);
+                              : lamps_for(strobe.emitter->along_m, throw_m, phong_size);
         constexpr double kMostLamps = 1e5;
         if (static_cast<double>(across) * along > kMostLamps) {
-            throw InputError(
-                fmt::format("strobe '{}': its emitter takes {} x {} lamps to trace; "
-                            "allowed: {:.0f}. It is large for its height over the floor",
-                            strobe.name,
-                            across,
-                            along,
-                            kMostLamps));
+            throw InputError(fmt::format(
+                "strobe '{}': its emitter takes {} x {} lamps to trace; "
+                "allowed: {:.0f}. It is large for its distance to the floor or to an object",
+                strobe.name,
+                across,
+                along,
+                kMostLamps));
         }
         // The emitter's own frame: its normal is the axis; forward, as it lies in its plane.
         Vector3d starboard_side = strobe.axis.cross(Vector3d::UnitX());
         if (starboard_side.norm() < 1e-6) starboard_side = strobe.axis.cross(Vector3d::UnitZ());
         starboard_side.normalize();
         const Vector3d forward_side = starboard_side.cross(strobe.axis);
+        for (const double x : {-0.5, 0.5}) {
+            for (const double y : {-0.5, 0.5}) {
+                rim_lamps_.push_back({.strobe = s,
+                                      .position_m = strobe.position_m +
+                                                    x * strobe.emitter->across_m * starboard_side +
+                                                    y * strobe.emitter->along_m * forward_side});
+            }
+        }
         for (int j = 0; j < along; ++j) {
             for (int i = 0; i < across; ++i) {
                 const double x = strobe.emitter->across_m * (2 * i + 1 - across) / (2.0 * across);
@@ -121,8 +145,10 @@ std::vector<WeightedWavelength> Tracer::full_spectrum() const {
                        .longest_path_m = 0.0,
                        .tilt = std::nullopt};
     for (const Strobe& strobe : rig_.strobes) {
-        family.sources.push_back({strobe.spectrum, rig_.seafloor.reflectance});
-        if (rig_.seafloor.phong > 0.0) family.sources.push_back({strobe.spectrum});
+        for (const Surface& surface : surfaces_) {
+            family.sources.push_back({strobe.spectrum, surface.reflectance});
+            if (surface.phong > 0.0) family.sources.push_back({strobe.spectrum});
+        }
     }
     const double middle_nm = 0.5 * (rig_.camera.range.first_nm + rig_.camera.range.last_nm);
     Index index{.glass = 1.0, .water = 1.0};
@@ -148,13 +174,15 @@ std::vector<WeightedWavelength> Tracer::full_spectrum() const {
                                     rig_.camera.height_px * j / static_cast<double>(kSteps));
         }
     }
-    // Towards the horizon paths grow without end: ask every pixel.
-    for (int row = 0; row < rig_.camera.height_px && !is_all_floor; ++row) {
+    // Towards the horizon paths grow without end, and objects lie between the grid's points: ask
+    // every pixel.
+    const bool is_smooth = is_all_floor && shapes_.empty();
+    for (int row = 0; row < rig_.camera.height_px && !is_smooth; ++row) {
         for (int column = 0; column < rig_.camera.width_px; ++column) {
             take_in(column + 0.5, row + 0.5);
         }
     }
-    if (family.longest_path_m == 0.0) family.shortest_path_m = 0.0;  // no floor in view
+    if (family.longest_path_m == 0.0) family.shortest_path_m = 0.0;  // nothing in view
     return reference_grid(rig_.camera.sensor, family, rig_.camera.range, kSpectralError);
 }
 
@@ -174,7 +202,7 @@ void Tracer::tabulate_spectra() {
     }
     const auto count = static_cast<Eigen::Index>(lambda_nm_.size());
     attenuation_per_m_.resize(count);
-    diffuse_.assign(rig_.strobes.size(), ArrayXd(count));
+    diffuse_.assign(rig_.strobes.size(), std::vector<ArrayXd>(surfaces_.size(), ArrayXd(count)));
     specular_.assign(rig_.strobes.size(), ArrayXd(count));
     for (Eigen::Index j = 0; j < count; ++j) {
         const double lambda_nm = lambda_nm_[static_cast<std::size_t>(j)];
@@ -183,13 +211,15 @@ void Tracer::tabulate_spectra() {
             const Strobe& strobe = rig_.strobes[s];
             const double flux = strobe.spectrum.at(lambda_nm) * strobe.power;
             specular_[s](j) = flux / std::numbers::pi;
-            diffuse_[s](j) = specular_[s](j) * rig_.seafloor.reflectance.at(lambda_nm);
+            for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+                diffuse_[s][k](j) = specular_[s](j) * surfaces_[k].reflectance.at(lambda_nm);
+            }
         }
         indices_.push_back(index_at(lambda_nm));
     }
 }
 
-// What the point (column, row) of the image looks at; false when it is no floor.
+// What the point (column, row) of the image looks at; false when it is nothing.
 bool Tracer::look(double column, double row, const Index& index, View& view) const {
     const Camera& camera = rig_.camera;
     // Image plane at unit distance: tangents of the ray's slope, up the image and to its right.
@@ -212,13 +242,39 @@ bool Tracer::look(double column, double row, const Index& index, View& view) con
     }
     direction.normalize();
     const double approach = direction.dot(down_);
-    if (approach <= 0.0) return false;
     const double depth_m = down_.dot(Vector3d(0.0, 0.0, rig_.sled.altitude_m) - origin_m);
-    if (depth_m <= 0.0) return false;
-    view.distance_m = depth_m / approach;
+    const bool meets_floor = approach > 0.0 && depth_m > 0.0;
+    view.distance_m = meets_floor ? depth_m / approach : std::numeric_limits<double>::infinity();
+    view.normal = -down_;
+    view.surface = 0;
+    view.face = 0;
+    for (std::size_t k = 0; k < shapes_.size() && !view.is_clear; ++k) {
+        const auto hit = shapes_[k].first_hit({origin_m, direction}, {0.0, view.distance_m});
+        if (!hit) continue;
+        view.distance_m = hit->distance_m;
+        view.normal = hit->normal.dot(direction) < 0.0 ? hit->normal : Vector3d(-hit->normal);
+        view.surface = k + 1;
+        view.face = hit->face;
+    }
+    if (!meets_floor && view.surface == 0) return false;
     view.point_m = origin_m + view.distance_m * direction;
-    view.mirrored = direction - 2.0 * approach * down_;
+    view.mirrored = direction - 2.0 * direction.dot(view.normal) * view.normal;
     return true;
+}
+
+// Something stands on this stretch of the way from the point to the lamp. What a face hides by
+// itself is told by its normal.
+bool Tracer::is_blocked(const Lamp& lamp, const View& view, Stretch stretch) const {
+    const Vector3d to_lamp = lamp.position_m - view.point_m;
+    const double d = to_lamp.norm();
+    stretch.to_m = std::min(stretch.to_m, d);
+    for (std::size_t k = 0; k < shapes_.size() && !view.is_clear; ++k) {
+        const int skip = view.surface == k + 1 ? view.face : -1;
+        if (shapes_[k].first_hit({view.point_m, to_lamp / d}, stretch, skip)) {
+            return true;
+        }
+    }
+    return false;
 }
 
 Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
@@ -226,7 +282,7 @@ Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
     const Vector3d from_lamp = view.point_m - lamp.position_m;
     const double d2 = from_lamp.squaredNorm();
     const double d = std::sqrt(d2);
-    const double cos_incidence = from_lamp.dot(down_) / d;
+    const double cos_incidence = -from_lamp.dot(view.normal) / d;
     const double cos_theta = from_lamp.dot(strobe.axis) / d;
     Contribution found{.diffuse = 0.0, .specular = 0.0, .path_m = d + view.distance_m};
     if (cos_incidence <= 0.0 || cos_theta <= 0.0) return found;
@@ -235,16 +291,23 @@ Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
     for (std::size_t k = 0; k < strobe.beam.cones.size(); ++k) {
         if (cos_theta >= cos_edge_[lamp.strobe][k]) axial += axial_intensity_[lamp.strobe][k];
     }
+    if (axial == 0.0 || is_blocked(lamp, view)) return found;
     const double arriving = axial * cos_theta / (lamps_of_strobe_[lamp.strobe] * d2);
     found.diffuse = arriving * cos_incidence;
-    if (rig_.seafloor.phong > 0.0) {
+    const Surface& surface = surfaces_[view.surface];
+    if (surface.phong > 0.0) {
         const double alignment = -view.mirrored.dot(from_lamp) / d;
         if (alignment > 0.0) {  // else none, where phong_size is 0 too
-            found.specular =
-                arriving * rig_.seafloor.phong * std::pow(alignment, rig_.seafloor.phong_size);
+            found.specular = arriving * surface.phong * std::pow(alignment, surface.phong_size);
         }
     }
     return found;
+}
+
+// From the shortest to the longest wavelength that is traced.
+WavelengthRange Tracer::traced_range() const {
+    const auto [first, last] = std::ranges::minmax_element(lambda_nm_);
+    return {.first_nm = *first, .last_nm = *last};
 }
 
 // The radiance of one pixel at every wavelength.
@@ -258,33 +321,40 @@ void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
             if (lit.diffuse == 0.0 && lit.specular == 0.0) continue;
             const auto left = (-lit.path_m * attenuation_per_m_).exp();
             if (lit.specular == 0.0) {
-                radiance += lit.diffuse * diffuse_[lamp.strobe] * left;
+                radiance += lit.diffuse * diffuse_[lamp.strobe][view.surface] * left;
             } else {
-                radiance +=
-                    (lit.diffuse * diffuse_[lamp.strobe] + lit.specular * specular_[lamp.strobe]) *
-                    left;
+                radiance += (lit.diffuse * diffuse_[lamp.strobe][view.surface] +
+                             lit.specular * specular_[lamp.strobe]) *
+                            left;
             }
         }
         return;
     }
+    if (lambda_nm_.empty()) return;
+    // Told once, for every wavelength has its own ray.
+    view.is_clear = is_clear_of_objects(column + 0.5, row + 0.5, traced_range(), 0.0);
     for (Eigen::Index j = 0; j < radiance.size(); ++j) {
         if (!look(column + 0.5, row + 0.5, indices_[static_cast<std::size_t>(j)], view)) continue;
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
-            radiance(j) += (lit.diffuse * diffuse_[lamp.strobe](j) +
+            radiance(j) += (lit.diffuse * diffuse_[lamp.strobe][view.surface](j) +
                             lit.specular * specular_[lamp.strobe](j)) *
                            std::exp(-lit.path_m * attenuation_per_m_(j));
         }
     }
 }
 
-std::vector<unsigned char> Tracer::on_cone_edges(WavelengthRange range, double within_px) const {
+bool Tracer::is_on_cone_edge(double column,
+                             double row,
+                             const std::array<Index, 2>& ends,
+                             double within_px) const {
+    std::array<View, 2> views;
+    if (!look(column, row, ends[0], views[0]) || !look(column, row, ends[1], views[1])) {
+        return false;
+    }
     const double rounding_rad = rig_.camera.port ? kEdgeBehindPortRad : kEdgeRad;
-    const std::array<Index, 2> ends{index_at(range.first_nm), index_at(range.last_nm)};
     // The signed angle from a cone's edge, and how far a strobe's lamps spread about it.
-    const auto is_on_edge = [&](const Strobe& strobe,
-                                const Cone& cone,
-                                const std::array<View, 2>& views) {
+    const auto is_on_edge = [&](const Strobe& strobe, const Cone& cone) {
         std::array<double, 2> beyond_rad{};
         // A pixel covers more of a floor that is seen aslant.
         constexpr double kAslant = 1.5;
@@ -304,28 +374,186 @@ std::vector<unsigned char> Tracer::on_cone_edges(WavelengthRange range, double w
         return std::abs(beyond_rad[0]) <= spread_rad || std::abs(beyond_rad[1]) <= spread_rad ||
                (beyond_rad[0] > 0.0) != (beyond_rad[1] > 0.0);
     };
-
-    std::vector<unsigned char> marks;
-    for (int row = 0; row < rig_.camera.height_px; ++row) {
-        for (int column = 0; column < rig_.camera.width_px; ++column) {
-            std::array<View, 2> views;
-            bool is_marked = false;
-            const bool sees_floor = look(column + 0.5, row + 0.5, ends[0], views[0]) &&
-                                    look(column + 0.5, row + 0.5, ends[1], views[1]);
-            for (const Strobe& strobe : rig_.strobes) {
-                for (const Cone& cone : strobe.beam.cones) {
-                    // A cone of 90 degrees ends where its cosine does: there is no step. Nor is
-                    // there one where there is no light.
-                    const bool has_step =
-                        cone.half_angle_rad < 0.5 * std::numbers::pi - rounding_rad &&
-                        cone.weight * strobe.power > 0.0;
-                    is_marked =
-                        is_marked || (sees_floor && has_step && is_on_edge(strobe, cone, views));
-                }
-            }
-            marks.push_back(is_marked ? 1 : 0);
+    for (const Strobe& strobe : rig_.strobes) {
+        for (const Cone& cone : strobe.beam.cones) {
+            // A cone of 90 degrees ends where its cosine does: there is no step. Nor is there one
+            // where there is no light.
+            const bool has_step = cone.half_angle_rad < 0.5 * std::numbers::pi - rounding_rad &&
+                                  cone.weight * strobe.power > 0.0;
+            if (has_step && is_on_edge(strobe, cone)) return true;
         }
     }
+    return false;
+}
+
+// Its cones aside: a lamp before the surface, which is before the lamp, with nothing between.
+bool Tracer::shines_on(const Lamp& lamp, const View& view) const {
+    const Vector3d from_lamp = view.point_m - lamp.position_m;
+    return from_lamp.dot(view.normal) < 0.0 &&
+           from_lamp.dot(rig_.strobes[lamp.strobe].axis) > 0.0 && !is_blocked(lamp, view);
+}
+
+bool Tracer::shows_the_same(const View& a, const View& b) const {
+    return a.surface == b.surface && a.face == b.face &&
+           std::ranges::all_of(rim_lamps_, [&](const Lamp& lamp) {
+               return shines_on(lamp, a) == shines_on(lamp, b);
+           });
+}
+
+// For what the pixel itself shows, whatever its neighbours do.
+bool Tracer::is_uncertain(const View& view) const {
+    const bool is_of_mesh = view.surface > 0 && shapes_[view.surface - 1].is_mesh();
+    std::vector<int> lit(rig_.strobes.size(), 0);
+    std::vector<int> dark(rig_.strobes.size(), 0);
+    const auto looks_uncertain = [&](const Lamp& lamp) {
+        const Vector3d to_lamp = lamp.position_m - view.point_m;
+        const double d = to_lamp.norm();
+        const double cos_incidence = to_lamp.dot(view.normal) / d;
+        const bool shines = shines_on(lamp, view);
+        ++(shines ? lit : dark)[lamp.strobe];
+        const bool is_hidden = !shines && cos_incidence > 0.0;
+        return (is_of_mesh && std::abs(cos_incidence) < kGrazing) ||
+               (is_hidden && is_blocked(lamp, view, {0.0, kNoShadowWithin_m})) ||
+               (is_hidden && is_blocked(lamp, view) &&
+                !is_blocked(lamp, view, {kNoShadowWithin_m, d - kNoShadowWithin_m})) ||
+               (lit[lamp.strobe] > 0 && dark[lamp.strobe] > 0);
+    };
+    return std::ranges::any_of(lamps_, looks_uncertain) ||
+           std::ranges::any_of(rim_lamps_, looks_uncertain);
+}
+
+// The camera's ray, or a lamp's to what it shows, comes this close to an object.
+bool Tracer::is_near_an_object(const View& view, double reach_m) const {
+    const Vector3d pupil_m = Vector3d::Zero();
+    if (view.surface > 0) return true;
+    const auto passes = [&](const Eigen::AlignedBox3d& bounds_m, const Vector3d& to_m) {
+        Eigen::AlignedBox3d grown_m = bounds_m;
+        grown_m.min() -= Vector3d::Constant(reach_m);
+        grown_m.max() += Vector3d::Constant(reach_m);
+        if (grown_m.contains(view.point_m) || grown_m.contains(to_m)) return true;
+        const TracedShape box(Box{.least_m = grown_m.min(), .most_m = grown_m.max()});
+        const Vector3d way = to_m - view.point_m;
+        return box.first_hit({view.point_m, way.normalized()}, {0.0, way.norm()}).has_value();
+    };
+    for (const TracedShape& shape : shapes_) {
+        const Eigen::AlignedBox3d& bounds_m = shape.bounds_m();
+        if (passes(bounds_m, pupil_m)) return true;
+        for (const Lamp& lamp : rim_lamps_) {
+            if (passes(bounds_m, lamp.position_m)) return true;
+        }
+    }
+    return false;
+}
+
+// The logarithm of the change of light, each lamp's by its share of all.
+double Tracer::change_between(const View& from, const View& to, double lambda_nm) const {
+    const double K_per_m = rig_.water.attenuation_per_m(lambda_nm);
+    const Surface& surface = surfaces_[from.surface];
+    const double reflectance = surface.reflectance.at(lambda_nm);
+    double all = 0.0;
+    double change = 0.0;
+    for (const Lamp& lamp : lamps_) {
+        const Strobe& strobe = rig_.strobes[lamp.strobe];
+        const double flux = strobe.power * strobe.spectrum.at(lambda_nm);
+        const Contribution before = light(lamp, from);
+        const Contribution after = light(lamp, to);
+        const double left = flux * std::exp(-K_per_m * before.path_m);
+        const double left_after = flux * std::exp(-K_per_m * after.path_m);
+        all += left * (reflectance * before.diffuse + before.specular);
+        change += reflectance * std::abs(left_after * after.diffuse - left * before.diffuse) +
+                  std::abs(left_after * after.specular - left * before.specular);
+    }
+    if (change == 0.0) return 0.0;
+    return all > 0.0 ? std::log1p(change / all) : std::numeric_limits<double>::infinity();
+}
+
+// All that the point of the image shows in the range, and what lies so many pixels about it, is
+// floor that no object hides from camera or lamp.
+bool Tracer::is_clear_of_objects(double column,
+                                 double row,
+                                 WavelengthRange range,
+                                 double within_px) const {
+    constexpr double kRoom = 4.0;
+    const double pixel_rad = rig_.camera.pixel_pitch_m / rig_.camera.focal_length_m;
+    View view;
+    if (!look(column, row, index_at(0.5 * (range.first_nm + range.last_nm)), view)) return false;
+    double reach_m =
+        kNoShadowWithin_m + kRoom * (kEdgePx + within_px) * pixel_rad * view.distance_m;
+    for (const double lambda_nm : {range.first_nm, range.last_nm}) {
+        View shifted;
+        if (!look(column, row, index_at(lambda_nm), shifted)) return false;
+        reach_m += kRoom * (shifted.point_m - view.point_m).norm();
+    }
+    return !is_near_an_object(view, reach_m);
+}
+
+// A lamp's light is so near its end on a rounded thing that the rounding of POV-Ray's index tells.
+bool Tracer::turns_steeply(double column, double row, const View& view, double lambda_nm) const {
+    const double reach_px =
+        kEdgeBehindPortRad * rig_.camera.focal_length_m / rig_.camera.pixel_pitch_m;
+    const Index index = index_at(lambda_nm);
+    for (const auto& [x, y] : std::array<std::array<double, 2>, 2>{{{1.0, 0.0}, {0.0, 1.0}}}) {
+        View beside;
+        if (!look(column + reach_px * x, row + reach_px * y, index, beside) ||
+            change_between(view, beside, lambda_nm) > kRoundingChange) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool Tracer::is_on_object_edge(double column,
+                               double row,
+                               WavelengthRange range,
+                               double within_px) const {
+    constexpr int kSpectralSteps = 8;  // under a pixel each, for the widest dispersion of a port
+    const double middle_nm = 0.5 * (range.first_nm + range.last_nm);
+    const Index middle = index_at(middle_nm);
+    if (is_clear_of_objects(column, row, range, within_px)) return false;
+    View view;
+    const bool sees = look(column, row, middle, view);
+    if (sees && is_uncertain(view)) return true;
+    for (const double reach_px : {kEdgePx, 0.5 * within_px, within_px}) {
+        constexpr int kDirections = 8;
+        for (int k = 0; k < kDirections && reach_px > 0.0; ++k) {
+            const double turn = 2.0 * std::numbers::pi * k / kDirections;
+            View beside;
+            const bool sees_beside = look(column + reach_px * std::cos(turn),
+                                          row + reach_px * std::sin(turn),
+                                          middle,
+                                          beside);
+            if (sees_beside != sees || (sees && !shows_the_same(view, beside))) return true;
+        }
+    }
+    if (view.surface > 0 && rig_.camera.port && turns_steeply(column, row, view, middle_nm)) {
+        return true;
+    }
+    for (int j = 0; j <= kSpectralSteps && range.first_nm < range.last_nm && rig_.camera.port;
+         ++j) {
+        const double lambda_nm =
+            std::lerp(range.first_nm, range.last_nm, j / static_cast<double>(kSpectralSteps));
+        View shifted;
+        const bool sees_shifted = look(column, row, index_at(lambda_nm), shifted);
+        if (sees_shifted != sees || (sees && !shows_the_same(view, shifted))) return true;
+        if (view.surface > 0 && change_between(view, shifted, lambda_nm) > kSteepest) return true;
+    }
+    return false;
+}
+
+std::vector<unsigned char> Tracer::on_edges(WavelengthRange range, double within_px) const {
+    const std::array<Index, 2> ends{index_at(range.first_nm), index_at(range.last_nm)};
+    const int width_px = rig_.camera.width_px;
+    std::vector<unsigned char> marks(static_cast<std::size_t>(width_px) *
+                                     static_cast<std::size_t>(rig_.camera.height_px));
+    for_each_row(rig_.camera.height_px, [&](int row) {
+        for (int column = 0; column < width_px; ++column) {
+            const bool is_marked =
+                is_on_cone_edge(column + 0.5, row + 0.5, ends, within_px) ||
+                (!shapes_.empty() && is_on_object_edge(column + 0.5, row + 0.5, range, within_px));
+            marks[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px) +
+                  static_cast<std::size_t>(column)] = is_marked ? 1 : 0;
+        }
+    });
     return marks;
 }
 
@@ -333,31 +561,35 @@ std::size_t Tracer::planes() const {
     return (options_.signals ? kChannels : 0U) + options_.planes_nm.size();
 }
 
+// Rows are taken as threads come free.
+void Tracer::for_each_row(int count, const std::function<void(int)>& work) const {
+    std::atomic<int> next_row = 0;
+    const auto take_rows = [&] {
+        for (int row = next_row++; row < count; row = next_row++) work(row);
+    };
+    std::vector<std::jthread> others;
+    for (int t = 1; t < options_.threads; ++t) others.emplace_back(take_rows);
+    take_rows();
+}
+
 std::vector<double> Tracer::rows(int first_row, int count) const {
     const auto width = static_cast<std::size_t>(rig_.camera.width_px);
     const std::size_t plane = width * static_cast<std::size_t>(count);
     std::vector<double> samples(planes() * plane);
-    std::atomic<int> next_row = 0;
-    const auto work = [&] {
+    const auto grid = static_cast<Eigen::Index>(signal_nodes_);
+    for_each_row(count, [&](int row) {
         ArrayXd radiance(static_cast<Eigen::Index>(lambda_nm_.size()));
-        const auto grid = static_cast<Eigen::Index>(signal_nodes_);
-        for (int row = next_row++; row < count; row = next_row++) {
-            for (std::size_t column = 0; column < width; ++column) {
-                trace_pixel(static_cast<int>(column), first_row + row, radiance);
-                std::size_t at = static_cast<std::size_t>(row) * width + column;
-                for (int c = 0; options_.signals && c < kChannels; ++c, at += plane) {
-                    samples[at] = (weights_.col(c) * radiance.head(grid)).sum();
-                }
-                for (Eigen::Index j = grid; j < radiance.size(); ++j, at += plane) {
-                    samples[at] = radiance(j);
-                }
+        for (std::size_t column = 0; column < width; ++column) {
+            trace_pixel(static_cast<int>(column), first_row + row, radiance);
+            std::size_t at = static_cast<std::size_t>(row) * width + column;
+            for (int c = 0; options_.signals && c < kChannels; ++c, at += plane) {
+                samples[at] = (weights_.col(c) * radiance.head(grid)).sum();
+            }
+            for (Eigen::Index j = grid; j < radiance.size(); ++j, at += plane) {
+                samples[at] = radiance(j);
             }
         }
-    };
-    std::vector<std::jthread> others;
-    for (int t = 1; t < options_.threads; ++t) others.emplace_back(work);
-    work();
-    others.clear();  // joins
+    });
     return samples;
 }
 

@@ -4,16 +4,16 @@
 // and no line of geometry or light.
 //
 // For every pixel and every wavelength of its grid: the camera's ray, through the port where
-// there is one (each wavelength bent by its own indices), to the floor; from there every strobe,
-// every lamp of its emitter, every cone:
+// there is one (each wavelength bent by its own indices), to the floor or to the object before it
+// (shapes.h); from there every strobe, every lamp of its emitter that no object hides, every cone:
 //
 //   L(lambda) = sum  Phi power A_k cos(theta) / (N d^2)
 //                    (rho cos(i) + phong max(0, m.l)^size) / pi  exp(-K (d + r))
 //   S_c       = sum_j w_cj L(lambda_j)
 //
-// theta  angle off the strobe's axis, within the cone      d  lamp to floor [m]
-// i      angle of incidence at the floor                   r  floor to port or pupil [m]
-// m      the camera's ray mirrored at the floor            l  from the floor to the lamp
+// theta  angle off the strobe's axis, within the cone      d  lamp to surface [m]
+// i      angle of incidence at the surface                 r  surface to port or pupil [m]
+// m      the camera's ray mirrored at the surface          l  from the surface to the lamp
 // N      lamps of the emitter                              A_k  pi sin^2(gamma) A_k = alpha_k
 //
 // Double precision throughout. The spectral grid is exact to kSpectralError of a channel's
@@ -24,9 +24,13 @@
 
 #include "scene_gen/rig.h"
 #include "spectral/bands.h"
+#include "validation/shapes.h"
 
 #include <Eigen/Core>
 
+#include <array>
+#include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -37,6 +41,21 @@ inline constexpr double kEmitterError = 2e-5;
 
 inline constexpr double kEdgeRad = 1e-9;
 inline constexpr double kEdgeBehindPortRad = 1e-7;
+// Of an object's outline, its faces and its shadows: where the image shifted by so much shows
+// another face or other lamps. POV-Ray keeps meshes in single precision, 0.1 um at 2 m.
+inline constexpr double kEdgePx = 2e-3;
+// POV-Ray passes over blockers so close to the lit point or to the lamp (SHADOW_TOLERANCE, 1e-3 of
+// its units, ours are metres; and a bit for rounding). Behind such a one it may also miss a farther
+// part of the same mesh.
+inline constexpr double kNoShadowWithin_m = 1.01e-3;
+// A mesh's face that a lamp grazes: below this cosine POV-Ray's single-precision normals tell.
+inline constexpr double kGrazing = 1e-3;
+// Behind a port, where kEdgeBehindPortRad changes the light on an object by more than this, a half
+// of what the half floats leave of validation.h's bound.
+inline constexpr double kRoundingChange = 5e-5;
+// On an object behind a port, dispersion may change the light by this much (its logarithm) and
+// no more, which is what a plan allows for (kObjectTilt of scene_gen/light_paths.h).
+inline constexpr double kSteepest = 0.05;
 
 struct TraceOptions {
     bool signals = true;            // R, G, B over the full spectrum
@@ -57,13 +76,18 @@ class Tracer {
 
     [[nodiscard]] std::size_t planes() const;
 
-    // 1 for every pixel, row by row, that lies on the edge of a cone at some wavelength of the
-    // range: its centre is within kEdgeRad of the edge (kEdgeBehindPortRad behind a port, whose
-    // index POV-Ray keeps in single precision), an emitter of a size has lamps on both sides of
-    // it, or dispersion takes it across. within_px: also pixels about so many from an edge, for
-    // images that blur it.
-    [[nodiscard]] std::vector<unsigned char> on_cone_edges(WavelengthRange range,
-                                                           double within_px = 0.0) const;
+    // 1 for every pixel, row by row, whose value is a matter of rounding, or steps, somewhere in
+    // the range:
+    //   cones    its centre is within kEdgeRad of a cone's edge (kEdgeBehindPortRad behind a port,
+    //            whose index POV-Ray keeps in single precision), an emitter of a size has lamps on
+    //            both sides of it, or dispersion takes it across
+    //   objects  within kEdgePx, or by dispersion, the image shows another face or other lamps
+    //            shine on it; an emitter is hidden in part; a blocker is nearer than
+    //            kNoShadowWithin_m; a lamp grazes a mesh; light changes by kSteepest through
+    //            dispersion, or by kRoundingChange through the rounding of a port's index
+    // within_px: also pixels about so many from an edge, for images that blur it.
+    [[nodiscard]] std::vector<unsigned char> on_edges(WavelengthRange range,
+                                                      double within_px = 0.0) const;
 
     // Of the full spectrum; 0 without signals.
     [[nodiscard]] std::size_t grid_size() const { return signal_nodes_; }
@@ -76,7 +100,13 @@ class Tracer {
         std::size_t strobe;
         Eigen::Vector3d position_m;
     };
-    // What a lamp does to a floor point as the camera sees it, without wavelength.
+    // What all things in view have: the floor, then the objects in the rig's order.
+    struct Surface {
+        Spectrum reflectance;
+        double phong;
+        double phong_size;
+    };
+    // What a lamp does to a point as the camera sees it, without wavelength.
     struct Contribution {
         double diffuse = 0.0;   // sum of A cos(theta) cos(i) / (N d^2)    [1/m^2]
         double specular = 0.0;  // sum of A cos(theta) (m.l)^size phong / (N d^2)
@@ -84,13 +114,18 @@ class Tracer {
     };
     struct View {
         Eigen::Vector3d point_m;
-        Eigen::Vector3d mirrored;
-        double distance_m = 0.0;  // in water
+        Eigen::Vector3d normal;    // towards the camera
+        Eigen::Vector3d mirrored;  // the ray's direction
+        double distance_m = 0.0;   // in water
+        std::size_t surface = 0;
+        int face = 0;
+        bool is_clear = false;  // set beforehand: no object is near, and none is looked for
     };
     struct Index {
         double glass;
         double water;
     };
+    static constexpr Stretch kWholeWay{0.0, std::numeric_limits<double>::infinity()};
 
     [[nodiscard]] Index index_at(double lambda_nm) const;
     void place_lamps();
@@ -99,11 +134,41 @@ class Tracer {
     [[nodiscard]] bool look(double column, double row, const Index& index, View& view) const;
     [[nodiscard]] Contribution light(const Lamp& lamp, const View& view) const;
     void trace_pixel(int column, int row, Eigen::ArrayXd& radiance) const;
+    void for_each_row(int count, const std::function<void(int)>& work) const;
+
+    [[nodiscard]] bool is_blocked(const Lamp& lamp,
+                                  const View& view,
+                                  Stretch stretch = kWholeWay) const;
+    [[nodiscard]] bool turns_steeply(double column,
+                                     double row,
+                                     const View& view,
+                                     double lambda_nm) const;
+    [[nodiscard]] bool shines_on(const Lamp& lamp, const View& view) const;
+    [[nodiscard]] bool is_on_cone_edge(double column,
+                                       double row,
+                                       const std::array<Index, 2>& ends,
+                                       double within_px) const;
+    [[nodiscard]] bool is_on_object_edge(double column,
+                                         double row,
+                                         WavelengthRange range,
+                                         double within_px) const;
+    [[nodiscard]] WavelengthRange traced_range() const;
+    [[nodiscard]] bool is_clear_of_objects(double column,
+                                           double row,
+                                           WavelengthRange range,
+                                           double within_px) const;
+    [[nodiscard]] bool is_near_an_object(const View& view, double reach_m) const;
+    [[nodiscard]] bool is_uncertain(const View& view) const;
+    [[nodiscard]] bool shows_the_same(const View& a, const View& b) const;
+    [[nodiscard]] double change_between(const View& from, const View& to, double lambda_nm) const;
 
     Rig rig_;
     TraceOptions options_;
     Eigen::Vector3d down_;
+    std::vector<Surface> surfaces_;
+    std::vector<TracedShape> shapes_;  // of the objects
     std::vector<Lamp> lamps_;
+    std::vector<Lamp> rim_lamps_;  // an emitter's corners, or its point
     std::vector<double> lamps_of_strobe_;
     std::vector<std::vector<double>> axial_intensity_;  // by strobe and cone
     std::vector<std::vector<double>> cos_edge_;
@@ -112,10 +177,10 @@ class Tracer {
     std::size_t signal_nodes_ = 0;
     std::vector<double> lambda_nm_;
     Eigen::ArrayXd attenuation_per_m_;
-    std::vector<Eigen::ArrayXd> diffuse_;   // by strobe: Phi power rho / pi
-    std::vector<Eigen::ArrayXd> specular_;  // by strobe: Phi power / pi
-    Eigen::ArrayXXd weights_;               // of the grid, by channel
-    std::vector<Index> indices_;            // behind a port
+    std::vector<std::vector<Eigen::ArrayXd>> diffuse_;  // by strobe, surface: Phi power rho / pi
+    std::vector<Eigen::ArrayXd> specular_;              // by strobe: Phi power / pi
+    Eigen::ArrayXXd weights_;                           // of the grid, by channel
+    std::vector<Index> indices_;                        // behind a port
 };
 
 }  // namespace aphotic

@@ -36,6 +36,8 @@ void compare_radiance(const Rig& rig,
                       ValidationReport& report) {
     const std::size_t pixels = pixels_of(rig);
     const std::size_t count = rendered.lambda_nm.size();
+    // Nothing is bent without a port, and all wavelengths have the same edges.
+    std::vector<unsigned char> on_edge;
     for (std::size_t first = 0; first < count; first += kPlanesAtATime) {
         const std::size_t part = std::min(kPlanesAtATime, count - first);
         TraceOptions options{.signals = false, .planes_nm = {}, .threads = threads};
@@ -48,13 +50,16 @@ void compare_radiance(const Rig& rig,
         for (std::size_t k = 0; k < part; ++k) {
             const double lambda_nm = rendered.lambda_nm[first + k];
             const double index_nm = rendered.index_nm[first + k];
+            if (on_edge.empty() || rig.camera.port) {
+                on_edge = tracer.on_edges({.first_nm = std::min(lambda_nm, index_nm),
+                                           .last_nm = std::max(lambda_nm, index_nm)});
+            }
             report.wavelengths.push_back(compare_planes(
                 wavelength_name(lambda_nm),
                 std::span(found).subspan(k * pixels, pixels),
                 std::span(traced).subspan(k * pixels, pixels),
                 rig.camera.width_px,
-                tracer.on_cone_edges({.first_nm = std::min(lambda_nm, index_nm),
-                                      .last_nm = std::max(lambda_nm, index_nm)}),
+                on_edge,
                 std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[first + k]),
                 kHalfFloatBound + rendered.shift_error[first + k]));
         }
@@ -96,7 +101,7 @@ void compare_signals(const Rig& rig,
     const Tracer tracer(rig, {.signals = true, .planes_nm = {}, .threads = threads});
     report.grid_size = tracer.grid_size();
     const std::vector<double> traced = trace_signals(tracer, progress);
-    const std::vector<unsigned char> on_edge = tracer.on_cone_edges(rig.camera.range);
+    const std::vector<unsigned char> on_edge = tracer.on_edges(rig.camera.range);
     report.traced = {.width_px = rig.camera.width_px,
                      .height_px = rig.camera.height_px,
                      .samples = {traced.begin(), traced.end()}};

@@ -3,7 +3,7 @@
 // Holds a finished render against the reference: every wavelength's radiance and every channel's
 // signal, pixel by pixel, absolute scale included.
 //
-// Bounds of |e| off the cone edges (comparison.h):
+// Bounds of |e| off the edges (tracer.h):
 //
 //   radiance   kHalfFloatBound: a half float's rounding is 2^-11 = 4.9e-4 of the value; the rest
 //              is for the lamps that stand for an emitter and for single-precision colours. Behind

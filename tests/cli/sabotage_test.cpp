@@ -4,6 +4,7 @@
 // plausible picture; the command must end with status 1 and name the worst wavelength or channel.
 #include "spectral/manifest.h"
 #include "support/run_command.h"
+#include "support/small_scene.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -116,6 +117,12 @@ class Sabotage : public testing::Test {
         expect_no(validate({"--rendered", "spoilt"}));
     }
 
+    // scenes/objects.toml, in a folder that has its mesh.
+    std::string rig_with_objects() {
+        put_small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/objects.toml", folder_.path());
+        return read_text_file(folder_.path() / "rig.toml");
+    }
+
     TempFolder folder_;
 };
 
@@ -199,6 +206,21 @@ TEST_F(Sabotage, TableShiftedByOneKnot) {
     write_file(folder_.path() / "shifted.csv", shifted);
     const std::string honest = replaced(honest_rig(), "\"pope-fry-1997\"", "\"water.csv\"");
     expect_no_when_rendered_from(replaced(honest, "water.csv", "shifted.csv"), honest);
+}
+
+TEST_F(Sabotage, ObjectsWithoutShadows) {
+    expect_no_when_scenes_are("s/^   pigment/   no_shadow pigment/", rig_with_objects());
+}
+
+TEST_F(Sabotage, AnObjectMovedByACentimetre) {
+    const std::string honest = rig_with_objects();
+    expect_no_when_rendered_from(replaced(honest, "[-0.2, 0.05, 1.86]", "[-0.19, 0.05, 1.86]"),
+                                 honest);
+}
+
+TEST_F(Sabotage, AnObjectOfAnotherMaterial) {
+    const std::string honest = rig_with_objects();
+    expect_no_when_rendered_from(replaced(honest, "brown-algae", "red-algae"), honest);
 }
 
 TEST_F(Sabotage, ExposuresNotTakenOut) {

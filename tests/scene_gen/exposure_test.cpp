@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/exposure.h"
 
+#include "scene_gen/geometry.h"
+
 #include "scene_gen/rig_reader.h"
 #include "tests/support/closed_form.h"
 
@@ -234,6 +236,30 @@ TEST(RadianceBound, IsTightWhereNoStrobeStandsOverTheView) {
 }
 
 // The lamp's power is a factor of everything.
+// A ball in the light, near a lamp and far from it: its brightest point, straight below the lamp,
+// is Phi P sum(A) rho / (pi d^2) at the most, and the bound wastes no more than two octaves on it.
+TEST(RadianceBound, HoldsForAnObjectCloseToALamp) {
+    for (const double away_m : {0.002, 0.05, 1.0}) {
+        Rig rig = habcam();
+        rig.water.multiple = 0.0;
+        Strobe& strobe = rig.strobes.front();
+        strobe.position_m = {0.1, 0.0, 0.3};
+        strobe.axis = Eigen::Vector3d::UnitZ();
+        strobe.beam.cones = {{.part = "", .half_angle_rad = 1.0, .weight = 1.0}};
+        rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+        const double floor = RadianceBound(rig).at(550.0);
+        rig.objects = {{.name = "ball",
+                        .shape = Sphere{.centre_m = {0.1, 0.0, 0.4 + away_m}, .radius_m = 0.1},
+                        .reflectance = flat(0.8)}};
+        const double brightest = strobe.spectrum.at(550.0) * strobe.power *
+                                 axial_intensity(strobe.beam.cones[0], strobe.beam.weights) * 0.8 /
+                                 (std::numbers::pi * away_m * away_m);
+        const double bound = RadianceBound(rig).at(550.0);
+        EXPECT_GE(bound, brightest * (1.0 - 1e-12)) << away_m;
+        EXPECT_LE(bound, std::max(floor, 4.0 * brightest)) << away_m;
+    }
+}
+
 TEST(RadianceBound, GrowsWithThePower) {
     constexpr double kRounding = 1e-14;
     Rig rig = habcam();

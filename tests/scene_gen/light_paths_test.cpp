@@ -742,5 +742,62 @@ TEST(PortTilt, BoundsTheChangeOfLightBesideALowLamp) {
     EXPECT_GT(looked_at, kPixels / 20) << "pixels beside a lamp";
 }
 
+// --- Objects ---------------------------------------------------------------------------------
+
+Object ball_of(const Vector3d& centre_m, double radius_m, double phong = 0.0) {
+    return {.name = "ball",
+            .shape = Sphere{.centre_m = centre_m, .radius_m = radius_m},
+            .reflectance = flat(0.25),
+            .phong = phong};
+}
+
+// Points of a ball's surface, and the ways by them: none is outside of the range, which without
+// the ball is the floor's.
+TEST(LightPathsOfObjects, HoldEveryPathByThem) {
+    Rig rig = camera_rig();
+    rig.strobes = {strobe_at({0.4, 0.1, 0.0}), strobe_at({-0.3, -0.2, 0.1})};
+    const PathRange floor = path_range(rig);
+    const Vector3d centre_m(0.1, 0.1, 1.3);
+    rig.objects = {ball_of(centre_m, 0.3)};
+    const PathRange all = path_range(rig);
+    EXPECT_LE(all.shortest_m, floor.shortest_m);
+    EXPECT_GE(all.longest_m, floor.longest_m);
+    std::mt19937 random(kSeed);
+    std::normal_distribution<double> any;
+    double shortest_m = floor.shortest_m;
+    for (int i = 0; i < 20000; ++i) {
+        const Vector3d point_m =
+            centre_m + 0.3 * Vector3d(any(random), any(random), any(random)).normalized();
+        for (const Strobe& strobe : rig.strobes) {
+            const double path_m = point_m.norm() + (point_m - strobe.position_m).norm();
+            EXPECT_GE(path_m, all.shortest_m);
+            EXPECT_LE(path_m, all.longest_m);
+            shortest_m = std::min(shortest_m, path_m);
+        }
+    }
+    // The box about the ball reaches nearer than the ball, but not by more than its corners do.
+    EXPECT_GT(all.shortest_m, shortest_m - 2.0 * 0.3 * (std::sqrt(3.0) - 1.0));
+}
+
+TEST(LightPathsOfObjects, AreTheFloorsWhenTheyAreOutOfView) {
+    Rig rig = camera_rig();
+    rig.strobes = {strobe_at({0.4, 0.1, 0.0})};
+    const PathRange floor = path_range(rig);
+    rig.objects = {ball_of({0.0, 0.0, -1.0}, 0.2)};
+    EXPECT_EQ(path_range(rig).shortest_m, floor.shortest_m);
+    EXPECT_EQ(path_range(rig).longest_m, floor.longest_m);
+}
+
+TEST(LightPathsOfObjects, BringTheirMaterialsAndTheirHighlight) {
+    Rig rig = camera_rig();
+    rig.strobes = {strobe_at({0.4, 0.1, 0.0})};
+    EXPECT_EQ(light_family(rig).sources.size(), 1U);
+    rig.objects = {ball_of({0.0, 0.0, 1.5}, 0.2)};
+    EXPECT_EQ(light_family(rig).sources.size(), 2U);
+    EXPECT_EQ(light_family_by_strobe(rig).sources.size(), 2U);
+    rig.objects = {ball_of({0.0, 0.0, 1.5}, 0.2, 0.1)};
+    EXPECT_EQ(light_family(rig).sources.size(), 3U) << "and the bare lamp";
+}
+
 }  // namespace
 }  // namespace aphotic

@@ -55,6 +55,14 @@ TEST(Omissions, AreNoneWhereEverythingCounts) {
     EXPECT_EQ(omitted(rig), Pairs{});
 }
 
+TEST(Omissions, NameTheHighlightsThatObjectsHaveNot) {
+    EXPECT_EQ(omitted(rig_of("objects.toml")),
+              (Pairs{kNoPort,
+                     kNoHighlight,
+                     {"the highlight of object 'rock'", "its strength is 0"},
+                     {"the highlight of object 'block'", "its strength is 0"}}));
+}
+
 TEST(Omissions, NameTheMediumInClearWaterOnly) {
     Rig rig = rig_of("habcam.toml");
     rig.water.multiple = 0.0;
@@ -157,6 +165,19 @@ TEST(LightsTheView, OfABeamInsideItIsYes) {
                 << x << ", " << y;
         }
     }
+}
+
+// A beam that passes over the floor in view, and meets a ball on its way.
+TEST(LightsTheView, OfABeamThatMeetsAnObjectIsYes) {
+    Rig rig = rig_with_strobe({-3.0, 0.0, 1.0}, Vector3d::UnitX());
+    const Cone cone{.part = "narrow", .half_angle_rad = 3.0 * kDegree, .weight = 1.0};
+    EXPECT_FALSE(lights_the_view(rig, rig.strobes.front(), cone));
+    rig.objects = {{.name = "ball",
+                    .shape = Sphere{.centre_m = {0.0, 0.0, 1.0}, .radius_m = 0.1},
+                    .reflectance = rig.seafloor.reflectance}};
+    EXPECT_TRUE(lights_the_view(rig, rig.strobes.front(), cone));
+    rig.objects[0].shape = Sphere{.centre_m = {0.0, 0.0, 1.4}, .radius_m = 0.1};
+    EXPECT_FALSE(lights_the_view(rig, rig.strobes.front(), cone));
 }
 
 TEST(LightsTheView, OfABeamThatShinesAwayIsNo) {

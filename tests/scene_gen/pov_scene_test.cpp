@@ -459,5 +459,40 @@ TEST(RenderIni, SetsWhatChangesPixels) {
     }
 }
 
+// --- Objects ---------------------------------------------------------------------------------
+
+Object object_of(const Shape& shape) {
+    return {.name = "thing", .shape = shape, .reflectance = sloping(0.25, 0.75)};
+}
+
+// POV-Ray's x is our y, its y our x.
+TEST(PovObjects, AreWrittenInPovRaysFrame) {
+    Rig rig = odd_rig();
+    rig.objects = {
+        object_of(Sphere{.centre_m = {0.5, 0.25, 2.0}, .radius_m = 0.125}),
+        object_of(Box{.least_m = {-0.5, 0.25, 1.5}, .most_m = {0.5, 0.75, 2.5}}),
+        object_of(Mesh{.vertices_m = {{0.0, 0.0, 2.0}, {0.5, 0.0, 2.0}, {0.0, 0.25, 2.0}},
+                       .triangles = {{0, 1, 2}}})};
+    rig.objects[0].phong = 0.5;
+    const std::string sdl = make_scenes(rig, std::vector{400.0, 550.0, 700.0})[0].sdl;
+    for (const char* text :
+         {"sphere { <0.25, 0.5, 2>, 0.125\n   pigment { rgb <0.25, 0.5, 0.75> }\n"
+          "   finish { phong 0.5  phong_size 40 }\n}\n",
+          "box { <0.25, -0.5, 1.5>, <0.75, 0.5, 2.5>\n   pigment { rgb <0.25, 0.5, 0.75> }\n}\n",
+          "mesh2 {\n   vertex_vectors { 3,\n      <0, 0, 2>,\n      <0, 0.5, 2>,\n      <0.25, 0, "
+          "2> "
+          "}\n   face_indices { 1,\n      <0, 1, 2> }\n"}) {
+        EXPECT_NE(sdl.find(text), std::string::npos) << text << sdl;
+    }
+}
+
+TEST(PovObjects, MayNotReachIntoTheHousing) {
+    Rig rig = with_port(odd_rig());
+    rig.objects = {object_of(Sphere{.centre_m = {0.0, 0.0, 1.0}, .radius_m = 0.1})};
+    EXPECT_NO_THROW((void)make_scenes(rig, std::vector{550.0}));
+    rig.objects = {object_of(Sphere{.centre_m = {0.0, 0.0, 0.2}, .radius_m = 0.19})};
+    EXPECT_THROW((void)make_scenes(rig, std::vector{550.0}), InputError);
+}
+
 }  // namespace
 }  // namespace aphotic

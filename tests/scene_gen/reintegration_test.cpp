@@ -613,6 +613,27 @@ TEST(GeometryOf, KnowsOnlyWhatMovesLight) {
     }
 }
 
+TEST(GeometryOf, KnowsObjectsByShapeAndGlossAndNotByColour) {
+    const Rig rig = rig_of("objects.toml");
+    const auto before = geometry_of(rig, {});
+    EXPECT_EQ(
+        geometry_of(changed(rig, [](Rig& r) { r.objects[0].reflectance = material("red-algae"); }),
+                    {}),
+        before);
+    for (const Change& change : std::vector<Change>{
+             [](Rig& r) { std::get<Mesh>(r.objects[0].shape).vertices_m[7].x() += 1e-6; },
+             [](Rig& r) {
+                 std::swap(std::get<Mesh>(r.objects[0].shape).triangles[0][0],
+                           std::get<Mesh>(r.objects[0].shape).triangles[9][1]);
+             },
+             [](Rig& r) { std::get<Sphere>(r.objects[1].shape).radius_m += 1e-9; },
+             [](Rig& r) { std::get<Box>(r.objects[2].shape).most_m.z() += 1e-9; },
+             [](Rig& r) { r.objects[1].phong_size += 1.0; },
+             [](Rig& r) { r.objects.pop_back(); }}) {
+        EXPECT_NE(geometry_of(changed(rig, change), {}), before);
+    }
+}
+
 // A cone's intensity in either way of writing it.
 TEST(GeometryOf, KnowsBeamsByTheirLight) {
     Rig literal = habcam();

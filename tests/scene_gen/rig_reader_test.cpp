@@ -476,7 +476,7 @@ TEST(RigReader, NamesMissingTablesOfLists) {
 TEST(RigReader, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(error_of("tittle = \"x\"\n" + std::string(kMinimal)),
               "rig.toml:1: tittle: is no known key; did you mean 'title'? Known here: title, sled, "
-              "camera, water, seafloor, beam, strobe, materials, scene");
+              "camera, water, seafloor, beam, strobe, materials, object, scene");
     EXPECT_EQ(error_of(with(2, "altitude_m = 2\nrol_deg = 1")),
               "rig.toml:3: sled.rol_deg: is no known key; did you mean 'roll_deg'? Known here: "
               "altitude_m, pitch_deg, roll_deg");
@@ -865,6 +865,105 @@ TEST(RigReader, DigestCountsMaterials) {
     EXPECT_EQ(digest("[\"sand\", \"mud.csv\"]", mud), first);
     EXPECT_NE(digest("[\"sand\", \"mud.csv\"]", mud + "\n"), first);
     EXPECT_NE(digest("[\"sand\"]", mud), first);
+}
+
+// --- Objects ---------------------------------------------------------------------------------
+
+constexpr std::string_view kBall =
+    "[[object]]\n"
+    "name = \"ball\"\n"
+    "shape = \"sphere\"\n"
+    "centre_m = [0.1, 0.2, 2]\n"
+    "radius_m = 0.25\n"
+    "reflectance = \"sand\"\n";
+
+TEST(RigReader, ReadsNoObjectsUnlessThereAreAny) {
+    EXPECT_TRUE(parse(kMinimal).objects.empty());
+}
+
+TEST(RigReader, ReadsASphereABoxAndAMesh) {
+    const TempFolder folder;
+    write_file(folder.path() / "rock.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Rig rig = parse_rig(
+        minimal_and(std::string(kBall) +
+                    "phong = 0.5\nphong_size = 20\n"
+                    "[[object]]\nname = \"block\"\nshape = \"box\"\nfrom_m = [0.5, 1, 2]\n"
+                    "to_m = [0.25, 2, 1]\nreflectance = \"red-algae\"\n"
+                    "[[object]]\nname = \"rock\"\nshape = \"mesh\"\nfile = \"rock.obj\"\n"
+                    "position_m = [0.5, 0.25, 2]\nreflectance = \"sand\"\n"),
+        "rig.toml",
+        folder.path());
+    ASSERT_EQ(rig.objects.size(), 3U);
+    EXPECT_EQ(rig.objects[0].name, "ball");
+    const auto& ball = std::get<Sphere>(rig.objects[0].shape);
+    expect_vector(ball.centre_m, {0.1, 0.2, 2.0});
+    EXPECT_EQ(ball.radius_m, 0.25);
+    EXPECT_EQ(rig.objects[0].phong, 0.5);
+    EXPECT_EQ(rig.objects[0].phong_size, 20.0);
+    EXPECT_EQ(rig.objects[0].reflectance.name(), "reflectance 'sand'");
+    const auto& block = std::get<Box>(rig.objects[1].shape);
+    expect_vector(block.least_m, {0.25, 1.0, 1.0});
+    expect_vector(block.most_m, {0.5, 2.0, 2.0});
+    EXPECT_EQ(rig.objects[1].phong, 0.0);
+    EXPECT_EQ(rig.objects[1].phong_size, 40.0);
+    const auto& rock = std::get<Mesh>(rig.objects[2].shape);
+    expect_vector(rock.vertices_m.at(1), {1.5, 0.25, 2.0});
+}
+
+// The minimal rig ends in line 17; the ball's lines are 18 to 23.
+TEST(RigReader, TellsWhatIsWrongWithAnObject) {
+    const auto ball_with = [](const std::string& from, const std::string& to) {
+        std::string text(kBall);
+        return minimal_and(text.replace(text.find(from), from.size(), to));
+    };
+    const std::vector<std::pair<std::string, std::string>> wrong{
+        {ball_with("\"sphere\"", "\"cone\""),
+         "rig.toml:20: object[0].shape: found 'cone'; allowed: \"sphere\" or \"box\" or \"mesh\""},
+        {ball_with("0.25", "0"),
+         "rig.toml:22: object[0].radius_m: found 0; allowed: a number from 0.001 to 1000"},
+        {ball_with("radius_m", "radius_mm"),
+         "rig.toml:22: object[0].radius_mm: is no known key; did you mean 'radius_m'?"},
+        {ball_with("reflectance = \"sand\"", ""),
+         "rig.toml:18: object[0].reflectance: is missing; allowed: a built-in table's name "
+         "(aphotic data) or a .csv file beside the rig"},
+        {ball_with("[0.1, 0.2, 2]", "[0, 0, 0.2]"),
+         "rig.toml:21: object[0].centre_m: found the camera's pupil inside of the object; allowed: "
+         "outside"},
+        {ball_with("[0.1, 0.2, 2]", "[0.5, 0.2505, 0]"),
+         "rig.toml:21: object[0].centre_m: found strobe 'fore' inside of the object or 0.0005 m "
+         "off "
+         "it; allowed: at least 0.001 m off"},
+        {minimal_and(std::string(kBall) + std::string(kBall)),
+         "rig.toml:25: object[1].name: found 'ball'; allowed: a name that no other object has"},
+        {minimal_and("[[object]]\nname = \"block\"\nshape = \"box\"\nfrom_m = [0, 1, 2]\n"
+                     "to_m = [1, 1, 3]\nreflectance = \"sand\"\n"),
+         "rig.toml:22: object[0].to_m: found [1, 1, 3]; allowed: a corner at least 0.001 m from "
+         "that "
+         "of from_m along every axis"},
+        {minimal_and("[[object]]\nname = \"rock\"\nshape = \"mesh\"\nfile = \"rock.stl\"\n"
+                     "reflectance = \"sand\"\n"),
+         "rig.toml:21: object[0].file: found 'rock.stl'; allowed: the name of a Wavefront .obj "
+         "file "
+         "beside the rig"},
+        {minimal_and("[[object]]\nname = \"rock\"\nshape = \"mesh\"\nfile = \"no.obj\"\n"
+                     "reflectance = \"sand\"\n"),
+         "rig.toml:21: object[0].file: ./no.obj: cannot be read: No such file or directory"}};
+    for (const auto& [toml, message] : wrong) EXPECT_EQ(error_of(toml), message);
+}
+
+TEST(RigReader, CountsAMeshInTheDigest) {
+    const TempFolder folder;
+    const auto digest_with = [&](std::string_view obj) {
+        write_file(folder.path() / "rock.obj", obj);
+        return parse_rig(minimal_and("[[object]]\nname = \"rock\"\nshape = \"mesh\"\n"
+                                     "file = \"rock.obj\"\nreflectance = \"sand\"\n"),
+                         "rig.toml",
+                         folder.path())
+            .digest;
+    };
+    const std::string a = digest_with("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
+    EXPECT_NE(a, digest_with("v 0 0 1\nv 1 0 1\nv 0 2 1\nf 1 2 3\n"));
+    EXPECT_EQ(a, digest_with("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n"));
 }
 
 }  // namespace

@@ -60,12 +60,12 @@ inline std::string small_scene(const std::filesystem::path& file) {
         text, pitch, fmt::format("\npixel_pitch_um = {}", std::stod(found[1]) * kCoarser));
 }
 
-// Puts a scene so made into the folder as rig.toml, with the tables that lie beside it.
+// Puts a scene so made into the folder as rig.toml, with the tables and meshes that lie beside it.
 inline void put_small_scene(const std::filesystem::path& file,
                             const std::filesystem::path& folder) {
     write_file(folder / "rig.toml", small_scene(file));
     for (const auto& entry : std::filesystem::directory_iterator(file.parent_path())) {
-        if (entry.path().extension() != ".csv") continue;
+        if (entry.path().extension() == ".toml" || entry.is_directory()) continue;
         std::filesystem::copy_file(entry.path(), folder / entry.path().filename());
     }
 }

@@ -354,7 +354,7 @@ std::vector<Row> lit_rows(const Tracer& tracer,
                           const Signals& signals,
                           const std::array<double, kChannels>& black) {
     const Camera& camera = tracer.rig().camera;
-    const std::vector<unsigned char> on_edge = tracer.on_cone_edges(camera.range);
+    const std::vector<unsigned char> on_edge = tracer.on_edges(camera.range);
     std::vector<Row> rows;
     std::size_t i = 0;
     for (int number = 0; number < camera.height_px; ++number) {

@@ -5,10 +5,12 @@
 // tables. Lamps, floors and waters are flat over wavelength unless a test says otherwise.
 #include "validation/tracer.h"
 
+#include "scene_gen/light_paths.h"
 #include "scene_gen/rig_reader.h"
 #include "spectral/builtin.h"
 #include "spectral/error.h"
 #include "spectral/light_family.h"
+#include "support/box_mesh.h"
 #include "support/closed_form.h"
 
 #include <gtest/gtest.h>
@@ -1301,7 +1303,7 @@ TEST(Tracer, RowsAreTheSameInBlocksOfAnySize) {
 // --------------------------------------------------------------------------------
 
 std::vector<unsigned char> edges_of(const Rig& rig, WavelengthRange range = {450.0, 650.0}) {
-    return Tracer(rig, {.signals = false, .planes_nm = {kLambda_nm}}).on_cone_edges(range);
+    return Tracer(rig, {.signals = false, .planes_nm = {kLambda_nm}}).on_edges(range);
 }
 
 std::size_t count_edges(const Rig& rig) {
@@ -1450,6 +1452,175 @@ TEST(TracerConeEdges, TakeInWhereverAnEmitterIsPartlyWithin) {
     EXPECT_GT(partly, 500);
     // By the emitter's diagonal all around, where its sides would do.
     EXPECT_LT(marked, 2 * partly);
+}
+
+// --- Objects ---------------------------------------------------------------------------------
+
+Object object_of(const Shape& shape, double reflectance = 1.0) {
+    return {.name = "thing", .shape = shape, .reflectance = flat(reflectance)};
+}
+
+// A white ball of radius R, c below pupil and lamp. Seen at an angle a off the axis it is
+// t = c cos a - sqrt(R^2 - c^2 sin^2 a) away, where light falls at i with
+// cos i = (c cos a - t) / R; and the lamp is a Lambertian one, of intensity cos a / pi.
+TEST(TracerObjects, ASphereBelowTheLampHasItsClosedForm) {
+    Rig rig = plain_rig(41, 1, 0.01);
+    const double c = 1.2;
+    const double R = 0.25;
+    rig.objects = {object_of(Sphere{.centre_m = {0.0, 0.0, c}, .radius_m = R}, 0.6)};
+    const auto plane = plane_of(rig);
+    int seen = 0;
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        const double a = std::atan(slope_of(rig, i).starboard);
+        const double under_root = R * R - std::pow(c * std::sin(a), 2);
+        if (under_root < 0.0) continue;
+        ++seen;
+        const double t = c * std::cos(a) - std::sqrt(under_root);
+        const double cos_i = (c * std::cos(a) - t) / R;
+        expect_ratio(plane[i], 0.6 / kPi * std::cos(a) / kPi * cos_i / (t * t), kRounding);
+    }
+    EXPECT_EQ(seen, 41) << "the whole row looks at the ball";
+}
+
+// A lamp straight above a ball: its rays touch the ball at asin(R/h) off the plumb line, h from
+// lamp to centre, so the umbra on the floor H below the lamp is a disc of radius H tan(asin(R/h)).
+TEST(TracerObjects, TheShadowOfASphereUnderTheLampIsADisc) {
+    Rig rig = plain_rig(2001, 1, 0.001);
+    rig.strobes = {lamp_at({0.0, 1.0, 0.0})};
+    const double R = 0.2;
+    rig.objects = {object_of(Sphere{.centre_m = {0.0, 1.0, 1.0}, .radius_m = R})};
+    const double umbra_m = 2.0 * std::tan(std::asin(R / 1.0));
+    const auto plane = plane_of(rig);
+    int dark = 0;
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        const double slope = slope_of(rig, i).starboard;
+        // The pupil's ray passes the ball's centre at |y - z slope| / sqrt(1 + slope^2).
+        if (std::abs(1.0 - slope) / std::hypot(1.0, slope) <= R) continue;
+        const double aside_m = std::abs(2.0 * slope - 1.0);
+        EXPECT_EQ(plane[i] == 0.0, aside_m < umbra_m) << "slope " << slope;
+        dark += plane[i] == 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(dark, 100);
+}
+
+// A lamp in water: the top of a large box is a floor at its height.
+TEST(TracerObjects, ALargeBoxIsAFloorAtItsTop) {
+    Rig floor = with_loss(plain_rig(9, 7, 0.1), 0.3);
+    floor.seafloor.phong = 0.4;
+    floor.strobes = {lamp_at({0.2, 0.1, 0.0}, cone_of(0.5, 1.0)), lamp_at({-0.4, 0.3, 0.2})};
+    Rig box = floor;
+    floor.sled.altitude_m = 1.5;
+    box.seafloor.reflectance = flat(0.1);
+    box.seafloor.phong = 0.0;
+    box.objects = {object_of(Box{.least_m = {-9.0, -9.0, 1.5}, .most_m = {9.0, 9.0, 1.7}})};
+    box.objects[0].phong = 0.4;
+    const auto a = plane_of(floor);
+    const auto b = plane_of(box);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        ASSERT_GT(a[i], 0.0);
+        expect_ratio(b[i], a[i], kRounding);
+    }
+}
+
+TEST(TracerObjects, AMeshOfTwelveTrianglesIsTheBox) {
+    Rig rig = habcam(68, 51);
+    rig.sled.roll_rad = 0.05;
+    const Box box{.least_m = {-0.1, 0.05, 1.6}, .most_m = {0.2, 0.3, 2.2}};
+    rig.objects = {object_of(box, 0.5)};
+    Rig mesh = rig;
+    mesh.objects[0].shape = mesh_of(box);
+    const auto a = plane_of(rig);
+    const auto b = plane_of(mesh);
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(b[i], a[i], 1e-12 * a[i]) << i;
+    EXPECT_NE(a, plane_of(habcam(68, 51))) << "the box is in view";
+}
+
+// Mirrored at the sled's plane of symmetry, as the strobes are.
+TEST(TracerObjects, PortIsStarboardMirrored) {
+    Rig rig = habcam(69, 51);
+    rig.objects = {object_of(Sphere{.centre_m = {0.1, 0.25, 1.8}, .radius_m = 0.15}, 0.3)};
+    Rig mirrored = rig;
+    mirrored.objects[0].shape = Sphere{.centre_m = {0.1, -0.25, 1.8}, .radius_m = 0.15};
+    const auto a = plane_of(rig);
+    const auto b = plane_of(mirrored);
+    for (std::size_t row = 0; row < 51; ++row) {
+        for (std::size_t column = 0; column < 69; ++column) {
+            const double found = b[row * 69 + 68 - column];
+            EXPECT_NEAR(found, a[row * 69 + column], 1e-12 * found) << column << ", " << row;
+        }
+    }
+}
+
+// An object's own colour counts in the spectral grid: over a black floor, the signal of a grey ball
+// is that of a white one times its grey, whatever the spectra.
+TEST(TracerObjects, TheFullSpectrumServesTheirMaterials) {
+    Rig rig = habcam(9, 7);
+    rig.seafloor.reflectance = flat(0.0);
+    rig.objects = {object_of(Sphere{.centre_m = {0.0, 0.0, 1.5}, .radius_m = 0.3}, 1.0)};
+    const auto white = image_of(rig, {.signals = true, .planes_nm = {}});
+    rig.objects[0].reflectance = Spectrum("steep", {300.0, 800.0}, {0.2, 0.2});
+    const auto grey = image_of(rig, {.signals = true, .planes_nm = {}});
+    for (std::size_t i = 0; i < white.size(); ++i)
+        EXPECT_NEAR(grey[i], 0.2 * white[i], 1e-7 * white[i]);
+}
+
+// A ball whose outline, tan 0.5 off the axis, runs through twelve pixel centres (as the cone of
+// TracerConeEdges does); lamp and pupil are at one place, so that its shadow is behind it.
+TEST(TracerObjectEdges, AreThePixelsOnAnOutline) {
+    Rig rig = plain_rig(21, 17, 0.1);
+    rig.objects = {
+        object_of(Sphere{.centre_m = {0.0, 0.0, 1.0}, .radius_m = std::sin(std::atan(0.5))})};
+    EXPECT_EQ(count_edges(rig), 12U);
+    for (const double side : {-1.0, 1.0}) {
+        // The outline, 5 pixels from the middle, moved by so many pixels.
+        const auto with_outline = [&](double moved_px) {
+            const double R = std::sin(std::atan(0.5 + 0.1 * side * moved_px));
+            rig.objects[0].shape = Sphere{.centre_m = {0.0, 0.0, 1.0}, .radius_m = R};
+            return count_edges(rig);
+        };
+        EXPECT_EQ(with_outline(0.7 * kEdgePx), 12U);
+        EXPECT_EQ(with_outline(1.1 * kEdgePx), 0U);
+    }
+}
+
+// A wall along the sled, lit from the side: its shadow ends on a line of the floor.
+TEST(TracerObjectEdges, AreThePixelsOnAShadowsEdge) {
+    Rig rig = plain_rig(21, 5, 0.1);
+    rig.strobes = {lamp_at({0.0, 1.0, 0.0})};
+    // From the lamp, 1 m to starboard, past the far edge of the wall's top, half way down below the
+    // pupil, to the floor 1 m to port: slope -0.5, five columns left of the middle.
+    const Box wall{.least_m = {-9.0, 0.0, 1.0}, .most_m = {9.0, 0.001, 1.5}};
+    rig.objects = {object_of(wall)};
+    const auto marks = edges_of(rig);
+    for (std::size_t row = 0; row < 5; ++row) {
+        EXPECT_EQ(marks[row * 21 + 5], 1) << row;
+        EXPECT_EQ(marks[row * 21 + 4], 0) << row;
+        EXPECT_EQ(marks[row * 21 + 6], 0) << row;
+    }
+}
+
+// A plate half a millimetre over the floor: where its shadow falls, POV-Ray has none.
+TEST(TracerObjectEdges, AreWhereABlockerIsTooNearForPovRay) {
+    Rig rig = plain_rig(21, 5, 0.001);
+    rig.strobes = {lamp_at({0.0, -1.9, 0.1})};
+    const auto plate_at = [](double height_m) {
+        return object_of(Box{.least_m = {-9.0, -9.0, 2.0 - height_m - 1e-5},
+                             .most_m = {9.0, -0.0001, 2.0 - height_m}});
+    };
+    rig.objects = {plate_at(0.0004)};
+    // Its shadow reaches 0.4 mm farther; the pixel to starboard of the middle sees 0 mm, the next
+    // one 2 mm.
+    EXPECT_EQ(edges_of(rig)[2 * 21 + 10], 1);
+    EXPECT_EQ(edges_of(rig)[2 * 21 + 11], 0);
+    EXPECT_EQ(plane_of(rig)[2 * 21 + 10], 0.0);
+    // Five millimetres up, it is a shadow as any other.
+    rig.objects = {plate_at(0.005)};
+    EXPECT_EQ(edges_of(rig)[2 * 21 + 11], 0);
+    EXPECT_EQ(plane_of(rig)[2 * 21 + 11], 0.0);
+}
+
+TEST(TracerObjectEdges, AllowWhatThePlanDoes) {
+    EXPECT_EQ(kSteepest, kObjectTilt);
 }
 
 }  // namespace

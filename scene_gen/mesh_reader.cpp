@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/mesh_reader.h"
+
+#include "spectral/atomic_file.h"
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+using Eigen::Vector3d;
+
+namespace {
+
+// The words of a line, comments and line ends aside.
+std::vector<std::string_view> words_of(std::string_view line) {
+    constexpr std::string_view kBlank = " \t\r";
+    line = line.substr(0, line.find('#'));
+    std::vector<std::string_view> words;
+    while (true) {
+        const std::size_t first = line.find_first_not_of(kBlank);
+        if (first == std::string_view::npos) return words;
+        line.remove_prefix(first);
+        const std::size_t length = std::min(line.size(), line.find_first_of(kBlank));
+        words.push_back(line.substr(0, length));
+        line.remove_prefix(length);
+    }
+}
+
+bool is_finite_number(std::string_view word) {
+    double value = 0.0;
+    if (word.starts_with('+')) word.remove_prefix(1);
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
+}
+
+// The vertex of a face's corner such as "3", "3/1" or "-1//2" is there.
+bool is_vertex_before(std::string_view corner, long vertices) {
+    long index = 0;
+    const std::string_view word = corner.substr(0, corner.find('/'));
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
+    return error == std::errc() && end == word.data() + word.size() && index != 0 &&
+           std::abs(index) <= vertices;
+}
+
+// The library takes what it cannot read for 0 and leaves out what does not fit, without a word:
+// so every line is looked at first.
+void require_sound_lines(const std::string& text, const fs::path& file) {
+    std::istringstream lines(text);
+    std::string line;
+    long vertices = 0;
+    for (int number = 1; std::getline(lines, line); ++number) {
+        const std::vector<std::string_view> words = words_of(line);
+        if (words.empty()) continue;
+        const auto require = [&](bool is_sound, std::string_view allowed) {
+            if (is_sound) return;
+            throw InputError(fmt::format("{}:{}: found {}; allowed: {}",
+                                         file.string(),
+                                         number,
+                                         fmt::join(words, " "),
+                                         allowed));
+        };
+        const std::span values = std::span(words).subspan(1);
+        if (words[0] == "v") {
+            require(values.size() >= 3 && std::ranges::all_of(values, is_finite_number),
+                    "v and three finite numbers");
+            ++vertices;
+        } else if (words[0] == "f") {
+            require(values.size() >= 3 && std::ranges::all_of(values,
+                                                              [&](std::string_view corner) {
+                                                                  return is_vertex_before(corner,
+                                                                                          vertices);
+                                                              }),
+                    fmt::format("f and three or more of the {} vertices above it", vertices));
+        }
+    }
+}
+
+// volatile: where GCC 12 turns several of these into vector instructions, it leaves out the
+// rounding.
+double to_single(double value) {
+    const volatile float rounded = static_cast<float>(value);
+    return rounded;
+}
+
+void require_room(const std::vector<tinyobj::shape_t>& shapes, const fs::path& file) {
+    std::size_t triangles = 0;
+    for (const tinyobj::shape_t& shape : shapes) triangles += shape.mesh.indices.size() / 3;
+    if (triangles > 0 && triangles <= kMostTriangles) return;
+    throw InputError(
+        fmt::format("{}: found {}; allowed: 1 to {} triangles",
+                    file.string(),
+                    triangles == 0 ? "no faces" : fmt::format("{} triangles", triangles),
+                    kMostTriangles));
+}
+
+void require_area(const Mesh& mesh, const std::array<int, 3>& corners, const fs::path& file) {
+    const auto vertex = [&](int i) -> const Vector3d& {
+        return mesh.vertices_m[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])];
+    };
+    const Vector3d ab = vertex(1) - vertex(0);
+    const Vector3d ac = vertex(2) - vertex(0);
+    const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    if (ab.cross(ac).norm() > kLeastTriangleHeight * longest2) return;
+    throw InputError(
+        fmt::format("{}: found a triangle of no area, of the vertices {}, {} and {}, counted from "
+                    "1; allowed: three corners that do not lie on one line",
+                    file.string(),
+                    corners[0] + 1,
+                    corners[1] + 1,
+                    corners[2] + 1));
+}
+
+}  // namespace
+
+Mesh read_mesh(const fs::path& file, const Vector3d& position_m) {
+    const std::string text = read_text_file(file);
+    require_sound_lines(text, file);
+    std::istringstream in(text);
+    tinyobj::attrib_t attributes;
+    std::vector<tinyobj::shape_t> shapes;
+    std::vector<tinyobj::material_t> materials;
+    std::string warnings;
+    std::string errors;
+    if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &in)) {
+        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), errors));
+    }
+    require_room(shapes, file);
+
+    Mesh mesh;
+    const std::vector<double>& xyz = attributes.vertices;
+    for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) {
+        const Vector3d vertex_m = position_m + Vector3d(xyz[i], xyz[i + 1], xyz[i + 2]);
+        mesh.vertices_m.emplace_back(vertex_m.unaryExpr(&to_single));
+    }
+    for (const tinyobj::shape_t& shape : shapes) {
+        const std::vector<tinyobj::index_t>& corners = shape.mesh.indices;
+        for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+            mesh.triangles.push_back({corners[i].vertex_index,
+                                      corners[i + 1].vertex_index,
+                                      corners[i + 2].vertex_index});
+            require_area(mesh, mesh.triangles.back(), file);
+        }
+    }
+    return mesh;
+}
+
+}  // namespace aphotic
