@@ -30,10 +30,10 @@ Aphotic_Rig ()
 // --- Where the anchor lies ----------------------------------------------------------------------
 
 #declare Anchor_Trans = transform {
-   rotate 38 * z                      // on one arm and one end of the stock
-   rotate -4 * x
+   rotate 29 * z                      // on one arm and one end of the stock
+   rotate -3 * x
    rotate 52 * y
-   translate <-0.33, 0.085, -0.22>
+   translate <-0.325, 0.112, -0.225>
 }
 #declare Buried_Arm = vtransform(<-0.26, 0, 0.16>, Anchor_Trans);
 #declare Buried_Stock = vtransform(<0, -0.25, 0.86 * Anchor_Length>, Anchor_Trans);
@@ -71,11 +71,11 @@ Aphotic_Rig ()
 #declare Grains = pigment {
    granite scale 0.013
    pigment_map {
-      [0.14 Aphotic_Pigment ("brown-algae")]
-      [0.30 Aphotic_Pigment ("rust-dark.csv")]
-      [0.40 Aphotic_Pigment ("sand")]
-      [0.70 Aphotic_Pigment ("sand")]
-      [0.84 Aphotic_Pigment ("lime-crust.csv")]
+      [0.10 Aphotic_Pigment ("brown-algae")]
+      [0.26 Aphotic_Pigment ("rust-dark.csv")]
+      [0.36 Aphotic_Pigment ("rust-orange.csv")]
+      [0.50 Aphotic_Pigment ("sand")]
+      [0.85 Aphotic_Pigment ("sand")]
    }
 }
 #declare Fines = pigment {
@@ -165,7 +165,7 @@ object { Anchor texture { Rusted } }
 #declare At = 0;
 #declare Before = Ring;
 #declare Count = 0;
-#while (At < 8.4)
+#while (At < 7.75)                   // a cubic spline ends before its last point
    // To the point a step on.
    #declare Ahead = At;
    #while (vlength(Course(Ahead) * <1, 0, 1> - Course(At) * <1, 0, 1>) < Chain_Step)

@@ -20,13 +20,14 @@
 //    near chart   <-0.2425 + 0.045 C,   0.1825 - 0.045 R,   0.8>
 //    far chart    < 0.2675 + 0.045 C,  -0.1725 - 0.045 R,   1.8>
 //
-// and holds patch 6 R + C + 1 of the folder patches. Nothing shades a patch. Every patch is inside
-// all four cones of the spots, or outside all four.
+// and holds patch 6 R + C + 1 of the folder patches. Nothing shades a patch. The far patches lie
+// within 4.9 degrees of the axes of all four strobes, where the spots are at full strength, the near
+// ones 8.0 degrees and more off them, where there is no spot.
 
 #version 3.7;
 
 #include "functions.inc"
-#declare Aphotic_Soft_Edge = 1;       // of the spots, which no patch sees
+#declare Aphotic_Soft_Edge = 0.8;     // of the spots: from 6.2 to 7.8 degrees off their axes
 #include "aphotic.inc"
 
 Aphotic_Rig ()
@@ -138,8 +139,8 @@ height_field {
    matrix <1, 0, 0,  0, 0, -1,  0, 1, 0,  0, 0, 1.85>
    texture {
       pigment {
-         function { max(0, min(1, 1.35 * Crest(x, y) + 0.4 * f_noise3d(40 * x, 0, 40 * y) - 0.08)) }
-         pigment_map { [0.15 Fines] [0.70 Grains] }
+         function { max(0, min(1, 1.2 * Crest(x, y) + 0.4 * f_noise3d(40 * x, 0, 40 * y) + 0.08)) }
+         pigment_map { [0.10 Fines] [0.80 Grains] }
       }
       normal { granite 0.2 scale 0.012 }
       finish { Matt }

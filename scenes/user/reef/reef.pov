@@ -239,11 +239,11 @@ Scallop (0.06, -0.165, 0.085, 210, Brick_Shell)
    #local Angle = 2 * pi * I / Star_Turns;
    #local Share = J / Star_Rings;
    // Five arms, each bent a little its own way.
-   #local Arm = pow(0.5 + 0.5 * cos(5 * Angle), 2.4);
+   #local Arm = pow(0.5 + 0.5 * cos(5 * Angle), 1.7);
    #local Out = Share * (0.17 + 0.83 * Arm * (1 - 0.12 * sin(Angle)));
    #local Bent = Angle + 0.22 * sin(2 * Angle + 1) * Out * Out;
    #local Bump = 0.008 * sin(36 * Share) * cos(50 * Angle) * (1 - Share);
-   <Out * sin(Bent), 0.20 * sqrt(max(0, 1 - Share * Share)) * (1 - 0.55 * Out) + Bump, Out * cos(Bent)>
+   <Out * sin(Bent), 0.20 * sqrt(max(0, 1 - Share * Share)) * (1 - 0.42 * Out) + Bump, Out * cos(Bent)>
 #end
 #declare Star = mesh2 {
    vertex_vectors {
@@ -269,7 +269,7 @@ object {
       normal { crackle 0.6 scale 0.06 }
       finish { Moist }
    }
-   transform { Lay_Trans (Star_Place.x, Star_Place.z, 0.085, 25, 0.002) }
+   transform { Lay_Trans (Star_Place.x, Star_Place.z, 0.090, 25, -0.002) }
 }
 
 // --- Tufts of algae -----------------------------------------------------------------------------
