@@ -9,7 +9,7 @@
 //
 //    A quick look, from this folder:
 //
-//    povray +Ianchor.pov +W680 +H512 +A0.3
+//    povray +L../../../plugin/include +Ianchor.pov +W680 +H512 +A0.3
 //
 // World: y up, metres; x to the right of the picture, z to its top; the sand at about y = 0.
 

@@ -8,7 +8,7 @@
 //
 //    A quick look, from this folder:
 //
-//    povray +Ichart.pov +W680 +H512 +A0.3
+//    povray +L../../../plugin/include +Ichart.pov +W680 +H512 +A0.3
 //
 // World: the sled's own frame, in metres: x to the right of the picture, y to its top, z down from
 // the camera.
@@ -31,6 +31,15 @@
 #include "aphotic.inc"
 
 Aphotic_Rig ()
+
+// A patch's spectrum. The rig of a quick look knows it without the folder.
+#macro Patch (Name)
+   #ifdef (Aphotic_Quick_Look)
+      Aphotic_Pigment (concat(Name, ".csv"))
+   #else
+      Aphotic_Pigment (concat("patches/", Name, ".csv"))
+   #end
+#end
 
 #declare Matt = finish { Aphotic_Finish (0, 40) }
 #declare Glossy = finish { Aphotic_Finish (0.15, 60) }
@@ -56,7 +65,7 @@ Aphotic_Rig ()
          #local Middle = First + Patch_Pitch * <mod(I, 6), -int(I / 6), 0>;
          box {
             Middle - Half, Middle + Half + 0.006 * z
-            pigment { Aphotic_Pigment (concat("patches/", Patch_Names[I], ".csv")) }
+            pigment { Patch (Patch_Names[I]) }
             finish { Matt }
          }
       #end
@@ -71,7 +80,7 @@ Aphotic_Rig ()
          cylinder { <B.x - Round, A.y - Round, A.z>, <B.x - Round, A.y - Round, B.z>, Round }
          cylinder { <A.x + Round, B.y + Round, A.z>, <A.x + Round, B.y + Round, B.z>, Round }
          cylinder { <B.x - Round, B.y + Round, A.z>, <B.x - Round, B.y + Round, B.z>, Round }
-         pigment { Aphotic_Pigment ("patches/24-black.csv") }
+         pigment { Patch ("24-black") }
          finish { Glossy }
       }
    }
@@ -96,7 +105,7 @@ union {
    Leg (<-0.13, 0.115, 0.825>, <-0.20, -0.20, 1.81>)
    Leg (<-0.13, 0.115, 0.825>, <-0.55, 0.40, 1.81>)
    cylinder { <-0.13, 0.115, 0.81>, <-0.13, 0.115, 0.85>, 0.03 }
-   pigment { Aphotic_Pigment ("patches/22-neutral-5.csv") }
+   pigment { Patch ("22-neutral-5") }
    finish { Aphotic_Finish (0.6, 50) }
 }
 
@@ -116,17 +125,17 @@ union {
    granite scale 0.013
    pigment_map {
       [0.14 Aphotic_Pigment ("brown-algae")]
-      [0.32 Aphotic_Pigment ("patches/22-neutral-5.csv")]
+      [0.32 Patch ("22-neutral-5")]
       [0.42 Aphotic_Pigment ("sand")]
       [0.70 Aphotic_Pigment ("sand")]
-      [0.84 Aphotic_Pigment ("patches/20-neutral-8.csv")]
+      [0.84 Patch ("20-neutral-8")]
    }
 }
 #declare Fines = pigment {
    granite scale 0.011
    pigment_map {
       [0.30 Aphotic_Pigment ("brown-algae")]
-      [0.50 Aphotic_Pigment ("patches/01-dark-skin.csv")]
+      [0.50 Patch ("01-dark-skin")]
       [0.85 Aphotic_Pigment ("sand")]
    }
 }
