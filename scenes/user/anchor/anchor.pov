@@ -69,17 +69,17 @@ Aphotic_Rig ()
    scale <Width, Sand_Top, Depth>
 }
 #declare Grains = pigment {
-   granite scale 0.013
+   granite scale 0.009
    pigment_map {
       [0.10 Aphotic_Pigment ("brown-algae")]
       [0.26 Aphotic_Pigment ("rust-dark.csv")]
-      [0.36 Aphotic_Pigment ("rust-orange.csv")]
-      [0.50 Aphotic_Pigment ("sand")]
+      [0.33 Aphotic_Pigment ("rust-orange.csv")]
+      [0.44 Aphotic_Pigment ("sand")]
       [0.85 Aphotic_Pigment ("sand")]
    }
 }
 #declare Fines = pigment {
-   granite scale 0.011
+   granite scale 0.009
    pigment_map {
       [0.28 Aphotic_Pigment ("brown-algae")]
       [0.48 Aphotic_Pigment ("rust-dark.csv")]

@@ -53,7 +53,7 @@ Aphotic_Rig ()
 
 // Grains and crumbs of shell, and the dark fines that gather in the troughs.
 #declare Grains = pigment {
-   granite scale 0.013
+   granite scale 0.009
    pigment_map {
       [0.14 Aphotic_Pigment ("brown-algae")]
       [0.32 Aphotic_Pigment ("rock.csv")]
@@ -63,7 +63,7 @@ Aphotic_Rig ()
    }
 }
 #declare Fines = pigment {
-   granite scale 0.011
+   granite scale 0.009
    pigment_map {
       [0.30 Aphotic_Pigment ("brown-algae")]
       [0.50 Aphotic_Pigment ("rock.csv")]
