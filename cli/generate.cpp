@@ -28,7 +28,9 @@ struct Options {
 
 ExitStatus write_quick_look(const Options& options) {
     const Rig rig = read_rig(options.planning.rig_file);
-    write_text_file(options.quick_look, quick_look_sdl(rig));
+    write_text_file(
+        options.quick_look,
+        quick_look_sdl(rig, std::filesystem::path(options.planning.rig_file).parent_path()));
     fmt::print("{}: what aphotic.inc takes of this rig for a quick look\n", options.quick_look);
     return kDone;
 }
@@ -40,8 +42,8 @@ void print_own_scene(const SceneSet& scenes, const Manifest& manifest, const std
     fmt::print(
         "{}: {} for {} of {} in {}/povray\n"
         "Render them in the scene's folder, for example with\n"
-        "  (cd {} && for scene in {}/povray/band_*.pov; do povray {}/povray/render.ini +I$scene; "
-        "done)\n"
+        "  (cd '{}' && for scene in {}/povray/band_*.pov; do povray '\"{}/povray/render.ini\"' "
+        "\"+I\\\"$scene\\\"\"; done)\n"
         "and then say\n"
         "  aphotic integrate {}\n",
         manifest.rig_title,

@@ -95,13 +95,21 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
         options.scene.empty() ? rig.scene : std::filesystem::path(options.scene);
     if (!options.renders || scene.empty()) return nullptr;
     ProgressLine line;
-    return std::make_shared<const UserScene>(survey_scene(
+    auto surveyed_scene = std::make_shared<const UserScene>(survey_scene(
         find_povray(options.povray),
         rig,
         scene,
         {.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
          .library_paths = options.library_paths,
          .progress = [&](double share) { line.show("looking at the scene", share); }}));
+    if (surveyed_scene->has_own_colours) {
+        fmt::print(
+            stderr,
+            "aphotic: {} has colours by numbers: each is another grey in every channel, and no "
+            "spectrum. Aphotic_Pigment gives it one\n",
+            scene.string());
+    }
+    return surveyed_scene;
 }
 
 }  // namespace

@@ -30,6 +30,11 @@ struct Options {
 ExitStatus trace_rig(const Options& options) {
     constexpr int kRows = 64;
     const PlannedRender planned = plan_rig(options.planning);
+    if (!planned.rig.scene.empty()) {
+        fmt::print(stderr,
+                   "aphotic: the rig's floor and objects are traced; {} is POV-Ray's to read\n",
+                   planned.rig.scene.string());
+    }
     const Camera& camera = planned.rig.camera;
     TraceOptions request{.signals = true, .planes_nm = {}, .threads = options.threads};
     for (const WeightedWavelength& w : planned.plan.rule.wavelengths) {

@@ -163,6 +163,12 @@ ExitStatus validate_rig(const Options& options) {
     }
     const fs::path images = is_rendered ? options.rendered_folder : options.folder;
 
+    if (planned.plan.scene.user_scene) {
+        fmt::print(
+            stderr,
+            "aphotic: the reference traces the rig's floor and objects; it does not read {}\n",
+            planned.plan.scene.user_scene->file.string());
+    }
     ValidationReport report = [&] {
         ProgressLine line;
         return validate(planned.rig,

@@ -32,8 +32,19 @@ std::vector<NamedSpectrum> lamps_for(const Rig& rig) {
     return all_of(CurveRole::LampSpectrum, std::move(own));
 }
 
-std::vector<NamedSpectrum> reflectances_for(const Rig& rig) {
-    return all_of(CurveRole::Reflectance, materials_of(rig));
+// As a scene in the rig's folder asks for it.
+std::string name_from(const std::filesystem::path& folder, const NamedSpectrum& material) {
+    const std::string& name = material.spectrum.name();
+    const std::size_t first = name.find('\'') + 1;
+    const std::string file = name.substr(first, name.rfind('\'') - first);
+    if (!names_a_file(file)) return material.name;
+    return std::filesystem::path(file).lexically_proximate(folder).generic_string();
+}
+
+std::vector<NamedSpectrum> reflectances_for(const Rig& rig, const std::filesystem::path& folder) {
+    std::vector<NamedSpectrum> all = all_of(CurveRole::Reflectance, materials_of(rig));
+    for (NamedSpectrum& material : all) material.name = name_from(folder, material);
+    return all;
 }
 
 std::vector<GlassIndex> glasses() {
@@ -72,7 +83,7 @@ std::vector<StrobeInScene> strobes_of(const Rig& rig) {
 
 }  // namespace
 
-std::string quick_look_sdl(const Rig& rig) {
+std::string quick_look_sdl(const Rig& rig, const std::filesystem::path& rig_folder) {
     Band band{
         .lambda_nm = kQuickLambda_nm,
         .exposure = exposure_of(rig),
@@ -80,7 +91,7 @@ std::string quick_look_sdl(const Rig& rig) {
         .water_index = seawater_index(kIndex_nm, rig.water.salinity_psu, rig.water.temperature_c),
         .glasses = glasses(),
         .lamps = lamps_for(rig),
-        .reflectances = reflectances_for(rig)};
+        .reflectances = reflectances_for(rig, rig_folder)};
     for (std::size_t c = 0; c < kQuickLambda_nm.size(); ++c) {
         band.attenuation_per_m[c] = rig.water.attenuation_per_m(kQuickLambda_nm[c]);
     }

@@ -11,6 +11,7 @@
 #include "scene_gen/rig.h"
 #include "scene_gen/sdl.h"
 
+#include <filesystem>
 #include <string>
 
 namespace aphotic {
@@ -18,8 +19,8 @@ namespace aphotic {
 inline constexpr Channels kQuickLambda_nm{622.0, 550.0, 454.0};
 inline constexpr double kQuickPeak = 0.9;
 
-// Of a rig, with its materials and all built-in reflectances and lamps by name. Throws InputError
-// when its range lacks one of the wavelengths.
-[[nodiscard]] std::string quick_look_sdl(const Rig& rig);
+// Of a rig, with its materials and all built-in reflectances and lamps by name; files are called as
+// they lie from the rig's folder. Throws InputError when its range lacks one of the wavelengths.
+[[nodiscard]] std::string quick_look_sdl(const Rig& rig, const std::filesystem::path& rig_folder);
 
 }  // namespace aphotic

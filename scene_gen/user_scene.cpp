@@ -81,7 +81,10 @@ std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
     std::vector<NamedSpectrum> materials;
     for (const std::string& name : names) {
         try {
-            std::optional<Spectrum> spectrum = of_the_rig(name, rig);
+            const bool is_beside_it =
+                names_a_file(name) && fs::exists(scene_file.parent_path() / name);
+            std::optional<Spectrum> spectrum;
+            if (!is_beside_it) spectrum = of_the_rig(name, rig);
             if (!spectrum && !names_a_file(name)) require_known(name, rig);
             if (!spectrum) {
                 spectrum = load_curve(name, CurveRole::Reflectance, scene_file.parent_path());

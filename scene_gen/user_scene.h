@@ -49,8 +49,8 @@ inline constexpr double kSurveyRoom = 1.05;
 // Of what the pixels show, with kSurveyRoom; both zero when nothing is lit.
 [[nodiscard]] PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels);
 
-// The spectra by the names that the scene gives them: of the rig's floor or materials, built-in, or
-// in a CSV file beside the scene. Throws InputError for a name that is none, or a table that does
+// The spectra by the names that the scene gives them: a CSV file beside the scene, one of the rig's
+// own spectra, or a built-in one. Throws InputError for a name that is none, or a table that does
 // not cover the rig's range.
 [[nodiscard]] std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
                                                          const Rig& rig,

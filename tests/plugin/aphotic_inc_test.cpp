@@ -338,9 +338,15 @@ TEST_F(AphoticInc, AQuickLookShowsAnUnknownSpectrumAsGreyAloud) {
 TEST(QuickLook, IsWhatTheGeneratorWrites) {
     const std::string source = APHOTIC_SOURCE_DIR;
     EXPECT_EQ(read_text_file(source + "/plugin/include/aphotic_quick.inc"),
-              quick_look_sdl(read_rig(source + "/scenes/habcam.toml")))
+              quick_look_sdl(read_rig(source + "/scenes/habcam.toml"), source + "/scenes"))
         << "write it anew: aphotic generate scenes/habcam.toml --quick-look "
            "plugin/include/aphotic_quick.inc";
+    for (const std::string scene : {"reef", "anchor", "chart"}) {
+        const std::string folder = source + "/scenes/user/" + scene;
+        EXPECT_EQ(read_text_file(folder + "/aphotic_quick.inc"),
+                  quick_look_sdl(read_rig(folder + "/" + scene + ".toml"), folder))
+            << scene;
+    }
 }
 
 // --- Errors -------------------------------------------------------------------------------------

@@ -475,13 +475,16 @@ TEST(PovObjects, AreWrittenInPovRaysFrame) {
                        .triangles = {{0, 1, 2}}})};
     rig.objects[0].phong = 0.5;
     const std::string sdl = make_scenes(rig, std::vector{400.0, 550.0, 700.0})[0].sdl;
+    // Their three spectra are one: it has one name, and one value.
     for (const char* text :
-         {"sphere { <0.25, 0.5, 2>, 0.125\n   pigment { rgb <0.25, 0.5, 0.75> }\n"
-          "   finish { phong 0.5  phong_size 40 }\n}\n",
-          "box { <0.25, -0.5, 1.5>, <0.75, 0.5, 2.5>\n   pigment { rgb <0.25, 0.5, 0.75> }\n}\n",
+         {"sphere { <0.25, 0.5, 2>, 0.125\n   pigment { Aphotic_Pigment (\"",
+          "   finish { Aphotic_Finish (0.5, 40) }\n",
+          "box { <0.25, -0.5, 1.5>, <0.75, 0.5, 2.5>\n   pigment { Aphotic_Pigment (\"",
           "mesh2 {\n   vertex_vectors { 3,\n      <0, 0, 2>,\n      <0, 0.5, 2>,\n      <0.25, 0, "
           "2> "
-          "}\n   face_indices { 1,\n      <0, 1, 2> }\n"}) {
+          "}\n   face_indices { 1,\n      <0, 1, 2> }\n",
+          "<0.25, 0.5, 0.75>}",
+          "Aphotic_Rig_Objects ()\n"}) {
         EXPECT_NE(sdl.find(text), std::string::npos) << text << sdl;
     }
 }

@@ -55,13 +55,21 @@ TEST(UserScene, PlansForItsMaterialsAndForWhite) {
     EXPECT_EQ(short_name(rig.materials[0]), "red-algae");
 }
 
-TEST(UserScene, TakesTheRigsOwnSpectrumBeforeAFileOfItsName) {
+// Beside the scene first: a rig elsewhere may have a table of the same name.
+TEST(UserScene, TakesAFileBesideTheSceneBeforeTheRigsOwn) {
     Rig rig = habcam();
-    rig.materials = {{"reflectance 'rust.csv'", {300.0, 800.0}, {0.25, 0.25}}};
-    const std::vector<std::string> names{"rust.csv"};
-    EXPECT_EQ(scene_materials(names, rig, "/nowhere/reef.pov")[0].spectrum.at(500.0), 0.25);
+    rig.materials = {{"reflectance 'a/rust.csv'", {300.0, 800.0}, {0.25, 0.25}}};
+    const TempFolder folder;
+    const auto rust = [&] {
+        const std::vector<std::string> names{"rust.csv"};
+        return scene_materials(names, rig, folder.path() / "reef.pov")[0].spectrum.at(500.0);
+    };
+    EXPECT_EQ(rust(), 0.25);
+    write_file(folder.path() / "rust.csv", "wavelength_nm,reflectance\n300,0.5\n800,0.5\n");
+    EXPECT_EQ(rust(), 0.5);
+    std::filesystem::remove(folder.path() / "rust.csv");
     rig.materials.clear();
-    EXPECT_THROW(static_cast<void>(scene_materials(names, rig, "/nowhere/reef.pov")), InputError);
+    EXPECT_THROW(static_cast<void>(rust()), InputError);
 }
 
 // --- What the frames depend on ------------------------------------------------------------------

@@ -32,13 +32,9 @@
 
 Aphotic_Rig ()
 
-// A patch's spectrum. The rig of a quick look knows it without the folder.
+// A patch's spectrum.
 #macro Patch (Name)
-   #ifdef (Aphotic_Quick_Look)
-      Aphotic_Pigment (concat(Name, ".csv"))
-   #else
-      Aphotic_Pigment (concat("patches/", Name, ".csv"))
-   #end
+   Aphotic_Pigment (concat("patches/", Name, ".csv"))
 #end
 
 #declare Matt = finish { Aphotic_Finish (0, 40) }
