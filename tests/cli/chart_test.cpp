@@ -88,35 +88,42 @@ std::array<double, 3> integrated_by_hand(const Spectrum& reflectance) {
     return sum;
 }
 
-TEST(Chart, InAirIsItsSpectraIntegratedByHand) {
-    const TempFolder folder;
-    const std::vector<std::string> names = patches();
-    ASSERT_EQ(names.size(), 24U);
-    for (const std::string& name : names) {
-        fs::copy_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/chart/patches/" + name,
-                      folder.path() / name);
+class Chart : public testing::Test {
+  protected:
+    Chart() {
+        for (const std::string& name : names_) {
+            fs::copy_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/chart/patches/" + name,
+                          folder_.path() / name);
+        }
+        write_file(folder_.path() / "chart.pov", scene_text(names_));
     }
-    write_file(folder.path() / "rig.toml", rig_text());
-    write_file(folder.path() / "chart.pov", scene_text(names));
+
+    TempFolder folder_;
+    std::vector<std::string> names_ = patches();
+};
+
+TEST_F(Chart, InAirIsItsSpectraIntegratedByHand) {
+    ASSERT_EQ(names_.size(), 24U);
+    write_file(folder_.path() / "rig.toml", rig_text());
     const CommandResult run =
-        run_aphotic(folder.path(),
+        run_aphotic(folder_.path(),
                     {"render", "rig.toml", "--scene", "chart.pov", "-o", "out", "--fitted", "27"});
     ASSERT_EQ(run.status, 0) << run.err;
     // As many wavelengths as kinds of light, and two: the plan's own error is nothing.
-    for (const RuleQuality& quality : read_manifest(folder.path() / "out").quality) {
+    for (const RuleQuality& quality : read_manifest(folder_.path() / "out").quality) {
         EXPECT_LT(quality.error, 1e-9);
     }
 
-    Rig rig = read_rig(folder.path() / "rig.toml");
+    Rig rig = read_rig(folder_.path() / "rig.toml");
     rig.seafloor.reflectance = {"white", {300.0, 900.0}, {1.0, 1.0}};
     const double some_nm = 550.0;
     const double flux = rig.strobes[0].spectrum.at(some_nm);
-    const CameraImage image = read_signals(folder.path() / "out" / "image.exr");
+    const CameraImage image = read_signals(folder_.path() / "out" / "image.exr");
     const auto pixels = static_cast<std::size_t>(image.width_px * image.height_px);
-    for (int i = 0; i < static_cast<int>(names.size()); ++i) {
-        const std::string& name = names[static_cast<std::size_t>(i)];
+    for (int i = 0; i < static_cast<int>(names_.size()); ++i) {
+        const std::string& name = names_[static_cast<std::size_t>(i)];
         const auto by_hand =
-            integrated_by_hand(load_curve(name, CurveRole::Reflectance, folder.path()));
+            integrated_by_hand(load_curve(name, CurveRole::Reflectance, folder_.path()));
         std::array<double, 3> ratio{};
         for (int k = 0; k < kPatch_px * kPatch_px; ++k) {
             const int column = i % kColumns * kPatch_px + k % kPatch_px;
@@ -133,6 +140,45 @@ TEST(Chart, InAirIsItsSpectraIntegratedByHand) {
             EXPECT_NEAR(ratio[c], 1.0, kChartError) << name << ", channel " << c;
         }
     }
+}
+
+// The same boxes as objects of a rig, 1 m below it, for the reference.
+std::string objects_text(const std::vector<std::string>& names) {
+    constexpr double kSize_m = kPatch_px * 0.1 / 12.0;
+    std::string objects;
+    for (int i = 0; i < static_cast<int>(names.size()); ++i) {
+        const double port_m = (i % kColumns - 0.5 * kColumns) * kSize_m;
+        const double fore_m = (0.5 * kRows - i / kColumns) * kSize_m;
+        const std::string& name = names[static_cast<std::size_t>(i)];
+        objects += fmt::format(
+            "\n[[object]]\nname = \"{}\"\nshape = \"box\"\nfrom_m = [{}, {}, 1.0]\n"
+            "to_m = [{}, {}, 1.1]\nreflectance = \"{}\"\n",
+            name,
+            fore_m - kSize_m,
+            port_m,
+            fore_m,
+            port_m + kSize_m,
+            name);
+    }
+    return objects;
+}
+
+TEST_F(Chart, InWaterIsWhatTheReferenceTraces) {
+    std::string rig =
+        std::regex_replace(rig_text(), std::regex("multiple = 0.0"), "multiple = 1.0");
+    rig = std::regex_replace(rig, std::regex("altitude_m = 1.0"), "altitude_m = 2.0");
+    write_file(folder_.path() / "rig.toml", rig + objects_text(names_));
+    const CommandResult run =
+        run_aphotic(folder_.path(), {"validate", "rig.toml", "--scene", "chart.pov", "-o", "out"});
+    EXPECT_EQ(run.status, 0) << run.out << run.err;
+    // One patch of another colour is another chart.
+    std::string swapped = read_text_file(folder_.path() / "chart.pov");
+    swapped = std::regex_replace(swapped, std::regex("08-purplish-blue"), "13-blue");
+    write_file(folder_.path() / "chart.pov", swapped);
+    EXPECT_EQ(
+        run_aphotic(folder_.path(), {"validate", "rig.toml", "--scene", "chart.pov", "-o", "out"})
+            .status,
+        1);
 }
 
 }  // namespace
