@@ -155,9 +155,10 @@ TEST_F(SceneSurvey, RefusesASpectrumThatIsNotThere) {
 }
 
 TEST_F(SceneSurvey, RefusesASpectrumsNameThatIsMisspelt) {
-    expect_refusal(refusal(std::string(kScene) +
-                           "sphere { <0, 0, 1.9>, 0.1 pigment { Aphotic_Pigment (\"snad\") } }\n"),
-                   "is no known reflectance (did you mean \"sand\"?); allowed: brown-algae");
+    expect_refusal(
+        refusal(std::string(kScene) +
+                "sphere { <0, 0, 1.9>, 0.1 pigment { Aphotic_Pigment (\"green-alga\") } }\n"),
+        "is no known reflectance (did you mean \"green-algae\"?); allowed: brown-algae");
 }
 
 TEST_F(SceneSurvey, RefusesAnotherCamera) {
