@@ -3,6 +3,7 @@
 // The main job as a user runs it.
 #include "spectral/exr.h"
 #include "support/run_command.h"
+#include "support/small_scene.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -111,15 +112,12 @@ TEST_F(CommandRender, PlanSaysWhatRenderWillDo) {
 }
 
 TEST_F(CommandRender, EverySceneInTheProjectIsAGoodRig) {
-    int scenes = 0;
-    for (const auto& entry :
-         fs::recursive_directory_iterator(std::string(APHOTIC_SOURCE_DIR) + "/scenes")) {
-        if (entry.path().extension() != ".toml") continue;
-        ++scenes;
-        const CommandResult plan = run_aphotic(folder_.path(), {"plan", entry.path().string()});
+    // Scenes of the users' own are in scene_test.cpp.
+    for (const fs::path& scene : all_scenes()) {
+        const CommandResult plan = run_aphotic(folder_.path(), {"plan", scene.string()});
         EXPECT_EQ(plan.status, 0) << plan.err;
     }
-    EXPECT_GE(scenes, 1);
+    EXPECT_FALSE(all_scenes().empty());
 }
 
 }  // namespace
