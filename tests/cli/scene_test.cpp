@@ -161,6 +161,19 @@ TEST_F(UserScenes, ErrorsNameTheUsersFile) {
     EXPECT_NE(none.err.find("wreck.pov: found no such file"), std::string::npos) << none.err;
 }
 
+// POV-Ray cannot write there; a study is of what the reference knows.
+TEST_F(UserScenes, AreRefusedWhereTheyCannotServe) {
+    put_scene(kFloor);
+    const CommandResult folder =
+        aphotic({"render", "rig.toml", "--scene", "reef.pov", "-o", "\xC3\xBC", "--fitted", "1"});
+    EXPECT_EQ(folder.status, 2);
+    EXPECT_NE(folder.err.find("letters beyond ASCII"), std::string::npos) << folder.err;
+    put("own.toml", "scene = \"reef.pov\"\n" + read_text_file(home_ / "rig.toml"));
+    const CommandResult study = aphotic({"study", "own.toml", "-o", "study"});
+    EXPECT_EQ(study.status, 2);
+    EXPECT_NE(study.err.find("own.toml: scene: found"), std::string::npos) << study.err;
+}
+
 TEST_F(UserScenes, PassOnOnlyWhatChangesSpeed) {
     put_scene(kFloor);
     rendered("out", {"--povray-ini", "Bounding_Method=2"});

@@ -161,6 +161,28 @@ TEST_F(SceneSurvey, RefusesASpectrumsNameThatIsMisspelt) {
         "is no known reflectance (did you mean \"green-algae\"?); allowed: brown-algae");
 }
 
+TEST_F(SceneSurvey, RefusesMoreLightsThanPovrayTakesInWater) {
+    expect_refusal(refusal(std::string(kScene) +
+                           "#for (I, 1, 1013) Aphotic_Cone (<0, 0, -I / 1000>, z, 90, 1, "
+                           "\"xenon-flash\", 1) #end\n"),
+                   "found 1025 cones of light; allowed: 1024");
+}
+
+TEST_F(SceneSurvey, RefusesANameThatPovrayCannotInclude) {
+    for (const char* name : {"r\"eef.pov",
+                             "r\\eef.pov",
+                             "r\xC3\xA9"
+                             "ef.pov"}) {
+        write_file(folder_.path() / name, "#version 3.7;\n");
+        EXPECT_THROW(static_cast<void>(survey_scene(find_povray(""),
+                                                    habcam(),
+                                                    folder_.path() / name,
+                                                    {.jobs = 1, .library_paths = {}})),
+                     InputError)
+            << name;
+    }
+}
+
 TEST_F(SceneSurvey, RefusesAnotherCamera) {
     expect_refusal(refusal(std::string(kScene) + "camera { location <0, 0, 0> direction z }\n"),
                    "found a second camera");
