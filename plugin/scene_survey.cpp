@@ -379,9 +379,8 @@ bool Survey::take_in(const Picture& picture, const SurveyFrame& frame, Lit& lit)
         }
         if (pixel.path_m == 0.0) {
             const bool is_within = dimmed > 0.0 && std::isfinite(raised) && raised > dimmed;
-            pixel.path_m = is_within
-                               ? std::log(raised / dimmed) / (2.0 * frame.attenuation_per_m[1])
-                               : any_path_m;
+            pixel.path_m = is_within ? measured_path_m(dimmed, raised, frame.attenuation_per_m[1])
+                                     : any_path_m;
         }
         is_missing |= pixel.path_m == 0.0 || pixel.radiance_per_flux == 0.0;
     }

@@ -38,6 +38,10 @@ double UserScene::brightest_radiance(const Rig& rig, double lambda_nm) const {
     return flux * brightest;
 }
 
+double measured_path_m(double dimmed, double raised, double loss_per_m) {
+    return std::log(raised / dimmed) / (2.0 * loss_per_m);
+}
+
 PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels) {
     PathRange range{.shortest_m = std::numeric_limits<double>::infinity(), .longest_m = 0.0};
     for (const auto& pixel : pixels) {

@@ -43,6 +43,10 @@ struct UserScene {
     [[nodiscard]] double brightest_radiance(const Rig& rig, double lambda_nm) const;
 };
 
+// The path l of light that a loss of K dims to G exp(-K l), and one of -K raises to G exp(K l):
+// ln(raised / dimmed) / (2 K).
+[[nodiscard]] double measured_path_m(double dimmed, double raised, double loss_per_m);
+
 // Room on both sides of the measured paths, for what lies between the survey's pixels.
 inline constexpr double kSurveyRoom = 1.05;
 

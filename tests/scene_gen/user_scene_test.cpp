@@ -16,6 +16,13 @@ Rig habcam() {
     return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
 }
 
+TEST(UserScene, APathIsToldByWhatALossAndItsOppositeLeave) {
+    constexpr double kRounding = 1e-14;
+    EXPECT_NEAR(measured_path_m(7.0 * std::exp(-0.2 * 3.5), 7.0 * std::exp(0.2 * 3.5), 0.2),
+                3.5,
+                kRounding);
+}
+
 TEST(UserScene, PathsHaveRoomOnBothSides) {
     const PathRange paths = paths_of(
         {{{.radiance_per_flux = 1.0, .path_m = 3.0}},
