@@ -33,6 +33,7 @@ Action configure_generate(CLI::App& options);
 Action configure_integrate(CLI::App& options);
 Action configure_plan(CLI::App& options);
 Action configure_render(CLI::App& options);
+Action configure_stress(CLI::App& options);
 Action configure_study(CLI::App& options);
 Action configure_trace(CLI::App& options);
 Action configure_validate(CLI::App& options);

@@ -35,6 +35,9 @@ constexpr std::array kCommands{
     Command{"study",
             "measure the trade of accuracy for time on this machine",
             aphotic::cli::configure_study},
+    Command{"stress",
+            "hold both renderers at extremes against a long-double answer",
+            aphotic::cli::configure_stress},
     Command{"compare", "how far one image is from another", aphotic::cli::configure_compare},
     Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
 };

@@ -7,6 +7,7 @@
 #include "cli/outcome.h"
 #include "cli/planning.h"
 #include "cli/progress.h"
+#include "cli/rendered_images.h"
 #include "cli/rendering.h"
 #include "cli/words.h"
 #include "plugin/render.h"
@@ -32,48 +33,6 @@ struct Options {
     int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     bool json = false;
 };
-
-// Whole planes of one channel each, out of folder/spectral.exr.
-std::vector<float> radiance_planes(const fs::path& file, const std::vector<std::string>& channels) {
-    ExrReader image(file);
-    std::vector<float> samples(channels.size() * static_cast<std::size_t>(image.width_px()) *
-                               static_cast<std::size_t>(image.height_px()));
-    image.read_rows(0, image.height_px(), channels, samples);
-    return samples;
-}
-
-RenderedImages images_in(const fs::path& folder,
-                         const Manifest& manifest,
-                         const LightFamily& family) {
-    RenderedImages images{.lambda_nm = {},
-                          .exposure_log2 = {},
-                          .index_nm = {},
-                          .shift_error = {},
-                          .promise = {},
-                          .black = {},
-                          .radiance = {},
-                          .signals = read_signals(folder / "image.exr")};
-    std::vector<std::string> channels;
-    for (const ManifestWavelength& w : manifest.wavelengths) {
-        images.lambda_nm.push_back(w.lambda_nm);
-        images.exposure_log2.push_back(w.exposure_log2);
-        channels.push_back(spectral_channel(w.lambda_nm));
-        images.index_nm.push_back(w.index_nm);
-        images.shift_error.push_back(
-            family.tilt ? std::abs(family.tilt->at(w.lambda_nm) - family.tilt->at(w.index_nm))
-                        : 0.0);
-    }
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        images.promise[c] = manifest.promise(c);
-        images.black[c] = manifest.black(c);
-    }
-    images.radiance = [folder, channels](std::size_t first, std::size_t count) {
-        const auto from = channels.begin() + static_cast<std::ptrdiff_t>(first);
-        return radiance_planes(folder / "spectral.exr",
-                               {from, from + static_cast<std::ptrdiff_t>(count)});
-    };
-    return images;
-}
 
 // Renders the rig into the folder, as `aphotic render` does.
 struct Rendering {

@@ -43,16 +43,21 @@ std::vector<std::string> wavelength_labels(std::span<const double> lambda_nm) {
     return labels;
 }
 
-// Fade distance: a power of two, so that 1/(2 f^2) scales the light without rounding it.
-double fade_distance_m(const Rig& rig, const SceneOptions& options) {
-    if (options.user_scene) return kUserFade_m;
+// From any lamp to what it may light.
+double least_throw_m(const Rig& rig) {
     double least_m = std::numeric_limits<double>::infinity();
     for (const Strobe& strobe : rig.strobes) {
         for (const Vector3d& lamp_m : lamp_positions_m(strobe, {.across = 2, .along = 2})) {
             least_m = std::min(least_m, least_throw_m(rig, strobe, lamp_m));
         }
     }
-    return std::exp2(std::floor(std::log2(kFadeShare * least_m)));
+    return least_m;
+}
+
+// Fade distance: a power of two, so that 1/(2 f^2) scales the light without rounding it.
+double fade_distance_m(const Rig& rig, const SceneOptions& options) {
+    if (options.user_scene) return kUserFade_m;
+    return std::exp2(std::floor(std::log2(kFadeShare * least_throw_m(rig))));
 }
 
 // Half sizes of the glass block and of the air cavity in it, across the camera's axis.
@@ -219,6 +224,7 @@ struct Parts {
     std::vector<NamedSpectrum> reflectances;
     std::string rig;
     double fade_m;
+    double unit_m;                            // of the scene; in a user's own, that scene's word
     std::function<double(double)> brightest;  // bound of the radiance at a wavelength [nm]
 };
 
@@ -251,7 +257,10 @@ Band band_of(const Rig& rig, const Parts& parts, const FrameScene& scene) {
     return band;
 }
 
-std::string header_of(const Rig& rig, const FrameScene& scene, const SceneOptions& options) {
+std::string header_of(const Rig& rig,
+                      const FrameScene& scene,
+                      const SceneOptions& options,
+                      double unit_m) {
     std::string header = fmt::format(
         "// Persistence of Vision Ray Tracer Scene Description File\n"
         "// File: {}.pov\n"
@@ -274,9 +283,10 @@ std::string header_of(const Rig& rig, const FrameScene& scene, const SceneOption
     return header +
            fmt::format(
                "//\n// Render in this folder with: povray render.ini +I{}.pov\n"
-               "//\n// Metres. x starboard, y forward, z down; the camera's entrance pupil is the "
+               "//\n// {}. x starboard, y forward, z down; the camera's entrance pupil is the "
                "origin.\n",
-               scene.name);
+               scene.name,
+               unit_m == 1.0 ? "Metres" : fmt::format("Units of {} m", sdl_number(unit_m)));
 }
 
 // own_scene: the user's, by name; none: the rig's floor.
@@ -285,6 +295,9 @@ std::string body_sdl(const Band& band,
                      const SceneOptions& options,
                      const std::string& own_scene) {
     std::string sdl = band_sdl(band);
+    if (parts.unit_m != 1.0) {
+        sdl += fmt::format("#declare Aphotic_Unit = {};\n", sdl_number(parts.unit_m));
+    }
     sdl += fmt::format("#declare Aphotic_Fade_Distance = {};\n", sdl_number(parts.fade_m));
     if (!options.omit) sdl += "#declare Aphotic_Everything = true;\n";
     sdl += "#include \"aphotic.inc\"\n\n" + parts.rig + "\n";
@@ -299,7 +312,7 @@ std::string scene_sdl(const Rig& rig,
                       const SceneOptions& options) {
     const std::string own =
         options.user_scene ? options.user_scene->file.filename().string() : std::string();
-    return header_of(rig, scene, options) + "\n#version 3.7;\n" +
+    return header_of(rig, scene, options, parts.unit_m) + "\n#version 3.7;\n" +
            body_sdl(band_of(rig, parts, scene), parts, options, own);
 }
 
@@ -308,6 +321,7 @@ Parts parts_of(const Rig& rig, const SceneOptions& options) {
                 .reflectances = reflectances_of(rig, options),
                 .rig = "",
                 .fade_m = fade_distance_m(rig, options),
+                .unit_m = options.user_scene ? 1.0 : scene_unit_m(rig),
                 .brightest = {}};
     parts.rig = rig_sdl(rig, strobes_in_scene(rig, options), parts.lamps, parts.reflectances);
     if (options.user_scene) {
@@ -323,6 +337,15 @@ Parts parts_of(const Rig& rig, const SceneOptions& options) {
 }
 
 }  // namespace
+
+double scene_unit_m(const Rig& rig) {
+    double least_m =
+        std::min(least_throw_m(rig), height_above(floor_plane(rig.sled), Vector3d::Zero()));
+    for (const Object& object : rig.objects) {
+        least_m = std::min(least_m, bounds_m(object.shape).sizes().maxCoeff());
+    }
+    return least_m < kLeastInMetres_m ? std::exp2(std::floor(std::log2(least_m))) : 1.0;
+}
 
 std::vector<FrameScene> make_scenes(const Rig& rig,
                                     std::span<const double> lambda_nm,

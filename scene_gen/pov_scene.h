@@ -69,6 +69,13 @@ struct SceneOptions {
                                                   std::span<const double> lambda_nm,
                                                   const SceneOptions& options = {});
 
+// Metres in one unit of the rig's scene: 1, or the power of two at or under the least distance that
+// counts (lamp to what it lights, pupil to the floor, the largest side of an object) where that is
+// under kLeastInMetres_m. POV-Ray's tolerances are fixed numbers of its units: it takes no light
+// from the last 1e-3 before a lamp and passes over what shades from within 1e-3, for instance.
+[[nodiscard]] double scene_unit_m(const Rig& rig);
+inline constexpr double kLeastInMetres_m = 0x1p-6;
+
 // POV-Ray gives up inside a medium when it meets more lights than this.
 inline constexpr int kMostLightsInMedia = 1024;
 

@@ -25,10 +25,20 @@ namespace {
 
 // The world's vertical in the sled's frame: pitch about starboard, then roll about forward,
 // both undone.
-Vector3d vertical(const Sled& sled) {
-    const Eigen::AngleAxisd pitch(sled.pitch_rad, Vector3d::UnitY());
-    const Eigen::AngleAxisd roll(sled.roll_rad, Vector3d::UnitX());
-    return (pitch * roll).inverse() * Vector3d::UnitZ();
+WideVector vertical(const Sled& sled) {
+    const Eigen::AngleAxis<long double> pitch(sled.pitch_rad, WideVector::UnitY());
+    const Eigen::AngleAxis<long double> roll(sled.roll_rad, WideVector::UnitX());
+    return (pitch * roll).inverse() * WideVector::UnitZ();
+}
+
+// What is left of light after so many optical depths. Eigen's vectorised exponential goes no lower
+// than e^-709.8, whatever it is asked for.
+ArrayXd light_left(const ArrayXd& depth) {
+    return (depth < kBlackDepth).select((-depth).exp(), 0.0);
+}
+
+double light_left(double depth) {
+    return depth < kBlackDepth ? std::exp(-depth) : 0.0;
 }
 
 // Lamps along one side of an emitter, so that the midpoint rule holds kEmitterError: with h their
@@ -44,7 +54,10 @@ int lamps_for(double side_m, double distance_m, double phong_size) {
 }  // namespace
 
 Tracer::Tracer(const Rig& rig, const TraceOptions& options)
-    : rig_(rig), options_(options), down_(vertical(rig.sled)) {
+    : rig_(rig),
+      options_(options),
+      exact_down_(vertical(rig.sled)),
+      down_(exact_down_.cast<double>()) {
     for (const Strobe& strobe : rig_.strobes) {
         axial_intensity_.emplace_back();
         cos_edge_.emplace_back();
@@ -81,7 +94,7 @@ void Tracer::place_lamps() {
             lamps_of_strobe_.push_back(1.0);
             continue;
         }
-        double throw_m = down_.dot(Vector3d(0.0, 0.0, rig_.sled.altitude_m) - strobe.position_m);
+        double throw_m = height_m(strobe.position_m);
         for (const TracedShape& shape : shapes_) {
             throw_m = std::min(throw_m, shape.least_distance_m(strobe.position_m));
         }
@@ -219,6 +232,12 @@ void Tracer::tabulate_spectra() {
     }
 }
 
+double Tracer::height_m(const Vector3d& point_m) const {
+    const WideVector above_m =
+        WideVector(0.0L, 0.0L, rig_.sled.altitude_m) - point_m.cast<long double>();
+    return static_cast<double>(exact_down_.dot(above_m));
+}
+
 // What the point (column, row) of the image looks at; false when it is nothing.
 bool Tracer::look(double column, double row, const Index& index, View& view) const {
     const Camera& camera = rig_.camera;
@@ -240,11 +259,15 @@ bool Tracer::look(double column, double row, const Index& index, View& view) con
         origin_m = {u * per_sine, v * per_sine, camera.port->distance_m + camera.port->thickness_m};
         direction = {u, v, water_z};
     }
+    // Near the horizon the ray and the vertical are all but perpendicular: their product is what is
+    // left of a difference, and of doubles few digits would be.
+    const WideVector wide = direction.cast<long double>();
+    const long double approach = wide.dot(exact_down_) / wide.norm();
+    const double depth_m = height_m(origin_m);
+    const bool meets_floor = approach > 0.0L && depth_m > 0.0;
     direction.normalize();
-    const double approach = direction.dot(down_);
-    const double depth_m = down_.dot(Vector3d(0.0, 0.0, rig_.sled.altitude_m) - origin_m);
-    const bool meets_floor = approach > 0.0 && depth_m > 0.0;
-    view.distance_m = meets_floor ? depth_m / approach : std::numeric_limits<double>::infinity();
+    view.distance_m = meets_floor ? static_cast<double>(depth_m / approach)
+                                  : std::numeric_limits<double>::infinity();
     view.normal = -down_;
     view.surface = 0;
     view.face = 0;
@@ -282,7 +305,9 @@ Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
     const Vector3d from_lamp = view.point_m - lamp.position_m;
     const double d2 = from_lamp.squaredNorm();
     const double d = std::sqrt(d2);
-    const double cos_incidence = -from_lamp.dot(view.normal) / d;
+    // On the floor by the lamp's height, of which grazing light loses no digits.
+    const double cos_incidence =
+        (view.surface == 0 ? height_m(lamp.position_m) : -from_lamp.dot(view.normal)) / d;
     const double cos_theta = from_lamp.dot(strobe.axis) / d;
     Contribution found{.diffuse = 0.0, .specular = 0.0, .path_m = d + view.distance_m};
     if (cos_incidence <= 0.0 || cos_theta <= 0.0) return found;
@@ -319,7 +344,7 @@ void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
             if (lit.diffuse == 0.0 && lit.specular == 0.0) continue;
-            const auto left = (-lit.path_m * attenuation_per_m_).exp();
+            const ArrayXd left = light_left(lit.path_m * attenuation_per_m_);
             if (lit.specular == 0.0) {
                 radiance += lit.diffuse * diffuse_[lamp.strobe][view.surface] * left;
             } else {
@@ -339,7 +364,7 @@ void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
             const Contribution lit = light(lamp, view);
             radiance(j) += (lit.diffuse * diffuse_[lamp.strobe][view.surface](j) +
                             lit.specular * specular_[lamp.strobe](j)) *
-                           std::exp(-lit.path_m * attenuation_per_m_(j));
+                           light_left(lit.path_m * attenuation_per_m_(j));
         }
     }
 }

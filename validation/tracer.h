@@ -16,10 +16,13 @@
 // m      the camera's ray mirrored at the surface          l  from the surface to the lamp
 // N      lamps of the emitter                              A_k  pi sin^2(gamma) A_k = alpha_k
 //
-// Double precision throughout. The spectral grid is exact to kSpectralError of a channel's
-// signal (spectral/light_family.h). An emitter of a size is as many equal lamps as hold the
-// smooth part of its light to kEmitterError; a cone's edge is a staircase with as many steps.
-// Every term of a sum has the same sign, so a sum of n terms is right to n 1.1e-16.
+// Double precision, but for heights over the floor and the angle to the horizon, which are small
+// differences at the extremes: these are taken in long double. Light of which the water leaves less
+// than e^-kBlackDepth is black: doubles end soon after. The spectral grid is exact to
+// kSpectralError of a channel's signal (spectral/light_family.h). An emitter of a size is as many
+// equal lamps as hold the smooth part of its light to kEmitterError; a cone's edge is a staircase
+// with as many steps. Every term of a sum has the same sign, so a sum of n terms is right to
+// n 1.1e-16.
 #pragma once
 
 #include "scene_gen/rig.h"
@@ -38,6 +41,8 @@ namespace aphotic {
 
 inline constexpr double kSpectralError = 1e-8;
 inline constexpr double kEmitterError = 2e-5;
+
+inline constexpr double kBlackDepth = 700.0;
 
 inline constexpr double kEdgeRad = 1e-9;
 inline constexpr double kEdgeBehindPortRad = 1e-7;
@@ -65,6 +70,8 @@ struct TraceOptions {
     int lamps_across = 0;
     int lamps_along = 0;
 };
+
+using WideVector = Eigen::Matrix<long double, 3, 1>;
 
 class Tracer {
   public:
@@ -131,6 +138,8 @@ class Tracer {
     void place_lamps();
     void tabulate_spectra();
     [[nodiscard]] std::vector<WeightedWavelength> full_spectrum() const;
+    // Over the floor.
+    [[nodiscard]] double height_m(const Eigen::Vector3d& point_m) const;
     [[nodiscard]] bool look(double column, double row, const Index& index, View& view) const;
     [[nodiscard]] Contribution light(const Lamp& lamp, const View& view) const;
     void trace_pixel(int column, int row, Eigen::ArrayXd& radiance) const;
@@ -164,6 +173,7 @@ class Tracer {
 
     Rig rig_;
     TraceOptions options_;
+    WideVector exact_down_;
     Eigen::Vector3d down_;
     std::vector<Surface> surfaces_;
     std::vector<TracedShape> shapes_;  // of the objects

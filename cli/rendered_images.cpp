@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/rendered_images.h"
+
+#include "spectral/exr.h"
+#include "spectral/integrator.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace aphotic::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Whole planes of one channel each, out of folder/spectral.exr.
+std::vector<float> radiance_planes(const fs::path& file, const std::vector<std::string>& channels) {
+    ExrReader image(file);
+    std::vector<float> samples(channels.size() * static_cast<std::size_t>(image.width_px()) *
+                               static_cast<std::size_t>(image.height_px()));
+    image.read_rows(0, image.height_px(), channels, samples);
+    return samples;
+}
+
+}  // namespace
+
+RenderedImages images_in(const fs::path& folder,
+                         const Manifest& manifest,
+                         const LightFamily& family) {
+    RenderedImages images{.lambda_nm = {},
+                          .exposure_log2 = {},
+                          .index_nm = {},
+                          .shift_error = {},
+                          .promise = {},
+                          .black = {},
+                          .radiance = {},
+                          .signals = read_signals(folder / "image.exr")};
+    std::vector<std::string> channels;
+    for (const ManifestWavelength& w : manifest.wavelengths) {
+        images.lambda_nm.push_back(w.lambda_nm);
+        images.exposure_log2.push_back(w.exposure_log2);
+        channels.push_back(spectral_channel(w.lambda_nm));
+        images.index_nm.push_back(w.index_nm);
+        images.shift_error.push_back(
+            family.tilt ? std::abs(family.tilt->at(w.lambda_nm) - family.tilt->at(w.index_nm))
+                        : 0.0);
+    }
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        images.promise[c] = manifest.promise(c);
+        images.black[c] = manifest.black(c);
+    }
+    images.radiance = [folder, channels](std::size_t first, std::size_t count) {
+        const auto from = channels.begin() + static_cast<std::ptrdiff_t>(first);
+        return radiance_planes(folder / "spectral.exr",
+                               {from, from + static_cast<std::ptrdiff_t>(count)});
+    };
+    return images;
+}
+
+}  // namespace aphotic::cli

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A finished render's images, as the reference is to see them.
+#pragma once
+
+#include "spectral/light_family.h"
+#include "spectral/manifest.h"
+#include "validation/validation.h"
+
+#include <filesystem>
+
+namespace aphotic::cli {
+
+// family: of the plan that was rendered, for what frames shared behind a port may shift.
+[[nodiscard]] RenderedImages images_in(const std::filesystem::path& folder,
+                                       const Manifest& manifest,
+                                       const LightFamily& family);
+
+}  // namespace aphotic::cli

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic stress -o DIR: both renderers at the extremes, against an answer in long double.
+#include "validation/stress.h"
+
+#include "cli/command.h"
+#include "cli/progress.h"
+#include "cli/rendered_images.h"
+#include "cli/words.h"
+#include "plugin/render.h"
+#include "scene_gen/render_plan.h"
+#include "scene_gen/scene_set.h"
+#include "spectral/atomic_file.h"
+#include "spectral/integrator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+namespace aphotic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    std::string folder;
+    std::string povray;
+    std::string only;
+    int width_px = 24;
+    int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    bool json = false;
+};
+
+RenderedImages render_case(const PovRay& povray,
+                           const Rig& rig,
+                           const StressCase& asked,
+                           const fs::path& folder) {
+    PlanRequest request;
+    request.wavelengths_nm = asked.wavelengths_nm;
+    if (asked.peak_log2) request.scene.peak_log2 = *asked.peak_log2;
+    const RenderPlan plan = plan_render(rig, request);
+    const RenderResult result =
+        render(povray, folder, make_scene_set(rig, plan), {.jobs = 1, .report = {}});
+    integrate(folder, result.manifest);
+    return images_in(folder, result.manifest, plan.family);
+}
+
+// A case mostly waits for POV-Ray, which starts by sleeping: so there are more at a time than
+// cores.
+std::vector<StressFound> measured(const std::vector<StressCase>& cases,
+                                  const Options& options,
+                                  const PovRay& povray) {
+    constexpr int kWaiting = 2;
+    std::vector<StressFound> found(cases.size());
+    std::atomic<std::size_t> next = 0;
+    std::atomic<std::size_t> done = 0;
+    std::mutex line_mutex;
+    ProgressLine line;
+    const auto work = [&] {
+        for (std::size_t i = next++; i < cases.size(); i = next++) {
+            const StressRender render =
+                [&](const Rig& rig, const StressCase& asked, const fs::path& to) {
+                    return render_case(povray, rig, asked, to);
+                };
+            found[i] = measure_stress(cases[i], fs::path(options.folder) / cases[i].name, render);
+            ++done;
+            const std::scoped_lock lock(line_mutex);
+            line.show(fmt::format("{} of {} cases", done.load(), cases.size()),
+                      static_cast<double>(done) / static_cast<double>(cases.size()));
+        }
+    };
+    std::vector<std::jthread> others;
+    for (int t = 1; t < kWaiting * options.jobs; ++t) others.emplace_back(work);
+    work();
+    others.clear();
+    return found;
+}
+
+void print_found(const std::vector<StressFound>& found, const std::string& folder) {
+    const auto surprises =
+        std::ranges::count_if(found, [](const StressFound& one) { return !one.as_expected(); });
+    for (const StressFound& one : found) {
+        if (one.as_expected()) continue;
+        fmt::print("  {}: {}: {}: expected: {}; found: {}{}\n",
+                   one.asked.name,
+                   one.asked.extreme,
+                   one.asked.value,
+                   answer_word(one.asked.expected),
+                   answer_word(one.answer),
+                   one.said.empty() ? "" : " (" + one.said + ")");
+    }
+    fmt::print("{}, {} not as expected\n", counted(found.size(), "case"), surprises);
+    fmt::print("  {0}/stress.md    to read\n  {0}/stress.json  for programs\n", folder);
+}
+
+ExitStatus stress(const Options& options) {
+    const PovRay povray = find_povray(options.povray);
+    std::vector<StressCase> cases = stress_cases(options.width_px);
+    std::erase_if(cases, [&](const StressCase& asked) {
+        return asked.name.find(options.only) == std::string::npos;
+    });
+    make_folder(options.folder);
+    const std::vector<StressFound> found = measured(cases, options, povray);
+    write_stress(found, options.folder);
+    if (options.json) {
+        fmt::print("{}", read_text_file(fs::path(options.folder) / "stress.json"));
+    } else {
+        print_found(found, options.folder);
+    }
+    return std::ranges::all_of(found, &StressFound::as_expected) ? kDone : kAnswerIsNo;
+}
+
+}  // namespace
+
+Action configure_stress(CLI::App& app) {
+    constexpr int kMostJobs = 1024;
+    constexpr int kMostWidth_px = 1360;
+    const auto options = std::make_shared<Options>();
+    app.add_option("-o,--output", options->folder, "the folder to write to")
+        ->required()
+        ->type_name("DIR");
+    app.add_option("--width", options->width_px, "of the images, in pixels")
+        ->check(CLI::Range(1, kMostWidth_px))
+        ->capture_default_str();
+    app.add_option("--only", options->only, "the cases alone whose folders' names hold this")
+        ->type_name("TEXT");
+    app.add_option(
+           "--povray", options->povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
+        ->type_name("PROGRAM");
+    app.add_option("--jobs", options->jobs, "cases at a time, two for each; by default the cores")
+        ->check(CLI::Range(1, kMostJobs))
+        ->capture_default_str();
+    app.add_flag("--json", options->json, "print stress.json");
+    app.footer(
+        "Exit status 0 when every case comes out as it should, 1 when not. Each case's rig stays "
+        "in\n"
+        "its folder: aphotic validate DIR/CASE/rig.toml -o OUT looks closer.");
+    return [options] { return stress(*options); };
+}
+
+}  // namespace aphotic::cli

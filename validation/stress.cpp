@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "validation/stress.h"
+
+#include "scene_gen/rig_reader.h"
+#include "spectral/atomic_file.h"
+#include "spectral/error.h"
+#include "validation/comparison.h"
+#include "validation/exact_light.h"
+#include "validation/stress_sheet.h"
+#include "validation/tracer.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kSmallestNormalFloat = std::numeric_limits<float>::min();
+constexpr int kSmallestNormalHalfLog2 = -14;
+
+// --- The sheet
+// ------------------------------------------------------------------------------------
+
+// What overlay holds goes over what base holds, table by table; arrays are replaced whole.
+void lay_over(toml::table& base, const toml::table& overlay) {
+    for (const auto& [key, node] : overlay) {
+        toml::table* below = base[key].as_table();
+        if (node.is_table() && below != nullptr) {
+            lay_over(*below, *node.as_table());
+        } else {
+            base.insert_or_assign(key, node);
+        }
+    }
+}
+
+// key is a path such as "strobe.0.position_m".
+void put(toml::node& at, std::string_view key, const toml::node& value) {
+    const std::size_t dot = key.find('.');
+    const std::string_view first = key.substr(0, dot);
+    if (auto* array = at.as_array()) {
+        put(array->at(std::stoul(std::string(first))), key.substr(dot + 1), value);
+    } else if (dot == std::string_view::npos) {
+        at.as_table()->insert_or_assign(first, value);
+    } else {
+        toml::table& table = *at.as_table();
+        if (!table.contains(first)) table.insert(first, toml::table{});
+        put(*table.get(first), key.substr(dot + 1), value);
+    }
+}
+
+std::string printed(const toml::table& table) {
+    std::ostringstream text;
+    text << table;
+    return text.str();
+}
+
+std::string label_of(const toml::node& value) {
+    if (const toml::table* piece = value.as_table()) {
+        return piece->get("as")->value_or(std::string());
+    }
+    if (const toml::array* array = value.as_array()) {
+        std::vector<std::string> items;
+        for (const toml::node& item : *array) items.push_back(label_of(item));
+        return fmt::format("{}", fmt::join(items, ", "));
+    }
+    return fmt::format("{}", value.value_or(0.0));
+}
+
+std::string folder_name(std::string_view words, std::size_t number) {
+    constexpr std::size_t kLongest = 40;
+    std::string name;
+    for (const char c : words.substr(0, kLongest)) {
+        const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+        if (is_plain) name += c;
+        if (!is_plain && !name.empty() && name.back() != '-') name += '-';
+    }
+    return fmt::format("{:03}-{}", number, name);
+}
+
+// A smooth curve of so many points over the visible range, for a table of any size.
+std::string filled_table(std::int64_t points) {
+    std::string text = "wavelength_nm,relative_power\n";
+    for (std::int64_t i = 0; i < points; ++i) {
+        const double t = static_cast<double>(i) / static_cast<double>(points - 1);
+        text += fmt::format("{:.9g},{:.9g}\n", 390.0 + 340.0 * t, 1.0 + t * t);
+    }
+    return text;
+}
+
+std::vector<StressTable> tables_of(const toml::table& words) {
+    std::vector<StressTable> tables;
+    const toml::table* named = words["tables"].as_table();
+    if (named == nullptr) return tables;
+    for (const auto& [file, content] : *named) {
+        const auto points = content.value<std::int64_t>();
+        tables.push_back(
+            {.file = std::string(file.str()),
+             .text = points ? filled_table(*points) : content.value_or(std::string())});
+    }
+    return tables;
+}
+
+// So many strobes, the first again and again.
+void copy_strobe(toml::table& rig, std::int64_t count) {
+    const toml::table first = *rig["strobe"].as_array()->at(0).as_table();
+    toml::array strobes;
+    for (std::int64_t i = 0; i < count; ++i) {
+        toml::table strobe = first;
+        strobe.insert_or_assign("name", fmt::format("strobe {}", i + 1));
+        strobes.push_back(std::move(strobe));
+    }
+    rig.insert_or_assign("strobe", std::move(strobes));
+}
+
+// Fewer and larger pixels over the same field of view.
+void set_width(toml::table& rig, int width_px) {
+    toml::table& camera = *rig["camera"].as_table();
+    const auto width = camera["resolution"][0].value_or(1.0);
+    const auto height = camera["resolution"][1].value_or(1.0);
+    const double share = width_px / width;
+    camera.insert_or_assign(
+        "resolution",
+        toml::array{width_px, std::max<std::int64_t>(1, std::lround(height * share))});
+    camera.insert_or_assign("pixel_pitch_um", camera["pixel_pitch_um"].value_or(1.0) / share);
+}
+
+StressCase case_of(const toml::table& base,
+                   const toml::table& extreme,
+                   const toml::node& value,
+                   StressAnswer expected) {
+    toml::table sheet = base;
+    if (const auto* set = extreme["set"].as_table()) lay_over(sheet, *set);
+    const std::string key = extreme["key"].value_or(std::string());
+    if (key.empty()) {
+        lay_over(sheet, *value.as_table());
+    } else {
+        put(sheet, key, value);
+    }
+    sheet.erase("as");
+    toml::table words;
+    if (const auto* stress = sheet["stress"].as_table()) words = *stress;
+    sheet.erase("stress");
+    if (auto* tables = words["tables"].as_table()) tables->erase("as");
+    if (const auto count = words["strobes"].value<std::int64_t>()) copy_strobe(sheet, *count);
+
+    StressCase made{.group = extreme["group"].value_or(std::string()),
+                    .extreme = extreme["name"].value_or(std::string()),
+                    .value = label_of(value),
+                    .name = "",
+                    .rig = printed(sheet) + "\n",
+                    .tables = tables_of(words),
+                    .peak_log2 = words["peak_log2"].value<int>(),
+                    .wavelengths_nm = {},
+                    .is_planned_only = words["planned"].value_or(false),
+                    .expected = expected};
+    if (const auto* wavelengths = words["wavelengths_nm"].as_array()) {
+        for (const toml::node& nm : *wavelengths) made.wavelengths_nm.push_back(nm.value_or(0.0));
+    }
+    return made;
+}
+
+// --- Measuring
+// ------------------------------------------------------------------------------------
+
+struct Answer {
+    std::vector<std::vector<double>> radiance;  // by wavelength, row by row
+    std::array<std::vector<double>, kChannels> signals;
+};
+
+Answer answer_of(const Rig& rig, std::span<const double> lambda_nm) {
+    const ExactLight<long double> light(rig);
+    Answer answer{.radiance = std::vector<std::vector<double>>(lambda_nm.size()), .signals = {}};
+    for (int row = 0; row < rig.camera.height_px; ++row) {
+        for (int column = 0; column < rig.camera.width_px; ++column) {
+            for (std::size_t j = 0; j < lambda_nm.size(); ++j) {
+                answer.radiance[j].push_back(
+                    static_cast<double>(light.radiance(column + 0.5, row + 0.5, lambda_nm[j])));
+            }
+            const auto signals = light.signals(column + 0.5, row + 0.5);
+            for (std::size_t c = 0; c < kChannels; ++c) {
+                answer.signals[c].push_back(static_cast<double>(signals[c]));
+            }
+        }
+    }
+    return answer;
+}
+
+// The largest |e| off the edges; infinite where a value is not finite, wherever that is.
+template <typename Sample>
+double largest_error(std::span<const Sample> samples,
+                     std::span<const double> answer,
+                     std::span<const unsigned char> on_edge,
+                     double floor) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < answer.size(); ++i) {
+        const double e = std::abs(relative_error(samples[i], answer[i], floor));
+        if (std::isnan(e)) return std::numeric_limits<double>::infinity();
+        if (on_edge[i] == 0) largest = std::max(largest, e);
+    }
+    return largest;
+}
+
+double peak_of(std::span<const double> samples) {
+    return samples.empty() ? 0.0 : std::ranges::max(samples);
+}
+
+struct Verdict {
+    bool holds = true;
+    bool is_seen = false;  // something is over its floor
+    bool is_black = true;  // POV-Ray's values are zero throughout
+};
+
+Verdict compare_radiance(const RenderedImages& rendered,
+                         const Answer& answer,
+                         const std::vector<double>& traced,
+                         const Tracer& tracer,
+                         StressFound& found) {
+    const std::size_t pixels = answer.signals[0].size();
+    const std::vector<float> planes = rendered.radiance(0, rendered.lambda_nm.size());
+    Verdict verdict;
+    for (std::size_t j = 0; j < rendered.lambda_nm.size(); ++j) {
+        const double nm = rendered.lambda_nm[j];
+        const double index_nm = rendered.index_nm[j];
+        const std::vector<unsigned char> on_edge = tracer.on_edges(
+            {.first_nm = std::min(nm, index_nm), .last_nm = std::max(nm, index_nm)});
+        const double floor = std::max(
+            kSmallestNormalFloat, std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[j]));
+        const auto samples = std::span<const float>(planes).subspan(j * pixels, pixels);
+        const double e = largest_error(samples, answer.radiance[j], on_edge, floor);
+        const double traced_e =
+            largest_error(std::span(traced).subspan((kChannels + j) * pixels, pixels),
+                          answer.radiance[j],
+                          on_edge,
+                          kTracedFloor);
+        found.povray_radiance = std::max(found.povray_radiance, e);
+        found.traced_radiance = std::max(found.traced_radiance, traced_e);
+        found.peak = std::max(found.peak, peak_of(answer.radiance[j]));
+        verdict.holds &=
+            e <= kHalfFloatBound + rendered.shift_error[j] && traced_e <= kTracedRadianceBound;
+        verdict.is_seen |= peak_of(answer.radiance[j]) > floor;
+        verdict.is_black &= std::ranges::all_of(samples, [](float x) { return x == 0.0F; });
+    }
+    return verdict;
+}
+
+Verdict compare_signals(const RenderedImages& rendered,
+                        const Answer& answer,
+                        const std::vector<double>& traced,
+                        const Tracer& tracer,
+                        StressFound& found) {
+    const std::size_t pixels = answer.signals[0].size();
+    const std::vector<unsigned char> on_edge = tracer.on_edges(tracer.rig().camera.range);
+    found.on_edges = static_cast<std::size_t>(std::ranges::count(on_edge, 1));
+    Verdict verdict;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const double peak = peak_of(answer.signals[c]);
+        const double floor =
+            std::max({kSmallestNormalFloat, kBlackShare * peak, rendered.black[c]});
+        const auto samples =
+            std::span<const float>(rendered.signals.samples).subspan(c * pixels, pixels);
+        const double e = largest_error(samples, answer.signals[c], on_edge, floor);
+        const double traced_e = largest_error(std::span(traced).subspan(c * pixels, pixels),
+                                              answer.signals[c],
+                                              on_edge,
+                                              kTracedFloor);
+        found.povray_signal = std::max(found.povray_signal, e);
+        found.traced_signal = std::max(found.traced_signal, traced_e);
+        found.promise = std::max(found.promise, rendered.promise[c]);
+        verdict.holds &= e <= rendered.promise[c] && traced_e <= kTracedSignalBound;
+        verdict.is_seen |= peak > floor;
+        verdict.is_black &= std::ranges::all_of(samples, [](float x) { return x == 0.0F; });
+    }
+    return verdict;
+}
+
+void compare(const Rig& rig, const RenderedImages& rendered, StressFound& found) {
+    const Tracer tracer(rig, {.signals = true, .planes_nm = rendered.lambda_nm});
+    const std::vector<double> traced = tracer.rows(0, rig.camera.height_px);
+    const Answer answer = answer_of(rig, rendered.lambda_nm);
+    const Verdict radiance = compare_radiance(rendered, answer, traced, tracer, found);
+    const Verdict signals = compare_signals(rendered, answer, traced, tracer, found);
+    if (!radiance.holds || !signals.holds) {
+        found.answer = StressAnswer::Grows;
+    } else if (radiance.is_black && signals.is_black) {
+        found.answer = StressAnswer::Black;
+    } else if (!radiance.is_seen || !signals.is_seen) {
+        found.answer = StressAnswer::Faint;
+    }
+}
+
+}  // namespace
+
+std::string_view answer_word(StressAnswer answer) {
+    switch (answer) {
+        case StressAnswer::Holds:
+            return "holds";
+        case StressAnswer::Faint:
+            return "faint";
+        case StressAnswer::Black:
+            return "black";
+        case StressAnswer::Refused:
+            return "refused";
+        case StressAnswer::Grows:
+            return "grows";
+    }
+    return "";
+}
+
+std::vector<StressCase> stress_cases(int width_px) {
+    const toml::table sheet = toml::parse(stress_sheet().front().text);
+    toml::table base = *sheet["rig"].as_table();
+    set_width(base, width_px);
+    std::vector<StressCase> cases;
+    for (const toml::node& node : *sheet["extreme"].as_array()) {
+        const toml::table& extreme = *node.as_table();
+        for (const StressAnswer expected : {StressAnswer::Holds,
+                                            StressAnswer::Grows,
+                                            StressAnswer::Faint,
+                                            StressAnswer::Black,
+                                            StressAnswer::Refused}) {
+            const toml::array* values = extreme[answer_word(expected)].as_array();
+            if (values == nullptr) continue;
+            for (const toml::node& value : *values) {
+                cases.push_back(case_of(base, extreme, value, expected));
+                StressCase& made = cases.back();
+                made.name =
+                    folder_name(made.group + " " + made.extreme + " " + made.value, cases.size());
+            }
+        }
+    }
+    return cases;
+}
+
+StressFound measure_stress(const StressCase& asked,
+                           const fs::path& folder,
+                           const StressRender& render) {
+    StressFound found;
+    found.asked = asked;
+    make_folder(folder);
+    for (const StressTable& table : asked.tables) write_text_file(folder / table.file, table.text);
+    write_text_file(folder / "rig.toml", asked.rig);
+    try {
+        const Rig rig = read_rig(folder / "rig.toml");
+        compare(rig, render(rig, asked, folder), found);
+    } catch (const std::runtime_error& error) {  // InputError or RunError: its own words
+        found.answer = StressAnswer::Refused;
+        found.said = error.what();
+    }
+    return found;
+}
+
+}  // namespace aphotic
