@@ -11,6 +11,7 @@
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
 #include "spectral/atomic_file.h"
+#include "spectral/error.h"
 #include "spectral/integrator.h"
 
 #include <fmt/format.h>
@@ -103,6 +104,10 @@ ExitStatus stress(const Options& options) {
     std::erase_if(cases, [&](const StressCase& asked) {
         return asked.name.find(options.only) == std::string::npos;
     });
+    if (cases.empty()) {
+        throw InputError(
+            fmt::format("--only: found '{}'; allowed: part of a case's name", options.only));
+    }
     make_folder(options.folder);
     const std::vector<StressFound> found = measured(cases, options, povray);
     write_stress(found, options.folder);

@@ -160,7 +160,6 @@ StressCase case_of(const toml::table& base,
                     .tables = tables_of(words),
                     .peak_log2 = words["peak_log2"].value<int>(),
                     .wavelengths_nm = {},
-                    .is_planned_only = words["planned"].value_or(false),
                     .expected = expected};
     if (const auto* wavelengths = words["wavelengths_nm"].as_array()) {
         for (const toml::node& nm : *wavelengths) made.wavelengths_nm.push_back(nm.value_or(0.0));

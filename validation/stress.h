@@ -56,7 +56,6 @@ struct StressCase {
     std::vector<StressTable> tables;
     std::optional<int> peak_log2;        // of the frames' exposure, if not the usual
     std::vector<double> wavelengths_nm;  // none: as a render plans them
-    bool is_planned_only = false;        // too large to be rendered on every occasion
     StressAnswer expected = StressAnswer::Holds;
 };
 

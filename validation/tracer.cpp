@@ -242,26 +242,27 @@ double Tracer::height_m(const Vector3d& point_m) const {
 bool Tracer::look(double column, double row, const Index& index, View& view) const {
     const Camera& camera = rig_.camera;
     // Image plane at unit distance: tangents of the ray's slope, up the image and to its right.
-    const double scale = camera.pixel_pitch_m / camera.focal_length_m;
-    const double forward = (0.5 * camera.height_px - row) * scale;
-    const double starboard = (column - 0.5 * camera.width_px) * scale;
+    const long double scale =
+        static_cast<long double>(camera.pixel_pitch_m) / camera.focal_length_m;
+    WideVector wide(
+        (0.5 * camera.height_px - row) * scale, (column - 0.5 * camera.width_px) * scale, 1.0L);
     Vector3d origin_m = Vector3d::Zero();
-    Vector3d direction(forward, starboard, 1.0);
+    Vector3d direction = wide.cast<double>();
     if (camera.port) {
         // Across the axis, n times the unit direction's components is the same in every medium.
         const double cos_air = 1.0 / direction.norm();
-        const double u = forward * cos_air;
-        const double v = starboard * cos_air;
+        const double u = direction.x() * cos_air;
+        const double v = direction.y() * cos_air;
         const double glass_z = std::sqrt(index.glass * index.glass - u * u - v * v);
         const double water_z = std::sqrt(index.water * index.water - u * u - v * v);
         const double per_sine =
             camera.port->distance_m / cos_air + camera.port->thickness_m / glass_z;
         origin_m = {u * per_sine, v * per_sine, camera.port->distance_m + camera.port->thickness_m};
         direction = {u, v, water_z};
+        wide = direction.cast<long double>();
     }
     // Near the horizon the ray and the vertical are all but perpendicular: their product is what is
     // left of a difference, and of doubles few digits would be.
-    const WideVector wide = direction.cast<long double>();
     const long double approach = wide.dot(exact_down_) / wide.norm();
     const double depth_m = height_m(origin_m);
     const bool meets_floor = approach > 0.0L && depth_m > 0.0;

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The answer itself: against formulas that need no program, and in fifty digits, to tell what long
+// double is worth where doubles end.
+#include "validation/exact_light.h"
+
+#include "scene_gen/rig_reader.h"
+#include "support/closed_form.h"
+
+#include <gtest/gtest.h>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace aphotic {
+namespace {
+
+using Fifty = boost::multiprecision::cpp_bin_float_50;
+
+// Of the wavelengths at which the sensor's response is asked for, which are doubles: 1e-16, and a
+// few of these in a sum. An exponent of depth d in long double costs d 5e-20, which is less.
+constexpr long double kLongRounding = 1e-15L;
+// The same in doubles, which the closed form of the tests uses.
+constexpr double kRounding = 1e-13;
+
+Rig habcam() {
+    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    rig.camera.pixel_pitch_m *= 1360.0 / 5;
+    rig.camera.width_px = 5;
+    rig.camera.height_px = 4;
+    return rig;
+}
+
+// The largest relative difference of long double from fifty digits, over pixels and channels.
+long double worst_of_long_double(const Rig& rig, double lambda_nm) {
+    const ExactLight<long double> light(rig);
+    const ExactLight<Fifty> fifty(rig);
+    long double worst = 0.0L;
+    const auto compare = [&](long double found, const Fifty& exact) {
+        if (exact == 0) {
+            EXPECT_EQ(found, 0.0L);
+            return;
+        }
+        const Fifty e = abs((Fifty(found) - exact) / exact);
+        worst = std::max(worst, static_cast<long double>(e));
+    };
+    for (const auto& [column, row] : {std::pair{0.5, 0.5}, std::pair{2.5, 1.5}}) {
+        compare(light.radiance(column, row, lambda_nm), fifty.radiance(column, row, lambda_nm));
+        const auto found = light.signals(column, row);
+        const auto exact = fifty.signals(column, row);
+        for (std::size_t c = 0; c < kChannels; ++c) compare(found[c], exact[c]);
+    }
+    return worst;
+}
+
+TEST(ExactLight, OnTheAxisIsTheInverseSquareAndTwoLegsOfWater) {
+    Rig rig = habcam();
+    rig.sled = {.altitude_m = 3.0, .pitch_rad = 0.0, .roll_rad = 0.0};
+    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+    rig.strobes[0].position_m.setZero();
+    rig.strobes[0].axis = Eigen::Vector3d::UnitZ();
+    rig.strobes[0].beam.cones = {{.part = "", .half_angle_rad = 0.5, .weight = 0.25}};
+    const double K = rig.water.attenuation_per_m(550.0);
+    const double axial = 0.25 / (std::numbers::pi * std::sin(0.5) * std::sin(0.5));
+    const double expected = rig.strobes[0].spectrum.at(550.0) * axial *
+                            rig.seafloor.reflectance.at(550.0) / (std::numbers::pi * 9.0) *
+                            std::exp(-6.0 * K);
+    const auto found = static_cast<double>(ExactLight<long double>(rig).radiance(2.5, 2.0, 550.0));
+    EXPECT_NEAR(found, expected, kRounding * expected);
+}
+
+// Everything else at once, against the formula as the tests write it.
+TEST(ExactLight, AgreesWithTheClosedFormOffTheAxisAndBehindAPort) {
+    Rig rig = habcam();
+    rig.sled.roll_rad = -0.2;
+    rig.seafloor.phong = 0.4;
+    for (const bool has_port : {false, true}) {
+        if (has_port) {
+            rig.camera.port = {
+                .distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+        }
+        const ExactLight<long double> light(rig);
+        for (int row = 0; row < rig.camera.height_px; ++row) {
+            for (int column = 0; column < rig.camera.width_px; ++column) {
+                const double expected =
+                    closed_form::radiance(rig, column, row, 480.0, 1, 1).radiance;
+                const auto found =
+                    static_cast<double>(light.radiance(column + 0.5, row + 0.5, 480.0));
+                EXPECT_NEAR(found, expected, kRounding * expected) << column << ", " << row;
+            }
+        }
+    }
+}
+
+// With a straight absorption K = a + b (lambda - 500) and all else flat
+//   int exp(-K l) dlambda = (exp(-K_1 l) - exp(-K_2 l)) / (b l)
+TEST(ExactLight, IntegratesAStraightAbsorptionInClosedForm) {
+    const auto flat = [](double value) { return Spectrum("flat", {500.0, 600.0}, {value, value}); };
+    Rig rig = habcam();
+    rig.sled = {.altitude_m = 2.0, .pitch_rad = 0.0, .roll_rad = 0.0};
+    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+    rig.strobes[0].position_m.setZero();
+    rig.strobes[0].axis = Eigen::Vector3d::UnitZ();
+    rig.strobes[0].spectrum = flat(1.0);
+    rig.seafloor.reflectance = flat(1.0);
+    rig.camera.range = {.first_nm = 500.0, .last_nm = 600.0};
+    rig.camera.sensor = Sensor({flat(1.0), flat(0.5), flat(0.0)}, ResponseKind::Energy);
+    for (const double steep_per_m : {1e-6, 0.1, 40.0}) {
+        rig.water.absorption_per_m =
+            Spectrum("straight", {500.0, 600.0}, {0.01, 0.01 + steep_per_m});
+        const ExactLight<long double> light(rig);
+        const long double axial = light.radiance(2.5, 2.0, 500.0) * std::exp(4.0L * 0.01L);
+        const long double depth = 4.0L * static_cast<long double>(0.01 + steep_per_m) - 0.04L;
+        const long double expected =
+            axial * std::exp(-4.0L * 0.01L) * -std::expm1(-depth) / (depth / 100.0L);
+        const auto found = light.signals(2.5, 2.0);
+        // The two ends of the table stand in doubles.
+        EXPECT_NEAR(static_cast<double>(found[0] / expected), 1.0, kRounding) << steep_per_m;
+        EXPECT_EQ(found[1], found[0] / 2);
+        EXPECT_EQ(found[2], 0.0L);
+    }
+}
+
+TEST(ExactLight, LongDoubleIsGoodForFifteenDigitsOfHabCam) {
+    EXPECT_LT(worst_of_long_double(habcam(), 550.0), kLongRounding);
+}
+
+TEST(ExactLight, LongDoubleHoldsWhereDoublesEnd) {
+    Rig rig = habcam();
+    for (const double K_per_m : {175.0, 1e3}) {  // optical depths of 700 and 4000
+        rig.water.uniform_loss_per_m = K_per_m;
+        EXPECT_LT(worst_of_long_double(rig, 550.0), kLongRounding) << K_per_m;
+    }
+}
+
+TEST(ExactLight, LongDoubleHoldsTowardsTheHorizonAndForGrazingLight) {
+    Rig rig = habcam();
+    rig.sled = {.altitude_m = 1.0, .pitch_rad = 89.9 * std::numbers::pi / 180.0, .roll_rad = 0.0};
+    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+    rig.strobes[0].position_m = {0.0, 1000.0, 0.0};
+    rig.strobes[0].axis = {0.0, -1.0, 0.0};
+    rig.water.multiple = 0.0;
+    EXPECT_LT(worst_of_long_double(rig, 550.0), kLongRounding);
+}
+
+}  // namespace
+}  // namespace aphotic
