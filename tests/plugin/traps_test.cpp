@@ -35,21 +35,7 @@ void give_port(Rig& rig) {
     rig.camera.port = {.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
 }
 
-// One millimetre over the floor, in water that is all but ink: POV-Ray leaves out the medium on
-// what is left of a way to the lamp when that is under a thousandth of its unit.
-void fly_at_a_millimetre(Rig& rig) {
-    rig.sled = {.altitude_m = 0.001, .pitch_rad = 0.0, .roll_rad = 0.0};
-    rig.water.multiple = 0.0;
-    rig.water.uniform_loss_per_m = 1e3;
-    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
-    rig.strobes[0].position_m.setZero();
-    rig.strobes[0].axis = Eigen::Vector3d::UnitZ();
-}
-
 const std::vector<Trap> kTraps{
-    {"MetresAtAMillimetre",
-     {{"#declare Aphotic_Unit = ", "#declare Aphotic_Unit = 1; #declare Unused = "}},
-     fly_at_a_millimetre},
     {"LampLegNotAttenuated", {{"media_attenuation on", ""}}},
     {"InteractionOff", {{"media_attenuation on", "media_attenuation on media_interaction off"}}},
     // A container of water around all of it: the camera's leg only.

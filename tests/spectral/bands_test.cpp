@@ -85,7 +85,7 @@ TEST(EqualBands, ErrFourTimesLessAtHalfTheWidth) {
 // midpoint rule itself errs by 1e-12 here: a millionth of the range, squared.
 TEST(EqualBands, AMillionSumToTheIntegralInAnyOrder) {
     constexpr int kMillion = 1'000'000;
-    constexpr double kRounding = kMillion * 1.2e-16;
+    constexpr double kMillionRoundings = kMillion * 1.2e-16;
     const Sensor sensor = builtin_sensor("nikon-d5100");
     const WavelengthRange range = sensor.range();
     const std::vector<WeightedWavelength> bands = equal_bands(sensor, range, kMillion);
@@ -103,8 +103,8 @@ TEST(EqualBands, AMillionSumToTheIntegralInAnyOrder) {
         double backwards = 0.0;
         for (auto band = bands.rbegin(); band != bands.rend(); ++band) backwards += band->weight[c];
         const auto exact = static_cast<double>(integral);
-        EXPECT_NEAR(forwards, exact, kRounding * exact);
-        EXPECT_NEAR(backwards, exact, kRounding * exact);
+        EXPECT_NEAR(forwards, exact, kMillionRoundings * exact);
+        EXPECT_NEAR(backwards, exact, kMillionRoundings * exact);
     }
 }
 
