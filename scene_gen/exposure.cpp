@@ -3,6 +3,7 @@
 
 #include "scene_gen/geometry.h"
 #include "scene_gen/solid.h"
+#include "spectral/manifest.h"
 
 #include <Eigen/Geometry>
 
@@ -188,7 +189,9 @@ int exposure_log2(double radiance_bound, double brightest_colour, int target_log
     if (!(radiance_bound > 0.0)) return 0;
     const double for_the_frame = std::floor(target_log2 - std::log2(radiance_bound));
     const double for_the_colour = std::floor(kColourLimitLog2 - std::log2(brightest_colour));
-    return static_cast<int>(std::min(for_the_frame, for_the_colour));
+    const double least = -kMostExposureLog2;
+    const double most = kMostExposureLog2;
+    return static_cast<int>(std::clamp(std::min(for_the_frame, for_the_colour), least, most));
 }
 
 }  // namespace aphotic

@@ -61,7 +61,8 @@ class RadianceBound {
 };
 
 // e for a bound; brightest_colour is the largest colour value that the scene would hold at
-// e = 0, kept under POV-Ray's single-precision range. 0 for a bound of 0.
+// e = 0, kept under POV-Ray's single-precision range. 0 for a bound of 0, and nothing beyond what a
+// manifest may hold (spectral/manifest.h).
 [[nodiscard]] int exposure_log2(double radiance_bound,
                                 double brightest_colour,
                                 int target_log2 = kTargetLog2);

@@ -19,7 +19,6 @@ namespace {
 
 constexpr const char* kFormat = "aphotic-manifest-2";
 constexpr int kLargestImagePx = 16384;
-constexpr int kLargestExposureLog2 = 1000;
 
 // Reads keys of one JSON object, and says which one is wrong.
 class Reader {
@@ -167,7 +166,7 @@ ManifestWavelength wavelength_of(const Reader& reader, const Manifest& manifest)
         manifest.wavelengths.empty() ? 0.0 : manifest.wavelengths.back().lambda_nm;
     if (!(w.lambda_nm > previous_nm)) reader.fail("lambda_nm", "increasing wavelengths over 0");
     w.weight = reader.channels("weight");
-    w.exposure_log2 = reader.integer("exposure_log2", -kLargestExposureLog2, kLargestExposureLog2);
+    w.exposure_log2 = reader.integer("exposure_log2", -kMostExposureLog2, kMostExposureLog2);
     w.channel = reader.text("channel");
     if (w.channel != "R" && w.channel != "G" && w.channel != "B") {
         reader.fail("channel", "\"R\", \"G\" or \"B\"");

@@ -27,6 +27,9 @@
 
 namespace aphotic {
 
+// Of any frame, and its negative: a double holds every power of two between them.
+inline constexpr int kMostExposureLog2 = 1000;
+
 struct ManifestFrame {
     std::string name;
     std::string scene_sha256;

@@ -4,6 +4,7 @@
 #include "scene_gen/geometry.h"
 
 #include "scene_gen/rig_reader.h"
+#include "spectral/manifest.h"
 #include "tests/support/closed_form.h"
 
 #include <gtest/gtest.h>
@@ -304,6 +305,12 @@ TEST(ExposureLog2, OfDarknessIsZero) {
 }
 
 // POV-Ray's colours are single precision: the largest power of two that they hold is 2^127.
+// 2^14 / 1e-302 is 2^1017.
+TEST(ExposureLog2, StaysWithinWhatAManifestHolds) {
+    EXPECT_EQ(exposure_log2(1e-302, 1e-302), kMostExposureLog2);
+    EXPECT_EQ(exposure_log2(1e307, 1e307), -kMostExposureLog2);
+}
+
 TEST(ExposureLog2, KeepsColoursInSinglePrecision) {
     for (const double colour : {1.0, 1e6, 1e30}) {
         for (const double bound : {1e-60, 1e-30, 1.0}) {
