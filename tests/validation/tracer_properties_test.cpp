@@ -171,8 +171,7 @@ std::size_t pixel_of(int column, int row, int width_px) {
            static_cast<std::size_t>(column);
 }
 
-// --- Scale
-// -----------------------------------------------------------------------------------------
+// --- Scale --------------------------------------------------------------------------------------
 
 // A power of two moves no digit, of any length or loss: the same image to the last bit, edges
 // included. So nothing in the tracer is a length of its own.
@@ -210,8 +209,7 @@ TEST(TracerScale, OfFocalLengthAndPixelsTogetherChangesNothing) {
     });
 }
 
-// --- Power
-// -------------------------------------------------------------------------------------------
+// --- Power --------------------------------------------------------------------------------------
 
 TEST(TracerPower, IsAFactorOfTheImage) {
     for_each_rig(kRigsOfSignals, [](const Rig& rig) {
@@ -257,7 +255,7 @@ TEST(TracerSum, OfTheStrobesAloneIsTheImageOfAll) {
     });
 }
 
-// --- Loss ----------------------------------------------------------------------------------------
+// --- Loss ---------------------------------------------------------------------------------------
 
 TEST(TracerLoss, NeverBrightensAndAlwaysDarkensWhatIsLit) {
     for_each_rig(kRigs, [](const Rig& rig) {
@@ -299,8 +297,7 @@ TEST(TracerLoss, AtOneWavelengthNeverBrightensAnother) {
     });
 }
 
-// --- Symmetry
-// --------------------------------------------------------------------------------------
+// --- Symmetry -----------------------------------------------------------------------------------
 
 TEST(TracerSymmetry, OfARandomRigMirroredIsTheMirroredImage) {
     for_each_rig(kRigsOfSignals, [](const Rig& rig) {
@@ -333,8 +330,7 @@ TEST(TracerSymmetry, OfARandomRigTurnedIsTheTurnedImage) {
     });
 }
 
-// --- Always, and never
-// -----------------------------------------------------------------------------
+// --- Always, and never --------------------------------------------------------------------------
 
 TEST(TracerImage, IsFiniteAndNeverNegative) {
     for_each_rig(kRigsOfSignals, [](const Rig& rig) {
@@ -358,14 +354,14 @@ TEST(TracerImage, OfLampsWithoutPowerOrWeightIsBlack) {
     });
 }
 
-// --- Exposures
-// -------------------------------------------------------------------------------------
+// --- Exposures ----------------------------------------------------------------------------------
 
-// A frame's brightest pixel is under the largest half float, and not so far under it that its
-// digits are lost: half floats are normal from 2^-14 up, and 14 octaves over that hold all that
-// promises are made of.
+// A frame's brightest pixel is under the largest half float, and high over 2^-14, where half floats
+// begin to lose digits. An object counts with all that might light it from as near as it comes,
+// which may be far more than the image shows of it.
 TEST(Exposure, PutsThePeakOfEveryFrameWithinTheHalfFloatsRange) {
-    constexpr double kLeastPeak = 1.0;
+    constexpr double kLeastPeak = 0x1p5;              // 2^6.7 was the least of 12000 rigs
+    constexpr double kLeastPeakWithObjects = 0x1p-8;  // and 2^-6 here
     int lit = 0;
     for_each_rig(kRigs, [&](const Rig& any) {
         const Rig rig = with_pixels(any, 32, 24);
@@ -384,7 +380,8 @@ TEST(Exposure, PutsThePeakOfEveryFrameWithinTheHalfFloatsRange) {
                 EXPECT_LT(peak, kLargestHalf) << w.lambda_nm << " nm";
                 if (peak == 0.0) continue;
                 ++lit;
-                EXPECT_GT(peak, kLeastPeak) << w.lambda_nm << " nm, exposure " << w.exposure_log2;
+                EXPECT_GT(peak, rig.objects.empty() ? kLeastPeak : kLeastPeakWithObjects)
+                    << w.lambda_nm << " nm, exposure " << w.exposure_log2;
             }
         }
         EXPECT_EQ(plane, lambda_nm.size());
