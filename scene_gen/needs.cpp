@@ -49,10 +49,13 @@ std::uint64_t exr_bytes(const ImageSize& size, std::uint64_t channels, std::uint
            kBlockHeader_bytes * (height / kRowsOfZip + 1);
 }
 
-// OpenEXR's own rows: two blocks a thread, as they are and packed.
+// OpenEXR's own rows: two blocks a thread, each as it is and packed, and a bit.
 std::uint64_t compression_bytes(const ImageSize& size, int threads) {
-    return 4ULL * static_cast<std::uint64_t>(threads) * kRowsOfZip * kFloat_bytes *
-           static_cast<std::uint64_t>(size.width_px) * (kChannels + channels_of(size));
+    const std::uint64_t blocks =
+        std::min(2 * static_cast<std::uint64_t>(threads),
+                 static_cast<std::uint64_t>(size.height_px) / kRowsOfZip + 1);
+    const std::uint64_t block_px = kRowsOfZip * static_cast<std::uint64_t>(size.width_px);
+    return 5 * blocks * block_px * kFloat_bytes * (kChannels + channels_of(size)) / 2;
 }
 
 // Rows in work, sample_bytes for each channel of a pixel, beside the whole signals; then the
