@@ -204,17 +204,17 @@ TEST(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
     rig_of(folder.path(), 64, 48);
     const Needs needs = trace_needs({.width_px = 64, .height_px = 48, .wavelengths = 3}, kThreads);
     // In whole pages: of tmpfs, every file and folder takes one more than it fills.
-    const std::uint64_t size_KiB = needs.folder_bytes / 1024 + 16 * 4;
+    const std::uint64_t size_kib = needs.folder_bytes / 1024 + 64;
     const std::string command = "trace rig.toml --fitted 3 -o disk/out";
-    const OnSmallDisk enough = on_small_disk(folder.path(), fmt::format("{}k", size_KiB), command);
+    const OnSmallDisk enough = on_small_disk(folder.path(), fmt::format("{}k", size_kib), command);
     if (!enough.is_possible) GTEST_SKIP() << "no tmpfs of our own here: " << enough.said;
     EXPECT_EQ(enough.status, 0) << enough.said;
     const OnSmallDisk less =
-        on_small_disk(folder.path(), fmt::format("{}k", size_KiB / 2), command);
+        on_small_disk(folder.path(), fmt::format("{}k", size_kib / 2), command);
     EXPECT_EQ(less.status, 3) << less.said;
     // A traced image compresses: half the room is enough.
     const OnSmallDisk ignored =
-        on_small_disk(folder.path(), fmt::format("{}k", size_KiB / 2), command + " --ignore-needs");
+        on_small_disk(folder.path(), fmt::format("{}k", size_kib / 2), command + " --ignore-needs");
     EXPECT_EQ(ignored.status, 0) << ignored.said;
 }
 

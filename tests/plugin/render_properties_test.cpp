@@ -25,6 +25,7 @@ namespace {
 constexpr std::uint64_t kSeed = 6'200;
 constexpr int kRigs = 2;  // each image is a run of POV-Ray, 0.7 s
 constexpr int kSide_px = 9;
+constexpr std::size_t kPixels = std::size_t{kSide_px} * kSide_px;
 
 // Two frames, each rounded by itself, and POV-Ray's arithmetic in single precision twice.
 constexpr double kTwoFrames = 2.0 * kHalfFloatError;
@@ -56,7 +57,8 @@ Radiance rendered(const Rig& rig) {
     const RenderResult result =
         render(find_povray(""), folder.path(), set, {.jobs = 1, .report = {}});
     Radiance radiance;
-    const auto pixels = static_cast<std::size_t>(rig.camera.width_px * rig.camera.height_px);
+    const auto pixels = static_cast<std::size_t>(rig.camera.width_px) *
+                        static_cast<std::size_t>(rig.camera.height_px);
     for (const ManifestWavelength& w : result.manifest.wavelengths) {
         const std::filesystem::path file =
             image_path(folder.path(), result.manifest.frames[w.frame]);
@@ -115,7 +117,7 @@ std::vector<double> times(std::vector<double> samples, double factor) {
 std::vector<double> rearranged(const std::vector<double>& samples,
                                const std::function<std::size_t(int column, int row)>& from) {
     std::vector<double> result;
-    for (std::size_t first = 0; first < samples.size(); first += kSide_px * kSide_px) {
+    for (std::size_t first = 0; first < samples.size(); first += kPixels) {
         for (int row = 0; row < kSide_px; ++row) {
             for (int column = 0; column < kSide_px; ++column) {
                 result.push_back(samples[first + from(column, row)]);
@@ -126,7 +128,7 @@ std::vector<double> rearranged(const std::vector<double>& samples,
 }
 
 std::size_t pixel_of(int column, int row) {
-    return static_cast<std::size_t>(row * kSide_px + column);
+    return static_cast<std::size_t>(row) * kSide_px + static_cast<std::size_t>(column);
 }
 
 TEST(RenderedFrames, ScaleWithTheInverseSquare) {

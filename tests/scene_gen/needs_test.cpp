@@ -137,12 +137,12 @@ constexpr std::uint64_t kGB = 1'000'000'000;
 const Needs kNeeds{
     .folder_bytes = 12 * kGB + 300'000'000, .temporary_bytes = 5 * kGB, .memory_bytes = 7 * kGB};
 
-FreeRoom room_of(double folder_GB, double temporary_GB, double memory_GB, bool is_one_disk) {
-    const auto bytes = [](double amount_GB) { return static_cast<std::uint64_t>(1e9 * amount_GB); };
-    return {.folder_bytes = bytes(folder_GB),
-            .temporary_bytes = bytes(temporary_GB),
+FreeRoom room_of(double folder_gb, double temporary_gb, double memory_gb, bool is_one_disk) {
+    const auto bytes = [](double amount_gb) { return static_cast<std::uint64_t>(1e9 * amount_gb); };
+    return {.folder_bytes = bytes(folder_gb),
+            .temporary_bytes = bytes(temporary_gb),
             .is_one_disk = is_one_disk,
-            .memory_bytes = bytes(memory_GB)};
+            .memory_bytes = bytes(memory_gb)};
 }
 
 TEST(Shortage, IsNoneWhereThereIsJustEnough) {

@@ -49,10 +49,10 @@ TEST(FreeMemory, IsSomeAndNotMoreThanTheMachineHas) {
     EXPECT_GT(free_memory_bytes(), 0U);
     std::ifstream in("/proc/meminfo");
     std::string key;
-    std::uint64_t total_KiB = 0;
-    if (!(in >> key >> total_KiB)) GTEST_SKIP() << "no /proc/meminfo: not Linux";
+    std::uint64_t total_kib = 0;
+    if (!(in >> key >> total_kib)) GTEST_SKIP() << "no /proc/meminfo: not Linux";
     ASSERT_EQ(key, "MemTotal:");
-    EXPECT_LE(free_memory_bytes(), total_KiB * 1024);
+    EXPECT_LE(free_memory_bytes(), total_kib * 1024);
 }
 
 }  // namespace

@@ -46,7 +46,8 @@ constexpr std::array kShares{0.05, 0.5, 0.93};
 // which off the outline (kEdgePx) costs up to four digits.
 constexpr double kRounding = 1e-12;
 constexpr double kRoundingOfObjects = 1e-9;
-// Products and sums of the same terms in another order: terms of one sign, less than a hundred.
+// The same terms, all of one sign, summed in another order: up to six lamps of six strobes, each
+// sum rounded to 1.1e-16 in both images.
 constexpr double kReordered = 1e-14;
 // Both images have a grid of wavelengths of their own, each exact to kSpectralError.
 constexpr double kTwoGrids = 2.0 * kSpectralError;
