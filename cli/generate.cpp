@@ -3,6 +3,7 @@
 // aphotic generate RIG -o DIR: the scenes alone, for plain POV-Ray; `aphotic integrate DIR` takes
 // it from there.
 #include "cli/command.h"
+#include "cli/needs_check.h"
 #include "cli/planning.h"
 #include "cli/words.h"
 #include "plugin/render.h"
@@ -63,6 +64,7 @@ ExitStatus generate_scenes(const Options& options) {
         throw InputError("found neither --output nor --quick-look; allowed: one of them");
     }
     const SceneSet scenes = scenes_of(plan_rig(options.planning), options.planning);
+    require_room(needs_of_scenes(scenes), options.folder, options.planning.ignore_needs);
     const Manifest manifest = generate(options.folder, scenes);
     if (options.json) {
         nlohmann::ordered_json json{{"folder", options.folder},
@@ -105,6 +107,7 @@ Action configure_generate(CLI::App& app) {
                    "scene of your own: plain povray then shows it by this rig's light")
         ->type_name("FILE")
         ->excludes(folder);
+    add_needs_option(app, options->planning.ignore_needs);
     app.add_flag("--json", options->json, "say what was written as JSON");
     return [options] { return generate_scenes(*options); };
 }

@@ -2,6 +2,7 @@
 //
 // aphotic plan RIG: what a render would take and what it promises, before anything is rendered.
 #include "cli/command.h"
+#include "cli/needs_check.h"
 #include "cli/outcome.h"
 #include "cli/plan_plot.h"
 #include "cli/planning.h"
@@ -10,8 +11,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <thread>
 
 namespace aphotic::cli {
 namespace {
@@ -59,7 +62,71 @@ Json wavelengths_of(const Manifest& manifest) {
     return all;
 }
 
-void print_json(const PlannedRender& planned, const Manifest& manifest) {
+// What a render into an empty folder would take, as many frames at a time as there are cores.
+struct PlannedNeeds {
+    Needs render;
+    FileSizes files;
+    ProcessNeeds process;
+    int jobs = 1;
+    std::size_t processes = 0;
+    std::uint64_t integration_bytes = 0;
+    std::uint64_t trace_bytes = 0;
+};
+
+PlannedNeeds planned_needs(const SceneSet& scenes) {
+    const ImageSize size = image_size(scenes.manifest);
+    const int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    return {.render = needs_of(scenes, "", jobs),
+            .files = largest_files(size),
+            .process = povray_needs(size),
+            .jobs = jobs,
+            .processes = std::min(scenes.manifest.frames.size(), static_cast<std::size_t>(jobs)),
+            .integration_bytes = integration_memory_bytes(size, jobs),
+            .trace_bytes = trace_memory_bytes(size, jobs)};
+}
+
+Json json_of(const PlannedNeeds& needs) {
+    return {{"jobs", needs.jobs},
+            {"folder_bytes", needs.render.folder_bytes},
+            {"temporary_bytes", needs.render.temporary_bytes},
+            {"memory_bytes", needs.render.memory_bytes},
+            {"files",
+             {{"frame", needs.files.frame_bytes},
+              {"image.exr", needs.files.image_bytes},
+              {"spectral.exr", needs.files.spectral_bytes},
+              {"preview.png", needs.files.preview_bytes}}},
+            {"memory",
+             {{"povray_process", needs.process.memory_bytes},
+              {"integration", needs.integration_bytes},
+              {"trace", needs.trace_bytes}}}};
+}
+
+void print_needs(const PlannedNeeds& needs, std::size_t frames) {
+    const auto words = [](std::uint64_t bytes) { return bytes_in_words(bytes); };
+    fmt::print(
+        "\nIt will take at most, with {}:\n"
+        "  {} of disk: {} of {} each, spectral.exr {}, image.exr {}, preview.png {}\n",
+        counted(static_cast<std::size_t>(needs.jobs), "job"),
+        words(needs.render.folder_bytes),
+        counted(frames, "frame"),
+        words(needs.files.frame_bytes),
+        words(needs.files.spectral_bytes),
+        words(needs.files.image_bytes),
+        words(needs.files.preview_bytes));
+    if (needs.render.temporary_bytes > 0) {
+        fmt::print("  {} of disk in /tmp, while POV-Ray renders\n",
+                   words(needs.render.temporary_bytes));
+    }
+    fmt::print("  {} of memory: {} of POV-Ray of {} each, then {} to integrate; {} to trace\n",
+               words(needs.render.memory_bytes),
+               needs.processes == 1 ? "1 process" : fmt::format("{} processes", needs.processes),
+               words(needs.process.memory_bytes),
+               words(needs.integration_bytes),
+               words(needs.trace_bytes));
+}
+
+void print_json(const PlannedRender& planned, const SceneSet& scenes) {
+    const Manifest& manifest = scenes.manifest;
     const RenderPlan& plan = planned.plan;
     Json json{{"rig_title", manifest.rig_title},
               {"rig_sha256", manifest.rig_sha256},
@@ -73,7 +140,8 @@ void print_json(const PlannedRender& planned, const Manifest& manifest) {
               {"promise", promises_of(plan.rule.quality, plan.frame_error)},
               {"frames", manifest.frames.size()},
               {"wavelengths", wavelengths_of(manifest)},
-              {"omissions", Json::array()}};
+              {"omissions", Json::array()},
+              {"needs", json_of(planned_needs(scenes))}};
     if (planned.rig.camera.port) {
         const PortCost cost = port_cost(planned);
         json["port"] = {{"spread_px", cost.spread_px},
@@ -133,7 +201,8 @@ void print_port(const PlannedRender& planned) {
         planned.plan.scene.pixel_shift);
 }
 
-void print_for_people(const PlannedRender& planned, const Manifest& manifest) {
+void print_for_people(const PlannedRender& planned, const SceneSet& scenes) {
+    const Manifest& manifest = scenes.manifest;
     const RenderPlan& plan = planned.plan;
     fmt::print("{}: {} x {} pixels, {} in {}, {}\n",
                manifest.rig_title,
@@ -158,6 +227,7 @@ void print_for_people(const PlannedRender& planned, const Manifest& manifest) {
     print_promise(plan);
     print_wavelengths(manifest);
     if (planned.rig.camera.port) print_port(planned);
+    print_needs(planned_needs(scenes), manifest.frames.size());
     if (plan.omissions.empty()) return;
     fmt::print("\nLeft out:\n");
     for (const Omission& omission : plan.omissions) {
@@ -177,9 +247,9 @@ Action configure_plan(CLI::App& app) {
     app.add_flag("--json", options->json, "the plan as JSON");
     return [options] {
         const PlannedRender planned = plan_rig(options->planning);
-        const Manifest manifest = scenes_of(planned, options->planning).manifest;
+        const SceneSet scenes = scenes_of(planned, options->planning);
         if (!options->plot.empty()) plot_plan(planned.rig, planned.plan, options->plot);
-        options->json ? print_json(planned, manifest) : print_for_people(planned, manifest);
+        options->json ? print_json(planned, scenes) : print_for_people(planned, scenes);
         return kDone;
     };
 }

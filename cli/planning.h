@@ -30,6 +30,7 @@ struct PlanningOptions {
     int antialias = 0;
     std::vector<std::string> povray_ini;
     std::string povray;
+    bool ignore_needs = false;
 };
 
 // The rig and its wavelengths, without POV-Ray.

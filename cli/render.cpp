@@ -3,6 +3,7 @@
 // aphotic render RIG -o DIR: the main job, from a rig file to a camera image through POV-Ray.
 #include "plugin/render.h"
 #include "cli/command.h"
+#include "cli/needs_check.h"
 #include "cli/outcome.h"
 #include "cli/planning.h"
 #include "cli/rendering.h"
@@ -28,6 +29,9 @@ ExitStatus render_rig(const Options& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const SceneSet scenes = scenes_of(planned, options.planning);
     const PovRay povray = find_povray(options.planning.povray);
+    require_room(needs_of(scenes, options.folder, options.jobs),
+                 options.folder,
+                 options.planning.ignore_needs);
 
     const RenderedFrames frames = render_frames(
         povray,
@@ -71,6 +75,7 @@ Action configure_render(CLI::App& app) {
         ->check(CLI::Range(1, kMostJobs))
         ->capture_default_str();
     add_preview_options(app, options->preview);
+    add_needs_option(app, options->planning.ignore_needs);
     app.add_flag("--json", options->json, "say what was done as JSON");
     return [options] { return render_rig(*options); };
 }

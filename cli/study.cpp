@@ -5,6 +5,7 @@
 #include "validation/study.h"
 #include "cli/any_image.h"
 #include "cli/command.h"
+#include "cli/needs_check.h"
 #include "cli/outcome.h"
 #include "cli/progress.h"
 #include "cli/rendering.h"
@@ -41,6 +42,7 @@ struct Options {
     double tolerance = 1e-3;
     bool quick = false;
     bool json = false;
+    bool ignore_needs = false;
 };
 
 double seconds_since(Clock::time_point start) {
@@ -254,6 +256,23 @@ void print_study(const Study& study, const fs::path& folder) {
     fmt::print("  {}/study.html, study.csv, study.json\n", folder.string());
 }
 
+// Of the setting that has most. Behind a port each wavelength may take a frame of its own.
+Needs needs_of(const Rig& rig, const std::vector<StudySetting>& settings, int cores) {
+    int wavelengths = 0;
+    int frames = 0;
+    for (const StudySetting& s : settings) {
+        const int count = std::max(s.fitted, s.bands);
+        wavelengths = std::max(wavelengths, count);
+        const int per_frame = rig.camera.port ? 1 : s.per_frame;
+        frames = std::max(frames, (count + per_frame - 1) / per_frame);
+    }
+    return study_needs({.width_px = rig.camera.width_px,
+                        .height_px = rig.camera.height_px,
+                        .wavelengths = static_cast<std::size_t>(wavelengths)},
+                       static_cast<std::size_t>(frames),
+                       cores);
+}
+
 ExitStatus study_rig(const Options& options) {
     const fs::path folder = options.folder;
     Rig rig = read_rig(options.rig_file);
@@ -275,6 +294,8 @@ ExitStatus study_rig(const Options& options) {
                 .cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
                 .quick = options.quick,
                 .tolerance = options.tolerance};
+    const std::vector<StudySetting> settings = study_settings(rig, options.quick, study.cores);
+    require_room(needs_of(rig, settings, study.cores), folder, options.ignore_needs);
     set_exr_threads(study.cores);
     make_folder(folder / "settings");
     const Reference reference =
@@ -282,7 +303,6 @@ ExitStatus study_rig(const Options& options) {
     study.grid_size = reference.grid_size;
     study.trace_s = reference.trace_s;
 
-    const std::vector<StudySetting> settings = study_settings(rig, options.quick, study.cores);
     for (const StudySetting& setting : settings) {
         const fs::path file = folder / "settings" / (setting.name + ".json");
         const std::string key = key_of(study, setting);
@@ -326,6 +346,7 @@ Action configure_study(CLI::App& app) {
     app.add_option(
            "--povray", options->povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
         ->type_name("PROGRAM");
+    add_needs_option(app, options->ignore_needs);
     app.add_flag("--json", options->json, "print study.json");
     app.footer(
         "Stopped and started again, it goes on with the settings that are not measured yet.\n"

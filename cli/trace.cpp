@@ -2,6 +2,7 @@
 //
 // aphotic trace RIG -o DIR: the same images by the reference tracer, without POV-Ray.
 #include "cli/command.h"
+#include "cli/needs_check.h"
 #include "cli/outcome.h"
 #include "cli/planning.h"
 #include "cli/progress.h"
@@ -40,6 +41,13 @@ ExitStatus trace_rig(const Options& options) {
     for (const WeightedWavelength& w : planned.plan.rule.wavelengths) {
         request.planes_nm.push_back(w.lambda_nm);
     }
+
+    require_room(trace_needs({.width_px = camera.width_px,
+                              .height_px = camera.height_px,
+                              .wavelengths = request.planes_nm.size()},
+                             options.threads),
+                 options.folder,
+                 options.planning.ignore_needs);
 
     const auto start = std::chrono::steady_clock::now();
     const Tracer tracer(planned.rig, request);
@@ -107,6 +115,7 @@ Action configure_trace(CLI::App& app) {
         ->check(CLI::Range(1, kMostThreads))
         ->capture_default_str();
     add_preview_options(app, options->preview);
+    add_needs_option(app, options->planning.ignore_needs);
     app.add_flag("--json", options->json, "say what was made as JSON");
     app.footer(
         "image.exr holds the signals over the full spectrum; the wavelengths chosen are the\n"

@@ -4,6 +4,7 @@
 #include "validation/validation.h"
 
 #include "cli/command.h"
+#include "cli/needs_check.h"
 #include "cli/outcome.h"
 #include "cli/planning.h"
 #include "cli/progress.h"
@@ -103,8 +104,22 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
         "  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);
 }
 
+void require_room_for(const Options& options, const PlannedRender& planned) {
+    Needs needs;
+    if (options.rendered_folder.empty()) {
+        const SceneSet scenes = scenes_of(planned, options.planning);
+        needs = larger_of(needs_of(scenes, options.folder, options.jobs),
+                          validation_needs(image_size(scenes.manifest), options.jobs));
+    } else {
+        const Manifest rendered = read_manifest(options.rendered_folder);
+        needs = validation_needs(image_size(rendered), options.jobs);
+    }
+    require_room(needs, options.folder, options.planning.ignore_needs);
+}
+
 ExitStatus validate_rig(const Options& options) {
     const PlannedRender planned = plan_rig(options.planning);
+    require_room_for(options, planned);
     make_folder(options.folder);
     Rendering rendering;
     const bool is_rendered = !options.rendered_folder.empty();
@@ -169,6 +184,7 @@ Action configure_validate(CLI::App& app) {
     app.add_option("--jobs", options->jobs, "frames and threads at a time; by default the cores")
         ->check(CLI::Range(1, kMostJobs))
         ->capture_default_str();
+    add_needs_option(app, options->planning.ignore_needs);
     app.add_flag("--json", options->json, "print validation.json");
     app.footer("Exit status 0 when every wavelength and channel is within its bound, 1 when not.");
     return [options] { return validate_rig(*options); };

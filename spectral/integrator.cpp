@@ -38,13 +38,6 @@ struct Block {
     }
 };
 
-int rows_per_block(const Manifest& manifest) {
-    const std::size_t row =
-        static_cast<std::size_t>(manifest.width_px) * manifest.wavelengths.size();
-    const int rows = static_cast<int>(std::min<std::size_t>(kBlockSamples / row, kMostRows));
-    return std::max(kRowsOfZip, rows / kRowsOfZip * kRowsOfZip);
-}
-
 // Reads every frame's rows, checks them, and takes the exposures out.
 void read_radiance(const fs::path& folder, const Manifest& manifest, Block& block) {
     static const std::vector<std::string> kFrameChannels{"R", "G", "B"};
@@ -117,7 +110,7 @@ void integrate_into(const fs::path& folder,
                     OutputImages& images,
                     const ProgressReport& report) {
     const int height_px = manifest.height_px;
-    const int block_rows = rows_per_block(manifest);
+    const int block_rows = rows_per_block(manifest.width_px, manifest.wavelengths.size());
     for (int row = 0; row < height_px; row += block_rows) {
         Block block;
         block.first_row = row;
@@ -133,6 +126,12 @@ void integrate_into(const fs::path& folder,
 }
 
 }  // namespace
+
+int rows_per_block(int width_px, std::size_t wavelengths) {
+    const std::size_t row = static_cast<std::size_t>(width_px) * wavelengths;
+    const int rows = static_cast<int>(std::min<std::size_t>(kBlockSamples / row, kMostRows));
+    return std::max(kRowsOfZip, rows / kRowsOfZip * kRowsOfZip);
+}
 
 CameraImage integrate(const fs::path& folder,
                       const Manifest& manifest,

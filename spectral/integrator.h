@@ -23,6 +23,9 @@
 
 namespace aphotic {
 
+// How many rows of the image are in memory at a time.
+[[nodiscard]] int rows_per_block(int width_px, std::size_t wavelengths);
+
 // Called with the share of the work that is done, 0 to 1.
 using ProgressReport = std::function<void(double)>;
 

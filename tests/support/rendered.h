@@ -32,7 +32,7 @@ inline constexpr double kHalfFloatError = 6e-4;
 inline constexpr double kSmallestNormalHalf = 6.103515625e-5;
 // A pixel's centre so close to a cone's edge may fall on either side of it by rounding. It is
 // some 1e-9 of a pixel wide in these images.
-inline constexpr double kOnEdgeRad = 1e-9;
+inline constexpr double kNearEdgeRad = 1e-9;
 
 // scenes/habcam.toml, with fewer and larger pixels over the same field of view.
 inline Rig small_habcam(int width_px = 68, int height_px = 51) {
@@ -97,7 +97,7 @@ inline Difference against_closed_form(const Rig& rig,
             const int row = static_cast<int>(i) / rig.camera.width_px;
             const closed_form::Answer answer =
                 closed_form::radiance(rig, column, row, w.lambda_nm, across, along);
-            if (answer.edge_rad < kOnEdgeRad) {
+            if (answer.edge_rad < kNearEdgeRad) {
                 ++difference.on_edges;
                 continue;
             }

@@ -7,11 +7,10 @@
 //
 // POV-Ray itself, its single-precision colours and its way to the inverse square law, is not in
 // it: kFrameError keeps 2e-6 for these (spectral/rule_fitter.h).
-#include "scene_gen/geometry.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
-#include "spectral/builtin.h"
 #include "spectral/error.h"
+#include "support/random_rig.h"
 #include "validation/comparison.h"
 #include "validation/tracer.h"
 #include "validation/validation.h"
@@ -29,22 +28,15 @@
 #include <iostream>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
-#include <random>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace aphotic {
 namespace {
 
-using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::uint64_t kSeed = 20240613;
 
 #ifdef __OPTIMIZE__
@@ -75,191 +67,6 @@ constexpr double kMedianRatio = 5.0;
 constexpr double kBetweenPaths = 0.02;
 // What the reference's own spectrum may miss.
 constexpr double kReferenceError = kSpectralError;
-
-// --- Random rigs ---------------------------------------------------------------------------------
-
-// The same throws with every standard library: only the engine is the standard's.
-class Dice {
-  public:
-    explicit Dice(std::uint64_t seed) : engine_(seed) {}
-
-    double between(double least, double most) { return least + (most - least) * unit(); }
-    // Every octave as likely as any other.
-    double over_octaves(double least, double most) {
-        return least * std::exp2(std::log2(most / least) * unit());
-    }
-    int whole(int least, int most) { return least + static_cast<int>(unit() * (most - least + 1)); }
-    bool chance(double share) { return unit() < share; }
-    std::size_t index_in(const auto& list) {
-        return static_cast<std::size_t>(unit() * static_cast<double>(list.size()));
-    }
-    template <std::size_t N>
-    std::string_view one_of(const std::array<std::string_view, N>& names) {
-        return names[index_in(names)];
-    }
-
-  private:
-    // The engine's upper 53 bits, in [0, 1).
-    double unit() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
-
-    std::mt19937_64 engine_;
-};
-
-// Straight lines between random values, some of them the least.
-Spectrum random_curve(Dice& dice, double least, double most) {
-    constexpr WavelengthRange kCovered{.first_nm = 360.0, .last_nm = 760.0};
-    constexpr double kShareOfLeast = 0.15;
-    const double spacing_nm = dice.over_octaves(4.0, 100.0);
-    std::vector<double> lambda_nm{kCovered.first_nm};
-    while (lambda_nm.back() < kCovered.last_nm) {
-        lambda_nm.push_back(lambda_nm.back() + spacing_nm * dice.between(0.2, 1.8));
-    }
-    std::vector<double> values;
-    for (std::size_t i = 0; i < lambda_nm.size(); ++i) {
-        const double value = dice.between(least, most);
-        values.push_back(dice.chance(kShareOfLeast) ? least : value);
-    }
-    return {"random", std::move(lambda_nm), std::move(values)};
-}
-
-Spectrum random_lamp(Dice& dice) {
-    if (dice.chance(0.5)) {
-        constexpr std::array<std::string_view, 3> kLamps{"xenon-flash", "xenon-arc", "cie-d65"};
-        return load_curve(std::string(dice.one_of(kLamps)), CurveRole::LampSpectrum, {});
-    }
-    return random_curve(dice, 0.0, dice.over_octaves(1e-3, 1e3));
-}
-
-Spectrum random_reflectance(Dice& dice) {
-    if (dice.chance(0.5)) {
-        constexpr std::array<std::string_view, 4> kMaterials{
-            "sand", "green-algae", "brown-algae", "red-algae"};
-        return load_curve(std::string(dice.one_of(kMaterials)), CurveRole::Reflectance, {});
-    }
-    return random_curve(dice, 0.02, 1.0);
-}
-
-Sensor random_sensor(Dice& dice) {
-    if (dice.chance(0.4)) return builtin_sensor("nikon-d5100");
-    if (dice.chance(0.2)) {
-        return {load_curves("cie-1931", CurveRole::ColourMatching, {}), ResponseKind::Energy};
-    }
-    std::vector<Spectrum> responses;
-    for (int c = 0; c < kChannels; ++c) responses.push_back(random_curve(dice, 0.0, 1.0));
-    return {std::move(responses), dice.chance(0.5) ? ResponseKind::Energy : ResponseKind::Quantum};
-}
-
-Water random_water(Dice& dice) {
-    constexpr std::array<std::string_view, 2> kWaters{"pope-fry-1997", "pure-2016"};
-    Water water{.absorption_per_m =
-                    load_curve(std::string(dice.one_of(kWaters)), CurveRole::WaterAbsorption, {})};
-    water.multiple = dice.chance(0.1) ? 0.0 : dice.between(0.0, 5.0);
-    water.uniform_loss_per_m = dice.chance(0.3) ? dice.between(0.0, 0.5) : 0.0;
-    water.salinity_psu = dice.between(0.0, 40.0);
-    water.temperature_c = dice.between(-2.0, 35.0);
-    return water;
-}
-
-// HabCam's chip in 48 by 36 pixels, behind its lens of 12 mm, a somewhat other, or now and then one
-// so wide that a tilted sled has the horizon in view.
-Camera random_camera(Dice& dice) {
-    constexpr double kChipWidth_m = 1360 * 6.45e-6;
-    Camera camera{.width_px = 48,
-                  .height_px = 36,
-                  .pixel_pitch_m = kChipWidth_m / 48,
-                  .focal_length_m = dice.chance(0.1) ? 0.004 : dice.between(0.008, 0.016),
-                  // Where Pope and Fry's table and all glasses but one have values.
-                  .range = {dice.between(420.0, 440.0), dice.between(650.0, 720.0)},
-                  .sensor = random_sensor(dice),
-                  .port = std::nullopt};
-    if (dice.chance(0.1)) {
-        constexpr std::array<std::string_view, 5> kGlasses{
-            "bk7", "fused-silica", "sapphire", "pmma", "polycarbonate"};
-        camera.port = {.distance_m = dice.between(0.01, 0.05),
-                       .thickness_m = dice.between(0.003, 0.03),
-                       .glass = builtin_glass(dice.one_of(kGlasses))};
-        camera.range.first_nm =
-            std::max(camera.range.first_nm, camera.port->glass.range().first_nm);
-    } else {
-        camera.range.first_nm = dice.between(380.0, 440.0);
-    }
-    return camera;
-}
-
-Beam random_beam(Dice& dice) {
-    Beam beam{.name = "random",
-              .weights = dice.chance(0.8) ? ConeWeights::Flux : ConeWeights::Literal,
-              .cones = {}};
-    const int cones = dice.whole(1, 3);
-    for (int k = 0; k < cones; ++k) {
-        const double half_angle_deg = dice.chance(0.3) ? 90.0 : dice.over_octaves(3.0, 90.0);
-        beam.cones.push_back({.part = "random",
-                              .half_angle_rad = half_angle_deg * kDegree,
-                              .weight = dice.between(0.05, 1.0)});
-    }
-    return beam;
-}
-
-// Around the camera, outside any housing, and above the floor.
-Vector3d random_position_m(Dice& dice, const Sled& sled) {
-    constexpr double kLeastHeight_m = 0.15;
-    while (true) {
-        const double around_rad = dice.between(0.0, 2.0 * std::numbers::pi);
-        const double aside_m = dice.between(0.3, 1.0);
-        Vector3d position_m(aside_m * std::cos(around_rad),
-                            aside_m * std::sin(around_rad),
-                            dice.between(-0.3, 0.3));
-        if (position_m.norm() > 1.0) continue;
-        if (height_above(floor_plane(sled), position_m) > kLeastHeight_m) return position_m;
-    }
-}
-
-// A point of the floor in view; where that is the horizon, the floor on the camera's axis.
-Vector3d random_aim_m(Dice& dice, const Rig& rig) {
-    const double column = dice.between(0.0, rig.camera.width_px);
-    const double row = dice.between(0.0, rig.camera.height_px);
-    const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
-    const WaterRay ray = pixel_ray(rig, column, row, middle_nm);
-    const auto distance_m = distance_to(floor_plane(rig.sled), ray);
-    if (!distance_m) return {0.0, 0.0, rig.sled.altitude_m};
-    return ray.origin_m + *distance_m * ray.direction;
-}
-
-Rig random_rig(std::uint64_t seed) {
-    Dice dice(seed);
-    const Sled sled{.altitude_m = dice.over_octaves(0.5, 10.0),
-                    .pitch_rad = dice.between(-30.0, 30.0) * kDegree,
-                    .roll_rad = dice.between(-30.0, 30.0) * kDegree};
-    Rig rig{.title = "random",
-            .sled = sled,
-            .camera = random_camera(dice),
-            .water = random_water(dice),
-            .seafloor = {.reflectance = random_reflectance(dice)},
-            .strobes = {},
-            .materials = {},
-            .digest = ""};
-    if (dice.chance(0.2)) {
-        rig.seafloor.phong = dice.between(0.05, 1.0);
-        rig.seafloor.phong_size = dice.over_octaves(4.0, 200.0);
-    }
-    if (dice.chance(0.1)) rig.materials.push_back(random_reflectance(dice));
-    const Spectrum lamp = random_lamp(dice);
-    const bool is_mixed = dice.chance(0.2);
-    const Spectrum other_lamp = is_mixed ? random_lamp(dice) : lamp;
-    const int strobes = dice.whole(1, 6);
-    for (int s = 0; s < strobes; ++s) {
-        const Vector3d position_m = random_position_m(dice, sled);
-        const Vector3d aim_m = random_aim_m(dice, rig);
-        rig.strobes.push_back({.name = std::to_string(s),
-                               .position_m = position_m,
-                               .axis = (aim_m - position_m).normalized(),
-                               .beam = random_beam(dice),
-                               .spectrum = s % 2 == 0 ? lamp : other_lamp,
-                               .power = dice.over_octaves(0.1, 100.0),
-                               .emitter = std::nullopt});
-    }
-    return rig;
-}
 
 // --- Frames --------------------------------------------------------------------------------------
 

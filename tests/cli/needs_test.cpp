@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the commands take, as the kernel counts it, against what is foretold; and that they refuse
+// before they begin where there is too little.
+#include "scene_gen/needs.h"
+
+#include "scene_gen/rig_reader.h"
+#include "spectral/exr.h"
+#include "spectral/manifest.h"
+#include "support/run_command.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <random>
+#include <regex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSide_px = 1024;
+constexpr int kThreads = 2;
+// What is foretold is enough, and not far more: it has room for images that do not compress, and
+// for other libraries.
+constexpr double kMostOverFound = 2.0;
+
+// With as many threads the command compresses, unless it is told otherwise.
+int cores() {
+    return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+fs::path rig_of(const fs::path& folder, int width_px, int height_px) {
+    const std::string text =
+        read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/one-lamp.toml");
+    write_file(folder / "rig.toml",
+               std::regex_replace(text,
+                                  std::regex(R"(resolution\s*=\s*\[[^\]]*\])"),
+                                  fmt::format("resolution = [{}, {}]", width_px, height_px)));
+    return folder / "rig.toml";
+}
+
+// A command with AddressSanitizer takes several times the memory of the one that is shipped.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kIsSanitized = true;
+#elif defined(__has_feature)
+constexpr bool kIsSanitized = __has_feature(address_sanitizer);
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
+// The largest memory that the command had at a time.
+struct Measured {
+    int status = -1;
+    std::uint64_t peak_bytes = 0;
+};
+
+Measured measured(const fs::path& folder, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), APHOTIC_COMMAND);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    // The child of a fork would begin with the memory of this process, vfork's with none of it.
+    const pid_t child = ::vfork();
+    if (child == 0) {
+        if (::chdir(folder.c_str()) == 0) ::execv(argv[0], argv.data());
+        ::_exit(127);
+    }
+    int status = 0;
+    rusage used{};
+    if (child < 0 || ::wait4(child, &status, 0, &used) != child) return {};
+    constexpr std::uint64_t kKibibyte = 1024;
+    return {.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            .peak_bytes = kKibibyte * static_cast<std::uint64_t>(used.ru_maxrss)};
+}
+
+void expect_foretold(const Measured& found, std::uint64_t foretold_bytes) {
+    ASSERT_EQ(found.status, 0);
+    EXPECT_LE(found.peak_bytes, foretold_bytes);
+    EXPECT_LE(static_cast<double>(foretold_bytes),
+              kMostOverFound * static_cast<double>(found.peak_bytes));
+    testing::Test::RecordProperty("peak_bytes", std::to_string(found.peak_bytes));
+}
+
+// Frames that no compression makes smaller, in place of POV-Ray's.
+void write_frames_of_noise(const fs::path& folder, const Manifest& manifest) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> between(0.0F, 1.0F);
+    fs::create_directories(folder / "povray" / "frames");
+    for (const ManifestFrame& frame : manifest.frames) {
+        ExrWriter exr(
+            image_path(folder, frame), manifest.width_px, manifest.height_px, {"R", "G", "B"}, {});
+        std::vector<float> row(3 * static_cast<std::size_t>(manifest.width_px));
+        for (int r = 0; r < manifest.height_px; ++r) {
+            for (float& sample : row) sample = between(random);
+            exr.write_rows(1, row);
+        }
+        exr.finish();
+    }
+}
+
+// A whole image of few wavelengths; and of many, rows so long that what is held of them outweighs
+// it.
+TEST(MemoryOfIntegrate, IsForetold) {
+    if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
+    struct Case {
+        int width_px;
+        int height_px;
+        std::vector<std::string> wavelengths;
+    };
+    for (const Case& c :
+         {Case{kSide_px, kSide_px, {"--fitted", "3"}}, Case{4 * kSide_px, 32, {"--bands", "60"}}}) {
+        const TempFolder folder;
+        rig_of(folder.path(), c.width_px, c.height_px);
+        std::vector<std::string> arguments{"generate", "rig.toml", "-o", "out"};
+        arguments.insert(arguments.end(), c.wavelengths.begin(), c.wavelengths.end());
+        ASSERT_EQ(run_aphotic(folder.path(), arguments).status, 0);
+        const Manifest manifest = read_manifest(folder.path() / "out");
+        write_frames_of_noise(folder.path() / "out", manifest);
+        const ImageSize size{.width_px = c.width_px,
+                             .height_px = c.height_px,
+                             .wavelengths = manifest.wavelengths.size()};
+        expect_foretold(measured(folder.path(), {"integrate", "out", "--json"}),
+                        integration_memory_bytes(size, cores()));
+        EXPECT_LE(fs::file_size(folder.path() / "out" / "spectral.exr"),
+                  largest_files(size).spectral_bytes);
+    }
+}
+
+TEST(MemoryOfTrace, IsForetold) {
+    if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
+    constexpr int kSmaller_px = 640;
+    const TempFolder folder;
+    rig_of(folder.path(), kSmaller_px, kSmaller_px);
+    const Measured found = measured(folder.path(),
+                                    {"trace",
+                                     "rig.toml",
+                                     "-o",
+                                     "out",
+                                     "--fitted",
+                                     "3",
+                                     "--threads",
+                                     std::to_string(kThreads),
+                                     "--json"});
+    expect_foretold(
+        found,
+        trace_memory_bytes({.width_px = kSmaller_px, .height_px = kSmaller_px, .wavelengths = 3},
+                           kThreads));
+}
+
+// A folder with a disk of its own that holds so much, for one command: its status and what it said.
+struct OnSmallDisk {
+    bool is_possible = false;
+    int status = 0;
+    std::string said;
+};
+
+OnSmallDisk on_small_disk(const fs::path& folder,
+                          const std::string& size,
+                          const std::string& command) {
+    const fs::path script =
+        write_script(folder / "small.sh",
+                     fmt::format("mkdir -p disk && mount -t tmpfs -o size={} none disk || exit 99\n"
+                                 "{} {}\nstatus=$?\nls -A disk\nexit $status\n",
+                                 size,
+                                 APHOTIC_COMMAND,
+                                 command));
+    const ProcessEnd end = run_process({.executable = "/usr/bin/env",
+                                        .arguments = {"unshare", "-rm", script.string()},
+                                        .folder = folder,
+                                        .environment = {},
+                                        .log = folder / "said"},
+                                       280.0);
+    const std::string said = read_text_file(folder / "said");
+    const bool is_possible = end.exit_code != 99 && end.exit_code != 126 && end.exit_code != 127 &&
+                             said.find("unshare: ") == std::string::npos;
+    return {.is_possible = is_possible, .status = end.exit_code, .said = said};
+}
+
+TEST(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
+    const TempFolder folder;
+    rig_of(folder.path(), 640, 480);
+    for (const char* command : {"trace rig.toml -o disk/out",
+                                "generate rig.toml --bands 600 -o disk/out",
+                                "render rig.toml -o disk/out",
+                                "validate rig.toml -o disk/out",
+                                "study rig.toml -o disk/out"}) {
+        const OnSmallDisk run = on_small_disk(folder.path(), "64k", command);
+        if (!run.is_possible) GTEST_SKIP() << "no tmpfs of our own here: " << run.said;
+        EXPECT_EQ(run.status, 3) << command;
+        EXPECT_TRUE(std::regex_search(
+            run.said,
+            std::regex(
+                R"(needs up to [0-9.]+ [kMG]B in disk/out, [0-9.]+ kB are free\. Nothing was begun)")))
+            << command << ": " << run.said;
+        // The listing of the disk that follows is empty.
+        EXPECT_TRUE(run.said.ends_with("compress\n")) << command << ": " << run.said;
+    }
+}
+
+TEST(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
+    const TempFolder folder;
+    rig_of(folder.path(), 64, 48);
+    const Needs needs = trace_needs({.width_px = 64, .height_px = 48, .wavelengths = 3}, kThreads);
+    // In whole pages: of tmpfs, every file and folder takes one more than it fills.
+    const std::uint64_t size_kib = needs.folder_bytes / 1024 + 64;
+    const std::string command = "trace rig.toml --fitted 3 -o disk/out";
+    const OnSmallDisk enough = on_small_disk(folder.path(), fmt::format("{}k", size_kib), command);
+    if (!enough.is_possible) GTEST_SKIP() << "no tmpfs of our own here: " << enough.said;
+    EXPECT_EQ(enough.status, 0) << enough.said;
+    const OnSmallDisk less =
+        on_small_disk(folder.path(), fmt::format("{}k", size_kib / 2), command);
+    EXPECT_EQ(less.status, 3) << less.said;
+    // A traced image compresses: half the room is enough.
+    const OnSmallDisk ignored =
+        on_small_disk(folder.path(), fmt::format("{}k", size_kib / 2), command + " --ignore-needs");
+    EXPECT_EQ(ignored.status, 0) << ignored.said;
+}
+
+// 12 bands take 7.8 MB at most, of which the images are 5.9 MB; 13 bands take 8.5 MB; 7.2 MB are
+// left. The same render finds its frames there and needs no room for them, another must make its
+// own.
+TEST(Needs, FramesThatAreKeptNeedNone) {
+    const TempFolder folder;
+    rig_of(folder.path(), 320, 240);
+    const std::string fill = " && dd if=/dev/zero of=disk/fill bs=1k count=300";
+    const auto again = [&](const char* bands) {
+        return on_small_disk(folder.path(),
+                             "9m",
+                             fmt::format("render rig.toml --bands 12 -o disk/out{} && {} render "
+                                         "rig.toml --bands {} -o disk/out",
+                                         fill,
+                                         APHOTIC_COMMAND,
+                                         bands));
+    };
+    const OnSmallDisk same = again("12");
+    if (!same.is_possible) GTEST_SKIP() << "no tmpfs of our own here: " << same.said;
+    EXPECT_EQ(same.status, 0) << same.said;
+    EXPECT_NE(same.said.find("0 frames rendered, 4 kept"), std::string::npos) << same.said;
+    const OnSmallDisk other = again("13");
+    EXPECT_EQ(other.status, 3) << other.said;
+    EXPECT_NE(other.said.find("needs up to "), std::string::npos) << other.said;
+}
+
+// Sixteen thousand pixels each way, which no test could render.
+TEST(Needs, OfTheLargestImageArePlannedWithoutMakingIt) {
+    const TempFolder folder;
+    rig_of(folder.path(), 16384, 16384);
+    const CommandResult plan =
+        run_aphotic(folder.path(), {"plan", "rig.toml", "--fitted", "9", "--json"});
+    ASSERT_EQ(plan.status, 0) << plan.err;
+    const auto needs = nlohmann::json::parse(plan.out).at("needs");
+    constexpr double kPixels = 16384.0 * 16384.0;
+    EXPECT_NEAR(needs.at("files").at("spectral.exr").get<double>(),
+                (12.0 + 4.0 * 9.0) * kPixels,
+                1e-3 * kPixels);
+    EXPECT_NEAR(needs.at("files").at("image.exr").get<double>(), 12.0 * kPixels, 1e-3 * kPixels);
+}
+
+}  // namespace
+}  // namespace aphotic
