@@ -3,6 +3,7 @@
 // aphotic generate RIG -o DIR: the scenes alone, for plain POV-Ray; `aphotic integrate DIR` takes
 // it from there.
 #include "cli/command.h"
+#include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/words.h"
 #include "plugin/render.h"
@@ -63,6 +64,7 @@ ExitStatus generate_scenes(const Options& options) {
         throw InputError("found neither --output nor --quick-look; allowed: one of them");
     }
     const SceneSet scenes = scenes_of(plan_rig(options.planning), options.planning);
+    const FolderLock lock = claim_folder(options.folder);
     const Manifest manifest = generate(options.folder, scenes);
     if (options.json) {
         nlohmann::ordered_json json{{"folder", options.folder},

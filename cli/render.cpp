@@ -4,6 +4,7 @@
 #include "plugin/render.h"
 #include "cli/command.h"
 #include "cli/outcome.h"
+#include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/rendering.h"
 #include "cli/words.h"
@@ -29,11 +30,14 @@ ExitStatus render_rig(const Options& options) {
     const SceneSet scenes = scenes_of(planned, options.planning);
     const PovRay povray = find_povray(options.planning.povray);
 
-    const RenderedFrames frames = render_frames(
-        povray,
-        options.folder,
-        scenes,
-        {.jobs = options.jobs, .report = {}, .library_paths = options.planning.library_paths});
+    const FolderLock lock = claim_folder(options.folder);
+    const RenderedFrames frames = render_frames(povray,
+                                                options.folder,
+                                                scenes,
+                                                {.jobs = options.jobs,
+                                                 .report = {},
+                                                 .library_paths = options.planning.library_paths,
+                                                 .stall_s = options.planning.stall_timeout_s});
     const RenderResult& result = frames.result;
 
     auto outcome =
