@@ -22,9 +22,11 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <optional>
 #include <random>
+#include <regex>
 #include <thread>
 
 namespace aphotic {
@@ -368,6 +370,61 @@ TEST(Interrupted, RendersEndInTheSameImageAfterTwoHundredBlows) {
     EXPECT_GT(sum.finished, 0);
     EXPECT_GT(sum.kept, 0);
     EXPECT_GT(sum.lines, 0);
+}
+
+bool comes_true(const std::function<bool()>& condition) {
+    const auto deadline = Clock::now() + kPatience;
+    while (!condition()) {
+        if (Clock::now() > deadline) return false;
+        std::this_thread::sleep_for(kPoll);
+    }
+    return true;
+}
+
+// A scene of the user's own is looked at in a scratch folder, by a POV-Ray that heeds no signal.
+TEST(Interrupted, ASurveyLeavesNothing) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const TempFolder folder;
+        const fs::path home = fs::canonical(folder.path());
+        write_file(home / "rig.toml", rig_text());
+        write_file(home / "reef.pov", "#include \"aphotic.inc\"\nAphotic_Rig ()\n");
+        fs::create_directory(home / "tmp");
+        const std::string povray =
+            write_script(home / "povray",
+                         "if [ \"$1\" = --version ]; then\n  exec povray --version\nfi\n"
+                         "trap '' TERM INT HUP\nsleep 1000 &\ntouch tmp/started\nwait\nwait\n");
+        Command command(home,
+                        {"render", "rig.toml", "--scene", "reef.pov", "-o", "out"},
+                        {{"APHOTIC_POVRAY", povray}, {"TMPDIR", (home / "tmp").string()}});
+        ASSERT_TRUE(comes_true([&] { return fs::exists(home / "tmp" / "started"); }));
+        ::kill(command.pid(), signal);
+        EXPECT_EQ(command.wait(), 128 + signal);
+        fs::remove(home / "tmp" / "started");
+        EXPECT_TRUE(fs::is_empty(home / "tmp")) << "left in TMPDIR";
+        EXPECT_FALSE(fs::exists(home / "out"));
+        EXPECT_TRUE(comes_true([&] { return processes_in(home).empty(); }));
+        EXPECT_TRUE(read_text_file(home / "stderr").starts_with("aphotic: interrupted ("));
+    }
+}
+
+// Nothing to put in order: the image of a quarter of an hour is not waited for.
+TEST(Interrupted, ATraceEndsAtOnce) {
+    const TempFolder folder;
+    std::string text =
+        read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-emitters.toml");
+    const std::regex size(R"(\nresolution[^\n]*)");
+    write_file(folder.path() / "rig.toml",
+               std::regex_replace(text, size, "\nresolution = [8000, 8000]"));
+    Command command(folder.path(), {"trace", "rig.toml", "-o", "out", "--threads", "1"}, {});
+    ASSERT_TRUE(comes_true([&] { return fs::exists(folder.path() / "out"); }));
+    ::kill(command.pid(), SIGINT);
+    EXPECT_EQ(command.wait(), 128 + SIGINT);
+    EXPECT_FALSE(fs::exists(folder.path() / "out" / "image.exr"));
+    // What it leaves half written, the next run takes away.
+    EXPECT_EQ(
+        run_aphotic(folder.path(), {"generate", "rig.toml", "-o", "out", "--bands", "3"}).status,
+        0);
+    expect_no_leftovers(folder.path() / "out");
 }
 
 }  // namespace
