@@ -116,7 +116,7 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
 }  // namespace
 
 void add_povray_options(CLI::App& app, std::string& povray, double& stall_timeout_s) {
-    constexpr double kLeast_s = 0.1;
+    constexpr double kLeast_s = 0.5;
     constexpr double kMost_s = 1e6;
     app.add_option("--povray", povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
         ->type_name("PROGRAM");

@@ -384,6 +384,22 @@ TEST_F(Faults, AManifestThatCannotBeReadIsNotWrittenOver) {
     EXPECT_NE(render().out.find("2 frames rendered, 0 kept"), std::string::npos);
 }
 
+// JSON knows no such numbers; what stands for them is as wrong.
+TEST_F(Faults, AWeightThatIsNoNumberIsRefused) {
+    ASSERT_EQ(render().status, 0);
+    const auto before = contents(file("out"));
+    const std::string good = read_text_file(file("out") / "manifest.json");
+    const std::size_t first = good.find_first_of("-0123456789", good.find("\"weight\": ["));
+    const std::size_t last = good.find_first_of(",\n", first);
+    for (const std::string number : {"NaN", "nan", "Infinity", "1e999", "null", "\"1\""}) {
+        std::string bad = good;
+        write_file(file("out") / "manifest.json", bad.replace(first, last - first, number));
+        expect_message(integrate(), kBadInput, "out/manifest.json: ");
+    }
+    write_file(file("out") / "manifest.json", good);
+    EXPECT_EQ(contents(file("out")), before);
+}
+
 // --- A POV-Ray that misbehaves ------------------------------------------------------------------
 
 class BadPovRay : public Faults {
@@ -448,8 +464,11 @@ class OwnScene : public BadPovRay {
                    "Aphotic_Rig_Seafloor ()\n");
     }
     [[nodiscard]] CommandResult render_reef(
-        const std::map<std::string, std::string>& environment = {}) const {
-        return render(environment, {"--scene", "reef.pov", "--jobs", "1", "--stall-timeout", "2"});
+        const std::map<std::string, std::string>& environment = {},
+        const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"--scene", "reef.pov", "--jobs", "1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return render(environment, arguments);
     }
 };
 
@@ -457,8 +476,9 @@ TEST_F(OwnScene, IsLookedAtUnderTheSameGuards) {
     fs::create_directory(file("tmp"));
     auto environment = povray_that("sleep 1000\n");
     environment["TMPDIR"] = file("tmp").string();
-    expect_message(render_reef(environment), kRunFailed, "reef.pov: ");
-    expect_message(render_reef(environment), kRunFailed, "was stopped: for 2 s");
+    const CommandResult hanging = render_reef(environment, {"--stall-timeout", "0.5"});
+    expect_message(hanging, kRunFailed, "reef.pov: ");
+    expect_message(hanging, kRunFailed, "was stopped: for 0.5 s");
     static_cast<void>(povray_that("exec yes\n"));
     expect_message(render_reef(environment), kRunFailed, "it printed more than 64 MiB");
     EXPECT_TRUE(fs::is_empty(file("tmp")));
