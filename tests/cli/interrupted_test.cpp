@@ -107,11 +107,11 @@ void expect_same_render(const fs::path& found, const fs::path& expected) {
     }
 }
 
-void expect_no_leftovers(const fs::path& folder) {
+// Nothing half written: at all, or by the process of that number.
+void expect_no_leftovers(const fs::path& folder, const std::string& by = "") {
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
-        EXPECT_EQ(name.find(".part"), std::string::npos) << entry.path();
-        EXPECT_EQ(name.find(".pov-state"), std::string::npos) << entry.path();
+        EXPECT_EQ(name.find(by + ".part"), std::string::npos) << entry.path();
     }
 }
 
@@ -227,7 +227,7 @@ class Lane {
             EXPECT_EQ(status, 0) << said;
         }
         expect_no_process();
-        expect_tidy(status == 128 + SIGKILL);
+        expect_tidy(status, command.pid());
         const auto after = done_frames(out());
         for (const auto& [name, inode] : before) {
             const auto found = after.find(name);
@@ -277,12 +277,14 @@ class Lane {
                               ::strsignal(blow.signal)));
     }
 
-    // SIGKILL leaves what was half written: a stated limit, which the next run makes good.
-    void expect_tidy(bool is_killed) const {
-        if (!is_killed) {
+    // SIGKILL leaves what was half written: a stated limit. The next run that gets as far as its
+    // folder takes it away.
+    void expect_tidy(int status, pid_t pid) const {
+        if (status != 128 + SIGKILL) {
             EXPECT_TRUE(fs::is_empty(folder_ / "tmp")) << "left in TMPDIR";
-            if (fs::exists(out())) expect_no_leftovers(out());
+            if (fs::exists(out())) expect_no_leftovers(out(), fmt::format(".{}", pid));
         }
+        if (status == 0) expect_no_leftovers(out());
         fs::remove_all(folder_ / "tmp");
         fs::create_directory(folder_ / "tmp");
     }
