@@ -4,6 +4,7 @@
 // it from there.
 #include "cli/command.h"
 #include "cli/needs_check.h"
+#include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/words.h"
 #include "plugin/render.h"
@@ -65,6 +66,7 @@ ExitStatus generate_scenes(const Options& options) {
     }
     const SceneSet scenes = scenes_of(plan_rig(options.planning), options.planning);
     require_room(needs_of_scenes(scenes), options.folder, options.planning.ignore_needs);
+    const FolderLock lock = claim_folder(options.folder);
     const Manifest manifest = generate(options.folder, scenes);
     if (options.json) {
         nlohmann::ordered_json json{{"folder", options.folder},

@@ -4,6 +4,7 @@
 // to those of a rig of other water, lamps, materials or sensor.
 #include "cli/command.h"
 #include "cli/outcome.h"
+#include "cli/output_folder.h"
 #include "scene_gen/reintegration.h"
 #include "scene_gen/rig_reader.h"
 #include "spectral/atomic_file.h"
@@ -13,6 +14,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 namespace aphotic::cli {
 namespace {
@@ -68,9 +70,10 @@ Json account_of(const Options& options, const Manifest& manifest) {
 }
 
 ExitStatus integrate_frames(const Options& options) {
-    const Manifest manifest = manifest_of(options);
     const fs::path images = images_folder(options);
-    make_folder(images);
+    static_cast<void>(read_manifest(options.folder));  // a folder without one stays as it is
+    const std::vector<FolderLock> locks = claim_folders(images, options.folder);
+    const Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
     Json outcome = integrate_folder(options.folder, manifest, options.preview, images);
     outcome["title"] = manifest.rig_title;
     if (!options.rig_file.empty()) {

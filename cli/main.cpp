@@ -2,11 +2,13 @@
 //
 // The `aphotic` command: a table of subcommands, and what each kind of failure exits with.
 #include "cli/command.h"
+#include "plugin/interruption.h"
 #include "spectral/error.h"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -49,6 +51,11 @@ ExitStatus run(const Action& action) {
         if (std::fflush(stdout) != 0)
             throw aphotic::RunError("standard output: cannot be written to");
         return status;
+    } catch (const aphotic::Interrupted& interrupted) {
+        fmt::print(stderr,
+                   "aphotic: {}; what was done is kept, and the same command goes on from there\n",
+                   interrupted.what());
+        aphotic::end_by_signal(interrupted.signal());
     } catch (const aphotic::InputError& error) {
         fmt::print(stderr, "aphotic: {}\n", error.what());
         return aphotic::cli::kBadInput;
@@ -68,12 +75,16 @@ ExitStatus run(const Action& action) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    // A file over the limit of its size (ulimit -f) is to be an error with its name, and the end of
+    // POV-Ray is to be seen, whoever started us.
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGCHLD, SIG_DFL);
     CLI::App app{"What an underwater camera sled sees by the light of its own strobes."};
     app.set_version_flag("--version", "aphotic " APHOTIC_VERSION);
     app.require_subcommand(1);
     app.footer(
         "Exit status: 0 done; 1 it ran and the answer is no; 2 the command line or an input\n"
-        "file is wrong; 3 POV-Ray or the file system failed.");
+        "file is wrong; 3 POV-Ray or the file system failed. Interrupted, it ends by the signal.");
 
     Action chosen;
     for (const Command& command : kCommands) {

@@ -3,6 +3,7 @@
 
 #include "cli/progress.h"
 #include "cli/words.h"
+#include "plugin/interruption.h"
 #include "spectral/exr.h"
 #include "spectral/integrator.h"
 
@@ -72,9 +73,13 @@ Json integrate_folder(const fs::path& folder,
                       const PreviewOptions& preview,
                       const fs::path& images) {
     const auto start = std::chrono::steady_clock::now();
+    const InterruptionHold hold;
     set_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
     ProgressLine line;
-    const auto report = [&](double share) { line.show("integrating", share); };
+    const auto report = [&](double share) {
+        throw_if_interrupted();
+        line.show("integrating", share);
+    };
     const CameraImage image = images == folder
                                   ? integrate(folder, manifest, report)
                                   : integrate_signals(folder, manifest, images, report);

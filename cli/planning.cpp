@@ -95,13 +95,14 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
         options.scene.empty() ? rig.scene : std::filesystem::path(options.scene);
     if (!options.renders || scene.empty()) return nullptr;
     ProgressLine line;
-    auto surveyed_scene = std::make_shared<const UserScene>(survey_scene(
-        find_povray(options.povray),
-        rig,
-        scene,
-        {.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
-         .library_paths = options.library_paths,
-         .progress = [&](double share) { line.show("looking at the scene", share); }}));
+    auto surveyed_scene = std::make_shared<const UserScene>(
+        survey_scene(find_povray(options.povray),
+                     rig,
+                     scene,
+                     {.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
+                      .library_paths = options.library_paths,
+                      .progress = [&](double share) { line.show("looking at the scene", share); },
+                      .stall_s = options.stall_timeout_s}));
     if (surveyed_scene->has_own_colours) {
         fmt::print(
             stderr,
@@ -113,6 +114,21 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
 }
 
 }  // namespace
+
+void add_povray_options(CLI::App& app, std::string& povray, double& stall_timeout_s) {
+    constexpr double kLeast_s = 0.5;
+    constexpr double kMost_s = 1e6;
+    app.add_option("--povray", povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
+        ->type_name("PROGRAM");
+    app.add_option(
+           "--stall-timeout",
+           stall_timeout_s,
+           "seconds after which POV-Ray is stopped when it neither prints anything nor uses "
+           "the processor")
+        ->check(CLI::Range(kLeast_s, kMost_s))
+        ->type_name("S")
+        ->capture_default_str();
+}
 
 void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
     constexpr int kMostFitted = 48;
@@ -179,9 +195,7 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
                    options.povray_ini,
                    "a setting of POV-Ray's own that changes its speed, such as Bounding_Method=2")
         ->type_name("KEY=VALUE");
-    app.add_option(
-           "--povray", options.povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
-        ->type_name("PROGRAM");
+    add_povray_options(app, options.povray, options.stall_timeout_s);
     app.add_option("--per-frame",
                    options.per_frame,
                    "wavelengths that share a frame at most, one a channel")

@@ -4,6 +4,7 @@
 // that plans a render.
 #pragma once
 
+#include "plugin/povray.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
 
@@ -31,7 +32,11 @@ struct PlanningOptions {
     std::vector<std::string> povray_ini;
     std::string povray;
     bool ignore_needs = false;
+    double stall_timeout_s = kStall_s;
 };
+
+// Which POV-Ray, and how long it may be silent.
+void add_povray_options(CLI::App& app, std::string& povray, double& stall_timeout_s);
 
 // The rig and its wavelengths, without POV-Ray.
 void add_wavelength_options(CLI::App& app, PlanningOptions& options);

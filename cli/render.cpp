@@ -5,6 +5,7 @@
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/outcome.h"
+#include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/rendering.h"
 #include "cli/words.h"
@@ -33,11 +34,14 @@ ExitStatus render_rig(const Options& options) {
                  options.folder,
                  options.planning.ignore_needs);
 
-    const RenderedFrames frames = render_frames(
-        povray,
-        options.folder,
-        scenes,
-        {.jobs = options.jobs, .report = {}, .library_paths = options.planning.library_paths});
+    const FolderLock lock = claim_folder(options.folder);
+    const RenderedFrames frames = render_frames(povray,
+                                                options.folder,
+                                                scenes,
+                                                {.jobs = options.jobs,
+                                                 .report = {},
+                                                 .library_paths = options.planning.library_paths,
+                                                 .stall_s = options.planning.stall_timeout_s});
     const RenderResult& result = frames.result;
 
     auto outcome =

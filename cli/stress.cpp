@@ -4,6 +4,8 @@
 #include "validation/stress.h"
 
 #include "cli/command.h"
+#include "cli/output_folder.h"
+#include "cli/planning.h"
 #include "cli/progress.h"
 #include "cli/rendered_images.h"
 #include "cli/words.h"
@@ -18,6 +20,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -30,6 +33,7 @@ namespace fs = std::filesystem;
 struct Options {
     std::string folder;
     std::string povray;
+    double stall_timeout_s = kStall_s;
     std::string only;
     int width_px = 24;
     int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -37,6 +41,7 @@ struct Options {
 };
 
 RenderedImages render_case(const PovRay& povray,
+                           double stall_s,
                            const Rig& rig,
                            const StressCase& asked,
                            const fs::path& folder) {
@@ -44,8 +49,8 @@ RenderedImages render_case(const PovRay& povray,
     request.wavelengths_nm = asked.wavelengths_nm;
     if (asked.peak_log2) request.scene.peak_log2 = *asked.peak_log2;
     const RenderPlan plan = plan_render(rig, request);
-    const RenderResult result =
-        render(povray, folder, make_scene_set(rig, plan), {.jobs = 1, .report = {}});
+    const RenderResult result = render(
+        povray, folder, make_scene_set(rig, plan), {.jobs = 1, .report = {}, .stall_s = stall_s});
     integrate(folder, result.manifest);
     return images_in(folder, result.manifest, plan.family);
 }
@@ -59,25 +64,36 @@ std::vector<StressFound> measured(const std::vector<StressCase>& cases,
     std::vector<StressFound> found(cases.size());
     std::atomic<std::size_t> next = 0;
     std::atomic<std::size_t> done = 0;
-    std::mutex line_mutex;
+    std::mutex mutex;  // of what follows
+    std::exception_ptr failure;
     ProgressLine line;
     const auto work = [&] {
         for (std::size_t i = next++; i < cases.size(); i = next++) {
             const StressRender render =
                 [&](const Rig& rig, const StressCase& asked, const fs::path& to) {
-                    return render_case(povray, rig, asked, to);
+                    return render_case(povray, options.stall_timeout_s, rig, asked, to);
                 };
             found[i] = measure_stress(cases[i], fs::path(options.folder) / cases[i].name, render);
             ++done;
-            const std::scoped_lock lock(line_mutex);
+            const std::scoped_lock lock(mutex);
             line.show(fmt::format("{} of {} cases", done.load(), cases.size()),
                       static_cast<double>(done) / static_cast<double>(cases.size()));
         }
     };
     std::vector<std::jthread> others;
-    for (int t = 1; t < kWaiting * options.jobs; ++t) others.emplace_back(work);
-    work();
+    const auto work_or_note = [&] {
+        try {
+            work();
+        } catch (...) {
+            next = cases.size();
+            const std::scoped_lock lock(mutex);
+            failure = std::current_exception();
+        }
+    };
+    for (int t = 1; t < kWaiting * options.jobs; ++t) others.emplace_back(work_or_note);
+    work_or_note();
     others.clear();
+    if (failure) std::rethrow_exception(failure);
     return found;
 }
 
@@ -108,7 +124,7 @@ ExitStatus stress(const Options& options) {
         throw InputError(
             fmt::format("--only: found '{}'; allowed: part of a case's name", options.only));
     }
-    make_folder(options.folder);
+    const FolderLock lock = claim_folder(options.folder);
     const std::vector<StressFound> found = measured(cases, options, povray);
     write_stress(found, options.folder);
     if (options.json) {
@@ -133,9 +149,7 @@ Action configure_stress(CLI::App& app) {
         ->capture_default_str();
     app.add_option("--only", options->only, "the cases alone whose folders' names hold this")
         ->type_name("TEXT");
-    app.add_option(
-           "--povray", options->povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
-        ->type_name("PROGRAM");
+    add_povray_options(app, options->povray, options->stall_timeout_s);
     app.add_option("--jobs", options->jobs, "cases at a time, two for each; by default the cores")
         ->check(CLI::Range(1, kMostJobs))
         ->capture_default_str();

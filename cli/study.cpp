@@ -7,6 +7,8 @@
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/outcome.h"
+#include "cli/output_folder.h"
+#include "cli/planning.h"
 #include "cli/progress.h"
 #include "cli/rendering.h"
 #include "cli/words.h"
@@ -39,6 +41,7 @@ struct Options {
     std::string rig_file;
     std::string folder;
     std::string povray;
+    double stall_timeout_s = kStall_s;
     double tolerance = 1e-3;
     bool quick = false;
     bool json = false;
@@ -165,12 +168,13 @@ StudyMeasure measure(const Rig& rig,
                      const StudySetting& setting,
                      const Reference& reference,
                      const PovRay& povray,
+                     double stall_s,
                      const fs::path& folder) {
     fs::remove_all(folder);
     const Rig small = shrunk(rig, setting.shrink);
     const RenderPlan plan = plan_for(small, setting);
     SceneSet set = make_scene_set(small, plan);
-    RunOptions options{.jobs = setting.jobs, .report = {}};
+    RunOptions options{.jobs = setting.jobs, .report = {}, .stall_s = stall_s};
     if (setting.antialias) {
         change_setting(set.ini,
                        "Antialias=off",
@@ -297,6 +301,7 @@ ExitStatus study_rig(const Options& options) {
     const std::vector<StudySetting> settings = study_settings(rig, options.quick, study.cores);
     require_room(needs_of(rig, settings, study.cores), folder, options.ignore_needs);
     set_exr_threads(study.cores);
+    const FolderLock lock = claim_folder(folder);
     make_folder(folder / "settings");
     const Reference reference =
         reference_of(rig, folder / "reference", key_of(study, {}), study.cores);
@@ -313,7 +318,12 @@ ExitStatus study_rig(const Options& options) {
                        study.measures.size() + 1,
                        settings.size(),
                        setting.words);
-            measured = measure(rig, setting, reference, povray, folder / "settings" / setting.name);
+            measured = measure(rig,
+                               setting,
+                               reference,
+                               povray,
+                               options.stall_timeout_s,
+                               folder / "settings" / setting.name);
             save_measure(*measured, key, file);
         }
         study.measures.push_back(std::move(*measured));
@@ -343,9 +353,7 @@ Action configure_study(CLI::App& app) {
     app.add_flag("--quick",
                  options->quick,
                  "the settings that decide, at a size that takes under two minutes");
-    app.add_option(
-           "--povray", options->povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
-        ->type_name("PROGRAM");
+    add_povray_options(app, options->povray, options->stall_timeout_s);
     add_needs_option(app, options->ignore_needs);
     app.add_flag("--json", options->json, "print study.json");
     app.footer(

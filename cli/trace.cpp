@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/outcome.h"
+#include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/progress.h"
 #include "spectral/atomic_file.h"
@@ -51,7 +52,7 @@ ExitStatus trace_rig(const Options& options) {
 
     const auto start = std::chrono::steady_clock::now();
     const Tracer tracer(planned.rig, request);
-    make_folder(options.folder);
+    const FolderLock lock = claim_folder(options.folder);
     set_exr_threads(options.threads);
     OutputImages images(options.folder,
                         camera.width_px,

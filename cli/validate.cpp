@@ -6,6 +6,7 @@
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/outcome.h"
+#include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/progress.h"
 #include "cli/rendered_images.h"
@@ -43,11 +44,13 @@ struct Rendering {
 };
 
 Rendering render_here(const Options& options, const SceneSet& scenes) {
-    const RenderedFrames frames = render_frames(
-        find_povray(options.planning.povray),
-        options.folder,
-        scenes,
-        {.jobs = options.jobs, .report = {}, .library_paths = options.planning.library_paths});
+    const RenderedFrames frames = render_frames(find_povray(options.planning.povray),
+                                                options.folder,
+                                                scenes,
+                                                {.jobs = options.jobs,
+                                                 .report = {},
+                                                 .library_paths = options.planning.library_paths,
+                                                 .stall_s = options.planning.stall_timeout_s});
     Rendering rendering{.manifest = frames.result.manifest, .render_s = frames.povray_s};
     const auto outcome = integrate_folder(options.folder, rendering.manifest, {}, options.folder);
     rendering.integrate_s = outcome["integration_s"].get<double>();
@@ -120,9 +123,10 @@ void require_room_for(const Options& options, const PlannedRender& planned) {
 ExitStatus validate_rig(const Options& options) {
     const PlannedRender planned = plan_rig(options.planning);
     require_room_for(options, planned);
-    make_folder(options.folder);
-    Rendering rendering;
     const bool is_rendered = !options.rendered_folder.empty();
+    const std::vector<FolderLock> locks =
+        claim_folders(options.folder, is_rendered ? options.rendered_folder : options.folder);
+    Rendering rendering;
     if (is_rendered) {
         rendering.manifest = read_manifest(options.rendered_folder);
         require_same_size(planned.rig, rendering.manifest, options.rendered_folder);

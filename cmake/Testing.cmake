@@ -7,7 +7,7 @@
 #   povray  runs POV-Ray, which takes every core: CTest counts such a test as two. Under the name
 #           povray_of_few_pixels it gets the same label and counts as one: POV-Ray mostly waits
 #   cli     runs the command as a user would
-#   slow    hundreds of plans, or a program beyond POV-Ray, such as a browser
+#   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser
 include(GoogleTest)
 
 function(aphotic_tests label)

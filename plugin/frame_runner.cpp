@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/frame_runner.h"
 
+#include "plugin/interruption.h"
 #include "plugin/library_paths.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
@@ -14,6 +15,8 @@
 #include <chrono>
 #include <fstream>
 #include <list>
+#include <memory>
+#include <optional>
 #include <regex>
 #include <sstream>
 #include <system_error>
@@ -28,16 +31,31 @@ namespace {
 constexpr auto kPollInterval = std::chrono::milliseconds(20);
 constexpr auto kReportInterval = std::chrono::milliseconds(250);
 
+// The image while it is made. Beside it POV-Ray keeps its state, and leaves that when it is
+// stopped.
+class PartImage {
+  public:
+    explicit PartImage(const fs::path& image) : file_(image) {}
+    ~PartImage() {
+        std::error_code ignored;
+        fs::remove(fs::path(path()).replace_extension(".pov-state"), ignored);
+    }
+    PartImage(const PartImage&) = delete;
+    PartImage& operator=(const PartImage&) = delete;
+
+    [[nodiscard]] const fs::path& path() const { return file_.temporary(); }
+    void commit() { file_.commit(); }
+
+  private:
+    AtomicFile file_;
+};
+
 struct Running {
     ManifestFrame frame;
     fs::path log;
-    fs::path part;  // the image while it is made
-    Process process;
+    std::unique_ptr<PartImage> part;
+    Process process;  // last: it is stopped before its image is taken away
 };
-
-fs::path part_path(const fs::path& folder, const ManifestFrame& frame) {
-    return folder / "povray" / "frames" / (frame.name + ".part.exr");
-}
 
 // A scene of the user's own is read in its folder, with the includes that it would find there.
 ProcessRequest in_scene_folder(ProcessRequest request,
@@ -67,21 +85,21 @@ Running start(const PovRay& povray,
               const RunOptions& options) {
     const fs::path work = fs::absolute(folder / "povray");
     const fs::path log = fs::absolute(log_path(folder, frame));
-    const fs::path part = part_path(folder, frame);
-    std::error_code ignored;
-    fs::remove(part, ignored);
+    auto part = std::make_unique<PartImage>(image_path(folder, frame));
     ProcessRequest request{
         .executable = povray.executable,
         .arguments = {fmt::format("+I{}.pov", frame.name),
-                      fmt::format("+Oframes/{}", part.filename().string()),
+                      fmt::format("+Oframes/{}", part->path().filename().string()),
                       fmt::format("+WT{}", threads)},
         .folder = work,
         .environment = {{"POVINI", (work / "render.ini").string()}, {"POVINC", ""}},
-        .log = log};
+        .log = log,
+        .stall_s = options.stall_s};
     if (!options.scene_folder.empty()) {
-        request = in_scene_folder(std::move(request), povray, frame, part, options);
+        request = in_scene_folder(std::move(request), povray, frame, part->path(), options);
     }
-    return {.frame = frame, .log = log, .part = part, .process = Process(request)};
+    Process process(request);
+    return {.frame = frame, .log = log, .part = std::move(part), .process = std::move(process)};
 }
 
 // The last share of a frame that POV-Ray reported, from the end of its log.
@@ -101,34 +119,57 @@ double reported_share(const fs::path& log) {
     return share;
 }
 
+// POV-Ray 3.7 ends well all the same when it cannot write its image.
+std::string words_of_full_disk(const fs::path& folder) {
+    constexpr std::uintmax_t kLittle = std::uintmax_t{64} << 10U;
+    std::error_code error;
+    const std::uintmax_t left = fs::space(folder, error).available;
+    if (error || left > kLittle) return "";
+    return fmt::format("\n{}: {}: {} KiB are left",
+                       folder.string(),
+                       std::make_error_code(std::errc::no_space_on_device).message(),
+                       left >> 10U);
+}
+
+void require_success(const Running& run, const ProcessEnd& end) {
+    if (end.succeeded()) return;
+    const std::string said = error_in_log(read_log(run.log));
+    throw RunError(fmt::format(
+        "{}{}{}\nIts log: {}", end.words(), said.empty() ? "" : ":\n", said, run.log.string()));
+}
+
+// The end of a frame's run, when it has come.
+std::optional<ProcessEnd> poll(Running& run, const fs::path& folder) {
+    try {
+        const std::optional<ProcessEnd> end = run.process.poll();
+        if (end) require_success(run, *end);
+        return end;
+    } catch (const RunError& error) {
+        throw RunError(fmt::format("POV-Ray failed on {}: {}{}",
+                                   scene_path(folder, run.frame).string(),
+                                   error.what(),
+                                   words_of_full_disk(folder)));
+    }
+}
+
 void take_in(const Running& run,
-             const ProcessEnd& end,
              const fs::path& folder,
              int width_px,
              int height_px,
              const RunOptions& options) {
-    if (!end.succeeded()) {
-        const std::string said = error_in_log(read_text_file(run.log));
-        throw RunError(fmt::format("POV-Ray failed on {} ({}){}{}\nIts log: {}",
+    const fs::path& part = run.part->path();
+    try {
+        if (options.convert) options.convert(part);
+        if (!fs::exists(part)) throw RunError("POV-Ray made no image, though it ended well");
+        check_frame(part, width_px, height_px);
+    } catch (const RunError& error) {
+        throw RunError(fmt::format("{}: {}\nIts log: {}{}",
                                    scene_path(folder, run.frame).string(),
-                                   end.words(),
-                                   said.empty() ? "" : ":\n",
-                                   said,
-                                   run.log.string()));
+                                   error.what(),
+                                   run.log.string(),
+                                   words_of_full_disk(folder)));
     }
-    if (options.convert) options.convert(run.part);
-    if (!fs::exists(run.part)) {
-        throw RunError(fmt::format("POV-Ray made no image of {}, though it ended well\nIts log: {}",
-                                   scene_path(folder, run.frame).string(),
-                                   run.log.string()));
-    }
-    check_frame(run.part, width_px, height_px);
-    std::error_code error;
-    fs::rename(run.part, image_path(folder, run.frame), error);
-    if (error) {
-        throw RunError(fmt::format(
-            "{}: cannot be written: {}", image_path(folder, run.frame).string(), error.message()));
-    }
+    run.part->commit();
 }
 
 }  // namespace
@@ -146,17 +187,18 @@ void run_frames(const PovRay& povray,
     const auto slots = std::min(frames.size(), static_cast<std::size_t>(std::max(1, options.jobs)));
     const int threads = std::max(1, options.jobs / static_cast<int>(slots));
 
+    const InterruptionHold hold;
     std::list<Running> running;
     std::size_t started = 0;
     std::size_t done = 0;
     auto next_report = std::chrono::steady_clock::now();
     while (done < frames.size()) {
+        throw_if_interrupted();
         while (running.size() < slots && started < frames.size()) {
             running.push_back(start(povray, folder, frames[started++], threads, options));
         }
         for (auto run = running.begin(); run != running.end();) {
-            const auto end = run->process.poll();
-            if (!end) {
+            if (!poll(*run, folder)) {
                 ++run;
                 continue;
             }
@@ -166,7 +208,7 @@ void run_frames(const PovRay& povray,
             if (started < frames.size()) {
                 running.push_back(start(povray, folder, frames[started++], threads, options));
             }
-            take_in(ended, *end, folder, width_px, height_px, options);
+            take_in(ended, folder, width_px, height_px, options);
             arrived(ended.frame);
             ++done;
         }

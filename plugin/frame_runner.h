@@ -39,11 +39,13 @@ struct RunOptions {
     // includes beside the user's own library_paths.
     std::filesystem::path scene_folder{};
     std::vector<std::string> library_paths{};
+    double stall_s = kStall_s;
 };
 
 // Renders the frames, and calls `arrived` for each when its image stands checked in its place,
 // in the order in which they end. When one fails the others are stopped, and a RunError quotes
-// POV-Ray. Images do not depend on jobs.
+// POV-Ray; when we are interrupted, Interrupted comes (plugin/interruption.h). Neither leaves
+// anything of the frames that were under way. Images do not depend on jobs.
 void run_frames(const PovRay& povray,
                 const std::filesystem::path& folder,
                 const std::vector<ManifestFrame>& frames,

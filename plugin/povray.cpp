@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray.h"
 
+#include "plugin/povray_log.h"
 #include "plugin/process.h"
 #include "plugin/scratch_folder.h"
-#include "spectral/atomic_file.h"
 #include "spectral/error.h"
 
 #include <fmt/format.h>
@@ -94,7 +94,7 @@ PovRay find_povray(const std::string& named) {
                                        kProbeTimeoutS);
     try {
         if (!end.succeeded()) throw RunError("--version ended with " + end.words());
-        return {.executable = executable, .version = version_from(read_text_file(log))};
+        return {.executable = executable, .version = version_from(read_log(log))};
     } catch (const RunError& error) {
         throw RunError(fmt::format("POV-Ray: {}: {}", executable.string(), error.what()));
     }

@@ -13,6 +13,11 @@
 
 namespace aphotic {
 
+// How long POV-Ray may show no sign of life before it is stopped (plugin/life_signs.h). It computes
+// from its first second to its last, so a minute without is a file system that does not answer, a
+// wrapper that waits for something, or a process put to sleep.
+inline constexpr double kStall_s = 60.0;
+
 struct PovRay {
     std::filesystem::path executable;
     std::string version;  // such as 3.7.0.10.unofficial

@@ -1,9 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray_log.h"
 
+#include "plugin/process.h"
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
 #include <sstream>
 
 namespace aphotic {
+
+std::string read_log(const std::filesystem::path& log) {
+    std::ifstream in(log, std::ios::binary | std::ios::ate);
+    const std::streamoff size = in.tellg();
+    if (size < 0) throw RunError(fmt::format("{}: cannot be read", log.string()));
+    std::string text(std::min(static_cast<std::size_t>(size), std::size_t{kMostLogBytes}), '\0');
+    in.seekg(0);
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    return text;
+}
 
 std::vector<std::string> statements_in_log(const std::string& log) {
     std::istringstream lines(log);
@@ -20,6 +38,7 @@ std::vector<std::string> statements_in_log(const std::string& log) {
 }
 
 std::string error_in_log(const std::string& log) {
+    constexpr std::size_t kMostLetters = 2000;
     std::string said;
     for (const std::string& statement : statements_in_log(log)) {
         if (statement.find("rror") == std::string::npos &&
@@ -28,6 +47,7 @@ std::string error_in_log(const std::string& log) {
         }
         if (!said.empty()) said += '\n';
         said += statement;
+        if (said.size() > kMostLetters) return said.substr(0, kMostLetters) + " ...";
     }
     return said;
 }

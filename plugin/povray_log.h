@@ -4,15 +4,20 @@
 // blank, and progress overwrites itself.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace aphotic {
 
+// A log as it was written, up to the size at which POV-Ray is stopped (plugin/process.h).
+[[nodiscard]] std::string read_log(const std::filesystem::path& log);
+
 // Its messages, one an entry, unwrapped.
 [[nodiscard]] std::vector<std::string> statements_in_log(const std::string& log);
 
-// What it says went wrong: the error with its file and line.
+// What it says went wrong: the error with its file and line. The first few errors, when there are
+// more than one reads.
 [[nodiscard]] std::string error_in_log(const std::string& log);
 
 }  // namespace aphotic

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/process.h"
 
+#include "plugin/interruption.h"
+#include "plugin/life_signs.h"
 #include "spectral/error.h"
 
 #include <fmt/format.h>
@@ -26,11 +28,13 @@ namespace {
 
 constexpr auto kPollInterval = std::chrono::milliseconds(10);
 
-// POV-Ray must not outlive us, however we end: the kernel sends it SIGKILL.
+// POV-Ray must not outlive us, however we end: the kernel sends it SIGKILL. A group of its own, so
+// that what it starts can be stopped with it.
 struct DieWithParent : bp::extend::handler {
     template <typename Executor>
     void on_exec_setup(Executor&) const {
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        ::setpgid(0, 0);
     }
 };
 
@@ -54,10 +58,49 @@ std::string ProcessEnd::words() const {
 }
 
 struct Process::Child {
-    bp::child child;
+    Child(pid_t leader, ProcessRequest what)
+        : pid(leader), request(std::move(what)), life_signs(pid, request.stall_s) {}
+
+    InterruptionHold hold;
+    pid_t pid;  // and its group's number
+    ProcessRequest request;
+    LifeSigns life_signs;
+    std::optional<ProcessEnd> end;
+
+    // Once it has ended, its number is free only when its end is taken: so what it started and left
+    // running is stopped first, while the group's number is surely its own.
+    void take_end() {
+        ::kill(-pid, SIGKILL);
+        int status = 0;
+        ::waitpid(pid, &status, 0);
+        end = WIFSIGNALED(status) ? ProcessEnd{.exit_code = 0, .signal = WTERMSIG(status)}
+                                  : ProcessEnd{.exit_code = WEXITSTATUS(status), .signal = 0};
+    }
+
+    void require_limits() {
+        std::error_code ignored;
+        const std::uintmax_t written = std::filesystem::file_size(request.log, ignored);
+        if (!ignored && written > request.most_log_bytes) {
+            stop("was stopped: it printed more than {} MiB", request.most_log_bytes >> 20U);
+        }
+        if (life_signs.are_gone(written)) {
+            stop("was stopped: for {} s it neither printed anything nor used the processor",
+                 request.stall_s);
+        }
+    }
+
+    template <typename Number>
+    [[noreturn]] void stop(fmt::format_string<Number> words, Number number) {
+        take_end();
+        throw RunError(fmt::format("{} {}\nIts log: {}",
+                                   request.executable.string(),
+                                   fmt::format(words, std::move(number)),
+                                   request.log.string()));
+    }
 };
 
-Process::Process(const ProcessRequest& request) : child_(std::make_unique<Child>()) {
+Process::Process(const ProcessRequest& request) {
+    const InterruptionHold hold;
     // Boost goes on in our own folder if it cannot change into this one, starts the program though
     // its log cannot be opened, and writes over the beginning of an older one.
     if (!std::filesystem::is_directory(request.folder)) {
@@ -70,38 +113,39 @@ Process::Process(const ProcessRequest& request) : child_(std::make_unique<Child>
             fmt::format("{}: cannot be written: {}", request.log.string(), std::strerror(errno)));
     }
     std::error_code error;
-    child_->child =
-        bp::child(bp::exe = request.executable.string(),
-                  bp::args = request.arguments,
-                  bp::start_dir = request.folder.string(),
-                  environment_of(request),
-                  bp::std_in<bp::null, (bp::std_out & bp::std_err)> request.log.string(),
-                  DieWithParent{},
-                  error);
+    bp::child child(bp::exe = request.executable.string(),
+                    bp::args = request.arguments,
+                    bp::start_dir = request.folder.string(),
+                    environment_of(request),
+                    bp::std_in<bp::null, (bp::std_out & bp::std_err)> request.log.string(),
+                    DieWithParent{},
+                    error);
     if (error) {
         throw RunError(
             fmt::format("{}: cannot be started: {}", request.executable.string(), error.message()));
     }
+    const pid_t pid = child.id();
+    child.detach();  // to be waited for by us, not by Boost
+    child_ = std::make_unique<Child>(pid, request);
 }
 
 Process::Process(Process&&) noexcept = default;
 Process& Process::operator=(Process&&) noexcept = default;
 
 Process::~Process() {
-    if (child_ == nullptr) return;
-    std::error_code ignored;
-    if (!child_->child.running(ignored)) return;
-    const pid_t pid = child_->child.id();
-    child_->child.terminate(ignored);
-    ::waitpid(pid, nullptr, 0);  // terminate() does not wait: it could still write, or be a zombie
+    if (child_ != nullptr && !child_->end) child_->take_end();
 }
 
 std::optional<ProcessEnd> Process::poll() {
-    std::error_code error;
-    if (child_->child.running(error)) return std::nullopt;
-    const int status = child_->child.native_exit_code();
-    if (WIFSIGNALED(status)) return ProcessEnd{.exit_code = 0, .signal = WTERMSIG(status)};
-    return ProcessEnd{.exit_code = WEXITSTATUS(status), .signal = 0};
+    if (child_->end) return child_->end;
+    siginfo_t info{};
+    const auto id = static_cast<id_t>(child_->pid);
+    if (::waitid(P_PID, id, &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0) {
+        child_->require_limits();
+        return std::nullopt;
+    }
+    child_->take_end();
+    return child_->end;
 }
 
 ProcessEnd run_process(const ProcessRequest& request, double timeout_s) {
@@ -109,6 +153,7 @@ ProcessEnd run_process(const ProcessRequest& request, double timeout_s) {
         std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
     Process process(request);
     while (true) {
+        throw_if_interrupted();
         if (const auto end = process.poll()) return *end;
         if (std::chrono::steady_clock::now() > deadline) {
             throw RunError(fmt::format(

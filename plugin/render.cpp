@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/render.h"
 
+#include "scene_gen/user_scene.h"
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
+#include "spectral/frame_check.h"
 
 #include <fmt/format.h>
 
@@ -26,16 +28,33 @@ std::optional<ManifestFrame> frame_named(const Manifest& manifest, const std::st
 
 std::optional<Manifest> earlier_manifest(const fs::path& folder) {
     if (!fs::exists(manifest_path(folder))) return std::nullopt;
-    return read_manifest(folder);
+    try {
+        return read_manifest(folder);
+    } catch (const InputError& error) {
+        throw InputError(
+            fmt::format("{}; nothing was touched. Without that file everything is rendered afresh",
+                        error.what()));
+    }
+}
+
+bool is_whole(const fs::path& image, const Manifest& wanted) {
+    try {
+        check_frame(image, wanted.width_px, wanted.height_px);
+        return true;
+    } catch (const RunError&) {
+        return false;
+    }
 }
 
 // The same scene, drawn before, its image as it was noted.
 bool still_holds(const fs::path& folder,
                  const ManifestFrame& earlier,
-                 const ManifestFrame& wanted) {
+                 const ManifestFrame& wanted,
+                 const Manifest& manifest) {
     return earlier.done() && earlier.scene_sha256 == wanted.scene_sha256 &&
            fs::exists(image_path(folder, earlier)) &&
-           sha256_of_file(image_path(folder, earlier)) == earlier.image_sha256;
+           sha256_of_file(image_path(folder, earlier)) == earlier.image_sha256 &&
+           is_whole(image_path(folder, earlier), manifest);
 }
 
 void take_away(const fs::path& file) {
@@ -68,6 +87,18 @@ void take_away_what_is_past(const fs::path& folder,
         take_away(folder / image);
 }
 
+// A frame of a scene that was edited under way may be of either, so it goes.
+void require_still_that_scene(const fs::path& folder,
+                              const ManifestFrame& frame,
+                              const SceneSet& set) {
+    try {
+        require_unchanged(set.scene_file, set.scene_files_digest);
+    } catch (const RunError&) {
+        take_away(image_path(folder, frame));
+        throw;
+    }
+}
+
 }  // namespace
 
 RenderResult render(const PovRay& povray,
@@ -85,7 +116,7 @@ RenderResult render(const PovRay& povray,
         if (earlier && earlier->povray_version == povray.version) {
             before = frame_named(*earlier, frame.name);
         }
-        if (before && still_holds(folder, *before, frame)) {
+        if (before && still_holds(folder, *before, frame, set.manifest)) {
             frame.image_sha256 = before->image_sha256;
         } else {
             missing.push_back(frame);
@@ -99,19 +130,15 @@ RenderResult render(const PovRay& povray,
 
     RunOptions run = options;
     run.scene_folder = set.scene_file.parent_path();
-    run_frames(povray,
-               folder,
-               missing,
-               set.manifest.width_px,
-               set.manifest.height_px,
-               run,
-               [&](const ManifestFrame& frame) {
-                   for (ManifestFrame& noted : result.manifest.frames) {
-                       if (noted.name != frame.name) continue;
-                       noted.image_sha256 = sha256_of_file(image_path(folder, frame));
-                   }
-                   write_manifest(folder, result.manifest);
-               });
+    const auto note = [&](const ManifestFrame& frame) {
+        if (!set.scene_file.empty()) require_still_that_scene(folder, frame, set);
+        for (ManifestFrame& noted : result.manifest.frames) {
+            if (noted.name != frame.name) continue;
+            noted.image_sha256 = sha256_of_file(image_path(folder, frame));
+        }
+        write_manifest(folder, result.manifest);
+    };
+    run_frames(povray, folder, missing, set.manifest.width_px, set.manifest.height_px, run, note);
     return result;
 }
 
@@ -123,7 +150,7 @@ Manifest generate(const fs::path& folder, const SceneSet& set) {
     for (ManifestFrame& frame : manifest.frames) {
         std::optional<ManifestFrame> before;
         if (earlier) before = frame_named(*earlier, frame.name);
-        if (before && still_holds(folder, *before, frame)) {
+        if (before && still_holds(folder, *before, frame, set.manifest)) {
             frame.image_sha256 = before->image_sha256;
         } else if (!before || before->done() || before->scene_sha256 != frame.scene_sha256) {
             take_away(image_path(folder, frame));

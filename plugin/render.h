@@ -3,12 +3,15 @@
 // Renders a set of scenes into a folder, and goes on where an earlier run stopped.
 //
 // A frame of an earlier run is kept when its scene and settings are the same to the bit, the
-// same version of POV-Ray made it, and its image is the one that was noted; all others are
-// rendered. The manifest is written anew after each frame, so that whatever interrupts a render
-// costs the frames under way and nothing else.
+// same version of POV-Ray made it, and its image is the one that was noted and whole; all others
+// are rendered. Times of files count for nothing. The manifest is written anew after each frame, so
+// that whatever interrupts a render costs the frames under way and nothing else.
 //
 // What an earlier run left of other frames, and images made from them, is taken away: it could
 // not be used again, only be mistaken for this rig's.
+//
+// A user's scene that is edited meanwhile ends the render: no frame of the edited one is noted, and
+// those noted before belong to the scene as it was, so the next run renders them again.
 #pragma once
 
 #include "plugin/frame_runner.h"
@@ -25,6 +28,8 @@ struct RenderResult {
     std::size_t kept = 0;
 };
 
+// A manifest of the folder that cannot be read is an InputError, and nothing is touched: it might
+// be another program's, or note hours of frames.
 RenderResult render(const PovRay& povray,
                     const std::filesystem::path& folder,
                     const SceneSet& set,

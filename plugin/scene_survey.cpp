@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/scene_survey.h"
 
+#include "plugin/interruption.h"
 #include "plugin/library_paths.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
@@ -77,6 +78,7 @@ class Survey {
     }
     [[nodiscard]] ProcessRequest request_for(const Task& task) const;
     void require_success(const Task& task, const ProcessEnd& end) const;
+    [[nodiscard]] std::optional<ProcessEnd> poll(Running& running) const;
     void run_tasks(const std::vector<Task>& tasks);
     [[nodiscard]] Picture picture_of(const Task& task) const;
     [[nodiscard]] Asked read_scene();
@@ -127,6 +129,7 @@ Survey::Survey(const PovRay& povray,
             "found a name that POV-Ray cannot include; allowed: ASCII letters, digits, blanks, and "
             "signs other than \" and \\");
     }
+    scene_.files_digest = digest_of_scene(scene_.file);
     for (const IncludeFile& file : include_library()) {
         write_text_file(folder_.path() / file.name, std::string(file.text));
     }
@@ -149,8 +152,9 @@ UserScene Survey::run() {
     scene_.materials = scene_materials(names, rig_, scene_.file);
     require_light_of_ours();
     measure(asked.strobes);
+    require_unchanged(scene_.file, scene_.files_digest);
     // What no listing of files finds, the pictures show.
-    scene_.digest = sha256_of_text(digest_of_scene(scene_.file) + sha256_of_text(measured_));
+    scene_.digest = sha256_of_text(scene_.files_digest + sha256_of_text(measured_));
     return std::move(scene_);
 }
 
@@ -192,12 +196,13 @@ ProcessRequest Survey::request_for(const Task& task) const {
             .arguments = std::move(arguments),
             .folder = scene_.file.parent_path(),
             .environment = {{"POVINI", (folder_.path() / "survey.ini").string()}},
-            .log = file_of(task, ".log")};
+            .log = file_of(task, ".log"),
+            .stall_s = options_.stall_s};
 }
 
 void Survey::require_success(const Task& task, const ProcessEnd& end) const {
     if (end.succeeded()) return;
-    const std::string said = error_in_log(read_text_file(file_of(task, ".log")));
+    const std::string said = error_in_log(read_log(file_of(task, ".log")));
     const std::string message = fmt::format("POV-Ray cannot read {} ({}){}{}",
                                             scene_.file.string(),
                                             end.words(),
@@ -208,11 +213,20 @@ void Survey::require_success(const Task& task, const ProcessEnd& end) const {
     throw RunError(message);
 }
 
+std::optional<ProcessEnd> Survey::poll(Running& running) const {
+    try {
+        return running.process.poll();
+    } catch (const RunError& error) {
+        throw RunError(fmt::format("{}: {}", scene_.file.string(), error.what()));
+    }
+}
+
 void Survey::run_tasks(const std::vector<Task>& tasks) {
     std::list<Running> running;
     std::size_t started = 0;
     std::size_t done = 0;
     while (done < tasks.size()) {
+        throw_if_interrupted();
         while (started < tasks.size() && running.size() < static_cast<std::size_t>(options_.jobs)) {
             const Task& task = tasks[started++];
             write_text_file(file_of(task, ".pov"),
@@ -220,7 +234,7 @@ void Survey::run_tasks(const std::vector<Task>& tasks) {
             running.push_back({.task = task, .process = Process(request_for(task))});
         }
         for (auto at = running.begin(); at != running.end();) {
-            const std::optional<ProcessEnd> end = at->process.poll();
+            const std::optional<ProcessEnd> end = poll(*at);
             if (!end) {
                 ++at;
                 continue;
@@ -254,7 +268,7 @@ Asked Survey::read_scene() {
     const Task task{.name = "scene", .frame = {}};
     run_tasks({task});
     Asked asked;
-    for (const std::string& said : statements_in_log(read_text_file(file_of(task, ".log")))) {
+    for (const std::string& said : statements_in_log(read_log(file_of(task, ".log")))) {
         const auto quoted = [&] {
             const std::size_t first = said.find('"');
             return said.substr(first + 1, said.rfind('"') - first - 1);

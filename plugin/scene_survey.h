@@ -31,6 +31,7 @@ struct SurveyOptions {
     int jobs = 1;
     std::vector<std::string> library_paths;  // beside the user's own
     std::function<void(double)> progress{};  // share of the work
+    double stall_s = kStall_s;
 };
 
 // Pixels of a survey along the longer side of the image.
@@ -39,7 +40,7 @@ inline constexpr int kSurveyPixels = 160;
 // Throws InputError for a scene that cannot be rendered spectrally, saying what of it: no water or
 // no camera of ours in it, lights that are not strobes of aphotic.inc, a lamp that the rig does not
 // have, a spectrum that is not found, nothing lit. Errors of POV-Ray's parser come as it says them,
-// with file and line.
+// with file and line. A scene that changes meanwhile is a RunError.
 [[nodiscard]] UserScene survey_scene(const PovRay& povray,
                                      const Rig& rig,
                                      const std::filesystem::path& scene_file,

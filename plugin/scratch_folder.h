@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A folder of our own among the temporary ones, gone when the object is.
+// A folder of our own among the temporary ones, gone when the object is: also when we are
+// interrupted. Only SIGKILL leaves it.
 #pragma once
+
+#include "plugin/interruption.h"
 
 #include <filesystem>
 
@@ -18,6 +21,7 @@ class ScratchFolder {
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
   private:
+    InterruptionHold hold_;
     std::filesystem::path path_;
 };
 

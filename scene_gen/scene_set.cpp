@@ -77,7 +77,10 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     set.scenes = make_scenes(rig, lambda_nm, plan.scene);
     set.ini = render_ini(rig, plan.scene);
     const UserScene* own = plan.scene.user_scene.get();
-    if (own != nullptr) set.scene_file = own->file;
+    if (own != nullptr) {
+        set.scene_file = own->file;
+        set.scene_files_digest = own->files_digest;
+    }
     const Rig lit = own != nullptr ? rig_of_scene(rig, *own) : rig;
     const std::string around = set.ini + include_text() + (own != nullptr ? own->digest : "");
     Manifest& manifest = set.manifest;

@@ -24,6 +24,7 @@ struct SceneSet {
     Manifest manifest;                   // nothing rendered yet
     std::string ini;                     // less the paths, which change no pixel
     std::filesystem::path scene_file{};  // of the user's own, absolute; none: the rig's floor
+    std::string scene_files_digest{};    // of the user's own, as it was planned for
 };
 
 [[nodiscard]] SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan);

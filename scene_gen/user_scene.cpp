@@ -129,6 +129,14 @@ std::string digest_of_scene(const fs::path& scene_file) {
     return sha256_of_text(all);
 }
 
+void require_unchanged(const fs::path& scene_file, const std::string& files_digest) {
+    if (digest_of_scene(scene_file) == files_digest) return;
+    throw RunError(
+        fmt::format("{}: it, or a file that it names, was changed while it was worked on; say the "
+                    "same command again, for the scene as it is now",
+                    scene_file.string()));
+}
+
 Rig rig_of_scene(Rig rig, const UserScene& scene) {
     const WavelengthRange range = rig.camera.range;
     rig.seafloor = {

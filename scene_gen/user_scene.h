@@ -32,7 +32,8 @@ struct UserScene {
     };
 
     std::filesystem::path file;  // absolute
-    // SHA-256 of it, of the files that it names, and of the survey's pictures.
+    std::string files_digest;    // digest_of_scene, before anything was learnt of it
+    // SHA-256 of that and of the survey's pictures.
     std::string digest;
     std::vector<NamedSpectrum> materials;  // under the names that the scene gives them
     PathRange paths;
@@ -64,6 +65,10 @@ inline constexpr double kSurveyRoom = 1.05;
 // there, beside the scene: its includes, pictures and meshes. Names that the scene puts together
 // are not seen.
 [[nodiscard]] std::string digest_of_scene(const std::filesystem::path& scene_file);
+
+// A scene that is edited while it is looked at or rendered would be half one scene, half another:
+// throws RunError when the files are no longer those of files_digest.
+void require_unchanged(const std::filesystem::path& scene_file, const std::string& files_digest);
 
 // The rig with the scene's materials in place of its floor, and white, for what has a colour or a
 // highlight of POV-Ray's own.

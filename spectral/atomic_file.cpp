@@ -4,12 +4,14 @@
 #include "spectral/error.h"
 
 #include <fmt/format.h>
+#include <signal.h>  // kill
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <system_error>
 
 namespace aphotic {
@@ -38,6 +40,18 @@ void AtomicFile::commit() {
             fmt::format("{}: cannot be written: {}", final_path_.string(), error.message()));
     }
     committed_ = true;
+}
+
+void remove_abandoned_files(const fs::path& folder) {
+    static const std::regex kTemporary(R"(\..*\.(\d{1,9})\.part(\..*)?)");
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        std::smatch found;
+        if (!std::regex_match(name, found, kTemporary)) continue;
+        const bool is_gone = ::kill(std::stoi(found[1]), 0) != 0 && errno == ESRCH;
+        if (is_gone) fs::remove(entry.path(), ignored);
+    }
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {

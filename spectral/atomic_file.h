@@ -32,6 +32,10 @@ class AtomicFile {
     bool committed_ = false;
 };
 
+// Takes away what AtomicFiles of processes that are no more left in this folder: killed ones, for
+// all others tidy up themselves.
+void remove_abandoned_files(const std::filesystem::path& folder);
+
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 // The whole file. An unreadable one is an InputError: users name such files.

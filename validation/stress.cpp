@@ -350,7 +350,10 @@ StressFound measure_stress(const StressCase& asked,
     try {
         const Rig rig = read_rig(folder / "rig.toml");
         compare(rig, render(rig, asked, folder), found);
-    } catch (const std::runtime_error& error) {  // InputError or RunError: its own words
+    } catch (const InputError& error) {
+        found.answer = StressAnswer::Refused;
+        found.said = error.what();
+    } catch (const RunError& error) {
         found.answer = StressAnswer::Refused;
         found.said = error.what();
     }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray_log.h"
 
+#include "plugin/process.h"
+#include "spectral/error.h"
+#include "tests/support/temp_folder.h"
+
 #include <gtest/gtest.h>
 
 namespace aphotic {
@@ -25,6 +29,27 @@ TEST(PovRayLog, ErrorIsUnwrapped) {
 TEST(PovRayLog, StatementsAreWithoutWhatProgressOverwrote) {
     EXPECT_EQ(statements_in_log("Rendered 1 of 2\rRendered 2 of 2\nDone\n"),
               (std::vector<std::string>{"Rendered 2 of 2", "Done"}));
+}
+
+TEST(PovRayLog, IsReadUpToTheSizeAtWhichPovRayIsStopped) {
+    const TempFolder folder;
+    write_file(folder.path() / "short.log", "POV-Ray finished\n");
+    EXPECT_EQ(read_log(folder.path() / "short.log"), "POV-Ray finished\n");
+    write_file(folder.path() / "long.log", "x");
+    std::filesystem::resize_file(folder.path() / "long.log", 3 * kMostLogBytes);  // takes no room
+    EXPECT_EQ(read_log(folder.path() / "long.log").size(), kMostLogBytes);
+    EXPECT_THROW(static_cast<void>(read_log(folder.path() / "none.log")), RunError);
+}
+
+TEST(PovRayLog, QuotesNoMoreThanOneReads) {
+    constexpr std::size_t kPage = 2500;
+    std::string log;
+    for (int i = 0; i < 1000; ++i) log += "File 'x.pov' line 7: Parse Error: No such thing.\n";
+    const std::string said = error_in_log(log);
+    EXPECT_LT(said.size(), kPage);
+    EXPECT_TRUE(said.starts_with("File 'x.pov' line 7: Parse Error: No such thing.\n"));
+    EXPECT_TRUE(said.ends_with(" ..."));
+    EXPECT_LT(error_in_log(std::string(100000, 'x') + "rror").size(), kPage);
 }
 
 }  // namespace

@@ -250,5 +250,72 @@ TEST(Process, IsGoneWhenWeAreKilled) {
     EXPECT_TRUE(pid > 0 && comes_true(is_gone)) << pid << " still runs";
 }
 
+// A zombie that nobody has buried yet runs no more.
+bool is_gone(pid_t pid) {
+    if (!runs(pid)) return true;
+    const fs::path stat = "/proc/" + std::to_string(pid) + "/stat";
+    return !fs::exists(stat) || read_text_file(stat).find(") Z ") != std::string::npos;
+}
+
+// POV-Ray, started by a script around it.
+TEST(Process, TakesWhatItStartedWithIt) {
+    Script script("sleep 60 & echo $! > pid; trap '' TERM INT; wait; wait");
+    pid_t pid = -1;
+    {
+        const Process process(script.request());
+        pid = pid_in(script.file("pid"));
+        ASSERT_GT(pid, 0);
+        EXPECT_FALSE(is_gone(pid));
+    }
+    EXPECT_TRUE(comes_true([&] { return is_gone(pid); })) << pid << " still runs";
+}
+
+TEST(Process, ThatEndedLeavesNothingRunning) {
+    Script script("sleep 60 & echo $! > pid; exit 3");
+    EXPECT_EQ(script.run().exit_code, 3);
+    const pid_t pid = pid_in(script.file("pid"));
+    ASSERT_GT(pid, 0);
+    EXPECT_TRUE(comes_true([&] { return is_gone(pid); })) << pid << " still runs";
+}
+
+// Short, so that the test is; the looks are an eighth of it apart.
+constexpr double kShortStallS = 0.4;
+
+TEST(Process, WithoutASignOfLifeIsStopped) {
+    Script script("echo $$ > pid; trap '' TERM INT; exec sleep 60");
+    script.request().stall_s = kShortStallS;
+    EXPECT_EQ(run_error([&] { script.run(); }),
+              "/bin/sh was stopped: for 0.4 s it neither printed anything nor used the processor\n"
+              "Its log: " +
+                  script.request().log.string());
+    EXPECT_TRUE(is_gone(pid_in(script.file("pid"))));
+}
+
+TEST(Process, PutToSleepIsStopped) {
+    Script script("echo $$ > pid; kill -STOP $$");
+    script.request().stall_s = kShortStallS;
+    EXPECT_NE(run_error([&] { script.run(); }).find("was stopped: for 0.4 s"), std::string::npos);
+    EXPECT_TRUE(is_gone(pid_in(script.file("pid"))));
+}
+
+// Eight times its patience, and it works all the while.
+TEST(Process, ThatPrintsOrComputesIsLeftAlone) {
+    Script printing("for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16; do echo $i; sleep 0.2; done");
+    printing.request().stall_s = 1.0;
+    EXPECT_TRUE(printing.run().succeeded());
+    // The child computes, the program itself waits.
+    Script computing("timeout --foreground 3 sh -c 'while :; do :; done'; exit 0");
+    computing.request().stall_s = 1.0;
+    EXPECT_TRUE(computing.run().succeeded());
+}
+
+TEST(Process, ThatPrintsWithoutEndIsStopped) {
+    Script script("echo $$ > pid; exec yes");
+    EXPECT_EQ(run_error([&] { script.run(); }),
+              "/bin/sh was stopped: it printed more than 64 MiB\nIts log: " +
+                  script.request().log.string());
+    EXPECT_TRUE(is_gone(pid_in(script.file("pid"))));
+}
+
 }  // namespace
 }  // namespace aphotic

@@ -5,6 +5,7 @@
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -103,6 +104,29 @@ TEST(AtomicFile, AFailedCommitNamesTheFileAndLeavesNothing) {
         EXPECT_TRUE(message.starts_with(file.string() + ": cannot be written: ")) << message;
     }
     EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"taken"});
+}
+
+TEST(AtomicFile, OfAKilledProcessIsTakenAwayAndNoOther) {
+    const TempFolder folder;
+    const pid_t killed = ::fork();
+    if (killed == 0) {
+        const AtomicFile file(folder.path() / "image.exr");
+        write_file(file.temporary(), "half");
+        ::_exit(0);
+    }
+    ::waitpid(killed, nullptr, 0);
+    const AtomicFile living(folder.path() / "image.exr");
+    write_file(living.temporary(), "half");
+    // Of the users' own.
+    const std::vector<std::string> others{
+        ".notes", "image.part.exr", ".a.part.b", ".image.1x.part.exr", "image.1.part.exr"};
+    for (const std::string& name : others) write_file(folder.path() / name, "");
+    ASSERT_EQ(names_in(folder.path()).size(), others.size() + 2);
+    remove_abandoned_files(folder.path());
+    EXPECT_EQ(names_in(folder.path()).size(), others.size() + 1);
+    EXPECT_TRUE(fs::exists(living.temporary()));
+    for (const std::string& name : others) EXPECT_TRUE(fs::exists(folder.path() / name)) << name;
+    EXPECT_NO_THROW(remove_abandoned_files(folder.path() / "missing"));
 }
 
 TEST(TextFile, ComesBackByteForByte) {

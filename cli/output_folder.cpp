@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/output_folder.h"
+
+#include "spectral/atomic_file.h"
+
+#include <system_error>
+
+namespace aphotic::cli {
+
+namespace fs = std::filesystem;
+
+FolderLock claim_folder(const fs::path& folder) {
+    make_folder(folder);
+    FolderLock lock(folder, FolderUse::Write);
+    for (const char* part : {"", "povray", "povray/frames", "povray/logs", "reference"}) {
+        remove_abandoned_files(folder / part);
+    }
+    return lock;
+}
+
+std::vector<FolderLock> claim_folders(const fs::path& written, const fs::path& read) {
+    std::vector<FolderLock> locks;
+    locks.push_back(claim_folder(written));
+    std::error_code ignored;
+    if (!fs::equivalent(written, read, ignored)) locks.emplace_back(read, FolderUse::Read);
+    return locks;
+}
+
+}  // namespace aphotic::cli

@@ -1,0 +1,519 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What breaks while a command runs, or between two runs (docs/faults.md): disks, folders, frames,
+// manifests, POV-Ray, and users who edit their scene too early.
+#include "plugin/folder_lock.h"
+#include "spectral/digest.h"
+#include "spectral/exr.h"
+#include "spectral/manifest.h"
+#include "spectral/output_images.h"
+#include "support/run_command.h"
+#include "support/small_scene.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <sstream>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBadInput = 2;
+constexpr int kRunFailed = 3;
+constexpr double kScriptTimeoutS = 200.0;
+
+class Faults : public testing::Test {
+  protected:
+    Faults() {
+        write_file(file("rig.toml"),
+                   small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
+    }
+
+    [[nodiscard]] fs::path file(const std::string& name) const { return folder_.path() / name; }
+
+    // Two frames.
+    [[nodiscard]] CommandResult render(const std::map<std::string, std::string>& environment = {},
+                                       const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{
+            "render", "rig.toml", "-o", "out", "--wavelengths", "450,500,550,600"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_aphotic(folder_.path(), arguments, environment);
+    }
+    [[nodiscard]] CommandResult integrate() const {
+        return run_aphotic(folder_.path(), {"integrate", "out"});
+    }
+    [[nodiscard]] fs::path frame(std::size_t index) const {
+        return image_path(file("out"), read_manifest(file("out")).frames[index]);
+    }
+
+    static void expect_message(const CommandResult& run, int status, const std::string& part) {
+        EXPECT_EQ(run.status, status) << run.err;
+        EXPECT_TRUE(run.err.starts_with("aphotic: ")) << run.err;
+        EXPECT_EQ(run.err.find("aphotic: ", 1), std::string::npos) << "one message: " << run.err;
+        EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+    }
+
+    // All files below a folder, by their contents.
+    [[nodiscard]] static std::map<std::string, std::string> contents(const fs::path& folder) {
+        std::map<std::string, std::string> all;
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+            if (entry.is_regular_file()) all[entry.path().string()] = sha256_of_file(entry.path());
+        }
+        return all;
+    }
+
+    // A POV-Ray that does this instead of rendering, and introduces itself as one all the same.
+    [[nodiscard]] std::map<std::string, std::string> povray_that(const std::string& body) const {
+        write_script(file("povray"),
+                     "if [ \"$1\" = --version ]; then\n  exec povray --version\nfi\n" + body);
+        return {{"APHOTIC_POVRAY", file("povray").string()}};
+    }
+
+    // A shell script in which mounts may be made that nobody else sees; its words, by line.
+    [[nodiscard]] std::vector<std::string> in_a_namespace(const std::string& script) const {
+        write_file(file("script"), "APHOTIC='" + std::string(APHOTIC_COMMAND) + "'\n" + script);
+        const ProcessEnd end = run_process({.executable = "/usr/bin/unshare",
+                                            .arguments = {"-rm", "/bin/sh", "script"},
+                                            .folder = folder_.path(),
+                                            .environment = {},
+                                            .log = file("words")},
+                                           kScriptTimeoutS);
+        EXPECT_TRUE(end.succeeded()) << end.words() << "\n" << read_text_file(file("words"));
+        std::istringstream lines(read_text_file(file("words")));
+        std::vector<std::string> words;
+        for (std::string line; std::getline(lines, line);) words.push_back(line);
+        return words;
+    }
+    [[nodiscard]] bool may_mount() const {
+        const ProcessEnd end =
+            run_process({.executable = "/bin/sh",
+                         .arguments = {"-c", "exec unshare -rm mount -t tmpfs none /mnt"},
+                         .folder = folder_.path(),
+                         .environment = {},
+                         .log = file("may-mount")},
+                        kScriptTimeoutS);
+        return end.succeeded();
+    }
+
+    TempFolder folder_;
+};
+
+// --- Two at once --------------------------------------------------------------------------------
+
+TEST_F(Faults, ASecondRunInAFolderIsRefused) {
+    ASSERT_EQ(render().status, 0);
+    const auto before = contents(file("out"));
+    {
+        const FolderLock held(file("out"), FolderUse::Write);
+        for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+                 {"render", "rig.toml", "-o", "out"},
+                 {"generate", "rig.toml", "-o", "out"},
+                 {"integrate", "out"},
+                 {"integrate", "out", "-o", "elsewhere"},
+                 {"trace", "rig.toml", "-o", "out"},
+                 {"validate", "rig.toml", "-o", "out"},
+                 {"validate", "rig.toml", "--rendered", "out", "-o", "elsewhere"},
+                 {"study", "rig.toml", "--quick", "-o", "out"}}) {
+            expect_message(run_aphotic(folder_.path(), command),
+                           kRunFailed,
+                           "out: another aphotic is at work in this folder");
+        }
+    }
+    EXPECT_EQ(contents(file("out")), before);
+    EXPECT_EQ(render().status, 0) << "and when the first is gone";
+}
+
+// --- Disks --------------------------------------------------------------------------------------
+
+// So many KiB are left when the command starts: from the first file that does not fit to the last.
+TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
+    if (!may_mount()) GTEST_SKIP() << "this system lets users make no namespaces";
+    ASSERT_EQ(render().status, 0);
+    ASSERT_EQ(run_aphotic(folder_.path(), {"trace", "rig.toml", "-o", "traced"}).status, 0);
+    const std::string words = "--wavelengths 450,500,550,600";
+    ASSERT_EQ(
+        run_aphotic(folder_.path(),
+                    {"generate", "rig.toml", "-o", "generated", "--wavelengths", "450,500,550,600"})
+            .status,
+        0);
+    // Each line of the result: command, KiB left, status, message in one line; then what is amiss.
+    std::string script =
+        "mkdir disk\n"
+        "fill() { dd if=/dev/zero of=disk/fill bs=1k 2>/dev/null; truncate -s -$1k disk/fill; }\n"
+        "same() { cmp -s $1 $2 || echo \"amiss: $1 is not $2\"; }\n"
+        "try() {\n"
+        "  name=$1; kib=$2; expected=$3; shift 3\n"
+        "  fill $kib; $APHOTIC \"$@\" >/dev/null 2>err; status=$?\n"
+        "  echo \"$name $kib $status $(tr '\\n' ' ' <err)\"\n"
+        "  find disk -name '.*.part*' -o -name '*.pov-state' | sed 's/^/amiss: /'\n"
+        "  for image in disk/out/image.exr disk/out/spectral.exr; do\n"
+        "    [ ! -e $image ] || same $image $expected/${image##*/}\n"
+        "  done\n"
+        "  rm disk/fill\n"
+        "  $APHOTIC \"$@\" >/dev/null || echo \"amiss: $name with space\"\n"
+        "  if [ $expected = generated ]; then\n"
+        "    diff -r $expected disk/out | sed 's/^/amiss: /'\n"
+        "  else\n"
+        "    same disk/out/image.exr $expected/image.exr\n"
+        "    same disk/out/spectral.exr $expected/spectral.exr\n"
+        "  fi\n"
+        "}\n"
+        "for kib in 0 8 36 44 52; do\n"
+        "  mount -t tmpfs -o size=512k none disk\n"
+        "  try render $kib out render rig.toml -o disk/out " +
+        words +
+        "\n"
+        "  umount disk\n"
+        "done\n"
+        "for kib in 0 8 28; do\n"
+        "  mount -t tmpfs -o size=512k none disk\n"
+        "  try generate $kib generated generate rig.toml -o disk/out " +
+        words +
+        "\n"
+        "  umount disk\n"
+        "done\n"
+        "for kib in 0 8 16; do\n"
+        "  mount -t tmpfs -o size=512k none disk\n"
+        "  try trace $kib traced trace rig.toml -o disk/out\n"
+        "  umount disk\n"
+        "done\n"
+        // Over the results of an earlier run, which stay.
+        "for kib in 0 8; do\n"
+        "  mount -t tmpfs -o size=512k none disk\n"
+        "  cp -r out disk/out\n"
+        "  try again $kib out render rig.toml -o disk/out " +
+        words +
+        "\n"
+        "  try integrate $kib out integrate disk/out\n"
+        "  umount disk\n"
+        "done\n";
+    int failed = 0;
+    for (const std::string& line : in_a_namespace(script)) {
+        EXPECT_FALSE(line.starts_with("amiss")) << line;
+        std::istringstream fields(line);
+        std::string name;
+        int kib = 0;
+        int status = 0;
+        fields >> name >> kib >> status;
+        if (status == 0) continue;
+        ++failed;
+        EXPECT_EQ(status, kRunFailed) << line;
+        EXPECT_NE(line.find("No space left on device"), std::string::npos) << line;
+        EXPECT_NE(line.find("disk/out"), std::string::npos) << line;
+    }
+    // Those with no room at all, and more.
+    EXPECT_GE(failed, 10);
+}
+
+// Where no namespaces are to be had, a limit on the size of files stands for the disk.
+TEST_F(Faults, AFileThatCannotGrowIsSaid) {
+    ASSERT_EQ(render().status, 0);
+    const auto before = contents(file("out"));
+    const auto limited = [&](const std::string& arguments) {
+        const std::string script =
+            "ulimit -f 4; exec " + std::string(APHOTIC_COMMAND) + " " + arguments;
+        const ProcessEnd end = run_process({.executable = "/bin/sh",
+                                            .arguments = {"-c", script},
+                                            .folder = folder_.path(),
+                                            .environment = {},
+                                            .log = file("words")},
+                                           kScriptTimeoutS);
+        return CommandResult{.status = end.signal != 0 ? 128 + end.signal : end.exit_code,
+                             .out = "",
+                             .err = read_text_file(file("words"))};
+    };
+    for (const std::string arguments : {"render rig.toml -o out --wavelengths 450,500,550,600",
+                                        "generate rig.toml -o out --wavelengths 450,500,550,600",
+                                        "integrate out",
+                                        "trace rig.toml -o traced"}) {
+        expect_message(limited(arguments), kRunFailed, "File too large");
+    }
+    EXPECT_EQ(contents(file("out")), before);
+    EXPECT_TRUE(fs::is_empty(file("traced")));
+}
+
+TEST_F(Faults, AReadOnlyFolderIsSaid) {
+    if (!may_mount()) GTEST_SKIP() << "this system lets users make no namespaces";
+    ASSERT_EQ(render().status, 0);
+    const auto before = contents(file("out"));
+    const std::vector<std::string> lines = in_a_namespace(
+        "mount --bind out out && mount -o remount,bind,ro out\n"
+        "for c in 'render rig.toml -o out' 'generate rig.toml -o out' 'integrate out' \\\n"
+        "         'trace rig.toml -o out' 'validate rig.toml -o out' "
+        "'study rig.toml --quick -o out'; do\n"
+        "  $APHOTIC $c >/dev/null 2>err; echo \"$? $(tr '\\n' ' ' <err)\"\n"
+        "done\n"
+        // Its frames can be read all the same.
+        "$APHOTIC integrate out -o elsewhere >/dev/null; echo \"$?\"\n");
+    ASSERT_EQ(lines.size(), 7U);
+    EXPECT_EQ(lines.back(), "0");
+    for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+        EXPECT_EQ(lines[i], "3 aphotic: out: cannot be written to: Read-only file system ");
+    }
+    EXPECT_EQ(contents(file("out")), before);
+}
+
+// --- Frames and manifests -----------------------------------------------------------------------
+
+void write_frame(const fs::path& to, int width_px, int height_px, float sample) {
+    ExrWriter frame(to, width_px, height_px, {"R", "G", "B"}, {});
+    const auto size = static_cast<std::size_t>(3 * width_px * height_px);
+    frame.write_rows(height_px, std::vector<float>(size, sample));
+    frame.finish();
+}
+
+struct SpoiltFrame {
+    const char* how;
+    std::function<void(const fs::path& frame, const fs::path& other)> spoil;
+    const char* found;  // when its checksum is noted as if it were right; null: any
+};
+
+const std::vector<SpoiltFrame> kSpoiltFrames{
+    {"truncated",
+     [](const fs::path& f, const fs::path&) { fs::resize_file(f, fs::file_size(f) / 2); },
+     "cannot be read"},
+    {"empty", [](const fs::path& f, const fs::path&) { fs::resize_file(f, 0); }, "OpenEXR"},
+    {"zeroed",
+     [](const fs::path& f, const fs::path&) {
+         write_file(f, std::string(static_cast<std::size_t>(fs::file_size(f)), '\0'));
+     },
+     "OpenEXR"},
+    {"of another size",
+     [](const fs::path& f, const fs::path&) { write_frame(f, 8, 8, 1.0F); },
+     "found 8 x 8 pixels"},
+    {"of nothing but NaN",
+     [](const fs::path& f, const fs::path&) {
+         const ExrReader old(f);
+         write_frame(f, old.width_px(), old.height_px(), std::numeric_limits<float>::quiet_NaN());
+     },
+     "is nan at column 0, row 0"},
+    {"of nothing but inf",
+     [](const fs::path& f, const fs::path&) {
+         const ExrReader old(f);
+         write_frame(f, old.width_px(), old.height_px(), std::numeric_limits<float>::infinity());
+     },
+     "is inf at column 0, row 0"}};
+
+TEST_F(Faults, ExactlyTheFramesThatAreNotWholeAreRenderedAgain) {
+    ASSERT_EQ(render().status, 0);
+    const std::string image = sha256_of_file(file("out") / "image.exr");
+    for (const SpoiltFrame& spoilt : kSpoiltFrames) {
+        for (const bool is_noted : {false, true}) {
+            SCOPED_TRACE(std::string(spoilt.how) + (is_noted ? ", noted" : ""));
+            spoilt.spoil(frame(1), frame(0));
+            if (is_noted) {
+                Manifest manifest = read_manifest(file("out"));
+                manifest.frames[1].image_sha256 = sha256_of_file(frame(1));
+                write_manifest(file("out"), manifest);
+            }
+            const CommandResult refused = integrate();
+            expect_message(refused, kRunFailed, frame(1).filename().string());
+            EXPECT_NE(refused.err.find(is_noted ? spoilt.found
+                                                : "is not the image that the "
+                                                  "manifest notes"),
+                      std::string::npos)
+                << refused.err;
+            EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
+            const CommandResult again = render();
+            EXPECT_NE(again.out.find("1 frame rendered, 1 kept"), std::string::npos)
+                << again.out << again.err;
+            EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
+        }
+    }
+}
+
+// A frame of the same size, samples in order, and from another plan.
+TEST_F(Faults, AFrameOfAnotherPlanIsRenderedAgain) {
+    ASSERT_EQ(render().status, 0);
+    ASSERT_EQ(
+        run_aphotic(folder_.path(), {"render", "rig.toml", "-o", "other", "--wavelengths", "650"})
+            .status,
+        0);
+    const std::string image = sha256_of_file(file("out") / "image.exr");
+    fs::copy_file(image_path(file("other"), read_manifest(file("other")).frames[0]),
+                  frame(0),
+                  fs::copy_options::overwrite_existing);
+    expect_message(integrate(), kRunFailed, "is not the image that the manifest notes");
+    EXPECT_NE(render().out.find("1 frame rendered, 1 kept"), std::string::npos);
+    EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
+}
+
+TEST_F(Faults, AClockSetBackChangesNothing) {
+    ASSERT_EQ(render().status, 0);
+    const auto before = contents(file("out") / "povray" / "frames");
+    for (const int years : {-40, 80}) {
+        const auto moment = fs::file_time_type::clock::now() + years * std::chrono::years{1};
+        for (const auto& entry : fs::recursive_directory_iterator(folder_.path()))
+            fs::last_write_time(entry.path(), moment);
+        EXPECT_NE(render().out.find("0 frames rendered, 2 kept"), std::string::npos);
+        EXPECT_EQ(contents(file("out") / "povray" / "frames"), before);
+        EXPECT_EQ(integrate().status, 0);
+    }
+}
+
+TEST_F(Faults, AManifestThatCannotBeReadIsNotWrittenOver) {
+    ASSERT_EQ(render().status, 0);
+    const std::string good = read_text_file(file("out") / "manifest.json");
+    const std::string name = read_manifest(file("out")).frames[0].name;
+    std::string elsewhere = good;
+    for (auto at = elsewhere.find(name); at != std::string::npos; at = elsewhere.find(name, at))
+        elsewhere.replace(at, name.size(), "../../../x");
+    for (const std::string& bad :
+         {good.substr(0, good.size() / 2), std::string("{\"name\": \"an app\"}"), elsewhere}) {
+        write_file(file("out") / "manifest.json", bad);
+        const auto before = contents(folder_.path());
+        for (const char* command : {"render", "generate"}) {
+            const CommandResult run =
+                run_aphotic(folder_.path(),
+                            {command, "rig.toml", "-o", "out", "--wavelengths", "450,500,550,600"});
+            expect_message(run, kBadInput, "out/manifest.json");
+            EXPECT_NE(run.err.find("nothing was touched. Without that file everything is rendered "
+                                   "afresh"),
+                      std::string::npos)
+                << run.err;
+        }
+        EXPECT_EQ(contents(folder_.path()), before);
+    }
+    fs::remove(file("out") / "manifest.json");
+    EXPECT_NE(render().out.find("2 frames rendered, 0 kept"), std::string::npos);
+}
+
+// JSON knows no such numbers; what stands for them is as wrong.
+TEST_F(Faults, AWeightThatIsNoNumberIsRefused) {
+    ASSERT_EQ(render().status, 0);
+    const auto before = contents(file("out"));
+    const std::string good = read_text_file(file("out") / "manifest.json");
+    const std::size_t first = good.find_first_of("-0123456789", good.find("\"weight\": ["));
+    const std::size_t last = good.find_first_of(",\n", first);
+    for (const std::string number : {"NaN", "nan", "Infinity", "1e999", "null", "\"1\""}) {
+        std::string bad = good;
+        write_file(file("out") / "manifest.json", bad.replace(first, last - first, number));
+        expect_message(integrate(), kBadInput, "out/manifest.json: ");
+    }
+    write_file(file("out") / "manifest.json", good);
+    EXPECT_EQ(contents(file("out")), before);
+}
+
+// --- A POV-Ray that misbehaves ------------------------------------------------------------------
+
+class BadPovRay : public Faults {
+  protected:
+    void expect_failure(const std::string& body,
+                        const std::string& part,
+                        const std::vector<std::string>& more = {}) {
+        const CommandResult run = render(povray_that(body), more);
+        expect_message(run, kRunFailed, part);
+        EXPECT_NE(run.err.find("band_450_500_550nm"), std::string::npos) << run.err;
+        EXPECT_NE(run.err.find("Its log: "), std::string::npos) << run.err;
+        EXPECT_TRUE(fs::is_empty(file("out") / "povray" / "frames"));
+        EXPECT_FALSE(fs::exists(file("out") / "image.exr"));
+    }
+};
+
+const std::vector<std::string> kOneJob{"--jobs", "1"};
+
+TEST_F(BadPovRay, GarbageForAnImage) {
+    expect_failure("for a; do case \"$a\" in +O*) echo garbage > \"${a#+O}\" ;; esac; done\n",
+                   "is no readable OpenEXR image",
+                   kOneJob);
+}
+
+TEST_F(BadPovRay, NoImage) {
+    expect_failure("exit 0\n", "made no image, though it ended well", kOneJob);
+}
+
+TEST_F(BadPovRay, ThatHangsAndHeedsNoSignal) {
+    expect_failure("trap '' TERM INT HUP\nsleep 1000\n",
+                   "was stopped: for 0.5 s it neither printed anything nor used the processor",
+                   {"--jobs", "1", "--stall-timeout", "0.5"});
+}
+
+TEST_F(BadPovRay, ThatPrintsWithoutEnd) {
+    expect_failure("exec yes\n", "was stopped: it printed more than 64 MiB", kOneJob);
+}
+
+TEST_F(BadPovRay, ThatPrintsErrorsWithoutEndIsQuotedInShort) {
+    constexpr std::size_t kPage = 4000;
+    const CommandResult run =
+        render(povray_that("yes 'Parse Error: x' | head -c 30000000\nexit 1\n"), kOneJob);
+    expect_message(run, kRunFailed, "exit status 1");
+    EXPECT_LT(run.err.size(), kPage);
+}
+
+TEST_F(BadPovRay, ThatFloodsItsIntroduction) {
+    write_script(file("povray"), "exec yes\n");
+    expect_message(render({{"APHOTIC_POVRAY", file("povray").string()}}),
+                   kRunFailed,
+                   "was stopped: it printed more than 64 MiB");
+    EXPECT_FALSE(fs::exists(file("out")));
+}
+
+// --- A scene of the user's own ------------------------------------------------------------------
+
+class OwnScene : public BadPovRay {
+  protected:
+    OwnScene() {
+        write_file(file("reef.pov"),
+                   "#version 3.7;\n#include \"aphotic.inc\"\nAphotic_Rig ()\n"
+                   "Aphotic_Rig_Seafloor ()\n");
+    }
+    [[nodiscard]] CommandResult render_reef(
+        const std::map<std::string, std::string>& environment = {},
+        const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"--scene", "reef.pov", "--jobs", "1"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return render(environment, arguments);
+    }
+};
+
+TEST_F(OwnScene, IsLookedAtUnderTheSameGuards) {
+    fs::create_directory(file("tmp"));
+    auto environment = povray_that("sleep 1000\n");
+    environment["TMPDIR"] = file("tmp").string();
+    const CommandResult hanging = render_reef(environment, {"--stall-timeout", "0.5"});
+    expect_message(hanging, kRunFailed, "reef.pov: ");
+    expect_message(hanging, kRunFailed, "was stopped: for 0.5 s");
+    static_cast<void>(povray_that("exec yes\n"));
+    expect_message(render_reef(environment), kRunFailed, "it printed more than 64 MiB");
+    EXPECT_TRUE(fs::is_empty(file("tmp")));
+    EXPECT_FALSE(fs::exists(file("out")));
+}
+
+// POV-Ray's first argument is the scene: band_* are frames, strobe_* the survey's. The edit comes
+// before the second frame.
+TEST_F(OwnScene, EditedWhileItRendersIsNotMixed) {
+    const auto editing = povray_that(
+        "case \"$1\" in *band_600nm*) echo '// edited' >> reef.pov ;; esac\n"
+        "exec povray \"$@\"\n");
+    expect_message(render_reef(editing),
+                   kRunFailed,
+                   "reef.pov: it, or a file that it names, was "
+                   "changed while it was worked on");
+    const Manifest left = read_manifest(file("out"));
+    EXPECT_TRUE(left.frames[0].done()) << "rendered before the edit";
+    EXPECT_FALSE(left.frames[1].done());
+    EXPECT_FALSE(fs::exists(image_path(file("out"), left.frames[1])));
+    EXPECT_FALSE(fs::exists(file("out") / "image.exr"));
+
+    const CommandResult again = render_reef();
+    EXPECT_NE(again.out.find("2 frames rendered, 0 kept"), std::string::npos)
+        << again.out << again.err;
+    EXPECT_EQ(integrate().status, 0);
+}
+
+TEST_F(OwnScene, EditedWhileItIsLookedAtIsNotPlanned) {
+    const auto editing = povray_that(
+        "case \"$1\" in *strobe_1_*) echo '// edited' >> reef.pov ;; esac\n"
+        "exec povray \"$@\"\n");
+    expect_message(render_reef(editing), kRunFailed, "was changed while it was worked on");
+    EXPECT_FALSE(fs::exists(file("out")));
+}
+
+}  // namespace
+}  // namespace aphotic
