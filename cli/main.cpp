@@ -3,6 +3,7 @@
 // The `aphotic` command: a table of subcommands, and what each kind of failure exits with.
 #include "cli/command.h"
 #include "spectral/error.h"
+#include "spectral/printable.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string_view>
 
 namespace {
 
@@ -39,6 +41,11 @@ constexpr std::array kCommands{
     Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
 };
 
+// A message quotes what it found: nothing in it may steer the terminal.
+void say(std::string_view message) {
+    fmt::print(stderr, "aphotic: {}\n", aphotic::printable(message, "\n\t"));
+}
+
 ExitStatus run(const Action& action) {
     try {
         const ExitStatus status = action();
@@ -47,17 +54,17 @@ ExitStatus run(const Action& action) {
             throw aphotic::RunError("standard output: cannot be written to");
         return status;
     } catch (const aphotic::InputError& error) {
-        fmt::print(stderr, "aphotic: {}\n", error.what());
+        say(error.what());
         return aphotic::cli::kBadInput;
     } catch (const aphotic::RunError& error) {
-        fmt::print(stderr, "aphotic: {}\n", error.what());
+        say(error.what());
         return aphotic::cli::kRunFailed;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "aphotic: there is not enough memory for this\n");
         return aphotic::cli::kRunFailed;
     } catch (const std::exception& error) {
         // The file system's own words, mostly.
-        fmt::print(stderr, "aphotic: {}\n", error.what());
+        say(error.what());
         return aphotic::cli::kRunFailed;
     }
 }

@@ -694,7 +694,7 @@ TEST(RigReader, ReadsTheSceneBesideTheRig) {
     const std::string text = "scene = \"reef.pov\"\n" + std::string(kMinimal);
     EXPECT_EQ(parse_rig(text, "rig.toml", folder.path()).scene, folder.path() / "reef.pov");
     EXPECT_EQ(error_of("scene = \"none.pov\"\n" + std::string(kMinimal)),
-              "rig.toml:1: scene: found 'none.pov'; allowed: a POV-Ray scene beside the rig");
+              "rig.toml:1: scene: ./none.pov: cannot be read: No such file or directory");
     EXPECT_EQ(error_of("scene = 7\n" + std::string(kMinimal)),
               "rig.toml:1: scene: found 7; allowed: a POV-Ray scene beside the rig");
 }
