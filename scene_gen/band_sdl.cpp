@@ -54,12 +54,14 @@ std::string short_name(const Spectrum& spectrum) {
 std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra) {
     std::vector<NamedSpectrum> names;
     for (const Spectrum& spectrum : spectra) {
-        const std::string name = short_name(spectrum);
+        // As POV-Ray reads it: two files that differ in their accents have one name there.
+        const std::string name = sdl_letters(short_name(spectrum));
         int same_name = 1;
         bool is_there = false;
         for (const NamedSpectrum& other : names) {
-            if (short_name(other.spectrum) != name) continue;
-            is_there |= is_same(other.spectrum, spectrum);
+            if (sdl_letters(short_name(other.spectrum)) != name) continue;
+            is_there |= short_name(other.spectrum) == short_name(spectrum) &&
+                        is_same(other.spectrum, spectrum);
             ++same_name;
         }
         if (is_there) continue;
