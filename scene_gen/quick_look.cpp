@@ -4,7 +4,6 @@
 #include "scene_gen/exposure.h"
 #include "scene_gen/light_paths.h"
 #include "scene_gen/rig_sdl.h"
-#include "scene_gen/sdl.h"
 #include "spectral/builtin.h"
 #include "spectral/error.h"
 #include "spectral/refraction.h"
@@ -39,7 +38,7 @@ std::string name_from(const std::filesystem::path& folder, const NamedSpectrum& 
     const std::size_t first = name.find('\'') + 1;
     const std::string file = name.substr(first, name.rfind('\'') - first);
     // A scene cannot ask for a name that POV-Ray cannot hold: the one that is unique will do.
-    if (!names_a_file(file) || sdl_letters(file) != file) return material.name;
+    if (!names_a_file(file) || scene_name(file) != file) return material.name;
     return std::filesystem::path(file).lexically_proximate(folder).generic_string();
 }
 

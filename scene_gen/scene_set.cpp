@@ -140,12 +140,17 @@ void require_place_in_settings(const std::string& path) {
                     path));
 }
 
+// As the settings name it that stand there, seen from the user's scene's folder.
+std::string path_from_scene(const std::filesystem::path& povray, const SceneSet& set) {
+    // Absolute, for a folder that is not there yet.
+    const std::filesystem::path here = std::filesystem::absolute(povray);
+    return std::filesystem::relative(here, set.scene_file.parent_path()).generic_string();
+}
+
 // In the user's scene's folder, where its own includes and pictures are found.
 std::string ini_for(const std::filesystem::path& povray, const SceneSet& set) {
     if (set.scene_file.empty()) return set.ini + "Output_File_Name=frames/\n";
-    const std::string here =
-        std::filesystem::relative(povray, set.scene_file.parent_path()).generic_string();
-    require_place_in_settings(here);
+    const std::string here = path_from_scene(povray, set);
     return fmt::format(
         "; To be run in the folder of {0}, with +I\"{1}/<frame>.pov\".\n"
         "{2}Library_Path=\"{1}\"\nOutput_File_Name=\"{1}/frames/\"\n",
@@ -156,12 +161,15 @@ std::string ini_for(const std::filesystem::path& povray, const SceneSet& set) {
 
 }  // namespace
 
+void require_place_for_scenes(const std::filesystem::path& folder, const SceneSet& set) {
+    require_no_bracket(folder);
+    if (!set.scene_file.empty()) require_place_in_settings(path_from_scene(folder / "povray", set));
+}
+
 void write_scenes(const std::filesystem::path& folder, const SceneSet& set) {
     const std::filesystem::path povray = folder / "povray";
-    require_no_bracket(folder);
-    const std::string ini = ini_for(povray, set);
     make_folder(povray / "frames");
-    write_text_file(povray / "render.ini", ini);
+    write_text_file(povray / "render.ini", ini_for(povray, set));
     for (const IncludeFile& file : include_library()) {
         write_text_file(povray / file.name, std::string(file.text));
     }

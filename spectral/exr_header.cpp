@@ -6,8 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace aphotic {
 
@@ -35,6 +38,39 @@ std::string name(std::istream& in) {
     return text;
 }
 
+// The C++ library reads so many bytes of these, whatever their size says.
+std::optional<std::streamoff> size_of(std::string_view type) {
+    constexpr std::array<std::pair<std::string_view, std::streamoff>, 24> kSizes{
+        {{"box2i", 16},
+         {"box2f", 16},
+         {"chromaticities", 32},
+         {"compression", 1},
+         {"deepImageState", 1},
+         {"double", 8},
+         {"envmap", 1},
+         {"float", 4},
+         {"int", 4},
+         {"keycode", 28},
+         {"lineOrder", 1},
+         {"m33d", 72},
+         {"m33f", 36},
+         {"m44d", 128},
+         {"m44f", 64},
+         {"rational", 8},
+         {"tiledesc", 9},
+         {"timecode", 8},
+         {"v2d", 16},
+         {"v2f", 8},
+         {"v2i", 8},
+         {"v3d", 24},
+         {"v3f", 12},
+         {"v3i", 12}}};
+    for (const auto& [name, size] : kSizes) {
+        if (name == type) return size;
+    }
+    return std::nullopt;
+}
+
 // A list that ends with an empty name, whatever its size: the C++ library reads it so.
 void pass_over_channels(std::istream& in) {
     constexpr std::streamoff kBytesOfAChannel = 16;
@@ -59,6 +95,7 @@ void require_lengths(const std::filesystem::path& file) {
         const std::streamoff size = number(in);
         const std::streamoff end = in.tellg() + size;
         if (!in || end > length) throw std::runtime_error(kDamaged);
+        if (size != size_of(type).value_or(size)) throw std::runtime_error(kDamaged);
         if (type == "chlist") pass_over_channels(in);
         if (type == "chlist" && in.tellg() != end) throw std::runtime_error(kDamaged);
         in.seekg(end);

@@ -168,11 +168,11 @@ class Parser {
     }
 
     [[noreturn]] void refuse(const std::string& allowed) const {
-        const bool printable = token_.text.size() != 1 ||
-                               std::isprint(static_cast<unsigned char>(token_.text[0])) != 0;
+        const bool is_printable = token_.text.size() != 1 ||
+                                  std::isprint(static_cast<unsigned char>(token_.text[0])) != 0;
         const std::string found =
             token_.kind == Token::Kind::End ? "the end of the file"
-            : printable
+            : is_printable
                 ? fmt::format("'{}'", printable(token_.text.substr(0, kMostShown)))
                 : fmt::format("the byte 0x{:02X}", static_cast<unsigned char>(token_.text[0]));
         fail(file_, token_.line, fmt::format("{}: found {}; allowed: {}", where_, found, allowed));

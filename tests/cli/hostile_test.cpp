@@ -40,7 +40,7 @@ const std::vector<Texts> kHostile{
      R"(" } sphere { 0, 9 pigment { rgb 1 } } #if (0) ".csv)",
      R"(#include "colors.inc".csv)",
      R"(\" #debug "owned".csv)"},
-    {"/* never closed", "\\", "a\\", "a\".csv", "a'.csv"},
+    {"/* never closed", "\\", "a\\.csv", "a\".csv", "a'.csv"},
     {R"(%s%n {} {0} ${HOME} $(touch owned) `touch owned` ; touch owned)",
      R"(Output_File_Name=owned +Oowned [x] #declare Aphotic_Fade_Distance = 9;)",
      "-O owned.csv",

@@ -42,12 +42,15 @@ TEST(Named, TellsApartWhatPovRayWouldTakeForEqual) {
                                         line("a '\xC3\xB6.csv'", 0.1, 0.3),
                                         line("a '\xC3\xBC.csv'", 0.1, 0.2),
                                         line("a 'x\".csv'", 0.1, 0.4),
-                                        line("a 'x'.csv'", 0.1, 0.5)};
+                                        line("a 'x'.csv'", 0.1, 0.5),
+                                        line("a '" + std::string(200, 'y') + "1'", 0.1, 0.6),
+                                        line("a '" + std::string(200, 'y') + "2'", 0.1, 0.7)};
     const std::vector<NamedSpectrum> names = named(spectra);
     ASSERT_EQ(names.size(), spectra.size());
     std::set<std::string> texts;
     for (std::size_t i = 0; i < spectra.size(); ++i) {
         EXPECT_EQ(names[i].name, sdl_letters(names[i].name));
+        EXPECT_LE(names[i].name.size(), 60U) << "all that aphotic.inc takes";
         EXPECT_EQ(name_of(spectra[i], names), names[i].name);
         texts.insert(names[i].name);
     }

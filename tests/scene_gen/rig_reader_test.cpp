@@ -1055,14 +1055,12 @@ TEST(RigReader, RefusesTextsWithoutEnd) {
 
 TEST(RigReader, KeepsWhatIsOnlyText) {
     const std::string evil = R"(" \ ' */ // /* #include %s {} ${HOME} `id` <script> Köln)";
-    const Rig rig = parse("title =  + evil + 
-" + std::string(kMinimal));
+    const Rig rig = parse("title = '''" + evil + "'''\n" + std::string(kMinimal));
     EXPECT_EQ(rig.title, evil);
 }
 
 TEST(RigReader, RefusesBytesThatAreNoUtf8) {
-    const std::string message = error_of("title = "aÿ"
-" + std::string(kMinimal));
+    const std::string message = error_of("title = \"a\xFF\"\n" + std::string(kMinimal));
     EXPECT_TRUE(message.starts_with("rig.toml:1: ")) << message;
     EXPECT_FALSE(has_control_characters(message)) << message;
 }
@@ -1071,107 +1069,77 @@ TEST(RigReader, RefusesBytesThatAreNoUtf8) {
 TEST(RigReader, RefusesEveryFileOutsideItsFolder) {
     const TempFolder folder;
     fs::create_directory(folder.path() / "rig");
-    write_file(folder.path() / "t.csv", "wavelength_nm,reflectance
-300,1
-900,1
-");
-    write_file(folder.path() / "t.obj", "v 0 0 1
-v 1 0 1
-v 0 1 1
-f 1 2 3
-");
-    write_file(folder.path() / "t.pov", "#version 3.7;
-");
-    const std::string csv = ""../t.csv"";
+    write_file(folder.path() / "t.csv", "wavelength_nm,reflectance\n300,1\n900,1\n");
+    write_file(folder.path() / "t.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
+    write_file(folder.path() / "t.pov", "#version 3.7;\n");
+    write_file(folder.path() / "rig" / "rgb.csv",
+               "wavelength_nm,red,green,blue\n300,1,1,1\n900,1,1,1\n");
+    const std::string csv = "\"../t.csv\"";
+    const std::string object = "[[object]]\nname = \"a\"\nshape = ";
     const std::vector<std::pair<std::string, std::string>> rigs{
-        {
-            "materials = [" + csv +
-                "]
-                " + std::string(kMinimal), " rig.toml : 1 : materials : "},
-            {
-                "scene = "../ t.pov
-                              "
-                              " + std::string(kMinimal), " rig.toml : 1 : scene
-                    : "},
-                      {with(8, "response = { table = " + csv + ", kind = " energy " }"),
-                       "rig.toml:8: camera.response.table: "},
-                    {with(8,
-                          "response = { filters = " + csv + ", quantum_efficiency = " q.csv " }"),
-                     "rig.toml:8: camera.response.filters: "},
-                {with(9, "[water]
-absorption = " + csv), "rig.toml:10: water.absorption: "},
-        {with(10, "[seafloor]
-reflectance = " + csv), "rig.toml:11: seafloor.reflectance: "},
+        {"materials = [" + csv + "]\n" + std::string(kMinimal), "rig.toml:1: materials: "},
+        {"scene = \"../t.pov\"\n" + std::string(kMinimal), "rig.toml:1: scene: "},
+        {with(8, "response = { table = " + csv + ", kind = \"energy\" }"),
+         "rig.toml:8: camera.response.table: "},
+        {with(8, "response = { filters = " + csv + ", quantum_efficiency = \"q.csv\" }"),
+         "rig.toml:8: camera.response.filters: "},
+        {with(8, "response = { filters = \"rgb.csv\", quantum_efficiency = " + csv + " }"),
+         "rig.toml:8: camera.response.quantum_efficiency: "},
+        {with(9, "[water]\nabsorption = " + csv), "rig.toml:10: water.absorption: "},
+        {with(10, "[seafloor]\nreflectance = " + csv), "rig.toml:11: seafloor.reflectance: "},
         {minimal_and("spectrum = " + csv), "rig.toml:18: strobe[0].spectrum: "},
-        {minimal_and("[[object]]
-name = "a"
-shape = "mesh"
-file = "../t.obj"
-"),
-         "rig.toml:21: object[0].file: "},
-        {
-                        minimal_and("[[object]]
-name = "a"
-shape = "sphere"
-centre_m = [0, 0, 2]
-"
-                     "radius_m = 0.1
-reflectance = " +
-                     csv),
+        {minimal_and(object + "\"mesh\"\nfile = \"../t.obj\"\n"), "rig.toml:21: object[0].file: "},
+        {minimal_and(object +
+                     "\"sphere\"\ncentre_m = [0, 0, 2]\nradius_m = 0.1\nreflectance = " + csv),
          "rig.toml:23: object[0].reflectance: "}};
     for (const auto& [rig, place] : rigs) {
-                        const std::string message = error_of(rig, folder.path() / "rig");
-                        EXPECT_TRUE(message.starts_with(place + "found '../t.")) << message;
-                        EXPECT_TRUE(
-                            message.ends_with("; allowed: a file in the same folder or below it"))
-                            << message;
+        const std::string message = error_of(rig, folder.path() / "rig");
+        EXPECT_TRUE(message.starts_with(place + "found '../t.")) << message;
+        EXPECT_TRUE(message.ends_with("; allowed: a file in the same folder or below it"))
+            << message;
     }
-                }
+}
 
-                TEST(RigReader, ReadsARigThatIsReachedThroughALink) {
-                    const TempFolder folder;
-                    fs::create_directories(folder.path() / "elsewhere");
-                    write_file(folder.path() / "elsewhere" / "rig.toml", kMinimal);
-                    fs::create_symlink("elsewhere/rig.toml", folder.path() / "link.toml");
-                    EXPECT_EQ(read_rig(folder.path() / "link.toml").sled.altitude_m, 2.5);
-                }
+TEST(RigReader, ReadsARigThatIsReachedThroughALink) {
+    const TempFolder folder;
+    fs::create_directories(folder.path() / "elsewhere");
+    write_file(folder.path() / "elsewhere" / "rig.toml",
+               with(10, "[seafloor]\nreflectance = \"mud.csv\""));
+    write_file(folder.path() / "mud.csv", "wavelength_nm,reflectance\n300,0.25\n900,0.25\n");
+    fs::create_symlink("elsewhere/rig.toml", folder.path() / "link.toml");
+    EXPECT_EQ(read_rig(folder.path() / "link.toml").seafloor.reflectance.at(550.0), 0.25)
+        << "its tables are beside the link, which is what was named";
+}
 
-                // The files are holes: they take no place on the disk, and are not read.
-                TEST(RigReader, RefusesFilesOfAbsurdSizeUnread) {
-                    const TempFolder folder;
-                    constexpr std::uintmax_t kTebibyte = std::uintmax_t{1} << 40U;
-                    for (const char* name : {"rig.toml", "t.csv", "t.obj"}) {
-                        write_file(folder.path() / name, "");
-                        fs::resize_file(folder.path() / name, kTebibyte);
-                    }
-                    const auto message_of = [](const auto& read) {
-                        try {
-                            read();
-                        } catch (const InputError& error) {
-                            return std::string(error.what());
-                        }
-                        return std::string("no error");
-                    };
-                    EXPECT_EQ(message_of(
-                                  [&] { static_cast<void>(read_rig(folder.path() / "rig.toml")); }),
-                              (folder.path() / "rig.toml").string() +
-                                  ": found more than 8 MiB; allowed: 8 MiB or less");
-    EXPECT_EQ(error_of(with(10, "[seafloor]
-reflectance = "t.csv""), folder.path()),
+// The files are holes: they take no place on the disk, and are not read.
+TEST(RigReader, RefusesFilesOfAbsurdSizeUnread) {
+    const TempFolder folder;
+    constexpr std::uintmax_t kTebibyte = std::uintmax_t{1} << 40U;
+    for (const char* name : {"rig.toml", "t.csv", "t.obj"}) {
+        write_file(folder.path() / name, "");
+        fs::resize_file(folder.path() / name, kTebibyte);
+    }
+    const auto read_error = [](const fs::path& file) {
+        try {
+            static_cast<void>(read_rig(file));
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(
+        read_error(folder.path() / "rig.toml"),
+        (folder.path() / "rig.toml").string() + ": found more than 8 MiB; allowed: 8 MiB or less");
+    EXPECT_EQ(error_of(with(10, "[seafloor]\nreflectance = \"t.csv\""), folder.path()),
               "rig.toml:11: seafloor.reflectance: " + (folder.path() / "t.csv").string() +
                   ": found more than 64 MiB; allowed: 64 MiB or less");
-    EXPECT_EQ(error_of(minimal_and("[[object]]
-name = "a"
-shape = "mesh"
-file = "t.obj"
-"),
-                       folder.path()),
-              "rig.toml:21: object[0].file: " + (folder.path() / "t.obj").string() +
-                  ": found more than 256 MiB; allowed: 256 MiB or less");
-    EXPECT_EQ(message_of([&] {
-                        static_cast<void>(read_rig("/dev/zero")); }),
-              "/dev/zero: found more than 8 MiB; allowed: 8 MiB or less");
-                }
+    EXPECT_EQ(
+        error_of(minimal_and("[[object]]\nname = \"a\"\nshape = \"mesh\"\nfile = \"t.obj\"\n"),
+                 folder.path()),
+        "rig.toml:21: object[0].file: " + (folder.path() / "t.obj").string() +
+            ": found more than 256 MiB; allowed: 256 MiB or less");
+    EXPECT_EQ(read_error("/dev/zero"), "/dev/zero: found more than 8 MiB; allowed: 8 MiB or less");
+}
 
-            }  // namespace
-        }      // namespace aphotic
+}  // namespace
+}  // namespace aphotic
