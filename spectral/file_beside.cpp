@@ -31,7 +31,7 @@ fs::path end_of(const fs::path& path) {
 }  // namespace
 
 fs::path file_beside(const fs::path& folder, const std::string& name) {
-    const fs::path path = folder / name;
+    fs::path path = folder / name;
     constexpr std::string_view kAllowed = "a file in the same folder or below it";
     // By its words first: what lies elsewhere is not even looked for.
     if (leads_out(fs::path(name).lexically_normal())) {
