@@ -232,7 +232,8 @@ ExitStatus show_data(const Options& options) {
         list_tables(options.json);
         return kDone;
     }
-    const Entry entry = entry_of(load_table(options.name, {}));
+    const Entry entry = entry_of(names_a_file(options.name) ? read_table(options.name)
+                                                            : builtin_table(options.name));
     if (!options.plot_file.empty()) write_plot(plot_of(entry), options.plot_file);
     if (options.csv) {
         fmt::print("{}", csv_of(entry.table));

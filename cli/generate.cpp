@@ -44,7 +44,7 @@ void print_own_scene(const SceneSet& scenes, const Manifest& manifest, const std
     fmt::print(
         "{}: {} for {} of {} in {}/povray\n"
         "Render them in the scene's folder, for example with\n"
-        "  (cd '{}' && for scene in {}/povray/band_*.pov; do povray '\"{}/povray/render.ini\"' "
+        "  (cd {} && for scene in {}/povray/band_*.pov; do povray {} "
         "\"+I\\\"$scene\\\"\"; done)\n"
         "and then say\n"
         "  aphotic integrate {}\n",
@@ -53,10 +53,10 @@ void print_own_scene(const SceneSet& scenes, const Manifest& manifest, const std
         counted(manifest.wavelengths.size(), "wavelength"),
         scenes.scene_file.filename().string(),
         folder,
-        home.string(),
-        here,
-        here,
-        folder);
+        shell_word(home.string()),
+        shell_word(here),
+        shell_word(fmt::format("\"{}/povray/render.ini\"", here)),
+        shell_word(folder));
 }
 
 ExitStatus generate_scenes(const Options& options) {
@@ -91,8 +91,8 @@ ExitStatus generate_scenes(const Options& options) {
         counted(manifest.frames.size(), "scene"),
         counted(manifest.wavelengths.size(), "wavelength"),
         options.folder,
-        options.folder,
-        options.folder);
+        shell_word(options.folder),
+        shell_word(options.folder));
     return kDone;
 }
 

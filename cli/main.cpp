@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "plugin/interruption.h"
 #include "spectral/error.h"
+#include "spectral/printable.h"
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string_view>
 
 namespace {
 
@@ -44,6 +46,11 @@ constexpr std::array kCommands{
     Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
 };
 
+// A message quotes what it found: nothing in it may steer the terminal.
+void say(std::string_view message) {
+    fmt::print(stderr, "aphotic: {}\n", aphotic::printable(message, "\n\t"));
+}
+
 ExitStatus run(const Action& action) {
     try {
         const ExitStatus status = action();
@@ -57,17 +64,17 @@ ExitStatus run(const Action& action) {
                    interrupted.what());
         aphotic::end_by_signal(interrupted.signal());
     } catch (const aphotic::InputError& error) {
-        fmt::print(stderr, "aphotic: {}\n", error.what());
+        say(error.what());
         return aphotic::cli::kBadInput;
     } catch (const aphotic::RunError& error) {
-        fmt::print(stderr, "aphotic: {}\n", error.what());
+        say(error.what());
         return aphotic::cli::kRunFailed;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "aphotic: there is not enough memory for this\n");
         return aphotic::cli::kRunFailed;
     } catch (const std::exception& error) {
         // The file system's own words, mostly.
-        fmt::print(stderr, "aphotic: {}\n", error.what());
+        say(error.what());
         return aphotic::cli::kRunFailed;
     }
 }

@@ -105,6 +105,7 @@ RenderResult render(const PovRay& povray,
                     const fs::path& folder,
                     const SceneSet& set,
                     const RunOptions& options) {
+    require_place_for_scenes(folder, set);
     make_folder(folder);
     RenderResult result{.manifest = set.manifest, .rendered = 0, .kept = 0};
     result.manifest.povray_version = povray.version;
@@ -143,6 +144,7 @@ RenderResult render(const PovRay& povray,
 }
 
 Manifest generate(const fs::path& folder, const SceneSet& set) {
+    require_place_for_scenes(folder, set);
     make_folder(folder);
     Manifest manifest = set.manifest;
     const std::optional<Manifest> earlier = earlier_manifest(folder);

@@ -12,6 +12,9 @@ namespace aphotic {
 
 namespace {
 
+constexpr std::size_t kMostNameLetters = 60;  // in aphotic.inc
+constexpr std::size_t kRoomForANumber = 6;
+
 bool is_same(const Spectrum& a, const Spectrum& b) {
     return std::ranges::equal(a.lambda_nm(), b.lambda_nm()) &&
            std::ranges::equal(a.values(), b.values());
@@ -51,20 +54,31 @@ std::string short_name(const Spectrum& spectrum) {
     return std::filesystem::path(quoted).filename().string();
 }
 
+std::string scene_name(std::string_view name) {
+    return sdl_letters(name).substr(0, kMostNameLetters);
+}
+
 std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra) {
     std::vector<NamedSpectrum> names;
     for (const Spectrum& spectrum : spectra) {
-        const std::string name = short_name(spectrum);
+        // As POV-Ray reads it: two files that differ in their accents have one name there.
+        const std::string name = scene_name(short_name(spectrum));
         int same_name = 1;
         bool is_there = false;
         for (const NamedSpectrum& other : names) {
-            if (short_name(other.spectrum) != name) continue;
-            is_there |= is_same(other.spectrum, spectrum);
+            if (scene_name(short_name(other.spectrum)) != name) continue;
+            is_there |= short_name(other.spectrum) == short_name(spectrum) &&
+                        is_same(other.spectrum, spectrum);
             ++same_name;
         }
         if (is_there) continue;
-        names.push_back({.name = same_name == 1 ? name : fmt::format("{} {}", name, same_name),
-                         .spectrum = spectrum});
+        names.push_back(
+            {.name =
+                 same_name == 1
+                     ? name
+                     : fmt::format(
+                           "{} {}", name.substr(0, kMostNameLetters - kRoomForANumber), same_name),
+             .spectrum = spectrum});
     }
     return names;
 }

@@ -9,6 +9,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
@@ -25,8 +26,11 @@ struct NamedSpectrum {
 // The name in a spectrum's own: sand of "reflectance 'sand'", mud.csv of a file.
 [[nodiscard]] std::string short_name(const Spectrum& spectrum);
 
-// Each spectrum once, under its short name; of different ones with the same name, the later have a
-// number behind it.
+// What a scene can call it: sdl_letters, as many as aphotic.inc takes.
+[[nodiscard]] std::string scene_name(std::string_view name);
+
+// Each spectrum once, under its short name as a scene can have it; of different ones with the same
+// name, the later have a number behind it.
 [[nodiscard]] std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra);
 
 // The name under which it stands there.

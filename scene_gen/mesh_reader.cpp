@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/mesh_reader.h"
 
-#include "spectral/atomic_file.h"
 #include "spectral/error.h"
+#include "spectral/printable.h"
 
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
@@ -15,8 +15,6 @@
 #include <sstream>
 
 namespace aphotic {
-
-namespace fs = std::filesystem;
 
 using Eigen::Vector3d;
 
@@ -44,20 +42,27 @@ bool is_finite_number(std::string_view word) {
     return error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
 }
 
+// Of a face's corner such as "3", "3/1" or "-1//2": texture and normal do not count.
+std::string_view vertex_of(std::string_view corner) {
+    return corner.substr(0, corner.find('/'));
+}
+
 // The vertex of a face's corner such as "3", "3/1" or "-1//2" is there.
 bool is_vertex_before(std::string_view corner, long vertices) {
     long index = 0;
-    const std::string_view word = corner.substr(0, corner.find('/'));
+    const std::string_view word = vertex_of(corner);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
     return error == std::errc() && end == word.data() + word.size() && index != 0 &&
            std::abs(index) <= vertices;
 }
 
-// The library takes what it cannot read for 0 and leaves out what does not fit, without a word:
-// so every line is looked at first.
-void require_sound_lines(const std::string& text, const fs::path& file) {
+// The lines that count, and of their words those that do. The library takes what it cannot read for
+// 0, and leaves out what does not fit, without a word: so it gets these alone, each looked at
+// first.
+std::string sound_lines(const std::string& text, const std::string& file_name) {
     std::istringstream lines(text);
     std::string line;
+    std::string sound;
     long vertices = 0;
     for (int number = 1; std::getline(lines, line); ++number) {
         const std::vector<std::string_view> words = words_of(line);
@@ -65,25 +70,30 @@ void require_sound_lines(const std::string& text, const fs::path& file) {
         const auto require = [&](bool is_sound, std::string_view allowed) {
             if (is_sound) return;
             throw InputError(fmt::format("{}:{}: found {}; allowed: {}",
-                                         file.string(),
+                                         file_name,
                                          number,
-                                         fmt::join(words, " "),
+                                         printable(fmt::format("{}", fmt::join(words, " "))),
                                          allowed));
         };
         const std::span values = std::span(words).subspan(1);
         if (words[0] == "v") {
             require(values.size() >= 3 && std::ranges::all_of(values, is_finite_number),
                     "v and three finite numbers");
+            sound += fmt::format("v {} {} {}\n", values[0], values[1], values[2]);
             ++vertices;
         } else if (words[0] == "f") {
-            require(values.size() >= 3 && std::ranges::all_of(values,
-                                                              [&](std::string_view corner) {
-                                                                  return is_vertex_before(corner,
-                                                                                          vertices);
-                                                              }),
+            const auto is_there = [&](std::string_view corner) {
+                return is_vertex_before(corner, vertices);
+            };
+            require(values.size() >= 3 && std::ranges::all_of(values, is_there),
                     fmt::format("f and three or more of the {} vertices above it", vertices));
+            sound += 'f';
+            for (const std::string_view corner : values)
+                sound += fmt::format(" {}", vertex_of(corner));
+            sound += '\n';
         }
     }
+    return sound;
 }
 
 // volatile: where GCC 12 turns several of these into vector instructions, it leaves out the
@@ -93,18 +103,20 @@ double to_single(double value) {
     return rounded;
 }
 
-void require_room(const std::vector<tinyobj::shape_t>& shapes, const fs::path& file) {
+void require_room(const std::vector<tinyobj::shape_t>& shapes, const std::string& file_name) {
     std::size_t triangles = 0;
     for (const tinyobj::shape_t& shape : shapes) triangles += shape.mesh.indices.size() / 3;
     if (triangles > 0 && triangles <= kMostTriangles) return;
     throw InputError(
         fmt::format("{}: found {}; allowed: 1 to {} triangles",
-                    file.string(),
+                    file_name,
                     triangles == 0 ? "no faces" : fmt::format("{} triangles", triangles),
                     kMostTriangles));
 }
 
-void require_area(const Mesh& mesh, const std::array<int, 3>& corners, const fs::path& file) {
+void require_area(const Mesh& mesh,
+                  const std::array<int, 3>& corners,
+                  const std::string& file_name) {
     const auto vertex = [&](int i) -> const Vector3d& {
         return mesh.vertices_m[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])];
     };
@@ -115,7 +127,7 @@ void require_area(const Mesh& mesh, const std::array<int, 3>& corners, const fs:
     throw InputError(
         fmt::format("{}: found a triangle of no area, of the vertices {}, {} and {}, counted from "
                     "1; allowed: three corners that do not lie on one line",
-                    file.string(),
+                    file_name,
                     corners[0] + 1,
                     corners[1] + 1,
                     corners[2] + 1));
@@ -123,19 +135,17 @@ void require_area(const Mesh& mesh, const std::array<int, 3>& corners, const fs:
 
 }  // namespace
 
-Mesh read_mesh(const fs::path& file, const Vector3d& position_m) {
-    const std::string text = read_text_file(file);
-    require_sound_lines(text, file);
-    std::istringstream in(text);
+Mesh parse_mesh(const std::string& file_name, const std::string& obj, const Vector3d& position_m) {
+    std::istringstream in(sound_lines(obj, file_name));
     tinyobj::attrib_t attributes;
     std::vector<tinyobj::shape_t> shapes;
     std::vector<tinyobj::material_t> materials;
     std::string warnings;
     std::string errors;
     if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &in)) {
-        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), errors));
+        throw InputError(fmt::format("{}: cannot be read: {}", file_name, errors));
     }
-    require_room(shapes, file);
+    require_room(shapes, file_name);
 
     Mesh mesh;
     const std::vector<double>& xyz = attributes.vertices;
@@ -149,7 +159,7 @@ Mesh read_mesh(const fs::path& file, const Vector3d& position_m) {
             mesh.triangles.push_back({corners[i].vertex_index,
                                       corners[i + 1].vertex_index,
                                       corners[i + 2].vertex_index});
-            require_area(mesh, mesh.triangles.back(), file);
+            require_area(mesh, mesh.triangles.back(), file_name);
         }
     }
     return mesh;

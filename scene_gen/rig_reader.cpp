@@ -8,7 +8,9 @@
 #include "spectral/builtin.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
+#include "spectral/file_beside.h"
 #include "spectral/nearest.h"
+#include "spectral/printable.h"
 #include "spectral/refraction.h"
 #include "spectral/table.h"
 
@@ -30,6 +32,12 @@ namespace fs = std::filesystem;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr double kMetresPerMillimetre = 1e-3;
 constexpr double kMetresPerMicrometre = 1e-6;
+
+// A thousand strobes, each written out, are a fiftieth of it.
+constexpr std::size_t kMostRigBytes = 8 * kMebibyte;
+
+// Any title or file name; and POV-Ray reads a comment of it.
+constexpr std::size_t kMostTextBytes = 1000;
 
 struct Bounds {
     double least;
@@ -141,7 +149,7 @@ class Section {
     [[nodiscard]] std::string text(std::string_view key, const std::string& allowed) {
         const toml::node& node = required(key, allowed);
         if (!node.is_string()) found_but(key, allowed);
-        return *node.value<std::string>();
+        return one_line(node, key);
     }
 
     [[nodiscard]] std::string text_or(std::string_view key,
@@ -156,7 +164,7 @@ class Section {
         std::vector<std::string> all;
         for (const toml::node& node : *array) {
             if (!node.is_string()) found_but(key, allowed);
-            all.push_back(*node.value<std::string>());
+            all.push_back(one_line(node, key));
         }
         return all;
     }
@@ -221,7 +229,32 @@ class Section {
         }
     }
 
+    // Texts of a rig stand in scenes, settings, pages and messages, where a line's end or an escape
+    // would be read as more than text.
+    void require_one_line(const toml::node& node,
+                          std::string_view key,
+                          std::string_view text) const {
+        if (has_control_characters(text)) {
+            fail(node,
+                 key,
+                 fmt::format("found '{}'; allowed: a text without control characters",
+                             printable(text.substr(0, kMostTextBytes))));
+        }
+        if (text.size() > kMostTextBytes) {
+            fail(node,
+                 key,
+                 fmt::format(
+                     "found a text of {} bytes; allowed: up to {}", text.size(), kMostTextBytes));
+        }
+    }
+
   private:
+    [[nodiscard]] std::string one_line(const toml::node& node, std::string_view key) const {
+        std::string text = *node.value<std::string>();
+        require_one_line(node, key, text);
+        return text;
+    }
+
     static bool is_within(const toml::node& node, Bounds bounds) {
         if (!node.is_number()) return false;
         const auto value = node.value<double>();  // nothing: an integer that no double holds
@@ -237,7 +270,8 @@ class Section {
     }
 
     [[nodiscard]] std::string name_of(std::string_view key) const {
-        return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+        const std::string name = printable(key);
+        return path_.empty() ? name : fmt::format("{}.{}", path_, name);
     }
 
     const toml::table& table_;
@@ -302,8 +336,11 @@ std::vector<Spectrum> RigReader::curves_named(const Section& section,
                                               const std::string& name,
                                               CurveRole role) {
     return section.at_key(key, [&] {
-        if (names_a_file(name)) digested_ += sha256_of_text(read_text_file(folder_ / name));
-        return load_curves(name, role, folder_);
+        if (!names_a_file(name)) return load_curves(name, role, folder_);
+        const fs::path file = file_beside(folder_, name);
+        const std::string csv = read_text_file(file, kMostTableBytes);
+        digested_ += sha256_of_text(csv);
+        return curves_of(parse_table(file.string(), csv), role);
     });
 }
 
@@ -518,8 +555,10 @@ Mesh RigReader::read_mesh_of(Section& object) {
         position_m = Eigen::Vector3d(object.numbers<3>("position_m", kPositionM).data());
     }
     return object.at_key("file", [&] {
-        digested_ += sha256_of_text(read_text_file(folder_ / name));
-        return read_mesh(folder_ / name, position_m);
+        const fs::path file = file_beside(folder_, name);
+        const std::string obj = read_text_file(file, kMostMeshBytes);
+        digested_ += sha256_of_text(obj);
+        return parse_mesh(file.string(), obj, position_m);
     });
 }
 
@@ -617,6 +656,7 @@ Rig RigReader::read(Section top) {
     Section beam_sections = top.section("beam", "a table [beam.NAME]");
     std::vector<Beam> beams;
     for (const std::string& name : beam_sections.keys()) {
+        beam_sections.require_one_line(beam_sections.required(name, ""), name, name);
         beams.push_back(read_beam(beam_sections.section(name, "a table"), name));
     }
     if (beams.empty()) top.found_but("beam", "at least one table [beam.NAME]");
@@ -633,8 +673,8 @@ Rig RigReader::read(Section top) {
     std::vector<Object> objects = read_objects(top, strobes);
     fs::path scene;
     if (top.has("scene")) {
-        scene = folder_ / top.text("scene", "a POV-Ray scene beside the rig");
-        if (!fs::is_regular_file(scene)) top.found_but("scene", "a POV-Ray scene beside the rig");
+        const std::string name = top.text("scene", "a POV-Ray scene beside the rig");
+        scene = top.at_key("scene", [&] { return file_beside(folder_, name); });
     }
     top.refuse_unknown_keys();
 
@@ -663,8 +703,8 @@ Rig parse_rig(std::string_view toml, const std::string& file_name, const fs::pat
     try {
         table = toml::parse(toml, file_name);
     } catch (const toml::parse_error& error) {
-        throw InputError(
-            fmt::format("{}:{}: {}", file_name, error.source().begin.line, error.description()));
+        throw InputError(fmt::format(
+            "{}:{}: {}", file_name, error.source().begin.line, printable(error.description())));
     }
     Rig rig = RigReader(toml, folder).read(Section(table, "", file_name));
     if (rig.title.empty()) rig.title = fs::path(file_name).stem().string();
@@ -672,7 +712,7 @@ Rig parse_rig(std::string_view toml, const std::string& file_name, const fs::pat
 }
 
 Rig read_rig(const fs::path& file) {
-    return parse_rig(read_text_file(file), file.string(), file.parent_path());
+    return parse_rig(read_text_file(file, kMostRigBytes), file.string(), file.parent_path());
 }
 
 }  // namespace aphotic

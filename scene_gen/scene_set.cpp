@@ -5,8 +5,13 @@
 #include "scene_gen/reintegration.h"
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
+#include "spectral/error.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
 
 namespace aphotic {
 
@@ -119,11 +124,36 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
 
 namespace {
 
+// POV-Ray takes what follows a '[' in the name of its settings for a section of them.
+void require_no_bracket(const std::filesystem::path& folder) {
+    if (std::filesystem::absolute(folder).string().find('[') == std::string::npos) return;
+    throw InputError(fmt::format(
+        "{}: found a '[' in the folder's path; allowed: none, for POV-Ray cannot read its settings "
+        "there",
+        folder.string()));
+}
+
+// A setting ends with its line, and a path in it with the next quotation mark.
+void require_place_in_settings(const std::string& path) {
+    const auto is_plain = [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"'; };
+    if (std::ranges::all_of(path, is_plain)) return;
+    throw InputError(
+        fmt::format("{}: found a path with letters beyond ASCII, a quotation mark or a line's end; "
+                    "allowed: none, for POV-Ray cannot read them",
+                    path));
+}
+
+// As the settings name it that stand there, seen from the user's scene's folder.
+std::string path_from_scene(const std::filesystem::path& povray, const SceneSet& set) {
+    // Absolute, for a folder that is not there yet.
+    const std::filesystem::path here = std::filesystem::absolute(povray);
+    return std::filesystem::relative(here, set.scene_file.parent_path()).generic_string();
+}
+
 // In the user's scene's folder, where its own includes and pictures are found.
 std::string ini_for(const std::filesystem::path& povray, const SceneSet& set) {
     if (set.scene_file.empty()) return set.ini + "Output_File_Name=frames/\n";
-    const std::string here =
-        std::filesystem::relative(povray, set.scene_file.parent_path()).generic_string();
+    const std::string here = path_from_scene(povray, set);
     return fmt::format(
         "; To be run in the folder of {0}, with +I\"{1}/<frame>.pov\".\n"
         "{2}Library_Path=\"{1}\"\nOutput_File_Name=\"{1}/frames/\"\n",
@@ -133,6 +163,11 @@ std::string ini_for(const std::filesystem::path& povray, const SceneSet& set) {
 }
 
 }  // namespace
+
+void require_place_for_scenes(const std::filesystem::path& folder, const SceneSet& set) {
+    require_no_bracket(folder);
+    if (!set.scene_file.empty()) require_place_in_settings(path_from_scene(folder / "povray", set));
+}
 
 void write_scenes(const std::filesystem::path& folder, const SceneSet& set) {
     const std::filesystem::path povray = folder / "povray";

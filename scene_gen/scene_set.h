@@ -33,6 +33,10 @@ struct SceneSet {
 // the full spectrum.
 [[nodiscard]] std::array<double, kChannels> lamp_signal(const Rig& rig, const LightFamily& family);
 
+// Throws InputError where POV-Ray could not read its settings in the folder, which need not be
+// there yet.
+void require_place_for_scenes(const std::filesystem::path& folder, const SceneSet& set);
+
 // Scenes, settings and an empty folder for the frames; not the manifest, in which whoever
 // renders first notes what is there already.
 void write_scenes(const std::filesystem::path& folder, const SceneSet& set);

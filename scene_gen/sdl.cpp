@@ -24,11 +24,17 @@ std::string sdl_point(const Eigen::Vector3d& sled) {
     return sdl_vector({pov.x(), pov.y(), pov.z()});
 }
 
+std::string sdl_letters(std::string_view text) {
+    std::string letters = sdl_comment(text);
+    std::ranges::replace(letters, '"', '\'');
+    std::ranges::replace(letters, '\\', '/');
+    std::ranges::replace_if(
+        letters, [](unsigned char c) { return c >= 0x80; }, '?');
+    return letters;
+}
+
 std::string sdl_text(std::string_view text) {
-    std::string safe = sdl_comment(text);
-    std::ranges::replace(safe, '"', '\'');
-    std::ranges::replace(safe, '\\', '/');
-    return "\"" + safe + "\"";
+    return fmt::format("\"{}\"", sdl_letters(text));
 }
 
 std::string sdl_comment(std::string_view text) {

@@ -21,7 +21,12 @@ using Channels = std::array<double, 3>;
 // A point or a direction of the sled's frame, in POV-Ray's.
 [[nodiscard]] std::string sdl_point(const Eigen::Vector3d& sled);
 
-// "text" in quotes. What would end it, escape from it or break the line is replaced.
+// What a text in POV-Ray's language can hold of this one: ASCII, without quotation marks,
+// backslashes and line ends. POV-Ray itself makes a blank of any letter beyond ASCII, and then
+// takes texts that differ in such letters alone for equal.
+[[nodiscard]] std::string sdl_letters(std::string_view text);
+
+// sdl_letters in quotes. What would end it, escape from it or break the line is replaced.
 [[nodiscard]] std::string sdl_text(std::string_view text);
 
 // For a comment, which ends with its line.

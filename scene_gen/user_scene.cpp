@@ -16,7 +16,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <regex>
 #include <set>
 
 namespace aphotic {
@@ -104,8 +103,26 @@ std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
     return materials;
 }
 
+namespace {
+
+// What stands in quotes on one line. No regular expression: on a long line, as of a mesh, the
+// library's run out of stack.
+std::vector<std::string> quoted_in(const std::string& text) {
+    std::vector<std::string> all;
+    std::size_t open = text.find('"');
+    while (open != std::string::npos) {
+        const std::size_t close = text.find_first_of("\"\n", open + 1);
+        if (close == std::string::npos) break;
+        const bool is_quoted = text[close] == '"' && close > open + 1;
+        if (is_quoted) all.push_back(text.substr(open + 1, close - open - 1));
+        open = text.find('"', is_quoted ? close + 1 : close);
+    }
+    return all;
+}
+
+}  // namespace
+
 std::string digest_of_scene(const fs::path& scene_file) {
-    static const std::regex kQuoted(R"re("([^"\n]+)")re");
     constexpr std::array kLanguage{".pov", ".inc", ".mac", ".mcr"};
     std::set<fs::path> seen;
     std::vector<fs::path> open{fs::absolute(scene_file).lexically_normal()};
@@ -117,9 +134,8 @@ std::string digest_of_scene(const fs::path& scene_file) {
         if (!seen.insert(file).second) continue;
         digests[file.lexically_relative(folder).generic_string()] = sha256_of_file(file);
         if (std::ranges::find(kLanguage, file.extension().string()) == kLanguage.end()) continue;
-        const std::string text = read_text_file(file);
-        for (std::sregex_iterator at(text.begin(), text.end(), kQuoted), end; at != end; ++at) {
-            const fs::path named = (folder / (*at)[1].str()).lexically_normal();
+        for (const std::string& name : quoted_in(read_text_file(file))) {
+            const fs::path named = (folder / name).lexically_normal();
             std::error_code ignored;
             if (fs::is_regular_file(named, ignored)) open.push_back(named);
         }

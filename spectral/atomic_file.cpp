@@ -8,11 +8,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <regex>
 #include <system_error>
+#include <vector>
 
 namespace aphotic {
 
@@ -66,13 +67,28 @@ void write_text_file(const fs::path& path, std::string_view text) {
     file.commit();
 }
 
-std::string read_text_file(const fs::path& path) {
+std::string read_text_file(const fs::path& path, std::size_t most_bytes) {
     std::ifstream in(path, std::ios::binary);
     if (!in || fs::is_directory(path)) {
         throw InputError(fmt::format(
             "{}: cannot be read: {}", path.string(), in ? "it is a folder" : std::strerror(errno)));
     }
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    const auto require_room = [&](std::uintmax_t bytes) {
+        if (bytes <= most_bytes) return;
+        throw InputError(fmt::format("{0}: found more than {1} MiB; allowed: {1} MiB or less",
+                                     path.string(),
+                                     most_bytes / kMebibyte));
+    };
+    if (fs::is_regular_file(path)) require_room(fs::file_size(path));
+    // Counted while reading too: a pipe or a device does not say its size.
+    std::string text;
+    std::vector<char> chunk(1U << 16U);
+    while (in.read(chunk.data(), std::ssize(chunk)), in.gcount() > 0) {
+        text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
+        require_room(text.size());
+    }
+    if (in.bad()) throw InputError(fmt::format("{}: cannot be read", path.string()));
+    return text;
 }
 
 void make_folder(const fs::path& folder) {

@@ -10,7 +10,10 @@
 // the file.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <limits>
+#include <string>
 #include <string_view>
 
 namespace aphotic {
@@ -38,8 +41,13 @@ void remove_abandoned_files(const std::filesystem::path& folder);
 
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
-// The whole file. An unreadable one is an InputError: users name such files.
-[[nodiscard]] std::string read_text_file(const std::filesystem::path& path);
+inline constexpr std::size_t kMebibyte = std::size_t{1} << 20U;
+
+// The whole file. An unreadable one is an InputError: users name such files. So is one of more
+// bytes than most_bytes, of which no more than that is read: a device has no end.
+[[nodiscard]] std::string read_text_file(
+    const std::filesystem::path& path,
+    std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 
 // Makes the folder and its parents. A RunError says why it cannot be made or written to.
 void make_folder(const std::filesystem::path& folder);

@@ -2,6 +2,7 @@
 #include "spectral/builtin.h"
 
 #include "spectral/error.h"
+#include "spectral/file_beside.h"
 #include "spectral/nearest.h"
 
 #include <fmt/format.h>
@@ -61,7 +62,7 @@ bool names_a_file(std::string_view name_or_path) {
 }
 
 Table load_table(const std::string& name_or_path, const std::filesystem::path& base_folder) {
-    if (names_a_file(name_or_path)) return read_table(base_folder / name_or_path);
+    if (names_a_file(name_or_path)) return read_table(file_beside(base_folder, name_or_path));
     return builtin_table(name_or_path);
 }
 

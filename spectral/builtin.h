@@ -31,7 +31,8 @@ struct BuiltinTable {
 // Throws InputError for an unknown name, with the nearest known one and the list of names.
 [[nodiscard]] Table builtin_table(std::string_view name);
 
-// A name that ends in ".csv" is a file, looked up in base_folder; any other is a built-in.
+// A name that ends in ".csv" is a file in base_folder or below it (file_beside.h); any other is a
+// built-in.
 [[nodiscard]] bool names_a_file(std::string_view name_or_path);
 [[nodiscard]] Table load_table(const std::string& name_or_path,
                                const std::filesystem::path& base_folder);

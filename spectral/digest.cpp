@@ -49,7 +49,9 @@ std::string sha256_of_text(std::string_view text) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
+    // A pipe would be waited for, and a device has no end.
+    const bool is_regular = std::filesystem::is_regular_file(file);
+    std::ifstream in(is_regular ? file : std::filesystem::path(), std::ios::binary);
     if (!in) throw RunError(fmt::format("{}: cannot be read", file.string()));
     Sha256 digest;
     std::array<char, 1 << 16> block{};

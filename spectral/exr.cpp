@@ -2,6 +2,7 @@
 #include "spectral/exr.h"
 
 #include "spectral/error.h"
+#include "spectral/exr_header.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -53,8 +54,18 @@ Imf::FrameBuffer planar_rows(std::span<const std::string> channels,
 
 }  // namespace
 
+// Far beyond any camera's; OpenEXR sets up tables of this many rows before it reads the first.
+constexpr int kMostSide_px = 65536;
+
+const char* sound_header(const fs::path& path) {
+    require_sound_exr_header(path);
+    Imf::Header::setMaxImageSize(kMostSide_px, kMostSide_px);
+    return path.c_str();
+}
+
 struct ExrReader::File {
-    explicit File(const fs::path& path) : in(path.c_str()), window(in.header().dataWindow()) {}
+    explicit File(const fs::path& path)
+        : in(sound_header(path)), window(in.header().dataWindow()) {}
 
     Imf::InputFile in;
     Imath::Box2i window;

@@ -18,6 +18,8 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr const char* kFormat = "aphotic-manifest-2";
+// A thousand times what the manifest of 100 wavelengths takes.
+constexpr std::size_t kMostManifestBytes = 64 * kMebibyte;
 constexpr int kLargestImagePx = 16384;
 
 // Reads keys of one JSON object, and says which one is wrong.
@@ -270,10 +272,14 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
 }
 
 Manifest read_manifest(const fs::path& folder) {
-    const std::string where = manifest_path(folder).string();
-    const Json json = Json::parse(read_text_file(where), nullptr, false);
-    if (json.is_discarded()) throw InputError(where + ": is not JSON");
-    const Reader reader(json, where);
+    const fs::path file = manifest_path(folder);
+    return parse_manifest(file.string(), read_text_file(file, kMostManifestBytes));
+}
+
+Manifest parse_manifest(const std::string& file_name, std::string_view text) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (json.is_discarded()) throw InputError(file_name + ": is not JSON");
+    const Reader reader(json, file_name);
     if (reader.text("format") != kFormat) reader.fail("format", fmt::format("\"{}\"", kFormat));
 
     Manifest manifest;

@@ -23,6 +23,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
@@ -105,5 +106,8 @@ void write_manifest(const std::filesystem::path& folder, const Manifest& manifes
 
 // Every value is checked; an InputError names the file and the key.
 [[nodiscard]] Manifest read_manifest(const std::filesystem::path& folder);
+
+// The same from text; file_name stands in messages.
+[[nodiscard]] Manifest parse_manifest(const std::string& file_name, std::string_view text);
 
 }  // namespace aphotic

@@ -2,6 +2,7 @@
 #include "spectral/spline_import.h"
 
 #include "spectral/error.h"
+#include "spectral/printable.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -26,8 +27,9 @@ constexpr std::array<std::string_view, 4> kSplineForms{
 constexpr std::string_view kArraySize = "36";
 constexpr double kArrayFirst_nm = 380.0;  // as SpectralRender has it
 constexpr double kArrayStep_nm = 10.0;
-constexpr std::size_t kMaxVector = 5;  // POV-Ray's longest
-constexpr int kMaxDepth = 100;         // of brackets in brackets
+constexpr std::size_t kMaxVector = 5;   // POV-Ray's longest
+constexpr std::size_t kMostShown = 80;  // of a text, in a message
+constexpr int kMaxDepth = 100;          // of brackets in brackets
 
 [[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& what) {
     throw InputError(fmt::format("{}:{}: {}", file, line, what));
@@ -166,12 +168,12 @@ class Parser {
     }
 
     [[noreturn]] void refuse(const std::string& allowed) const {
-        const bool printable = token_.text.size() != 1 ||
-                               std::isprint(static_cast<unsigned char>(token_.text[0])) != 0;
+        const bool is_printable = token_.text.size() != 1 ||
+                                  std::isprint(static_cast<unsigned char>(token_.text[0])) != 0;
         const std::string found =
             token_.kind == Token::Kind::End ? "the end of the file"
-            : printable
-                ? fmt::format("'{}'", token_.text)
+            : is_printable
+                ? fmt::format("'{}'", printable(token_.text.substr(0, kMostShown)))
                 : fmt::format("the byte 0x{:02X}", static_cast<unsigned char>(token_.text[0]));
         fail(file_, token_.line, fmt::format("{}: found {}; allowed: {}", where_, found, allowed));
     }
@@ -429,7 +431,7 @@ std::string spline_table(const std::string& file_name,
     check_values(file_name, spectrum, role);
     std::string text = fmt::format("# title: {}\n", spectrum.identifier);
     text += fmt::format("# source: {}, line {}, #declare {}\n",
-                        std::filesystem::path(file_name).filename().string(),
+                        printable(std::filesystem::path(file_name).filename().string()),
                         spectrum.line,
                         spectrum.identifier);
     text += fmt::format("# obtained: {}\n", obtained_text(spectrum));

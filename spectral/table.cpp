@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/table.h"
 
+#include "spectral/atomic_file.h"
 #include "spectral/error.h"
 
 #include <fmt/format.h>
@@ -8,11 +9,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <set>
 #include <utility>
@@ -21,7 +19,6 @@ namespace aphotic {
 
 namespace {
 
-constexpr std::size_t kMaxTableBytes = 64U << 20U;
 constexpr double kNoUpperBound = std::numeric_limits<double>::infinity();
 
 struct RoleRule {
@@ -262,26 +259,7 @@ Table parse_table(const std::string& name, std::string_view text) {
 }
 
 Table read_table(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) {
-        throw InputError(
-            fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-    }
-    if (std::filesystem::is_directory(file)) {
-        throw InputError(fmt::format("{}: cannot be read: it is a folder", file.string()));
-    }
-    // Counted while reading, so that pipes are bounded too.
-    std::string text;
-    std::vector<char> chunk(1U << 16U);
-    while (in.read(chunk.data(), std::ssize(chunk)), in.gcount() > 0) {
-        text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
-        if (text.size() > kMaxTableBytes) {
-            throw InputError(
-                fmt::format("{}: found more than 64 MiB; allowed: 64 MiB or less", file.string()));
-        }
-    }
-    if (in.bad()) throw InputError(fmt::format("{}: cannot be read", file.string()));
-    return parse_table(file.string(), text);
+    return parse_table(file.string(), read_text_file(file, kMostTableBytes));
 }
 
 std::string_view role_name(CurveRole role) {

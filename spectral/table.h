@@ -53,6 +53,8 @@ struct Table {
     [[nodiscard]] std::string text_of(const std::string& key) const;
 };
 
+inline constexpr std::size_t kMostTableBytes = std::size_t{64} << 20U;
+
 // name stands in messages.
 [[nodiscard]] Table parse_table(const std::string& name, std::string_view text);
 [[nodiscard]] Table read_table(const std::filesystem::path& file);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/band_sdl.h"
 
+#include "scene_gen/sdl.h"
 #include "spectral/error.h"
 
 #include <gtest/gtest.h>
+
+#include <set>
 
 namespace aphotic {
 namespace {
@@ -31,6 +34,27 @@ TEST(Named, NamesEachSpectrumOnceAndNoTwoAlike) {
     EXPECT_EQ(name_of(spectra[1], names), "x");
     EXPECT_EQ(name_of(spectra[2], names), "x 2");
     EXPECT_THROW(static_cast<void>(name_of(line("a 'z'", 0.0, 0.0), names)), InputError);
+}
+
+// POV-Ray takes "Ã¤.csv" and "Ã¶.csv" for equal, and a quotation mark cannot stand in its texts.
+TEST(Named, TellsApartWhatPovRayWouldTakeForEqual) {
+    const std::vector<Spectrum> spectra{line("a '\xC3\xA4.csv'", 0.1, 0.2),
+                                        line("a '\xC3\xB6.csv'", 0.1, 0.3),
+                                        line("a '\xC3\xBC.csv'", 0.1, 0.2),
+                                        line("a 'x\".csv'", 0.1, 0.4),
+                                        line("a 'x'.csv'", 0.1, 0.5),
+                                        line("a '" + std::string(200, 'y') + "1'", 0.1, 0.6),
+                                        line("a '" + std::string(200, 'y') + "2'", 0.1, 0.7)};
+    const std::vector<NamedSpectrum> names = named(spectra);
+    ASSERT_EQ(names.size(), spectra.size());
+    std::set<std::string> texts;
+    for (std::size_t i = 0; i < spectra.size(); ++i) {
+        EXPECT_EQ(names[i].name, sdl_letters(names[i].name));
+        EXPECT_LE(names[i].name.size(), 60U) << "all that aphotic.inc takes";
+        EXPECT_EQ(name_of(spectra[i], names), names[i].name);
+        texts.insert(names[i].name);
+    }
+    EXPECT_EQ(texts.size(), spectra.size());
 }
 
 TEST(BandSdl, HoldsEveryValueAtEachChannelsWavelength) {

@@ -2,12 +2,14 @@
 #include "scene_gen/rig_reader.h"
 
 #include "spectral/error.h"
+#include "spectral/printable.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <utility>
 
@@ -694,7 +696,7 @@ TEST(RigReader, ReadsTheSceneBesideTheRig) {
     const std::string text = "scene = \"reef.pov\"\n" + std::string(kMinimal);
     EXPECT_EQ(parse_rig(text, "rig.toml", folder.path()).scene, folder.path() / "reef.pov");
     EXPECT_EQ(error_of("scene = \"none.pov\"\n" + std::string(kMinimal)),
-              "rig.toml:1: scene: found 'none.pov'; allowed: a POV-Ray scene beside the rig");
+              "rig.toml:1: scene: ./none.pov: cannot be read: No such file or directory");
     EXPECT_EQ(error_of("scene = 7\n" + std::string(kMinimal)),
               "rig.toml:1: scene: found 7; allowed: a POV-Ray scene beside the rig");
 }
@@ -964,6 +966,179 @@ TEST(RigReader, CountsAMeshInTheDigest) {
     const std::string a = digest_with("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
     EXPECT_NE(a, digest_with("v 0 0 1\nv 1 0 1\nv 0 2 1\nf 1 2 3\n"));
     EXPECT_EQ(a, digest_with("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n"));
+}
+
+// --- Hostile rigs ----------------------------------------------------------------------------
+
+// Each key of a number, with what is no number that a rig may hold.
+TEST(RigReader, RefusesNumbersThatAreNone) {
+    for (const std::string number : {"nan",
+                                     "-nan",
+                                     "inf",
+                                     "-inf",
+                                     "9223372036854775807",
+                                     "-9223372036854775808",
+                                     "1979-05-27",
+                                     "1979-05-27T07:32:00Z",
+                                     "07:32:00",
+                                     "true",
+                                     "\"2\"",
+                                     "[2]",
+                                     "{}"}) {
+        const std::string message = error_of(with(2, "altitude_m = " + number));
+        EXPECT_TRUE(message.starts_with("rig.toml:2: sled.altitude_m: found ")) << message;
+        EXPECT_TRUE(message.ends_with("; allowed: a number from 0.001 to 10000")) << message;
+    }
+    // No double and no 64-bit integer holds these: TOML itself has no such number.
+    for (const std::string number : {"1e400",
+                                     "99999999999999999999",
+                                     "0x1FFFFFFFFFFFFFFFF",
+                                     "0x",
+                                     "1__0",
+                                     "2,5",
+                                     "02",
+                                     ".5",
+                                     "5."}) {
+        const std::string message = error_of(with(2, "altitude_m = " + number));
+        EXPECT_TRUE(message.starts_with("rig.toml:2: ")) << number << ": " << message;
+    }
+}
+
+TEST(RigReader, UnderstandsEveryNumberOfTomlExactly) {
+    const auto altitude_m = [](const std::string& number) {
+        return parse(with(2, "altitude_m = " + number)).sled.altitude_m;
+    };
+    EXPECT_EQ(altitude_m("0x10"), 16.0);
+    EXPECT_EQ(altitude_m("0o17"), 15.0);
+    EXPECT_EQ(altitude_m("0b101"), 5.0);
+    EXPECT_EQ(altitude_m("1_0.0_1"), 10.01);
+    EXPECT_EQ(altitude_m("+2.5e-1"), 0.25);
+    EXPECT_EQ(parse(with(2, "altitude_m = 2\npitch_deg = -0.0")).sled.pitch_rad, 0.0);
+    EXPECT_EQ(parse(with(9, "[water]\nmultiple = -0.0")).water.attenuation_per_m(550.0), 0.0);
+    EXPECT_NE(error_of(with(2, "altitude_m = -0.0")), "no error");
+    EXPECT_NE(error_of(with(2, "altitude_m = 1e-400")), "no error") << "it is not 0";
+}
+
+// Every text of a rig, by the line of the rig that holds it. ESC would steer a terminal, a line's
+// end would begin a line of its own in scenes and settings, and NUL would end a file's name.
+TEST(RigReader, RefusesControlCharactersInEveryText) {
+    for (const std::string bad :
+         {"\\n", "\\u001b", "\\u0000", "\\r", "\\t", "\\u007f", "\\u009b"}) {
+        const std::vector<std::pair<std::string, std::string>> rigs{
+            {"title = \"a" + bad + "\"\n" + std::string(kMinimal), "rig.toml:1: title: "},
+            {"scene = \"a" + bad + "\"\n" + std::string(kMinimal), "rig.toml:1: scene: "},
+            {"materials = [\"a" + bad + ".csv\"]\n" + std::string(kMinimal),
+             "rig.toml:1: materials: "},
+            {with(14, "name = \"a" + bad + "\""), "rig.toml:14: strobe[0].name: "},
+            {with(12, "cones = [{ part = \"a" + bad + "\", half_angle_deg = 90, weight = 1 }]"),
+             "rig.toml:12: beam.wide.cones[0].part: "},
+            {with(11, "[beam.\"a" + bad + "\"]"), "rig.toml:11: beam.a\\x"},
+            {with(10, "[seafloor]\nreflectance = \"a" + bad + ".csv\""),
+             "rig.toml:11: seafloor.reflectance: "},
+            {minimal_and("[[object]]\nname = \"a" + bad + "\""), "rig.toml:19: object[0].name: "}};
+        for (const auto& [rig, place] : rigs) {
+            const std::string message = error_of(rig);
+            EXPECT_TRUE(message.starts_with(place)) << message;
+            EXPECT_NE(message.find("allowed: a text without control characters"), std::string::npos)
+                << message;
+            EXPECT_FALSE(has_control_characters(message)) << message;
+        }
+    }
+}
+
+TEST(RigReader, RefusesTextsWithoutEnd) {
+    const std::string longest(1000, 'a');
+    EXPECT_EQ(parse("title = \"" + longest + "\"\n" + std::string(kMinimal)).title, longest);
+    EXPECT_EQ(error_of("title = \"" + longest + "a\"\n" + std::string(kMinimal)),
+              "rig.toml:1: title: found a text of 1001 bytes; allowed: up to 1000");
+}
+
+TEST(RigReader, KeepsWhatIsOnlyText) {
+    const std::string evil = R"(" \ ' */ // /* #include %s {} ${HOME} `id` <script> Köln)";
+    const Rig rig = parse("title = '''" + evil + "'''\n" + std::string(kMinimal));
+    EXPECT_EQ(rig.title, evil);
+}
+
+TEST(RigReader, RefusesBytesThatAreNoUtf8) {
+    const std::string message = error_of("title = \"a\xFF\"\n" + std::string(kMinimal));
+    EXPECT_TRUE(message.starts_with("rig.toml:1: ")) << message;
+    EXPECT_FALSE(has_control_characters(message)) << message;
+}
+
+// The rules are those of file_beside.h; here, that no key goes around them.
+TEST(RigReader, RefusesEveryFileOutsideItsFolder) {
+    const TempFolder folder;
+    fs::create_directory(folder.path() / "rig");
+    write_file(folder.path() / "t.csv", "wavelength_nm,reflectance\n300,1\n900,1\n");
+    write_file(folder.path() / "t.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
+    write_file(folder.path() / "t.pov", "#version 3.7;\n");
+    write_file(folder.path() / "rig" / "rgb.csv",
+               "wavelength_nm,red,green,blue\n300,1,1,1\n900,1,1,1\n");
+    const std::string csv = "\"../t.csv\"";
+    const std::string object = "[[object]]\nname = \"a\"\nshape = ";
+    const std::vector<std::pair<std::string, std::string>> rigs{
+        {"materials = [" + csv + "]\n" + std::string(kMinimal), "rig.toml:1: materials: "},
+        {"scene = \"../t.pov\"\n" + std::string(kMinimal), "rig.toml:1: scene: "},
+        {with(8, "response = { table = " + csv + ", kind = \"energy\" }"),
+         "rig.toml:8: camera.response.table: "},
+        {with(8, "response = { filters = " + csv + ", quantum_efficiency = \"q.csv\" }"),
+         "rig.toml:8: camera.response.filters: "},
+        {with(8, "response = { filters = \"rgb.csv\", quantum_efficiency = " + csv + " }"),
+         "rig.toml:8: camera.response.quantum_efficiency: "},
+        {with(9, "[water]\nabsorption = " + csv), "rig.toml:10: water.absorption: "},
+        {with(10, "[seafloor]\nreflectance = " + csv), "rig.toml:11: seafloor.reflectance: "},
+        {minimal_and("spectrum = " + csv), "rig.toml:18: strobe[0].spectrum: "},
+        {minimal_and(object + "\"mesh\"\nfile = \"../t.obj\"\n"), "rig.toml:21: object[0].file: "},
+        {minimal_and(object +
+                     "\"sphere\"\ncentre_m = [0, 0, 2]\nradius_m = 0.1\nreflectance = " + csv),
+         "rig.toml:23: object[0].reflectance: "}};
+    for (const auto& [rig, place] : rigs) {
+        const std::string message = error_of(rig, folder.path() / "rig");
+        EXPECT_TRUE(message.starts_with(place + "found '../t.")) << message;
+        EXPECT_TRUE(message.ends_with("; allowed: a file in the same folder or below it"))
+            << message;
+    }
+}
+
+TEST(RigReader, ReadsARigThatIsReachedThroughALink) {
+    const TempFolder folder;
+    fs::create_directories(folder.path() / "elsewhere");
+    write_file(folder.path() / "elsewhere" / "rig.toml",
+               with(10, "[seafloor]\nreflectance = \"mud.csv\""));
+    write_file(folder.path() / "mud.csv", "wavelength_nm,reflectance\n300,0.25\n900,0.25\n");
+    fs::create_symlink("elsewhere/rig.toml", folder.path() / "link.toml");
+    EXPECT_EQ(read_rig(folder.path() / "link.toml").seafloor.reflectance.at(550.0), 0.25)
+        << "its tables are beside the link, which is what was named";
+}
+
+// The files are holes: they take no place on the disk, and are not read.
+TEST(RigReader, RefusesFilesOfAbsurdSizeUnread) {
+    const TempFolder folder;
+    constexpr std::uintmax_t kTebibyte = std::uintmax_t{1} << 40U;
+    for (const char* name : {"rig.toml", "t.csv", "t.obj"}) {
+        write_file(folder.path() / name, "");
+        fs::resize_file(folder.path() / name, kTebibyte);
+    }
+    const auto read_error = [](const fs::path& file) {
+        try {
+            static_cast<void>(read_rig(file));
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(
+        read_error(folder.path() / "rig.toml"),
+        (folder.path() / "rig.toml").string() + ": found more than 8 MiB; allowed: 8 MiB or less");
+    EXPECT_EQ(error_of(with(10, "[seafloor]\nreflectance = \"t.csv\""), folder.path()),
+              "rig.toml:11: seafloor.reflectance: " + (folder.path() / "t.csv").string() +
+                  ": found more than 64 MiB; allowed: 64 MiB or less");
+    EXPECT_EQ(
+        error_of(minimal_and("[[object]]\nname = \"a\"\nshape = \"mesh\"\nfile = \"t.obj\"\n"),
+                 folder.path()),
+        "rig.toml:21: object[0].file: " + (folder.path() / "t.obj").string() +
+            ": found more than 256 MiB; allowed: 256 MiB or less");
+    EXPECT_EQ(read_error("/dev/zero"), "/dev/zero: found more than 8 MiB; allowed: 8 MiB or less");
 }
 
 }  // namespace

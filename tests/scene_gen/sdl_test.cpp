@@ -27,6 +27,7 @@ TEST(Sdl, NoTextEndsItselfOrItsLine) {
     EXPECT_EQ(sdl_text("a\" } light_source { 0, 9 } \""), "\"a' } light_source { 0, 9 } '\"");
     EXPECT_EQ(sdl_text("back\\slash\\"), "\"back/slash/\"");
     EXPECT_EQ(sdl_text("two\r\nlines"), "\"two  lines\"");
+    EXPECT_EQ(sdl_text("K\xC3\xB6ln"), "\"K??ln\"") << "POV-Ray makes blanks of such letters";
     EXPECT_EQ(sdl_comment("two\nlines"), "two lines");
     EXPECT_EQ(sdl_comment("K\xC3\xB6ln"), "K\xC3\xB6ln");
 }

@@ -115,6 +115,14 @@ TEST_F(SceneDigest, DoesNotChangeWithWhatTheSceneDoesNotName) {
     EXPECT_EQ(digest(), before_);
 }
 
+// A regular expression would run out of stack here.
+TEST_F(SceneDigest, TakesAMebibyteInQuotes) {
+    put("things.inc", "\"" + std::string(1U << 20U, 'x') + "\" \"\"\"bark.png\"");
+    const std::string was = digest();
+    std::ofstream(folder_.path() / "bark.png", std::ios::app) << " ";
+    EXPECT_NE(digest(), was) << "what stands behind it counts";
+}
+
 TEST_F(SceneDigest, EndsWhereFilesNameEachOther) {
     put("things.inc", "#include \"reef.pov\"\n#include \"things.inc\"\n");
     EXPECT_NE(digest(), before_);

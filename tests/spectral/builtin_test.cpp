@@ -150,7 +150,9 @@ TEST(LoadCurve, LooksFilesUpInTheBaseFolder) {
     write_file(folder.path() / "mud.csv", "wavelength_nm,reflectance\n400,0.1\n700,0.2\n");
     EXPECT_EQ(load_curve("mud.csv", CurveRole::Reflectance, folder.path()).at(700.0), 0.2);
     const std::string absolute = (folder.path() / "mud.csv").string();
-    EXPECT_EQ(load_curve(absolute, CurveRole::Reflectance, "/nowhere").at(700.0), 0.2);
+    EXPECT_THROW(static_cast<void>(load_curve(absolute, CurveRole::Reflectance, folder.path())),
+                 InputError)
+        << "a rig that works here alone, or reads what it was not sent with";
     EXPECT_THROW(static_cast<void>(load_curve("none.csv", CurveRole::Reflectance, folder.path())),
                  InputError);
 }
@@ -168,12 +170,12 @@ std::vector<Spectrum> chart_patches() {
         std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/chart/patches";
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        files.push_back(entry.path());
+        files.push_back(entry.path().filename());
     }
     std::sort(files.begin(), files.end());
     std::vector<Spectrum> patches;
     for (const auto& file : files) {
-        patches.push_back(load_curve(file.string(), CurveRole::Reflectance, {}));
+        patches.push_back(load_curve(file.string(), CurveRole::Reflectance, folder));
     }
     return patches;
 }

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Rigs and folders that were made to do harm: their texts stay texts, for POV-Ray, for its settings
+// and for a shell. tests/scene_gen/rig_reader_test.cpp has what is refused when a rig is read,
+// tests/validation/*_browser_test.cpp what a browser makes of such names.
+#include "spectral/exr.h"
+#include "support/run_command.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <regex>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBadInput = 2;
+
+constexpr const char* kMud = "wavelength_nm,reflectance\n300,0.25\n900,0.5\n";
+constexpr const char* kClay = "wavelength_nm,reflectance\n300,0.75\n900,0.125\n";
+constexpr const char* kFlash = "wavelength_nm,relative_power\n300,1\n900,0.5\n";
+
+// What stands in every text of a rig. The tables are files: their names have no slash.
+struct Texts {
+    std::string title;
+    std::string name;
+    std::string mud;
+    std::string clay;
+    std::string flash;
+};
+
+const Texts kInnocent{"a rig", "name", "mud.csv", "clay.csv", "flash.csv"};
+
+const std::vector<Texts> kHostile{
+    {R"(*/ sphere { 0, 9 } /* // " #end)",
+     R"(" } #end light_source { 0, 9 } #macro M ( " ")",
+     R"(" } sphere { 0, 9 pigment { rgb 1 } } #if (0) ".csv)",
+     R"(#include "colors.inc".csv)",
+     R"(\" #debug "owned".csv)"},
+    {"/* never closed", "\\", "a\\.csv", "a\".csv", "a'.csv"},
+    {R"(%s%n {} {0} ${HOME} $(touch owned) `touch owned` ; touch owned)",
+     R"(Output_File_Name=owned +Oowned [x] #declare Aphotic_Fade_Distance = 9;)",
+     "-O owned.csv",
+     "+Oowned.csv",
+     "; touch owned;.csv"},
+    // POV-Ray makes blanks of letters beyond ASCII: these tables must stay two.
+    {"K\xC3\xB6ln \xE2\x80\xAE \xF0\x9F\x90\x9A",
+     "\xC3\xA4",
+     "\xC3\xA4.csv",
+     "\xC3\xB6.csv",
+     "\xC3\xBC.csv"},
+    {std::string(1000, 'a'),
+     std::string(1000, '"'),
+     std::string(240, '"') + "1.csv",
+     std::string(240, '"') + "2.csv",
+     std::string(240, '\'') + ".csv"},
+};
+
+std::string toml_text(const std::string& text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') quoted += '\\';
+        quoted += c;
+    }
+    return quoted + "\"";
+}
+
+std::string rig_of(const Texts& texts) {
+    const std::string name = toml_text(texts.name);
+    return fmt::format(R"(title = {0}
+[sled]
+altitude_m = 2
+[camera]
+resolution = [16, 12]
+pixel_pitch_um = 500
+focal_length_mm = 12
+range_nm = [420, 680]
+response = "nikon-d5100"
+[water]
+[seafloor]
+reflectance = {2}
+[beam.{1}]
+cones = [{{ part = {1}, half_angle_deg = 60, weight = 1 }}]
+[[strobe]]
+name = {1}
+position_m = [0.5, 0, 0]
+aim = {{ tilt_deg = 14, toward = "axis" }}
+beam = {1}
+spectrum = {4}
+[[object]]
+name = {1}
+shape = "sphere"
+centre_m = [0, 0.1, 1.8]
+radius_m = 0.25
+reflectance = {3}
+)",
+                       toml_text(texts.title),
+                       name,
+                       toml_text(texts.mud),
+                       toml_text(texts.clay),
+                       toml_text(texts.flash));
+}
+
+void put_rig(const fs::path& folder, const Texts& texts) {
+    fs::create_directories(folder);
+    write_file(folder / "rig.toml", rig_of(texts));
+    write_file(folder / texts.mud, kMud);
+    write_file(folder / texts.clay, kClay);
+    write_file(folder / texts.flash, kFlash);
+}
+
+// The end of the comment or text that begins at `from`, by POV-Ray's rules; `from` where there is
+// none.
+std::size_t end_of_passive(const std::string& sdl, std::size_t from) {
+    if (sdl.compare(from, 2, "//") == 0) return std::min(sdl.find('\n', from), sdl.size());
+    if (sdl.compare(from, 2, "/*") == 0) {
+        int depth = 1;
+        std::size_t at = from + 2;
+        for (; at < sdl.size() && depth > 0; ++at) {
+            if (sdl.compare(at, 2, "/*") == 0)
+                ++depth, ++at;
+            else if (sdl.compare(at, 2, "*/") == 0)
+                --depth, ++at;
+        }
+        return at;
+    }
+    if (sdl[from] != '"') return from;
+    std::size_t at = from + 1;
+    while (at < sdl.size() && sdl[at] != '"') at += sdl[at] == '\\' ? 2 : 1;
+    return std::min(at + 1, sdl.size());
+}
+
+// What acts in a scene: everything but comments and what stands in texts.
+std::string code_of(const std::string& sdl) {
+    std::string code;
+    for (std::size_t at = 0; at < sdl.size();) {
+        const std::size_t end = end_of_passive(sdl, at);
+        if (end == at)
+            code += sdl[at++];
+        else {
+            if (sdl[at] == '"') code += "\"\"";
+            at = end;
+        }
+    }
+    return code;
+}
+
+// The scenes and settings that are generated of the rig in a folder, by name; scenes without their
+// passive parts.
+std::map<std::string, std::string> generated(const fs::path& folder) {
+    const CommandResult run =
+        run_aphotic(folder, {"generate", "rig.toml", "-o", "out", "--fitted", "3"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder / "out" / "povray")) {
+        if (!entry.is_regular_file()) continue;
+        const std::string text = read_text_file(entry.path());
+        files[entry.path().filename().string()] =
+            entry.path().extension() == ".ini" ? text : code_of(text);
+    }
+    EXPECT_GE(files.size(), 4U);
+    return files;
+}
+
+std::vector<float> samples_of(const fs::path& file) {
+    ExrReader image(file);
+    const std::vector<std::string> channels{"R", "G", "B"};
+    std::vector<float> samples(channels.size() * static_cast<std::size_t>(image.width_px()) *
+                               static_cast<std::size_t>(image.height_px()));
+    image.read_rows(0, image.height_px(), channels, samples);
+    return samples;
+}
+
+TEST(Hostile, CodeIsWhatIsNeitherCommentNorText) {
+    EXPECT_EQ(code_of("a \"b\\\" c\" // d\ne /* f /* g */ \" */ h"), "a \"\" \ne  h");
+    EXPECT_NE(code_of("\"a\" sphere"), code_of("\"a sphere\""));
+}
+
+TEST(Hostile, TextsOfARigAddNothingToItsScenes) {
+    const TempFolder folder;
+    put_rig(folder.path() / "innocent", kInnocent);
+    const auto innocent = generated(folder.path() / "innocent");
+    for (std::size_t i = 0; i < kHostile.size(); ++i) {
+        const fs::path home = folder.path() / std::to_string(i);
+        put_rig(home, kHostile[i]);
+        EXPECT_EQ(generated(home), innocent) << kHostile[i].title;
+        EXPECT_FALSE(fs::exists(home / "owned"));
+    }
+}
+
+TEST(Hostile, TextsOfARigChangeNoBitOfItsImage) {
+    const TempFolder folder;
+    const auto rendered = [&](const std::string& name, const Texts& texts) {
+        put_rig(folder.path() / name, texts);
+        const CommandResult run =
+            run_aphotic(folder.path() / name, {"render", "rig.toml", "-o", "out", "--fitted", "3"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return samples_of(folder.path() / name / "out" / "image.exr");
+    };
+    const std::vector<float> innocent = rendered("innocent", kInnocent);
+    for (std::size_t i = 0; i < kHostile.size(); ++i) {
+        EXPECT_EQ(rendered(std::to_string(i), kHostile[i]), innocent) << kHostile[i].title;
+    }
+    // The test sees a difference where there is one.
+    write_file(folder.path() / "innocent" / kInnocent.clay, kMud);
+    EXPECT_NE(samples_of(folder.path() / "0" / "out" / "image.exr"), [&] {
+        const CommandResult run = run_aphotic(folder.path() / "innocent",
+                                              {"render", "rig.toml", "-o", "out", "--fitted", "3"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return samples_of(folder.path() / "innocent" / "out" / "image.exr");
+    }());
+}
+
+const std::vector<std::string> kFolderNames{
+    "it's \"so\"", "-o", "two\nlines", "K\xC3\xB6ln", "; #x = %s{} $(touch owned)"};
+
+TEST(Hostile, FoldersOfAnyNameHoldRigsAndRenders) {
+    const TempFolder folder;
+    put_rig(folder.path(), kInnocent);
+    ASSERT_EQ(
+        run_aphotic(folder.path(), {"render", "rig.toml", "-o", "out", "--fitted", "3"}).status, 0);
+    const std::vector<float> expected = samples_of(folder.path() / "out" / "image.exr");
+    for (const std::string& name : kFolderNames) {
+        put_rig(folder.path() / name, kInnocent);
+        const CommandResult run = run_aphotic(
+            folder.path(),
+            {"render", "./" + name + "/rig.toml", "--output=" + name + "/out", "--fitted", "3"});
+        EXPECT_EQ(run.status, 0) << name << ": " << run.err;
+        EXPECT_EQ(samples_of(folder.path() / name / "out" / "image.exr"), expected) << name;
+    }
+    EXPECT_FALSE(fs::exists(folder.path() / "owned"));
+}
+
+// POV-Ray reads "a[b]" as the section b of the settings a.
+TEST(Hostile, FolderThatPovRayCannotReadIsRefusedBeforeAnythingIsWritten) {
+    const TempFolder folder;
+    put_rig(folder.path(), kInnocent);
+    const CommandResult run =
+        run_aphotic(folder.path(), {"render", "rig.toml", "-o", "a[b]", "--fitted", "3"});
+    EXPECT_EQ(run.status, kBadInput);
+    EXPECT_NE(run.err.find("a[b]: found a '['"), std::string::npos) << run.err;
+    EXPECT_FALSE(fs::exists(folder.path() / "a[b]"));
+}
+
+// The lines that generate prints go through a shell, with a POV-Ray that says what it is given.
+TEST(Hostile, PrintedCommandsNameFoldersAsAShellTakesThem) {
+    for (const std::string& name : kFolderNames) {
+        const TempFolder folder;
+        put_rig(folder.path(), kInnocent);
+        const fs::path out = folder.path() / "called";
+        fs::create_directory(folder.path() / "bin");
+        write_script(
+            folder.path() / "bin" / "povray",
+            "pwd >> '" + out.string() + "'\nprintf '%s\\n' \"$@\" >> '" + out.string() + "'\n");
+        const CommandResult run = run_aphotic(
+            folder.path(), {"generate", "rig.toml", "--output=" + name, "--wavelengths", "500"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        const std::size_t from = run.out.find("  (cd ");
+        const std::size_t to = run.out.find("done)\n") + 5;
+        ASSERT_LT(from, to) << run.out;
+        const ProcessEnd end = run_process(
+            {.executable = "/bin/sh",
+             .arguments = {"-c", "PATH=$PWD/bin:$PATH\n" + run.out.substr(from, to - from)},
+             .folder = folder.path(),
+             .environment = {},
+             .log = folder.path() / "log"},
+            60.0);
+        EXPECT_TRUE(end.succeeded()) << read_text_file(folder.path() / "log");
+        EXPECT_EQ(read_text_file(out),
+                  (fs::canonical(folder.path() / name) / "povray").string() +
+                      "\nrender.ini\n+Iband_500nm.pov\n");
+        EXPECT_FALSE(fs::exists(folder.path() / name / "povray" / "owned"));
+    }
+}
+
+// A scene of the user's own brings the folder's path into POV-Ray's settings.
+TEST(Hostile, FolderThatWouldAddASettingIsRefused) {
+    const TempFolder folder;
+    put_rig(folder.path(), kInnocent);
+    write_file(folder.path() / "own.pov",
+               "#version 3.7;\n#include \"aphotic.inc\"\nAphotic_Rig ()\n"
+               "Aphotic_Seafloor (2, 0, 0, \"sand\")\n");
+    for (const std::string name : {"x\nOutput_File_Name=owned", "x\" y"}) {
+        const CommandResult run = run_aphotic(
+            folder.path(),
+            {"generate", "rig.toml", "--scene", "own.pov", "-o", name, "--wavelengths", "500"});
+        EXPECT_EQ(run.status, kBadInput) << run.out;
+        EXPECT_NE(run.err.find("for POV-Ray cannot read them"), std::string::npos) << run.err;
+        EXPECT_FALSE(fs::exists(folder.path() / name));
+    }
+}
+
+TEST(Hostile, MessagesDoNotSteerTheTerminal) {
+    const TempFolder folder;
+    const CommandResult run = run_aphotic(folder.path(), {"plan", "\x1b[2J.toml"});
+    EXPECT_EQ(run.status, kBadInput);
+    EXPECT_EQ(run.err, "aphotic: \\x1b[2J.toml: cannot be read: No such file or directory\n");
+}
+
+// A pipe that nobody writes to, and a device without end, in the place of a frame.
+TEST(Hostile, FramesThatAreNoFilesAreRefusedWithoutWaiting) {
+    const TempFolder folder;
+    put_rig(folder.path(), kInnocent);
+    ASSERT_EQ(
+        run_aphotic(folder.path(), {"render", "rig.toml", "-o", "out", "--wavelengths", "500"})
+            .status,
+        0);
+    const fs::path frame = folder.path() / "out" / "povray" / "frames" / "band_500nm.exr";
+    const auto expect_refused = [&] {
+        const CommandResult run = run_aphotic(folder.path(), {"integrate", "out"});
+        EXPECT_EQ(run.status, 3) << run.out;
+        EXPECT_NE(run.err.find("band_500nm.exr: cannot be read"), std::string::npos) << run.err;
+    };
+    fs::remove(frame);
+    ASSERT_EQ(::mkfifo(frame.c_str(), 0600), 0);
+    expect_refused();
+    fs::remove(frame);
+    fs::create_symlink("/dev/zero", frame);
+    expect_refused();
+}
+
+}  // namespace
+}  // namespace aphotic
