@@ -18,14 +18,16 @@ std::size_t size_of(int number) {
     return static_cast<std::size_t>(number);
 }
 
-// An emitter's rim at its corners and half way between them, and its middle; a point's own position.
+// An emitter's rim at its corners and half way between them, and its middle; a point's own
+// position.
 std::vector<Eigen::Vector3f> places_of(const Strobe& strobe) {
     if (!strobe.emitter) return {strobe.position_m.cast<float>()};
     // The centres of a grid of three by three cells lie two thirds of the way to the rim.
     constexpr double kToTheRim = 1.5;
     std::vector<Eigen::Vector3f> places;
     for (const Eigen::Vector3d& centre : lamp_positions_m(strobe, {.across = 3, .along = 3})) {
-        places.push_back((strobe.position_m + kToTheRim * (centre - strobe.position_m)).cast<float>());
+        places.push_back(
+            (strobe.position_m + kToTheRim * (centre - strobe.position_m)).cast<float>());
     }
     return places;
 }

@@ -4,9 +4,9 @@
 //
 // A pixel's point of the floor is within a cone of half angle g when its direction from the lamp,
 // v, keeps v.a >= |v| cos g with the strobe's axis a. An edge passes between neighbouring pixels of
-// which one is within and the other is not, and over a pixel where the places of an emitter's rim, or
-// behind a port the two ends of the wavelength range, disagree. A cone of 90 degrees has no edge: its
-// light ends as cos 90 = 0. The horizon is an edge too.
+// which one is within and the other is not, and over a pixel where the places of an emitter's rim,
+// or behind a port the two ends of the wavelength range, disagree. A cone of 90 degrees has no
+// edge: its light ends as cos 90 = 0. The horizon is an edge too.
 #pragma once
 
 #include "scene_gen/rig.h"
