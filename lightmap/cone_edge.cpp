@@ -131,12 +131,12 @@ std::vector<std::uint8_t> ConeEdges::mask(const Sled& sled, int within_px) const
                 here[i] |= static_cast<std::uint8_t>(now[i] > 0 && now[i] < most);
             }
             for (std::size_t i = 1; i < width; ++i) {
-                const auto differs = static_cast<std::uint8_t>((now[i] > 0) != (now[i - 1] > 0));
+                const auto differs = static_cast<std::uint8_t>(now[i] != now[i - 1]);
                 here[i] |= differs;
                 here[i - 1] |= differs;
             }
             for (std::size_t i = 0; row > 0 && i < width; ++i) {
-                const auto differs = static_cast<std::uint8_t>((now[i] > 0) != (above[k][i] > 0));
+                const auto differs = static_cast<std::uint8_t>(now[i] != above[k][i]);
                 here[i] |= differs;
                 here[i - width] |= differs;
             }
