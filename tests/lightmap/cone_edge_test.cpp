@@ -85,15 +85,20 @@ TEST(ConeEdge, MarksWhatTheReferenceMarks) {
         const std::vector<std::uint8_t> found = ConeEdges(rig).mask(rig.sled, 1);
         ASSERT_EQ(found.size(), wanted.size());
         std::size_t missed = 0;
-        for (std::size_t i = 0; i < wanted.size(); ++i) missed += wanted[i] > found[i] ? 1 : 0;
+        // At the image's rim, an edge may pass between a pixel and one that is not there.
+        const auto width = static_cast<std::size_t>(rig.camera.width_px);
+        for (std::size_t i = width; i < wanted.size() - width; ++i) {
+            const bool is_inside = i % width > 0 && i % width < width - 1;
+            missed += is_inside && wanted[i] > found[i] ? 1 : 0;
+        }
         EXPECT_GT(std::ranges::count(wanted, 1), 100) << scene;
         EXPECT_EQ(missed, 0U) << scene;
     }
 }
 
-// How much a sample differs from the mean of its neighbours left and right.
-double bend(const double* sample) {
-    return std::abs(sample[-1] + sample[1] - 2.0 * sample[0]) / (2.0 * sample[0]);
+// How much a sample differs from the mean of its neighbours on both sides.
+double bend(const double* sample, std::ptrdiff_t step) {
+    return std::abs(sample[-step] + sample[step] - 2.0 * sample[0]) / (2.0 * sample[0]);
 }
 
 TEST(ConeEdge, OffTheMaskTracedLightIsSmooth) {
@@ -102,17 +107,18 @@ TEST(ConeEdge, OffTheMaskTracedLightIsSmooth) {
     constexpr double kBend = 2e-3;
     for (const char* scene : {"habcam.toml", "habcam-emitters.toml", "port.toml"}) {
         const Rig rig = tilted(scene);
-        const int width = rig.camera.width_px;
+        const auto width = static_cast<std::size_t>(rig.camera.width_px);
         const Tracer tracer(rig, {.signals = false, .planes_nm = {450.0}, .threads = 2});
         const std::vector<double> light = tracer.rows(0, rig.camera.height_px);
         const std::vector<std::uint8_t> mask = ConeEdges(rig).mask(rig.sled, 1);
         double off = 0.0;
         double on = 0.0;
-        for (std::size_t i = 1; i + 1 < light.size(); ++i) {
-            const auto column = static_cast<int>(i) % width;
-            if (column == 0 || column == width - 1) continue;
+        for (std::size_t i = width; i < light.size() - width; ++i) {
+            if (i % width == 0 || i % width == width - 1) continue;
             double& largest = mask[i] == 0 ? off : on;
-            largest = std::max(largest, bend(&light[i]));
+            largest = std::max({largest,
+                                bend(&light[i], 1),
+                                bend(&light[i], std::ssize(mask) / rig.camera.height_px)});
         }
         EXPECT_LT(off, kBend) << scene;
         EXPECT_GT(on, 5.0 * kBend) << scene;
