@@ -543,6 +543,7 @@ ExitStatus correct(const Options& options) {
     const auto start = std::chrono::steady_clock::now();
     const Survey survey = survey_of(options);
     make_folder(options.folder);
+    remove_abandoned(options.folder);
     set_exr_threads(0);  // the images themselves are spread over the threads
     const Json settings = settings_of(survey, options);
     const std::string settings_sha256 = sha256_of_text(settings.dump());
