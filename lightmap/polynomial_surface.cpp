@@ -63,6 +63,11 @@ void PolynomialSurface::add(std::span<const float> plane) {
     ++planes_;
 }
 
+double PolynomialSurface::mean() const {
+    const auto pixels = static_cast<double>(along_x_.rows() * along_y_.rows());
+    return moments_(0, 0) / (pixels * static_cast<double>(planes_));
+}
+
 // The normal equations: on a full grid their matrix is a product of sums over x and over y.
 std::vector<float> PolynomialSurface::fitted() const {
     const std::vector<std::pair<int, int>> terms = terms_of(order_);

@@ -28,7 +28,9 @@ class PolynomialSurface {
     void add(std::span<const float> plane);  // width_px x height_px samples, all finite
     [[nodiscard]] std::size_t planes() const { return planes_; }
 
-    // p at every pixel, row by row. At least one plane has been added.
+    // At least one plane has been added: the mean of all samples of all planes, and p at every
+    // pixel, row by row.
+    [[nodiscard]] double mean() const;
     [[nodiscard]] std::vector<float> fitted() const;
 
   private:

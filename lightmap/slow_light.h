@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Corrections of uneven light that know nothing of the lamps: what users did before they had a
-// model, to hold it against. Each takes one plane of samples, a channel or the sites of one colour
-// of a mosaic, and keeps its brightness, so that f(k I) = k f(I).
+// Corrections of uneven light that know nothing of the lamps, but that their light changes slowly
+// over the image: what users did before they had a model, to hold it against. Each takes one plane
+// of samples, a channel or the sites of one colour of a mosaic, and keeps its brightness, so that
+// f(k I) = k f(I).
 //
 //   divided by a pattern        I / max(p, kLeastShare mean p)  mean p
 //     illumination-reflectance    p = G I, the image itself smoothed

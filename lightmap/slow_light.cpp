@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lightmap/baselines.h"
+#include "lightmap/slow_light.h"
 
 #include "lightmap/gaussian_blur.h"
 
