@@ -29,6 +29,7 @@ struct Command {
 
 Action configure_baseline(CLI::App& options);
 Action configure_compare(CLI::App& options);
+Action configure_correct(CLI::App& options);
 Action configure_data(CLI::App& options);
 Action configure_generate(CLI::App& options);
 Action configure_integrate(CLI::App& options);

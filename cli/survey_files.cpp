@@ -22,15 +22,17 @@ fs::path without_extension(const fs::path& file) {
 void add_folder(const fs::path& folder, const fs::path& output, std::vector<SurveyFile>& files) {
     std::error_code none;
     if (fs::equivalent(folder, output, none)) {
-        throw InputError(fmt::format("{}: found the folder to write to; allowed: folders of images, "
-                                     "with the results elsewhere",
-                                     folder.string()));
+        throw InputError(
+            fmt::format("{}: found the folder to write to; allowed: folders of images, "
+                        "with the results elsewhere",
+                        folder.string()));
     }
     const auto first = std::ssize(files);
     const auto options = fs::directory_options::follow_directory_symlink;
     for (fs::recursive_directory_iterator it(folder, options), end; it != end; ++it) {
         const fs::path& file = it->path();
-        if (it->is_directory() && fs::equivalent(file, output, none)) it.disable_recursion_pending();
+        if (it->is_directory() && fs::equivalent(file, output, none))
+            it.disable_recursion_pending();
         const bool is_hidden = file.filename().string().starts_with('.');
         if (!is_image_name(file) || is_hidden || !it->is_regular_file()) continue;
         files.push_back({.source = file, .name = without_extension(fs::relative(file, folder))});

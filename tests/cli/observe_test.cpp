@@ -142,7 +142,7 @@ TEST_F(CommandObserve, SitesOfAMosaicHoldTheirOwnChannel) {
     write_exr(path("raw/one.exr"), {"Y"}, mosaic);
     write_exr(path("raw/two.exr"), {"Y"}, mosaic);
     write_file(path("nav.csv"), "one 2.0 0 0\ntwo 2.05 0 0\n");
-    ASSERT_EQ(observe({"--bayer", "RGGB", "--black", "5"}).status, 0);
+    ASSERT_EQ(observe({"--bayer", "RGGB", "--black-level", "5"}).status, 0);
     const Plane green = channel_of(path("map.exr"), "G");
     const Plane count = channel_of(path("map.exr"), "count.G");
     EXPECT_TRUE(std::isnan(green[0]));
@@ -169,7 +169,7 @@ TEST_F(CommandObserve, SkipsBadImagesAndSaysSo) {
         const nlohmann::json json = nlohmann::json::parse(result.out);
         EXPECT_EQ(json["images"], 3) << method;
         EXPECT_EQ(json["skipped"].size(), 3U);
-        for (const char* name : {"broken.png", "small.exr", "stray"})
+        for (const char* name : {"broken.png", "small.exr", "stray.exr"})
             EXPECT_NE(result.err.find(name), std::string::npos) << name;
         EXPECT_EQ(channel_of(path("map.exr"), "count.R")[0], 3.0F);
     }
@@ -234,7 +234,7 @@ TEST_F(CommandBaseline, EveryOneLeavesAFlatImageFlatInPlaceOfItsMosaic) {
                                           "GBRG",
                                           "--tiles",
                                           "2",
-                                          "--black",
+                                          "--black-level",
                                           "100"});
         ASSERT_EQ(result.status, 0) << name << result.err;
         for (const std::string& channel : kRgb) {
