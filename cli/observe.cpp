@@ -326,7 +326,8 @@ ExitStatus observe(const Options& options) {
 
 void add_average_options(CLI::App& app, Options& options) {
     app.add_option("--method", options.average, "mean, median or trimmed (mean)")
-        ->transform(CLI::CheckedTransformer(kAverages))
+        ->transform(CLI::CheckedTransformer(kAverages).description(""))
+        ->type_name("METHOD")
         ->default_str("mean");
     app.add_option("--trim",
                    options.trim,

@@ -47,16 +47,18 @@ Blocks blocks_of(const ComparedChannel& channel, const ComparedImages& images) {
                   .down = (images.height_px + side - 1) / side,
                   .image = {},
                   .reference = {}};
-    const auto size =
-        static_cast<std::size_t>(blocks.across) * static_cast<std::size_t>(blocks.down);
+    const auto width = static_cast<std::size_t>(images.width_px);
+    const auto span = static_cast<std::size_t>(side);
+    const auto across = static_cast<std::size_t>(blocks.across);
+    const std::size_t size = across * static_cast<std::size_t>(blocks.down);
     blocks.image.assign(size, 0.0);
     blocks.reference.assign(size, 0.0);
     std::vector<double> counts(size, 0.0);
     for (std::size_t i = 0; i < channel.image.size(); ++i) {
         if (!channel.marks.empty() && channel.marks[i] == kUnobserved) continue;
-        const int column = static_cast<int>(i % static_cast<std::size_t>(images.width_px));
-        const int row = static_cast<int>(i / static_cast<std::size_t>(images.width_px));
-        const auto block = static_cast<std::size_t>(row / side * blocks.across + column / side);
+        const std::size_t column = i % width;
+        const std::size_t row = i / width;
+        const std::size_t block = row / span * across + column / span;
         blocks.image[block] += channel.image[i];
         blocks.reference[block] += channel.reference[i];
         counts[block] += 1.0;

@@ -13,12 +13,15 @@
 #include "support/tiff.h"
 #include "validation/tracer.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <regex>
 #include <thread>
