@@ -25,6 +25,7 @@ struct AnyImage {
     // What the integer stood for that is 1 here: 255, 4095, 65535. 0 of floats.
     double full_scale = 0.0;
     std::string description;  // the file's own words; empty when it has none
+    std::string date_time;    // when it was taken, "YYYY:MM:DD hh:mm:ss", or empty
 };
 
 // An image that cannot be read is an InputError; a program installed without the part, a RunError.
@@ -40,6 +41,7 @@ struct WrittenImage {
     std::vector<float> planes;
     SampleType type = SampleType::Bits16;
     std::string description;
+    std::string date_time;  // empty: not known. Never now: the same image is the same file
 };
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image);
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 namespace {
 
@@ -79,6 +80,7 @@ extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
     };
     image.full_scale = full_scale_of(spec);
     image.description = spec.get_string_attribute("ImageDescription");
+    image.date_time = spec.get_string_attribute("DateTime");
 }
 
 extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
@@ -94,6 +96,12 @@ extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
                          type_of(image.type));
     spec.channelnames = image.channels;
     if (!image.description.empty()) spec.attribute("ImageDescription", image.description);
+    // Exif's words for a time that is not known; without any, TIFF gets the time of writing.
+    constexpr const char* kUnknown = "    :  :     :  :  ";
+    const bool is_dated = !image.date_time.empty();
+    if (is_dated || std::string_view(output->format_name()) == "tiff") {
+        spec.attribute("DateTime", is_dated ? image.date_time : kUnknown);
+    }
     const std::vector<float> pixels = pixels_of(image.planes, image.channels.size());
     const bool is_whole = output->open(file.string(), spec) &&
                           output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) &&

@@ -272,7 +272,7 @@ Json correct_image(const SurveyFile& file,
     const fs::path folder(options.folder);
     make_folder((folder / file.name).parent_path());
     if (options.mask) write_mask(folder / mask_of(file), result);
-    write_corrected(folder / result_of(file, options), result.image, taken.description);
+    write_corrected(folder / result_of(file, options), result.image, taken);
     return doubts_in(result.doubts);
 }
 

@@ -61,7 +61,8 @@ SurveyImage read_survey_image(const std::filesystem::path& file,
                               .mosaic = camera.mosaic,
                               .samples = {}},
                       .levels = {.black = camera.black_level},
-                      .description = image.description};
+                      .description = image.description,
+                      .date_time = image.date_time};
     const std::size_t pixels = taken.raw.pixels();
     taken.raw.samples.reserve(order.size() * pixels);
     for (const std::size_t channel : order) {
@@ -76,10 +77,11 @@ SurveyImage read_survey_image(const std::filesystem::path& file,
 
 void write_corrected(const std::filesystem::path& file,
                      const RawImage& image,
-                     const std::string& description) {
+                     const SurveyImage& source) {
     if (file.extension() == ".exr") {
         ExrAttributes attributes{{"aphotic:version", APHOTIC_VERSION}};
-        if (!description.empty()) attributes.emplace_back("comments", description);
+        if (!source.description.empty()) attributes.emplace_back("comments", source.description);
+        if (!source.date_time.empty()) attributes.emplace_back("capDate", source.date_time);
         ExrWriter writer(file, image.width_px, image.height_px, channel_names(image), attributes);
         writer.write_rows(image.height_px, image.samples);
         writer.finish();
@@ -91,7 +93,8 @@ void write_corrected(const std::filesystem::path& file,
                      .channels = channel_names(image),
                      .planes = image.samples,
                      .type = SampleType::Bits16,
-                     .description = description});
+                     .description = source.description,
+                     .date_time = source.date_time});
 }
 
 void write_mask(const std::filesystem::path& file, const CorrectedImage& image) {
@@ -107,7 +110,8 @@ void write_mask(const std::filesystem::path& file, const CorrectedImage& image) 
                      .channels = {"Y"},
                      .planes = std::move(plane),
                      .type = SampleType::Bits8,
-                     .description = ""});
+                     .description = "",
+                     .date_time = ""});
 }
 
 }  // namespace aphotic::cli

@@ -24,6 +24,7 @@ struct SurveyImage {
     RawImage raw;
     SensorLevels levels;
     std::string description;
+    std::string date_time;
 };
 
 // An InputError when it cannot be read, is not of this size, or has not the channels that it
@@ -32,10 +33,11 @@ struct SurveyImage {
                                             PlaneSize size,
                                             const CameraNumbers& camera);
 
-// In the format that the extension names: .exr of floats, all others of 16 bits.
+// In the format that the extension names: .exr of floats, all others of 16 bits; with what the
+// source says of itself.
 void write_corrected(const std::filesystem::path& file,
                      const RawImage& image,
-                     const std::string& description);
+                     const SurveyImage& source);
 
 // 8 bits a pixel, the numbers themselves.
 void write_mask(const std::filesystem::path& file, const CorrectedImage& image);
