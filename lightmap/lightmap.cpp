@@ -160,10 +160,11 @@ void store(const SumBlock& sums, int row, int first_column, Lightmap& map) {
     const auto width = static_cast<std::size_t>(map.width_px);
     const std::size_t plane = width * static_cast<std::size_t>(map.height_px);
     const auto first = static_cast<std::size_t>(first_column);
-    const std::size_t count = std::min(sums.size(), width - first);
+    const std::size_t count = std::min<std::size_t>(kRowBlock, width - first);
     for (std::size_t c = 0; c < kChannels; ++c) {
-        float* to = &map.samples[c * plane + static_cast<std::size_t>(row) * width + first];
-        for (std::size_t i = 0; i < count; ++i) to[i] = sums[i][c];
+        std::copy_n(sums[c].begin(),
+                    count,
+                    &map.samples[c * plane + static_cast<std::size_t>(row) * width + first]);
     }
 }
 
@@ -295,9 +296,9 @@ void LightmapMaker::map_into(const Sled& sled, Lightmap& map) const {
         for (int row = next_row++; row < map.height_px; row = next_row++) {
             for (int column = 0; column < map.width_px; column += kRowBlock) {
                 for (std::size_t j = 0; j < nodes.size(); ++j) {
-                    look_along(scene.rays[j], row, column, rays[j]);
+                    look_along(scene.rays[j], steps_, row, column, rays[j]);
                 }
-                sums = {};
+                for (RowBlock<float>& sum : sums) sum.fill(0.0F);
                 for (const PlacedLamp& lamp : scene.lamps) {
                     const LightTables& tables = tables_[lamp.spectrum];
                     for (std::size_t j = 0; j < nodes.size(); ++j) {
