@@ -20,6 +20,15 @@ namespace {
 
 constexpr auto kCount = static_cast<std::size_t>(kRowBlock);
 
+APHOTIC_WIDE void go_straight(const RayTerms& terms, double u, double first_v, RayBlock& rays) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+        rays.D_x[i] = u;
+        rays.D_y[i] = first_v + static_cast<double>(static_cast<int>(i)) * terms.slope_per_px;
+        rays.o_x[i] = 0.0;
+        rays.o_y[i] = 0.0;
+    }
+}
+
 // How a pixel's slopes in air turn into those in water, and where they leave the port.
 APHOTIC_WIDE void bend(const RayTerms& terms, double u, double first_v, RayBlock& rays) {
     const double n_w2 = terms.water_index * terms.water_index;
@@ -49,10 +58,11 @@ APHOTIC_WIDE void meet_floor(const RayTerms& terms, const PathSteps& steps, RayB
         const double H = from_port_m - x * rays.o_x[i] - y * rays.o_y[i];
         const bool sees = (down > 0.0) & (H > 0.0);
         const double w = sees ? down : 1.0;
-        const double leg_m = H * std::sqrt(D_x * D_x + D_y * D_y + 1.0) / w;
+        const double per_w = 1.0 / w;
+        const double leg_m = H * std::sqrt(D_x * D_x + D_y * D_y + 1.0) * per_w;
         rays.H[i] = H;
         rays.w[i] = w;
-        rays.per_w[i] = static_cast<float>(1.0 / w);
+        rays.per_w[i] = static_cast<float>(per_w);
         rays.w3[i] = static_cast<float>(sees ? w * w * w : 0.0);
         rays.leg_steps[i] = static_cast<float>((leg_m - steps.first_m) * steps.steps_per_m);
     }
@@ -125,7 +135,8 @@ void look_along(
     const double u = (terms.middle_row - (row + 0.5)) * terms.slope_per_px;
     const double first_v = (first_column + 0.5 - terms.middle_column) * terms.slope_per_px;
     rays.o_z = terms.distance_m + terms.thickness_m;
-    bend(terms, u, first_v, rays);
+    const bool has_port = terms.water_index != 1.0;
+    has_port ? bend(terms, u, first_v, rays) : go_straight(terms, u, first_v, rays);
     meet_floor(terms, steps, rays);
     for (int i = terms.width_px - first_column; i < kRowBlock; ++i) {
         rays.w3[static_cast<std::size_t>(i)] = 0.0F;
@@ -149,8 +160,15 @@ APHOTIC_WIDE void shine(const RayBlock& rays, const LampTerms& lamp, LampBlock& 
 }
 
 void find_cones(const LampTerms& lamp, LampBlock& block) {
-    block.intensity.fill(0.0);
+    // A cone of 90 degrees ends where its cosine does, and has no edge to look for.
+    constexpr double kNoEdge = 1e-15;
+    double everywhere = 0.0;
     for (std::size_t k = 0; k < lamp.cone_cosine.size(); ++k) {
+        if (lamp.cone_cosine[k] < kNoEdge) everywhere += lamp.cone_intensity[k];
+    }
+    block.intensity.fill(everywhere);
+    for (std::size_t k = 0; k < lamp.cone_cosine.size(); ++k) {
+        if (lamp.cone_cosine[k] < kNoEdge) continue;
         add_cone(lamp.cone_cosine[k], lamp.cone_intensity[k], block);
     }
 }
