@@ -31,6 +31,7 @@ Action configure_compare(CLI::App& options);
 Action configure_data(CLI::App& options);
 Action configure_generate(CLI::App& options);
 Action configure_integrate(CLI::App& options);
+Action configure_lightmap(CLI::App& options);
 Action configure_plan(CLI::App& options);
 Action configure_render(CLI::App& options);
 Action configure_stress(CLI::App& options);

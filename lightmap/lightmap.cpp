@@ -28,20 +28,13 @@ constexpr double kGridShare = 0.1;
 constexpr double kTableShare = 0.5;
 
 void require_bare_floor(const Rig& rig) {
+    constexpr auto kAllowed = "allowed: the bare floor, which is all that a lightmap is of";
     if (!rig.objects.empty()) {
         throw InputError(
-            fmt::format("{}: the rig has objects, the first is '{}'; allowed: the bare floor, "
-                        "which is all that "
-                        "a lightmap is of",
-                        rig.title,
-                        rig.objects.front().name));
+            fmt::format("found the object '{}'; {}", rig.objects.front().name, kAllowed));
     }
     if (!rig.scene.empty()) {
-        throw InputError(
-            fmt::format("{}: the rig has a scene, {}; allowed: the bare floor, which is all that a "
-                        "lightmap is of",
-                        rig.title,
-                        rig.scene.string()));
+        throw InputError(fmt::format("found the scene {}; {}", rig.scene.string(), kAllowed));
     }
 }
 
@@ -325,12 +318,13 @@ void LightmapMaker::map_into(const Sled& sled, Lightmap& map) const {
         make_rows();
     }
     if (before > 0 || (beyond > 0 && !paths_.has_horizon)) {
+        constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
         throw InputError(fmt::format(
-            "altitude {} m, pitch {} rad, roll {} rad: the image sees paths {} than the lightmap's "
-            "tables serve; allowed: paths from {} to {} m",
+            "altitude {:.6g} m, pitch {:.6g}, roll {:.6g} degrees: the image sees paths {} "
+            "than the tables serve; allowed: from {:.6g} to {:.6g} m",
             sled.altitude_m,
-            sled.pitch_rad,
-            sled.roll_rad,
+            sled.pitch_rad * kDegreesPerRadian,
+            sled.roll_rad * kDegreesPerRadian,
             before > 0 ? "shorter" : "longer",
             paths_.shortest_m,
             paths_.longest_m));
