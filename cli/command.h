@@ -27,6 +27,7 @@ struct Command {
     Action (*configure)(CLI::App& options);
 };
 
+Action configure_atlas(CLI::App& options);
 Action configure_compare(CLI::App& options);
 Action configure_data(CLI::App& options);
 Action configure_generate(CLI::App& options);
