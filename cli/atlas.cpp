@@ -147,8 +147,9 @@ void print(const nlohmann::ordered_json& outcome) {
                outcome["computed"].get<std::size_t>(),
                outcome["atlas_s"].get<double>());
     fmt::print(
-        "  between bins off by at most {:.2g}, {:.2g} rms, where no cone's edge crosses: {:.1f} % "
-        "of the pixels are crossed\n",
+        "  between bins the light is off by at most {:.2g}, {:.2g} rms; cones' edges cross {:.1f} "
+        "% of "
+        "the\n  pixels on the way from bin to bin, and step there\n",
         outcome["interpolation"]["worst"].get<double>(),
         outcome["interpolation"]["rms"].get<double>(),
         100.0 * outcome["interpolation"]["crossed_by_edges"].get<double>());

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/atlas_plan.h"
 
+#include "scene_gen/geometry.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace aphotic {
 namespace {
@@ -20,6 +23,18 @@ Rig probe_of(const Rig& rig) {
     probe.camera.height_px = fewer(rig.camera.height_px);
     probe.camera.pixel_pitch_m *= coarser;
     return probe;
+}
+
+// The same light without an edge: every cone goes on to 90 degrees.
+Rig smooth_of(Rig rig) {
+    for (Strobe& strobe : rig.strobes) {
+        for (Cone& cone : strobe.beam.cones) {
+            cone.weight = axial_intensity(cone, strobe.beam.weights);
+            cone.half_angle_rad = 0.5 * std::numbers::pi;
+        }
+        strobe.beam.weights = ConeWeights::Literal;
+    }
+    return rig;
 }
 
 LightmapOptions probe_options() {
@@ -45,33 +60,56 @@ std::array<float, kChannels> dimmest_of(const Lightmap& map) {
     return dimmest;
 }
 
-void compare(MapSource& source, const MapAxes& axes, const MapPoint& point, Tally& tally) {
+// Both with a probe's image.
+struct Probe {
+    Probe(const Rig& rig, const MapAxes& within)
+        : sharp(probe_of(rig), within, probe_options()),
+          smooth(smooth_of(probe_of(rig)), within, probe_options()) {}
+
+    MapSource sharp;
+    MapSource smooth;
+};
+
+void count_crossed(MapSource& sharp,
+                   const std::vector<MapPoint>& corners,
+                   const MapPoint& point,
+                   Tally& tally) {
+    const std::vector<double> cones = sharp.cones(point);
+    std::vector<char> is_crossed(cones.size(), 0);
+    for (const MapPoint& corner : corners) {
+        const std::vector<double> there = sharp.cones(corner);
+        for (std::size_t i = 0; i < cones.size(); ++i) {
+            if (there[i] != cones[i]) is_crossed[i] = 1;
+        }
+    }
+    tally.crossed += static_cast<double>(std::ranges::count(is_crossed, 1));
+    tally.pixels += static_cast<double>(cones.size());
+}
+
+void compare(Probe& probe, const MapAxes& axes, const MapPoint& point, Tally& tally) {
     const std::vector<MapPoint> points = points_of(axes);
     const std::vector<Neighbour> neighbours = neighbours_of(axes, point);
-    const std::vector<double> cones = source.cones(point);
-    std::vector<char> is_crossed(cones.size(), 0);
+    std::vector<MapPoint> corners;
     std::vector<Lightmap> maps;
     for (const Neighbour& neighbour : neighbours) {
-        maps.push_back(source.map(points[neighbour.bin]));
-        const std::vector<double> there = source.cones(points[neighbour.bin]);
-        for (std::size_t i = 0; i < cones.size(); ++i) is_crossed[i] |= there[i] != cones[i];
+        corners.push_back(points[neighbour.bin]);
+        maps.push_back(probe.smooth.map(corners.back()));
     }
     std::vector<const Lightmap*> about;
     for (const Lightmap& map : maps) about.push_back(&map);
     const Lightmap between = blended(about, neighbours);
-    const Lightmap truth = source.map(point);
+    const Lightmap truth = probe.smooth.map(point);
     const std::array<float, kChannels> dimmest = dimmest_of(truth);
+    const std::size_t plane = truth.samples.size() / kChannels;
     for (std::size_t i = 0; i < truth.samples.size(); ++i) {
-        if (is_crossed[i % cones.size()] != 0) continue;
-        const float scale = std::max(truth.samples[i], dimmest[i / cones.size()]);
+        const float scale = std::max(truth.samples[i], dimmest[i / plane]);
         if (scale == 0.0F) continue;
         const double error = std::abs(between.samples[i] - truth.samples[i]) / scale;
         tally.worst = std::max(tally.worst, error);
         tally.squares += error * error;
         tally.samples += 1.0;
     }
-    tally.crossed += static_cast<double>(std::ranges::count(is_crossed, 1));
-    tally.pixels += static_cast<double>(cones.size());
+    count_crossed(probe.sharp, corners, point, tally);
 }
 
 std::vector<double> ends_of(const std::vector<double>& values) {
@@ -133,16 +171,16 @@ std::vector<double> MapSource::cones(const MapPoint& point) {
 }
 
 InterpolationError interpolation_error(const Rig& rig, const MapAxes& axes) {
-    MapSource source(probe_of(rig), axes, probe_options());
+    Probe probe(rig, axes);
     Tally tally;
-    for (const MapPoint& middle : middles_of(axes)) compare(source, axes, middle, tally);
+    for (const MapPoint& middle : middles_of(axes)) compare(probe, axes, middle, tally);
     return {.worst = tally.worst,
             .rms = tally.samples > 0.0 ? std::sqrt(tally.squares / tally.samples) : 0.0,
             .crossed_share = tally.crossed / tally.pixels};
 }
 
 MapAxes axes_for(const Rig& rig, const MapAxes& finest, double tolerance) {
-    MapSource source(probe_of(rig), finest, probe_options());
+    Probe probe(rig, finest);
     MapAxes chosen = finest;
     using Axis = std::vector<double> MapAxes::*;
     constexpr std::array<Axis, 4> kAxes{
@@ -161,7 +199,7 @@ MapAxes axes_for(const Rig& rig, const MapAxes& finest, double tolerance) {
                              .roll_rad = {corner.sled.roll_rad},
                              .water_multiple = {corner.water_multiple}};
                 line.*axis = {from, to};
-                compare(source, line, middles_of(line).front(), tally);
+                compare(probe, line, middles_of(line).front(), tally);
             }
             return tally.worst;
         };

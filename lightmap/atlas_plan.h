@@ -4,9 +4,9 @@
 //
 // The error is measured: in the middle of cells, where it is largest, the map between the bins is
 // held against the map that is computed there, on an image of the same field of view that is
-// kProbe_px wide at most. A pixel that a cone's edge crosses on its way through the cell is no
-// better than the step there, however fine the bins; such pixels are counted, and apart from the
-// error.
+// kProbe_px wide at most. It is that of the light without the cones' edges, each cone going on to
+// 90 degrees. What an edge crosses on its way through the cell is no better than the step there,
+// however fine the bins: such pixels are counted apart, and a tolerance says nothing of them.
 #pragma once
 
 #include "lightmap/map_axes.h"
@@ -41,9 +41,9 @@ class MapSource {
 };
 
 struct InterpolationError {
-    double worst = 0.0;          // relative, of pixels that no edge crosses
+    double worst = 0.0;          // relative, of the light without edges
     double rms = 0.0;            // of the same
-    double crossed_share = 0.0;  // of all pixels
+    double crossed_share = 0.0;  // of all pixels, by edges
 };
 
 // Over the middles of all cells.
