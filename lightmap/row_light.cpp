@@ -5,10 +5,17 @@
 #include <cmath>
 
 // Where the loader can choose (ELF with glibc on x86-64), each loop is compiled for wider vectors
-// too. They change no bit: the same IEEE operations, and none is fused. Unoptimised code, which has
-// no vectors, has no need of a choice.
+// too. They change no bit: the same IEEE operations, and none is fused. Unoptimised code has no
+// vectors to choose from, and sanitizers are not ready when the loader asks.
+#if defined(__SANITIZE_ADDRESS__)
+#define APHOTIC_IS_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define APHOTIC_IS_SANITIZED 1
+#endif
+#endif
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__OPTIMIZE__) && \
-    !defined(__SANITIZE_ADDRESS__)
+    !defined(APHOTIC_IS_SANITIZED)
 #define APHOTIC_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define APHOTIC_WIDE
