@@ -191,22 +191,23 @@ APHOTIC_WIDE Outside weigh(const RayBlock& rays,
         const auto V2 = static_cast<float>(block.V2[i]);
         const auto signed_axis = static_cast<float>(block.V_axis[i]);
         const float axis = signed_axis > 0.0F ? signed_axis : 0.0F;
-        const float per_V2 = 1.0F / V2;
+        const float inverse = 1.0F / V2;
         const float arriving = static_cast<float>(block.intensity[i]) * height_m * axis;
         block.place[i] = rays.leg_steps[i] + std::sqrt(V2) * rays.per_w[i] * steps_per_m;
-        block.diffuse[i] = arriving * rays.w3[i] * per_V2 * per_V2;
+        block.diffuse[i] = arriving * rays.w3[i] * inverse * inverse;
     }
     Outside outside;
     for (std::size_t i = 0; i < kCount; ++i) {
-        const bool is_lit = block.diffuse[i] > 0.0F;
-        outside.before += (is_lit & (block.place[i] < 0.0F)) ? 1 : 0;
-        outside.beyond += (is_lit & (block.place[i] > last)) ? 1 : 0;
+        const float light = block.diffuse[i];
+        const float place = block.place[i];
+        outside.before += static_cast<int>(light > 0.0F) & static_cast<int>(place < 0.0F);
+        outside.beyond += static_cast<int>(light > 0.0F) & static_cast<int>(place > last);
     }
     for (std::size_t i = 0; i < kCount; ++i) {
-        const bool is_inside = (block.place[i] >= 0.0F) & (block.place[i] < last);
-        const float place = is_inside ? block.place[i] : 0.0F;
+        const float found = block.place[i];
+        const float place = found >= 0.0F && found < last ? found : 0.0F;
         const int step = static_cast<int>(place);
-        block.diffuse[i] = is_inside ? block.diffuse[i] : 0.0F;
+        block.diffuse[i] = found == place ? block.diffuse[i] : 0.0F;
         block.step[i] = step;
         block.within_step[i] = place - static_cast<float>(step);
     }
@@ -222,9 +223,9 @@ void weigh_highlight(const RayBlock& rays, const LampTerms& lamp, LampBlock& blo
         const double H = rays.H[i];
         const Eigen::Vector3d D(rays.D_x[i], rays.D_y[i], 1.0);
         const Eigen::Vector3d o_m(rays.o_x[i], rays.o_y[i], rays.o_z);
-        const double V_D = (w * (o_m - lamp.position_m) + H * D).dot(D);
+        const double along = (w * (o_m - lamp.position_m) + H * D).dot(D);
         const double V_length = std::sqrt(block.V2[i]);
-        const double aligned = (2.0 * w * w * lamp.height_m - V_D) / (D.norm() * V_length);
+        const double aligned = (2.0 * w * w * lamp.height_m - along) / (D.norm() * V_length);
         if (aligned <= 0.0) continue;  // none, where phong_size is 0 too
         const double arriving =
             block.intensity[i] * block.V_axis[i] * w * w / (V_length * block.V2[i]);
