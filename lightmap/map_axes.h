@@ -8,10 +8,9 @@
 // S_i  maps of the 2, 4, 8 or 16 bins about it (an axis of one value adds none)
 // t    0 at the lower bin, 1 at the upper: of ln(altitude), of the angles and the water's multiple
 //
-// Light falls about as a power of altitude and as an exponential of water, so logarithms are nearly
-// straight where the light itself is not: over altitudes in steps of a tenth the error is some ten
-// times less. Where a bin is black, the sum of w_i S_i stands in. An edge of a cone lies elsewhere
-// in each bin; between two of them it is two half steps.
+// Light falls about as a power of altitude and as an exponential of water, so its logarithm is
+// nearly straight where the light itself is not. Where a bin is black, the sum of w_i S_i stands
+// in. An edge of a cone lies elsewhere in each bin; between two of them it is two half steps.
 #pragma once
 
 #include "lightmap/lightmap.h"
