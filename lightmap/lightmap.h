@@ -34,8 +34,9 @@
 namespace aphotic {
 
 struct LightmapOptions {
-    double error =
-        1e-5;         // relative, of the spectral integral and of its table; arithmetic adds 1e-6
+    // Relative, of the spectral integral and of its table. The rounding of floats comes on top, and
+    // behind a port the interpolation over the index.
+    double error = 1e-5;
     int threads = 1;  // changes no bit
 };
 
