@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <functional>
 #include <limits>
 #include <map>
@@ -24,8 +25,14 @@ namespace {
 
 constexpr int kThreads = 2;
 
-std::map<std::string, double>& least_s() {
-    static std::map<std::string, double> times;
+// By the clock, and of all threads' processor time, which others on the machine disturb less.
+struct Times {
+    double clock_s = std::numeric_limits<double>::infinity();
+    double processor_s = std::numeric_limits<double>::infinity();
+};
+
+std::map<std::string, Times>& least() {
+    static std::map<std::string, Times> times;
     return times;
 }
 
@@ -33,15 +40,19 @@ std::map<std::string, double>& least_s() {
 void time_passes(benchmark::State& state,
                  const std::string& name,
                  const std::function<void()>& pass) {
-    double least = std::numeric_limits<double>::infinity();
+    Times times;
     for (auto _ : state) {
         const auto start = std::chrono::steady_clock::now();
+        const std::clock_t processor = std::clock();
         pass();
-        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-        least = std::min(least, elapsed.count());
+        const double processor_s = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
+        const std::chrono::duration<double> clock = std::chrono::steady_clock::now() - start;
+        times.clock_s = std::min(times.clock_s, clock.count());
+        times.processor_s = std::min(times.processor_s, processor_s);
     }
-    state.counters["least_ms"] = 1e3 * least;
-    least_s()[name] = least;
+    state.counters["least_ms"] = 1e3 * times.clock_s;
+    state.counters["least_processor_ms"] = 1e3 * times.processor_s;
+    least()[name] = times;
 }
 
 Rig scene(const std::string& name) {
@@ -71,7 +82,7 @@ void make_map(benchmark::State& state, const std::string& name, int threads) {
 }
 BENCHMARK_CAPTURE(make_map, habcam, "habcam", kThreads)
     ->Unit(benchmark::kMillisecond)
-    ->Iterations(100);
+    ->Iterations(150);
 BENCHMARK_CAPTURE(make_map, habcam_one_thread, "habcam", 1)
     ->Unit(benchmark::kMillisecond)
     ->Iterations(50);
@@ -95,14 +106,27 @@ void trace(benchmark::State& state) {
 }
 BENCHMARK(trace)->Unit(benchmark::kMillisecond)->Iterations(2);
 
-void print_ratios() {
-    const double map_s = least_s()["habcam, 2"];
+void print_ratios(const char* by, double fill_s, double map_s, double trace_s) {
     fmt::print(
-        "lightmap of two threads: {:.1f} ms; {:.0f} times as fast as the tracer; {:.1f} times as "
-        "long as filling an image\n",
+        "by {}: lightmap {:.1f} ms; {:.0f} times as fast as the tracer; {:.1f} times as long as "
+        "filling an image\n",
+        by,
         1e3 * map_s,
-        least_s()["trace"] / map_s,
-        map_s / least_s()["fill"]);
+        trace_s / map_s,
+        map_s / fill_s);
+}
+
+// Filling takes one thread, the others two: half their processor time is what it takes when both
+// cores are theirs.
+void print_ratios() {
+    const Times fill = least()["fill"];
+    const Times map = least()["habcam, 2"];
+    const Times trace = least()["trace"];
+    print_ratios("the clock", fill.clock_s, map.clock_s, trace.clock_s);
+    print_ratios("processor time",
+                 fill.processor_s,
+                 map.processor_s / kThreads,
+                 trace.processor_s / kThreads);
 }
 
 }  // namespace

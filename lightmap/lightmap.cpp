@@ -12,10 +12,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <numeric>
+#include <random>
+#include <span>
 #include <thread>
 
 namespace aphotic {
@@ -28,20 +32,13 @@ constexpr double kGridShare = 0.1;
 constexpr double kTableShare = 0.5;
 
 void require_bare_floor(const Rig& rig) {
+    constexpr auto kAllowed = "allowed: the bare floor, which is all that a lightmap is of";
     if (!rig.objects.empty()) {
         throw InputError(
-            fmt::format("{}: the rig has objects, the first is '{}'; allowed: the bare floor, "
-                        "which is all that "
-                        "a lightmap is of",
-                        rig.title,
-                        rig.objects.front().name));
+            fmt::format("found the object '{}'; {}", rig.objects.front().name, kAllowed));
     }
     if (!rig.scene.empty()) {
-        throw InputError(
-            fmt::format("{}: the rig has a scene, {}; allowed: the bare floor, which is all that a "
-                        "lightmap is of",
-                        rig.title,
-                        rig.scene.string()));
+        throw InputError(fmt::format("found the scene {}; {}", rig.scene.string(), kAllowed));
     }
 }
 
@@ -160,10 +157,11 @@ void store(const SumBlock& sums, int row, int first_column, Lightmap& map) {
     const auto width = static_cast<std::size_t>(map.width_px);
     const std::size_t plane = width * static_cast<std::size_t>(map.height_px);
     const auto first = static_cast<std::size_t>(first_column);
-    const std::size_t count = std::min(sums.size(), width - first);
+    const std::size_t count = std::min<std::size_t>(kRowBlock, width - first);
     for (std::size_t c = 0; c < kChannels; ++c) {
-        float* to = &map.samples[c * plane + static_cast<std::size_t>(row) * width + first];
-        for (std::size_t i = 0; i < count; ++i) to[i] = sums[i][c];
+        std::copy_n(sums[c].begin(),
+                    count,
+                    &map.samples[c * plane + static_cast<std::size_t>(row) * width + first]);
     }
 }
 
@@ -173,10 +171,25 @@ struct PlacedLamp {
     std::size_t spectrum;
 };
 
-// All that the rows of one map have in common.
-struct MapScene {
-    std::vector<RayTerms> rays;  // by index node, the middle one first
-    std::vector<PlacedLamp> lamps;
+// Rows are taken as threads come free; each thread has a workspace of its own.
+template <class Workspace, class Work>
+void for_each_row(int rows, std::span<Workspace> workspaces, const Work& work) {
+    std::atomic<int> next_row = 0;
+    const auto take_rows = [&](Workspace& workspace) {
+        for (int row = next_row++; row < rows; row = next_row++) work(row, workspace);
+    };
+    std::vector<std::jthread> others;
+    for (Workspace& workspace : workspaces.subspan(1)) {
+        others.emplace_back([&take_rows, &workspace] { take_rows(workspace); });
+    }
+    take_rows(workspaces.front());
+}
+
+struct Workspace {
+    std::array<RayBlock, kIndexNodes> rays;
+    LampBlock lit;
+    SumBlock sums;
+    Outside outside;
 };
 
 // The middle index first, for it tells where the cones end.
@@ -188,7 +201,25 @@ std::vector<std::size_t> node_order(std::size_t nodes) {
     return order;
 }
 
+// Light that has gone from the shortest path to the longest, and as wide, is all but gone.
+bool ends_in_darkness(const Water& water, const PathRange& paths) {
+    double K_per_m = water.uniform_loss_per_m;
+    if (water.multiple > 0.0) {
+        K_per_m += water.multiple * *std::ranges::min_element(water.absorption_per_m.values());
+    }
+    constexpr double kRounding = 1.1;
+    return std::exp(-K_per_m * (paths.longest_m - paths.shortest_m)) *
+               std::pow(paths.shortest_m / paths.longest_m, 3) <=
+           kRounding * kDarkShare;
+}
+
 }  // namespace
+
+struct LightmapMaker::Scene {
+    std::vector<std::size_t> nodes;  // of the index, the middle one first
+    std::vector<RayTerms> rays;      // in their order
+    std::vector<PlacedLamp> lamps;
+};
 
 PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds) {
     constexpr double kRoom = 1.02;
@@ -212,7 +243,7 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     require_bare_floor(rig);
     paths_ = paths ? *paths : path_range(rig);
     // The rig's own end where the floor does, or else where its light does.
-    if (!paths) paths_.has_horizon = true;
+    if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
     index_nodes_nm_ = index_nodes_nm(rig_);
     if (paths_.longest_m > 0.0) tabulate();
 }
@@ -248,16 +279,53 @@ void LightmapMaker::tabulate() {
     tables_.resize(rig_.strobes.size());
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
         if (spectrum_of_strobe_[s] != s) continue;
-        const Spectrum& lamp = rig_.strobes[s].spectrum;
-        for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
-            const auto share = [&](double nm) { return lagrange(rig_, index_nodes_nm_, j, nm); };
-            const auto diffuse = [&](double nm) { return share(nm) * lamp.at(nm) * floor.at(nm); };
-            tables_[s].diffuse.push_back(path_table(spectral_sum(rig_, grid, diffuse), steps_));
-            if (!has_highlight) continue;
-            const auto bare = [&](double nm) { return share(nm) * lamp.at(nm); };
-            tables_[s].highlight.push_back(path_table(spectral_sum(rig_, grid, bare), steps_));
+        tabulate_lamp(rig_.strobes[s].spectrum, grid, tables_[s]);
+    }
+}
+
+void LightmapMaker::tabulate_lamp(const Spectrum& lamp,
+                                  const std::vector<WeightedWavelength>& grid,
+                                  LightTables& tables) const {
+    const Spectrum& floor = rig_.seafloor.reflectance;
+    for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
+        const auto bare = [&](double nm) {
+            return lagrange(rig_, index_nodes_nm_, j, nm) * lamp.at(nm);
+        };
+        const auto diffuse = [&](double nm) { return bare(nm) * floor.at(nm); };
+        tables.diffuse.push_back(path_table(spectral_sum(rig_, grid, diffuse), steps_));
+        if (rig_.seafloor.phong == 0.0) continue;
+        tables.highlight.push_back(path_table(spectral_sum(rig_, grid, bare), steps_));
+    }
+}
+
+LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
+    const Plane floor = floor_plane(sled);
+    Scene scene{.nodes = node_order(index_nodes_nm_.size()), .rays = {}, .lamps = {}};
+    for (const std::size_t j : scene.nodes) {
+        scene.rays.push_back(ray_terms(rig_, floor, index_nodes_nm_[j]));
+    }
+    Rig flown = rig_;
+    flown.sled = sled;
+    for (std::size_t s = 0; s < rig_.strobes.size() && steps_.count > 0; ++s) {
+        for (const LampTerms& lamp : lamps_of(flown, rig_.strobes[s], floor)) {
+            scene.lamps.push_back({.terms = lamp, .spectrum = spectrum_of_strobe_[s]});
         }
     }
+    return scene;
+}
+
+void LightmapMaker::require_served(const Sled& sled, bool is_before, bool is_beyond) const {
+    if (!is_before && (!is_beyond || paths_.has_horizon)) return;
+    constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+    throw InputError(
+        fmt::format("altitude {:.6g} m, pitch {:.6g}, roll {:.6g} degrees: the image sees paths {} "
+                    "than the tables serve; allowed: from {:.6g} to {:.6g} m",
+                    sled.altitude_m,
+                    sled.pitch_rad * kDegreesPerRadian,
+                    sled.roll_rad * kDegreesPerRadian,
+                    is_before ? "shorter" : "longer",
+                    paths_.shortest_m,
+                    paths_.longest_m));
 }
 
 Lightmap LightmapMaker::map(const Sled& sled) const {
@@ -267,73 +335,78 @@ Lightmap LightmapMaker::map(const Sled& sled) const {
 }
 
 void LightmapMaker::map_into(const Sled& sled, Lightmap& map) const {
+    rows_into(sled, 0, rig_.camera.height_px, map);
+}
+
+void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightmap& map) const {
     map.width_px = rig_.camera.width_px;
-    map.height_px = rig_.camera.height_px;
+    map.height_px = count;
     map.samples.resize(kChannels * static_cast<std::size_t>(map.width_px) *
-                       static_cast<std::size_t>(map.height_px));
-    const Plane floor = floor_plane(sled);
-    const std::vector<std::size_t> nodes = node_order(index_nodes_nm_.size());
-    MapScene scene;
-    for (const std::size_t j : nodes)
-        scene.rays.push_back(ray_terms(rig_, floor, index_nodes_nm_[j]));
-    Rig flown = rig_;
-    flown.sled = sled;
-    for (std::size_t s = 0; s < rig_.strobes.size() && steps_.count > 0; ++s) {
-        for (const LampTerms& lamp : lamps_of(flown, rig_.strobes[s], floor)) {
-            scene.lamps.push_back({.terms = lamp, .spectrum = spectrum_of_strobe_[s]});
+                       static_cast<std::size_t>(count));
+    const Scene scene = scene_of(sled);
+    const auto add_lamp = [&](const PlacedLamp& lamp, Workspace& work) {
+        const LightTables& tables = tables_[lamp.spectrum];
+        for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
+            const RayBlock& rays = work.rays[j];
+            shine(rays, lamp.terms, work.lit);
+            if (j == 0) find_cones(lamp.terms, work.lit);
+            const Outside found = weigh(rays, lamp.terms, steps_, work.lit);
+            work.outside.before += found.before;
+            work.outside.beyond += found.beyond;
+            look_up(work.lit, work.lit.diffuse, tables.diffuse[scene.nodes[j]], work.sums);
+            if (tables.highlight.empty()) continue;
+            weigh_highlight(rays, lamp.terms, work.lit);
+            look_up(work.lit, work.lit.highlight, tables.highlight[scene.nodes[j]], work.sums);
+        }
+    };
+    const auto make_row = [&](int row, Workspace& work) {
+        for (int column = 0; column < map.width_px; column += kRowBlock) {
+            for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
+                look_along(scene.rays[j], steps_, first_row + row, column, work.rays[j]);
+            }
+            for (RowBlock<float>& sum : work.sums) sum.fill(0.0F);
+            for (const PlacedLamp& lamp : scene.lamps) add_lamp(lamp, work);
+            store(work.sums, row, column, map);
+        }
+    };
+    std::vector<Workspace> workspaces(static_cast<std::size_t>(options_.threads));
+    for_each_row(count, std::span(workspaces), make_row);
+    const auto sum_of = [&](int Outside::*kind) {
+        long long sum = 0;
+        for (const Workspace& work : workspaces) sum += work.outside.*kind;
+        return sum;
+    };
+    require_served(sled, sum_of(&Outside::before) > 0, sum_of(&Outside::beyond) > 0);
+}
+
+std::vector<double> LightmapMaker::cones(const Sled& sled) const {
+    const auto width = static_cast<std::size_t>(rig_.camera.width_px);
+    std::vector<double> found(width * static_cast<std::size_t>(rig_.camera.height_px), 0.0);
+    Scene scene = scene_of(sled);
+    // Whole numbers below 2^40, whose sums are exact and seldom the same by chance.
+    std::mt19937_64 engine(1);
+    constexpr std::uint64_t kShift = 24;
+    for (PlacedLamp& lamp : scene.lamps) {
+        for (double& intensity : lamp.terms.cone_intensity) {
+            intensity = static_cast<double>(engine() >> kShift);
         }
     }
-
-    std::atomic<int> next_row = 0;
-    std::atomic<int> before = 0;
-    std::atomic<int> beyond = 0;
-    const auto make_rows = [&] {
-        std::array<RayBlock, kIndexNodes> rays;
-        LampBlock lit;
-        SumBlock sums;
-        Outside outside;
-        for (int row = next_row++; row < map.height_px; row = next_row++) {
-            for (int column = 0; column < map.width_px; column += kRowBlock) {
-                for (std::size_t j = 0; j < nodes.size(); ++j) {
-                    look_along(scene.rays[j], row, column, rays[j]);
+    const auto work = std::make_unique<Workspace>();
+    for (int row = 0; row < rig_.camera.height_px; ++row) {
+        for (int column = 0; column < rig_.camera.width_px; column += kRowBlock) {
+            look_along(scene.rays.front(), steps_, row, column, work->rays.front());
+            const auto first = static_cast<std::size_t>(column);
+            for (const PlacedLamp& lamp : scene.lamps) {
+                shine(work->rays.front(), lamp.terms, work->lit);
+                find_cones(lamp.terms, work->lit);
+                for (std::size_t i = 0; i < kRowBlock && first + i < width; ++i) {
+                    found[static_cast<std::size_t>(row) * width + first + i] +=
+                        work->lit.intensity[i];
                 }
-                sums = {};
-                for (const PlacedLamp& lamp : scene.lamps) {
-                    const LightTables& tables = tables_[lamp.spectrum];
-                    for (std::size_t j = 0; j < nodes.size(); ++j) {
-                        shine(rays[j], lamp.terms, lit);
-                        if (j == 0) find_cones(lamp.terms, lit);
-                        const Outside found = weigh(rays[j], lamp.terms, steps_, lit);
-                        outside.before += found.before;
-                        outside.beyond += found.beyond;
-                        look_up(lit, lit.diffuse, tables.diffuse[nodes[j]], sums);
-                        if (tables.highlight.empty()) continue;
-                        weigh_highlight(rays[j], lamp.terms, lit);
-                        look_up(lit, lit.highlight, tables.highlight[nodes[j]], sums);
-                    }
-                }
-                store(sums, row, column, map);
             }
         }
-        before += outside.before > 0 ? 1 : 0;
-        beyond += outside.beyond > 0 ? 1 : 0;
-    };
-    {
-        std::vector<std::jthread> others;
-        for (int t = 1; t < options_.threads; ++t) others.emplace_back(make_rows);
-        make_rows();
     }
-    if (before > 0 || (beyond > 0 && !paths_.has_horizon)) {
-        throw InputError(fmt::format(
-            "altitude {} m, pitch {} rad, roll {} rad: the image sees paths {} than the lightmap's "
-            "tables serve; allowed: paths from {} to {} m",
-            sled.altitude_m,
-            sled.pitch_rad,
-            sled.roll_rad,
-            before > 0 ? "shorter" : "longer",
-            paths_.shortest_m,
-            paths_.longest_m));
-    }
+    return found;
 }
 
 }  // namespace aphotic

@@ -34,8 +34,9 @@
 namespace aphotic {
 
 struct LightmapOptions {
-    double error =
-        1e-5;         // relative, of the spectral integral and of its table; arithmetic adds 1e-6
+    // Relative, of the spectral integral and of its table. The rounding of floats comes on top, and
+    // behind a port the interpolation over the index.
+    double error = 1e-5;
     int threads = 1;  // changes no bit
 };
 
@@ -60,6 +61,12 @@ class LightmapMaker {
     [[nodiscard]] Lightmap map(const Sled& sled) const;
     // The same into a map that is there: without allocation when it has the size.
     void map_into(const Sled& sled, Lightmap& map) const;
+    // Some rows alone.
+    void rows_into(const Sled& sled, int first_row, int count, Lightmap& map) const;
+
+    // For each pixel a number that tells which cones of which lamps reach there: where two maps
+    // have the same, no edge lies between.
+    [[nodiscard]] std::vector<double> cones(const Sled& sled) const;
 
     [[nodiscard]] const PathRange& paths() const { return paths_; }
     [[nodiscard]] std::size_t grid_size() const { return grid_size_; }
@@ -72,7 +79,14 @@ class LightmapMaker {
         std::vector<std::vector<float>> highlight;
     };
 
+    struct Scene;  // what all rows of a map have in common
+
     void tabulate();
+    void tabulate_lamp(const Spectrum& lamp,
+                       const std::vector<WeightedWavelength>& grid,
+                       LightTables& tables) const;
+    [[nodiscard]] Scene scene_of(const Sled& sled) const;
+    void require_served(const Sled& sled, bool is_before, bool is_beyond) const;
 
     Rig rig_;
     LightmapOptions options_;

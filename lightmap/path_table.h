@@ -23,6 +23,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <vector>
 
 namespace aphotic {
@@ -47,9 +48,9 @@ struct PathSteps {
 
 // Per step, four vectors of (R, G, B, nothing): the cubic's coefficients in t, 0 to 1 over the
 // step, so that T = c0 + t (c1 + t (c2 + t c3)).
-inline constexpr int kTableLanes = 4;
-inline constexpr int kTableOrder = 4;
-inline constexpr int kTableStride = kTableLanes * kTableOrder;
+inline constexpr std::size_t kTableLanes = 4;
+inline constexpr std::size_t kTableOrder = 4;
+inline constexpr std::size_t kTableStride = kTableLanes * kTableOrder;
 
 // Weights of either sign.
 [[nodiscard]] std::vector<float> path_table(const SpectralSum& sum, const PathSteps& steps);

@@ -5,10 +5,17 @@
 #include <cmath>
 
 // Where the loader can choose (ELF with glibc on x86-64), each loop is compiled for wider vectors
-// too. They change no bit: the same IEEE operations, and none is fused. Unoptimised code, which has
-// no vectors, has no need of a choice.
+// too. They change no bit: the same IEEE operations, and none is fused. Unoptimised code has no
+// vectors to choose from, and sanitizers are not ready when the loader asks.
+#if defined(__SANITIZE_ADDRESS__)
+#define APHOTIC_IS_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define APHOTIC_IS_SANITIZED 1
+#endif
+#endif
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__OPTIMIZE__) && \
-    !defined(__SANITIZE_ADDRESS__)
+    !defined(APHOTIC_IS_SANITIZED)
 #define APHOTIC_WIDE __attribute__((target_clones("avx2", "default")))
 #else
 #define APHOTIC_WIDE
@@ -19,6 +26,15 @@ namespace aphotic {
 namespace {
 
 constexpr auto kCount = static_cast<std::size_t>(kRowBlock);
+
+APHOTIC_WIDE void go_straight(const RayTerms& terms, double u, double first_v, RayBlock& rays) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+        rays.D_x[i] = u;
+        rays.D_y[i] = first_v + static_cast<double>(static_cast<int>(i)) * terms.slope_per_px;
+        rays.o_x[i] = 0.0;
+        rays.o_y[i] = 0.0;
+    }
+}
 
 // How a pixel's slopes in air turn into those in water, and where they leave the port.
 APHOTIC_WIDE void bend(const RayTerms& terms, double u, double first_v, RayBlock& rays) {
@@ -37,38 +53,100 @@ APHOTIC_WIDE void bend(const RayTerms& terms, double u, double first_v, RayBlock
     }
 }
 
-APHOTIC_WIDE void meet_floor(const RayTerms& terms, RayBlock& rays) {
+APHOTIC_WIDE void meet_floor(const RayTerms& terms, const PathSteps& steps, RayBlock& rays) {
     const double x = terms.down.x();
     const double y = terms.down.y();
     const double z = terms.down.z();
     const double from_port_m = terms.floor_m - z * rays.o_z;
     for (std::size_t i = 0; i < kCount; ++i) {
-        const double w = x * rays.D_x[i] + y * rays.D_y[i] + z;
+        const double D_x = rays.D_x[i];
+        const double D_y = rays.D_y[i];
+        const double down = x * D_x + y * D_y + z;
         const double H = from_port_m - x * rays.o_x[i] - y * rays.o_y[i];
-        const double sees = (w > 0.0 ? 1.0 : 0.0) * (H > 0.0 ? 1.0 : 0.0);
-        rays.sees[i] = sees;
-        rays.w[i] = sees > 0.0 ? w : 1.0;
+        const bool sees = (down > 0.0) & (H > 0.0);
+        const double w = sees ? down : 1.0;
+        const double per_w = 1.0 / w;
+        const double leg_m = H * std::sqrt(D_x * D_x + D_y * D_y + 1.0) * per_w;
         rays.H[i] = H;
-        rays.D_length[i] = std::sqrt(rays.D_x[i] * rays.D_x[i] + rays.D_y[i] * rays.D_y[i] + 1.0);
+        rays.w[i] = w;
+        rays.per_w[i] = static_cast<float>(per_w);
+        rays.w3[i] = static_cast<float>(sees ? w * w * w : 0.0);
+        rays.leg_steps[i] = static_cast<float>((leg_m - steps.first_m) * steps.steps_per_m);
     }
 }
 
+// Signed squares are compared, which are in the order of the cosines and need no root.
 APHOTIC_WIDE void add_cone(double cosine, double intensity, LampBlock& block) {
+    const double square = cosine * cosine;
     for (std::size_t i = 0; i < kCount; ++i) {
-        block.intensity[i] += block.V_axis[i] >= cosine * block.V_length[i] ? intensity : 0.0;
+        const double along = block.V_axis[i] * std::abs(block.V_axis[i]);
+        block.intensity[i] += along >= square * block.V2[i] ? intensity : 0.0;
+    }
+}
+
+// The steps that the block's pixels are in.
+struct StepRange {
+    int first;
+    int last;
+};
+
+APHOTIC_WIDE StepRange steps_of(const RowBlock<int>& steps) {
+    StepRange range{steps[0], steps[0]};
+    for (std::size_t i = 0; i < kCount; ++i) {
+        range.first = std::min(range.first, steps[i]);
+        range.last = std::max(range.last, steps[i]);
+    }
+    return range;
+}
+
+// The pixels that are in this step.
+APHOTIC_WIDE void add_step(const LampBlock& block,
+                           const RowBlock<float>& factors,
+                           int step,
+                           const float* cubic,
+                           SumBlock& sums) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const float c_0 = cubic[c];
+        const float c_1 = cubic[c + kTableLanes];
+        const float c_2 = cubic[c + 2 * kTableLanes];
+        const float c_3 = cubic[c + 3 * kTableLanes];
+        for (std::size_t i = 0; i < kCount; ++i) {
+            const float t = block.within_step[i];
+            const float factor = block.step[i] == step ? factors[i] : 0.0F;
+            sums[c][i] += factor * (c_0 + t * (c_1 + t * (c_2 + t * c_3)));
+        }
+    }
+}
+
+// Towards the horizon every pixel is in a step of its own.
+void add_pixels(const LampBlock& block,
+                const RowBlock<float>& factors,
+                std::span<const float> table,
+                SumBlock& sums) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const float* cubic = &table[static_cast<std::size_t>(block.step[i]) * kTableStride];
+        const float t = block.within_step[i];
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            sums[c][i] +=
+                factors[i] *
+                (cubic[c] + t * (cubic[c + kTableLanes] + t * (cubic[c + 2 * kTableLanes] +
+                                                               t * cubic[c + 3 * kTableLanes])));
+        }
     }
 }
 
 }  // namespace
 
-void look_along(const RayTerms& terms, int row, int first_column, RayBlock& rays) {
+void look_along(
+    const RayTerms& terms, const PathSteps& steps, int row, int first_column, RayBlock& rays) {
     const double u = (terms.middle_row - (row + 0.5)) * terms.slope_per_px;
     const double first_v = (first_column + 0.5 - terms.middle_column) * terms.slope_per_px;
     rays.o_z = terms.distance_m + terms.thickness_m;
-    bend(terms, u, first_v, rays);
-    meet_floor(terms, rays);
+    const bool has_port = terms.water_index != 1.0;
+    has_port ? bend(terms, u, first_v, rays) : go_straight(terms, u, first_v, rays);
+    meet_floor(terms, steps, rays);
     for (int i = terms.width_px - first_column; i < kRowBlock; ++i) {
-        rays.sees[static_cast<std::size_t>(i)] = 0.0;
+        rays.w3[static_cast<std::size_t>(i)] = 0.0F;
     }
 }
 
@@ -84,13 +162,20 @@ APHOTIC_WIDE void shine(const RayBlock& rays, const LampTerms& lamp, LampBlock& 
         const double V_y = (rays.o_y[i] - s_y) * rays.w[i] + rays.H[i] * rays.D_y[i];
         const double V_z = z * rays.w[i] + rays.H[i];
         block.V_axis[i] = a_x * V_x + a_y * V_y + a_z * V_z;
-        block.V_length[i] = std::sqrt(V_x * V_x + V_y * V_y + V_z * V_z);
+        block.V2[i] = V_x * V_x + V_y * V_y + V_z * V_z;
     }
 }
 
 void find_cones(const LampTerms& lamp, LampBlock& block) {
-    block.intensity.fill(0.0);
+    // A cone of 90 degrees ends where its cosine does, and has no edge to look for.
+    constexpr double kNoEdge = 1e-15;
+    double everywhere = 0.0;
     for (std::size_t k = 0; k < lamp.cone_cosine.size(); ++k) {
+        if (lamp.cone_cosine[k] < kNoEdge) everywhere += lamp.cone_intensity[k];
+    }
+    block.intensity.fill(everywhere);
+    for (std::size_t k = 0; k < lamp.cone_cosine.size(); ++k) {
+        if (lamp.cone_cosine[k] < kNoEdge) continue;
         add_cone(lamp.cone_cosine[k], lamp.cone_intensity[k], block);
     }
 }
@@ -99,29 +184,32 @@ APHOTIC_WIDE Outside weigh(const RayBlock& rays,
                            const LampTerms& lamp,
                            const PathSteps& steps,
                            LampBlock& block) {
-    const double last = steps.count;
-    const double first = steps.first_m * steps.steps_per_m;
+    const auto last = static_cast<float>(steps.count);
+    const auto steps_per_m = static_cast<float>(steps.steps_per_m);
+    const auto height_m = static_cast<float>(lamp.height_m);
     for (std::size_t i = 0; i < kCount; ++i) {
-        const double w = rays.w[i];
-        const double V2 = block.V_length[i] * block.V_length[i];
-        const double axis = block.V_axis[i] > 0.0 ? block.V_axis[i] : 0.0;
-        const double path = (rays.D_length[i] * rays.H[i] + block.V_length[i]) / w;
-        const double arriving = rays.sees[i] * block.intensity[i] * axis * lamp.height_m;
-        block.place[i] = path * steps.steps_per_m - first;
-        block.diffuse[i] = static_cast<float>(arriving * (w * w * w) / (V2 * V2));
+        const auto V2 = static_cast<float>(block.V2[i]);
+        const auto signed_axis = static_cast<float>(block.V_axis[i]);
+        const float axis = signed_axis > 0.0F ? signed_axis : 0.0F;
+        const float inverse = 1.0F / V2;
+        const float arriving = static_cast<float>(block.intensity[i]) * height_m * axis;
+        block.place[i] = rays.leg_steps[i] + std::sqrt(V2) * rays.per_w[i] * steps_per_m;
+        block.diffuse[i] = arriving * rays.w3[i] * inverse * inverse;
     }
     Outside outside;
     for (std::size_t i = 0; i < kCount; ++i) {
-        const bool is_lit = block.diffuse[i] > 0.0F;
-        outside.before += static_cast<int>(is_lit & (block.place[i] < 0.0));
-        outside.beyond += static_cast<int>(is_lit & (block.place[i] > last));
+        const float light = block.diffuse[i];
+        const float place = block.place[i];
+        outside.before += static_cast<int>(light > 0.0F) & static_cast<int>(place < 0.0F);
+        outside.beyond += static_cast<int>(light > 0.0F) & static_cast<int>(place > last);
     }
     for (std::size_t i = 0; i < kCount; ++i) {
-        const double place = block.place[i] > 0.0 ? block.place[i] : 0.0;
-        const double inside = place < last ? place : 0.0;
-        block.diffuse[i] = place < last ? block.diffuse[i] : 0.0F;
-        block.step[i] = static_cast<int>(inside);
-        block.within_step[i] = static_cast<float>(inside - block.step[i]);
+        const float found = block.place[i];
+        const float place = found >= 0.0F && found < last ? found : 0.0F;
+        const int step = static_cast<int>(place);
+        block.diffuse[i] = found == place ? block.diffuse[i] : 0.0F;
+        block.step[i] = step;
+        block.within_step[i] = place - static_cast<float>(step);
     }
     return outside;
 }
@@ -132,15 +220,15 @@ void weigh_highlight(const RayBlock& rays, const LampTerms& lamp, LampBlock& blo
         block.highlight[i] = 0.0F;
         if (block.diffuse[i] <= 0.0F) continue;
         const double w = rays.w[i];
-        const double V_z = (rays.o_z - lamp.position_m.z()) * w + rays.H[i];
-        const double V_x = (rays.o_x[i] - lamp.position_m.x()) * w + rays.H[i] * rays.D_x[i];
-        const double V_y = (rays.o_y[i] - lamp.position_m.y()) * w + rays.H[i] * rays.D_y[i];
-        const double V_D = V_x * rays.D_x[i] + V_y * rays.D_y[i] + V_z;
-        const double aligned =
-            (2.0 * w * w * lamp.height_m - V_D) / (rays.D_length[i] * block.V_length[i]);
+        const double H = rays.H[i];
+        const Eigen::Vector3d D(rays.D_x[i], rays.D_y[i], 1.0);
+        const Eigen::Vector3d o_m(rays.o_x[i], rays.o_y[i], rays.o_z);
+        const double along = (w * (o_m - lamp.position_m) + H * D).dot(D);
+        const double V_length = std::sqrt(block.V2[i]);
+        const double aligned = (2.0 * w * w * lamp.height_m - along) / (D.norm() * V_length);
         if (aligned <= 0.0) continue;  // none, where phong_size is 0 too
-        const double arriving = block.intensity[i] * block.V_axis[i] * w * w /
-                                (block.V_length[i] * block.V_length[i] * block.V_length[i]);
+        const double arriving =
+            block.intensity[i] * block.V_axis[i] * w * w / (V_length * block.V2[i]);
         block.highlight[i] =
             static_cast<float>(arriving * lamp.phong * std::pow(aligned, lamp.phong_size));
     }
@@ -150,16 +238,14 @@ void look_up(const LampBlock& block,
              const RowBlock<float>& factors,
              std::span<const float> table,
              SumBlock& sums) {
-    for (std::size_t i = 0; i < kCount; ++i) {
-        const float t = block.within_step[i];
-        const float factor = factors[i];
-        const float* c = &table[static_cast<std::size_t>(block.step[i]) * kTableStride];
-        for (std::size_t lane = 0; lane < kTableLanes; ++lane) {
-            sums[i][lane] +=
-                factor *
-                (c[lane] + t * (c[lane + kTableLanes] +
-                                t * (c[lane + 2 * kTableLanes] + t * c[lane + 3 * kTableLanes])));
-        }
+    constexpr int kFewSteps = 4;  // more cost as much as single pixels
+    const StepRange steps = steps_of(block.step);
+    if (steps.last - steps.first >= kFewSteps) {
+        add_pixels(block, factors, table, sums);
+        return;
+    }
+    for (int step = steps.first; step <= steps.last; ++step) {
+        add_step(block, factors, step, &table[static_cast<std::size_t>(step) * kTableStride], sums);
     }
 }
 

@@ -23,7 +23,12 @@
 //
 //   a = 1/sqrt(n_w^2 + (n_w^2 - 1) q)     b = distance + thickness/sqrt(n_g^2 + (n_g^2 - 1) q)
 //
-// with q = u^2 + v^2. Double precision as far as the place in the table; from there on float.
+// with q = u^2 + v^2. What is a small difference of large numbers, w towards the horizon, V.a at
+// the end of a cone of 90 degrees, and which side of a cone's edge a pixel is on, is done in double
+// precision, products in float.
+//
+// Over the few pixels of a block the path hardly changes. So nearly all of them are in one step of
+// the table or in two, whose cubics need no look-up pixel by pixel.
 #pragma once
 
 #include "lightmap/path_table.h"
@@ -37,8 +42,9 @@
 namespace aphotic {
 
 inline constexpr int kRowBlock = 128;
+// As wide as the widest vectors.
 template <class T>
-using RowBlock = std::array<T, kRowBlock>;
+struct alignas(64) RowBlock : std::array<T, kRowBlock> {};
 
 // What is the same for all rays of a map at one index.
 struct RayTerms {
@@ -55,18 +61,20 @@ struct RayTerms {
 };
 
 struct RayBlock {
-    alignas(64) RowBlock<double> D_x;
-    alignas(64) RowBlock<double> D_y;
-    alignas(64) RowBlock<double> D_length;
-    alignas(64) RowBlock<double> o_x;
-    alignas(64) RowBlock<double> o_y;
-    alignas(64) RowBlock<double> w;  // 1 where the ray sees nothing
-    alignas(64) RowBlock<double> H;
-    alignas(64) RowBlock<double> sees;  // 1, or 0 where it meets no floor or the row has ended
     double o_z = 0.0;
+    RowBlock<double> D_x;
+    RowBlock<double> D_y;
+    RowBlock<double> o_x;
+    RowBlock<double> o_y;
+    RowBlock<double> H;
+    RowBlock<double> w;         // 1 where the ray sees nothing
+    RowBlock<float> per_w;      // 1/w
+    RowBlock<float> w3;         // w^3; 0 where it sees nothing, or the row has ended
+    RowBlock<float> leg_steps;  // r in steps of the table, less the place of its start
 };
 
-void look_along(const RayTerms& terms, int row, int first_column, RayBlock& rays);
+void look_along(
+    const RayTerms& terms, const PathSteps& steps, int row, int first_column, RayBlock& rays);
 
 struct LampTerms {
     Eigen::Vector3d position_m;
@@ -80,19 +88,20 @@ struct LampTerms {
 
 // What the rays get of one lamp, ready to be looked up.
 struct LampBlock {
-    alignas(64) RowBlock<double> V_axis;  // V.a
-    alignas(64) RowBlock<double> V_length;
-    alignas(64) RowBlock<double> intensity;  // of the cones that reach there
-    alignas(64) RowBlock<double> place;      // in the table, in steps
-    alignas(64) RowBlock<int> step;
-    alignas(64) RowBlock<float> within_step;  // 0 to 1
-    alignas(64) RowBlock<float> diffuse;      // factor of T
-    alignas(64) RowBlock<float> highlight;    // factor of U, T without reflectance
+    RowBlock<double> V_axis;     // V.a
+    RowBlock<double> V2;         // |V|^2
+    RowBlock<double> intensity;  // of the cones that reach there
+    RowBlock<float> place;       // of the path in the table, in steps
+    RowBlock<int> step;
+    RowBlock<float> within_step;  // 0 to 1
+    RowBlock<float> diffuse;      // factor of T
+    RowBlock<float> highlight;    // factor of U, T without reflectance
 };
 
 void shine(const RayBlock& rays, const LampTerms& lamp, LampBlock& block);
 // Of the rays last shone on; it stays for rays of other indices.
 void find_cones(const LampTerms& lamp, LampBlock& block);
+
 // Pixels with light whose path is not in the table.
 struct Outside {
     int before = 0;
@@ -105,8 +114,8 @@ struct Outside {
                             LampBlock& block);
 void weigh_highlight(const RayBlock& rays, const LampTerms& lamp, LampBlock& block);
 
-// sums: kTableLanes for each pixel.
-using SumBlock = RowBlock<std::array<float, kTableLanes>>;
+// Adds factors times the table's signal, by channel.
+using SumBlock = std::array<RowBlock<float>, kChannels>;
 void look_up(const LampBlock& block,
              const RowBlock<float>& factors,
              std::span<const float> table,

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lightmap/altitude_fit.h"
+
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+#include <boost/math/tools/minima.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace aphotic {
+namespace {
+
+double mean_of(std::span<const double> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double product(std::span<const double> a, std::span<const double> b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+}  // namespace
+
+AltitudeFitter::AltitudeFitter(std::vector<double> altitude_m)
+    : altitude_m_(std::move(altitude_m)) {
+    constexpr std::size_t kLeast = 4;
+    if (altitude_m_.size() < kLeast) {
+        throw InputError(fmt::format("a fit over altitude: found {} altitudes; allowed: {} or more",
+                                     altitude_m_.size(),
+                                     kLeast));
+    }
+    const double span_m = altitude_m_.back() - altitude_m_.front();
+    for (int i = -kRates; i < kRates; ++i) {
+        const double step = (i < 0 ? -i - 1 : i) / (kRates - 1.0);
+        const double size = kSlowest * std::pow(kFastest / kSlowest, step) / span_m;
+        rates_.push_back(rate(i < 0 ? -size : size));
+    }
+}
+
+AltitudeFitter::Rate AltitudeFitter::rate(double b_per_m) const {
+    // Scaled to 1 at the end where it is largest.
+    const double at_m = b_per_m > 0.0 ? altitude_m_.back() : altitude_m_.front();
+    Rate rate{.b_per_m = b_per_m, .shape = {}};
+    for (const double h_m : altitude_m_) rate.shape.push_back(std::exp(b_per_m * (h_m - at_m)));
+    const double mean = mean_of(rate.shape);
+    for (double& value : rate.shape) value -= mean;
+    const double length = std::sqrt(product(rate.shape, rate.shape));
+    for (double& value : rate.shape) value /= length;
+    return rate;
+}
+
+AltitudeFit AltitudeFitter::fit(std::span<const double> signal) const {
+    const double mean = mean_of(signal);
+    if (mean == 0.0) return {};
+    // What the fit explains of the variance is the square of this.
+    const auto explained = [&](const Rate& rate) {
+        const double part = product(rate.shape, signal);
+        return part * part;
+    };
+    std::size_t best = 0;
+    double most = -1.0;
+    for (std::size_t i = 0; i < rates_.size(); ++i) {
+        const double found = explained(rates_[i]);
+        if (found > most) best = i, most = found;
+    }
+    const double from = rates_[best > 0 ? best - 1 : best].b_per_m;
+    const double to = rates_[std::min(best + 1, rates_.size() - 1)].b_per_m;
+    constexpr int kBits = 16;
+    // From one sign to the other lies the straight line, which has no b.
+    const bool is_one_sign = from * to > 0.0;
+    const double b_per_m = is_one_sign
+                               ? boost::math::tools::brent_find_minima(
+                                     [&](double b) { return -explained(rate(b)); }, from, to, kBits)
+                                     .first
+                               : rates_[best].b_per_m;
+
+    AltitudeFit fit{.a = 0.0, .b_per_m = b_per_m, .c = 0.0, .residual = 0.0};
+    std::vector<double> basis;
+    for (const double h_m : altitude_m_) basis.push_back(std::exp(b_per_m * h_m));
+    const double basis_mean = mean_of(basis);
+    double above = 0.0;
+    double below = 0.0;
+    for (std::size_t i = 0; i < basis.size(); ++i) {
+        above += (basis[i] - basis_mean) * (signal[i] - mean);
+        below += (basis[i] - basis_mean) * (basis[i] - basis_mean);
+    }
+    fit.a = above / below;
+    fit.c = mean - fit.a * basis_mean;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < basis.size(); ++i) {
+        const double left = signal[i] - (fit.a * basis[i] + fit.c);
+        squares += left * left;
+    }
+    fit.residual = std::sqrt(squares / static_cast<double>(basis.size())) / mean;
+    return fit;
+}
+
+}  // namespace aphotic

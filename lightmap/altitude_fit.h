@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The light of one pixel over altitude as correctors of surveys take it:
+//
+//   S(h) ~ a exp(b h) + c
+//
+// h  altitude [m]      a, c  in the unit of S      b  1/m, mostly negative
+//
+// by least squares. For a given b, a and c are those of a straight line over exp(b h), so only b is
+// searched: first over kRates rates of either sign, even in ratio from kSlowest to kFastest over
+// the span of altitudes, then by golden section between the neighbours of the best. Of the two
+// signs and all rates that is the least, unless the residual has several minima between two rates.
+//
+// residual  root of the mean square of what the fit leaves, over the mean of S
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+struct AltitudeFit {
+    double a = 0.0;
+    double b_per_m = 0.0;
+    double c = 0.0;
+    double residual = 0.0;
+};
+
+class AltitudeFitter {
+  public:
+    // At least four altitudes, increasing.
+    explicit AltitudeFitter(std::vector<double> altitude_m);
+
+    [[nodiscard]] AltitudeFit fit(std::span<const double> signal) const;
+
+    static constexpr int kRates = 24;
+    static constexpr double kSlowest = 0.1;
+    static constexpr double kFastest = 30.0;
+
+  private:
+    // exp(b h), less its mean and of length 1: all that b's residual needs.
+    struct Rate {
+        double b_per_m;
+        std::vector<double> shape;
+    };
+    [[nodiscard]] Rate rate(double b_per_m) const;
+
+    std::vector<double> altitude_m_;
+    std::vector<Rate> rates_;  // in the order of b
+};
+
+}  // namespace aphotic

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lightmap/atlas.h"
+
+#include "spectral/atomic_file.h"
+#include "spectral/digest.h"
+#include "spectral/error.h"
+#include "spectral/exr.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <optional>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kFormat = "aphotic-atlas-1";
+constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+
+// Of a number that was read in degrees and metres: as it was written, without the rounding of
+// radians.
+double as_written(double value) {
+    constexpr double kSteps = 1e9;
+    return std::round(value * kSteps) / kSteps + 0.0;  // no negative zero
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+    for (double& value : values) value *= factor;
+    return values;
+}
+
+std::vector<double> in_degrees(const std::vector<double>& values_rad) {
+    std::vector<double> values_deg;
+    for (const double rad : values_rad) values_deg.push_back(as_written(rad / kRadiansPerDegree));
+    return values_deg;
+}
+
+fs::path manifest_path(const fs::path& folder) {
+    return folder / "atlas.json";
+}
+
+fs::path bin_path(const fs::path& folder, const MapPoint& point) {
+    return folder / "bins" / bin_name(point);
+}
+
+Json json_of(const AtlasManifest& manifest) {
+    Json bins = Json::array();
+    const std::vector<MapPoint> points = points_of(manifest.axes);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        bins.push_back({{"file", "bins/" + bin_name(points[i])},
+                        {"altitude_m", points[i].sled.altitude_m},
+                        {"pitch_deg", as_written(points[i].sled.pitch_rad / kRadiansPerDegree)},
+                        {"roll_deg", as_written(points[i].sled.roll_rad / kRadiansPerDegree)},
+                        {"water_multiple", points[i].water_multiple},
+                        {"sha256", manifest.checksums[i]}});
+    }
+    return {{"format", kFormat},
+            {"version", manifest.version},
+            {"title", manifest.title},
+            {"rig_sha256", manifest.rig_digest},
+            {"width_px", manifest.width_px},
+            {"height_px", manifest.height_px},
+            {"error", manifest.error},
+            {"axes",
+             {{"altitude_m", manifest.axes.altitude_m},
+              {"pitch_deg", in_degrees(manifest.axes.pitch_rad)},
+              {"roll_deg", in_degrees(manifest.axes.roll_rad)},
+              {"water_multiple", manifest.axes.water_multiple}}},
+            {"interpolation",
+             {{"worst", manifest.interpolation.worst},
+              {"rms", manifest.interpolation.rms},
+              {"crossed_by_edges", manifest.interpolation.crossed_share}}},
+            {"bins", bins}};
+}
+
+void write_manifest(const fs::path& folder, const AtlasManifest& manifest) {
+    constexpr int kIndent = 2;
+    // Titles are the user's and need not be UTF-8; JSON must be.
+    write_text_file(
+        manifest_path(folder),
+        json_of(manifest).dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+void require_axis(const std::vector<double>& values) {
+    const bool is_increasing =
+        std::ranges::adjacent_find(values, std::greater_equal<>{}) == values.end();
+    if (values.empty() || !is_increasing) throw InputError("an axis is empty or does not increase");
+}
+
+AtlasManifest manifest_of(const Json& json) {
+    if (json.at("format") != kFormat)
+        throw InputError(fmt::format("its format is not {}", kFormat));
+    const Json& axes = json.at("axes");
+    const Json& interpolation = json.at("interpolation");
+    using Values = std::vector<double>;
+    AtlasManifest manifest{
+        .version = json.at("version"),
+        .title = json.at("title"),
+        .rig_digest = json.at("rig_sha256"),
+        .width_px = json.at("width_px"),
+        .height_px = json.at("height_px"),
+        .error = json.at("error"),
+        .axes = {.altitude_m = axes.at("altitude_m").get<Values>(),
+                 .pitch_rad = scaled(axes.at("pitch_deg").get<Values>(), kRadiansPerDegree),
+                 .roll_rad = scaled(axes.at("roll_deg").get<Values>(), kRadiansPerDegree),
+                 .water_multiple = axes.at("water_multiple").get<Values>()},
+        .interpolation = {.worst = interpolation.at("worst"),
+                          .rms = interpolation.at("rms"),
+                          .crossed_share = interpolation.at("crossed_by_edges")},
+        .checksums = {}};
+    for (const auto* axis : {&manifest.axes.altitude_m,
+                             &manifest.axes.pitch_rad,
+                             &manifest.axes.roll_rad,
+                             &manifest.axes.water_multiple}) {
+        require_axis(*axis);
+    }
+    for (const Json& bin : json.at("bins")) manifest.checksums.push_back(bin.at("sha256"));
+    if (manifest.checksums.size() != points_of(manifest.axes).size()) {
+        throw InputError("its bins are not those of its axes");
+    }
+    return manifest;
+}
+
+AtlasManifest read_manifest(const fs::path& folder) {
+    const fs::path file = manifest_path(folder);
+    const std::string text = read_text_file(file);
+    try {
+        return manifest_of(Json::parse(text));
+    } catch (const Json::exception& error) {
+        throw InputError(fmt::format("{}: is no atlas: {}", file.string(), error.what()));
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+    }
+}
+
+std::vector<std::string> channel_names() {
+    return {kChannelNames.begin(), kChannelNames.end()};
+}
+
+void write_bin(const fs::path& file, const Rig& rig, const MapPoint& point, const Lightmap& map) {
+    ExrWriter writer(file,
+                     map.width_px,
+                     map.height_px,
+                     channel_names(),
+                     {{"aphotic:rig_title", rig.title},
+                      {"aphotic:rig_sha256", rig.digest},
+                      {"aphotic:renderer", "lightmap"},
+                      {"aphotic:altitude_m", fmt::format("{}", point.sled.altitude_m)},
+                      {"aphotic:pitch_deg",
+                       fmt::format("{}", as_written(point.sled.pitch_rad / kRadiansPerDegree))},
+                      {"aphotic:roll_deg",
+                       fmt::format("{}", as_written(point.sled.roll_rad / kRadiansPerDegree))},
+                      {"aphotic:water_multiple", fmt::format("{}", point.water_multiple)}});
+    writer.write_rows(map.height_px, map.samples);
+    writer.finish();
+}
+
+// The bins of the folder that may stay: file names and checksums.
+std::map<std::string, std::string> bins_there(const fs::path& folder, const AtlasManifest& wanted) {
+    std::map<std::string, std::string> there;
+    if (!fs::exists(manifest_path(folder))) return there;
+    const AtlasManifest old = read_manifest(folder);
+    if (old.version != wanted.version || old.rig_digest != wanted.rig_digest ||
+        old.error != wanted.error) {
+        return there;
+    }
+    const std::vector<MapPoint> points = points_of(old.axes);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const fs::path file = bin_path(folder, points[i]);
+        if (old.checksums[i].empty() || !fs::exists(file)) continue;
+        if (sha256_of_file(file) == old.checksums[i]) there[bin_name(points[i])] = old.checksums[i];
+    }
+    return there;
+}
+
+// Bins of other axes or rigs, which could only be mistaken.
+void remove_others(const fs::path& folder, const std::vector<MapPoint>& points) {
+    std::vector<std::string> names;
+    for (const MapPoint& point : points) names.push_back(bin_name(point));
+    std::ranges::sort(names);
+    std::vector<fs::path> others;
+    for (const auto& entry : fs::directory_iterator(folder / "bins")) {
+        const std::string name = entry.path().filename().string();
+        const bool is_bin = name.starts_with("a") && name.ends_with(".exr");
+        if (is_bin && !std::ranges::binary_search(names, name)) others.push_back(entry.path());
+    }
+    for (const fs::path& file : others) fs::remove(file);
+}
+
+}  // namespace
+
+std::string bin_name(const MapPoint& point) {
+    return fmt::format("a{}_p{}_r{}_w{}.exr",
+                       as_written(point.sled.altitude_m),
+                       as_written(point.sled.pitch_rad / kRadiansPerDegree),
+                       as_written(point.sled.roll_rad / kRadiansPerDegree),
+                       as_written(point.water_multiple));
+}
+
+std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasRequest& request) {
+    const std::vector<MapPoint> points = points_of(request.axes);
+    AtlasManifest manifest{.version = request.version,
+                           .title = rig.title,
+                           .rig_digest = rig.digest,
+                           .width_px = rig.camera.width_px,
+                           .height_px = rig.camera.height_px,
+                           .error = request.map.error,
+                           .axes = request.axes,
+                           .interpolation = request.interpolation,
+                           .checksums = std::vector<std::string>(points.size())};
+    const std::map<std::string, std::string> there = bins_there(folder, manifest);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto known = there.find(bin_name(points[i]));
+        if (known != there.end()) manifest.checksums[i] = known->second;
+    }
+    MapSource source(rig, request.axes, request.map);
+    make_folder(folder / "bins");
+    write_manifest(folder, manifest);
+    remove_others(folder, points);
+
+    // So much work is done again at most when it is interrupted.
+    constexpr std::chrono::seconds kNoteEvery{2};
+    auto noted = std::chrono::steady_clock::now();
+    std::size_t computed = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (request.progress) {
+            request.progress(static_cast<double>(i) / static_cast<double>(points.size()));
+        }
+        if (!manifest.checksums[i].empty()) continue;
+        const fs::path file = bin_path(folder, points[i]);
+        write_bin(file, rig, points[i], source.map(points[i]));
+        manifest.checksums[i] = sha256_of_file(file);
+        ++computed;
+        if (std::chrono::steady_clock::now() - noted < kNoteEvery) continue;
+        write_manifest(folder, manifest);
+        noted = std::chrono::steady_clock::now();
+    }
+    write_manifest(folder, manifest);
+    return computed;
+}
+
+Atlas::Atlas(const fs::path& folder)
+    : folder_(folder), manifest_(read_manifest(folder)), points_(points_of(manifest_.axes)) {
+    const auto missing = std::ranges::count(manifest_.checksums, std::string());
+    if (missing > 0) {
+        throw InputError(
+            fmt::format("{}: {} of {} bins are not there yet; the command that began "
+                        "it goes on where it stopped",
+                        folder.string(),
+                        missing,
+                        points_.size()));
+    }
+}
+
+Lightmap Atlas::map(const MapPoint& point) {
+    const std::vector<Neighbour> neighbours = neighbours_of(manifest_.axes, point);
+    std::vector<const Lightmap*> maps;
+    std::map<std::size_t, Lightmap> kept;
+    for (const Neighbour& neighbour : neighbours) {
+        load(neighbour.bin);
+        kept.insert(read_.extract(neighbour.bin));
+        maps.push_back(&kept.at(neighbour.bin));
+    }
+    Lightmap map = blended(maps, neighbours);
+    read_ = std::move(kept);
+    return map;
+}
+
+void Atlas::load(std::size_t index) {
+    const auto [entry, is_new] = read_.try_emplace(index);
+    Lightmap& map = entry->second;
+    if (!is_new) return;
+    ExrReader reader(bin_path(folder_, points_[index]));
+    if (reader.width_px() != manifest_.width_px || reader.height_px() != manifest_.height_px) {
+        throw RunError(fmt::format("{}: is {} x {} pixels; the atlas is of {} x {}",
+                                   bin_path(folder_, points_[index]).string(),
+                                   reader.width_px(),
+                                   reader.height_px(),
+                                   manifest_.width_px,
+                                   manifest_.height_px));
+    }
+    map.width_px = manifest_.width_px;
+    map.height_px = manifest_.height_px;
+    map.samples.resize(kChannels * static_cast<std::size_t>(map.width_px) *
+                       static_cast<std::size_t>(map.height_px));
+    reader.read_rows(0, map.height_px, channel_names(), map.samples);
+}
+
+}  // namespace aphotic

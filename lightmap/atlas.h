@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// An atlas: a folder of a rig's maps over altitude, pitch, roll and water.
+//
+//   ATLAS/atlas.json                       what it is of, its axes, and the bins with their
+//   checksums ATLAS/bins/a2.1_p-5_r0_w1.exr          R, G, B at 2.1 m, pitch -5, roll 0 degrees,
+//   the water once
+//
+// Maps between the bins are interpolated (map_axes.h), and atlas.json says with what error. Bins
+// are written one by one and noted as they are: an atlas that was interrupted goes on where it
+// stopped, and bins of the same rig, version and error are kept when its axes change. A bin is kept
+// while its file is the one noted.
+#pragma once
+
+#include "lightmap/atlas_plan.h"
+#include "lightmap/map_axes.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct AtlasManifest {
+    std::string version;  // of the program that made it
+    std::string title;
+    std::string rig_digest;
+    int width_px = 0;
+    int height_px = 0;
+    double error = 0.0;  // of the bins themselves
+    MapAxes axes;
+    InterpolationError interpolation;
+    std::vector<std::string> checksums;  // by bin; empty: not yet there
+};
+
+// As "a2.1_p-5_r0_w1.exr".
+[[nodiscard]] std::string bin_name(const MapPoint& point);
+
+struct AtlasRequest {
+    MapAxes axes;
+    InterpolationError interpolation;
+    LightmapOptions map;
+    std::string version;
+    std::function<void(double)> progress;  // share of the bins
+};
+
+// Returns how many bins it computed; the others were there.
+std::size_t write_atlas(const std::filesystem::path& folder,
+                        const Rig& rig,
+                        const AtlasRequest& request);
+
+// An atlas that is there. Throws InputError when the folder holds none, or one that is not whole.
+class Atlas {
+  public:
+    explicit Atlas(const std::filesystem::path& folder);
+
+    [[nodiscard]] const AtlasManifest& manifest() const { return manifest_; }
+
+    // Throws InputError outside the axes. It keeps the bins that it read last.
+    [[nodiscard]] Lightmap map(const MapPoint& point);
+
+  private:
+    void load(std::size_t bin);
+
+    std::filesystem::path folder_;
+    AtlasManifest manifest_;
+    std::vector<MapPoint> points_;
+    std::map<std::size_t, Lightmap> read_;
+};
+
+}  // namespace aphotic

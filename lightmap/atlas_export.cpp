@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lightmap/atlas_export.h"
+
+#include "lightmap/altitude_fit.h"
+#include "lightmap/atlas_plan.h"
+#include "spectral/atomic_file.h"
+#include "spectral/exr.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <thread>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+ExrAttributes attributes_of(const Rig& rig) {
+    return {{"aphotic:rig_title", rig.title},
+            {"aphotic:rig_sha256", rig.digest},
+            {"aphotic:renderer", "lightmap"}};
+}
+
+MapAxes axes_of(const Rig& rig, const std::vector<double>& altitude_m) {
+    return {.altitude_m = altitude_m,
+            .pitch_rad = {rig.sled.pitch_rad},
+            .roll_rad = {rig.sled.roll_rad},
+            .water_multiple = {rig.water.multiple}};
+}
+
+constexpr std::array<const char*, 4> kFitted{"a", "b", "c", "residual"};
+
+std::vector<std::string> fitted_channels() {
+    std::vector<std::string> names;
+    for (const std::string_view channel : kChannelNames) {
+        for (const char* part : kFitted) names.push_back(fmt::format("{}.{}", part, channel));
+    }
+    return names;
+}
+
+// The fits of all samples of some rows, which come as one map an altitude: planes in the order of
+// fitted_channels.
+std::vector<float> fitted(const AltitudeFitter& fitter,
+                          const std::vector<Lightmap>& maps,
+                          int threads) {
+    const std::size_t plane = maps.front().samples.size() / kChannels;
+    std::vector<float> planes(kChannels * kFitted.size() * plane);
+    std::atomic<std::size_t> next = 0;
+    constexpr std::size_t kAtOnce = 1024;
+    const auto fit_some = [&] {
+        std::vector<double> signal(maps.size());
+        for (std::size_t from = next.fetch_add(kAtOnce); from < kChannels * plane;
+             from = next.fetch_add(kAtOnce)) {
+            for (std::size_t i = from; i < std::min(from + kAtOnce, kChannels * plane); ++i) {
+                std::ranges::transform(
+                    maps, signal.begin(), [&](const Lightmap& map) { return map.samples[i]; });
+                const AltitudeFit fit = fitter.fit(signal);
+                float* to = &planes[i / plane * kFitted.size() * plane + i % plane];
+                for (const double value : {fit.a, fit.b_per_m, fit.c, fit.residual}) {
+                    *to = static_cast<float>(value);
+                    to += plane;
+                }
+            }
+        }
+    };
+    std::vector<std::jthread> others;
+    for (int t = 1; t < threads; ++t) others.emplace_back(fit_some);
+    fit_some();
+    others.clear();
+    return planes;
+}
+
+}  // namespace
+
+std::vector<float> mosaic_rggb(const Lightmap& map) {
+    const auto width = static_cast<std::size_t>(map.width_px);
+    const auto height = static_cast<std::size_t>(map.height_px);
+    std::vector<float> mosaic(width * height);
+    for (std::size_t row = 0; row < height; ++row) {
+        for (std::size_t column = 0; column < width; ++column) {
+            const std::size_t channel = row % 2 + column % 2;  // R 0, G 1, B 2
+            const std::size_t at = row * width + column;
+            mosaic[at] = map.samples[channel * width * height + at];
+        }
+    }
+    return mosaic;
+}
+
+void export_bayer(const fs::path& folder, const Rig& rig, const AltitudeExport& request) {
+    const MapAxes axes = axes_of(rig, request.altitude_m);
+    MapSource source(rig, axes, request.map);
+    make_folder(folder);
+    double done = 0.0;
+    for (const MapPoint& point : points_of(axes)) {
+        request.progress(done++ / static_cast<double>(request.altitude_m.size()));
+        ExrAttributes attributes = attributes_of(rig);
+        attributes.emplace_back("aphotic:altitude_m", fmt::format("{}", point.sled.altitude_m));
+        attributes.emplace_back("aphotic:mosaic", "RGGB");
+        ExrWriter writer(folder / fmt::format("altitude_{:.2f}m.exr", point.sled.altitude_m),
+                         rig.camera.width_px,
+                         rig.camera.height_px,
+                         {"Y"},
+                         attributes);
+        writer.write_rows(rig.camera.height_px, mosaic_rggb(source.map(point)));
+        writer.finish();
+    }
+}
+
+FitResiduals export_exponential(const fs::path& file,
+                                const Rig& rig,
+                                const AltitudeExport& request) {
+    constexpr int kRows = 32;  // of all altitudes at once
+    const MapAxes axes = axes_of(rig, request.altitude_m);
+    const AltitudeFitter fitter(request.altitude_m);
+    MapSource source(rig, axes, request.map);
+    ExrAttributes attributes = attributes_of(rig);
+    attributes.emplace_back("aphotic:fit", "a exp(b h) + c, h the altitude in metres");
+    ExrWriter writer(
+        file, rig.camera.width_px, rig.camera.height_px, fitted_channels(), attributes);
+    FitResiduals residuals;
+    double squares = 0.0;
+    for (int row = 0; row < rig.camera.height_px; row += kRows) {
+        request.progress(static_cast<double>(row) / rig.camera.height_px);
+        const int count = std::min(kRows, rig.camera.height_px - row);
+        std::vector<Lightmap> maps;
+        for (const MapPoint& point : points_of(axes)) {
+            maps.push_back(source.rows(point, row, count));
+        }
+        const std::vector<float> planes = fitted(fitter, maps, request.map.threads);
+        writer.write_rows(count, planes);
+        const std::size_t plane = planes.size() / (kChannels * kFitted.size());
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const std::size_t first = (c * kFitted.size() + kFitted.size() - 1) * plane;
+            for (std::size_t i = first; i < first + plane; ++i) {
+                squares += static_cast<double>(planes[i]) * planes[i];
+                residuals.worst = std::max<double>(residuals.worst, planes[i]);
+            }
+        }
+    }
+    writer.finish();
+    residuals.rms = std::sqrt(
+        squares / (static_cast<double>(kChannels) * rig.camera.width_px * rig.camera.height_px));
+    return residuals;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lightmap/map_axes.h"
+
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace aphotic {
+namespace {
+
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+// Of a value that went through text and degrees.
+constexpr double kSame = 1e-9;
+
+struct NamedAxis {
+    const char* name;
+    const std::vector<double>* values;
+    double shown;  // what a value is multiplied by for people
+    bool is_ratio;
+};
+
+std::array<NamedAxis, 4> named(const MapAxes& axes) {
+    return {{{"altitude_m", &axes.altitude_m, 1.0, true},
+             {"pitch_deg", &axes.pitch_rad, kDegreesPerRadian, false},
+             {"roll_deg", &axes.roll_rad, kDegreesPerRadian, false},
+             {"water multiple", &axes.water_multiple, 1.0, false}}};
+}
+
+std::array<double, 4> coordinates_of(const MapPoint& point) {
+    return {point.sled.altitude_m, point.sled.pitch_rad, point.sled.roll_rad, point.water_multiple};
+}
+
+MapPoint point_at(const std::array<double, 4>& x) {
+    return {.sled = {.altitude_m = x[0], .pitch_rad = x[1], .roll_rad = x[2]},
+            .water_multiple = x[3]};
+}
+
+struct Place {
+    std::size_t lower;
+    double share;  // of the upper one
+};
+
+Place place_on(const NamedAxis& axis, double value) {
+    const std::vector<double>& values = *axis.values;
+    const double room = kSame * std::max(1.0, std::abs(value));
+    if (value < values.front() - room || value > values.back() + room || std::isnan(value)) {
+        throw InputError(
+            fmt::format("{}: found {:.6g}; allowed: from {:.6g} to {:.6g}, which the "
+                        "atlas covers",
+                        axis.name,
+                        value * axis.shown,
+                        values.front() * axis.shown,
+                        values.back() * axis.shown));
+    }
+    if (values.size() == 1) return {.lower = 0, .share = 0.0};
+    const auto above = std::upper_bound(values.begin() + 1, values.end() - 1, value);
+    const auto lower = static_cast<std::size_t>(above - values.begin()) - 1;
+    const auto measure = [&](double x) { return axis.is_ratio ? std::log(x) : x; };
+    const double from = measure(values[lower]);
+    const double share = (measure(value) - from) / (measure(values[lower + 1]) - from);
+    return {.lower = lower, .share = std::clamp(share, 0.0, 1.0)};
+}
+
+// Of the logarithms; NaN or infinity where one is black.
+void add_logarithm(const Lightmap& map, float weight, std::vector<float>& sum) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * std::log(map.samples[i]);
+}
+
+}  // namespace
+
+std::vector<MapPoint> points_of(const MapAxes& axes) {
+    std::vector<MapPoint> points;
+    for (const double altitude_m : axes.altitude_m) {
+        for (const double pitch_rad : axes.pitch_rad) {
+            for (const double roll_rad : axes.roll_rad) {
+                for (const double multiple : axes.water_multiple) {
+                    points.push_back(point_at({altitude_m, pitch_rad, roll_rad, multiple}));
+                }
+            }
+        }
+    }
+    return points;
+}
+
+std::vector<Neighbour> neighbours_of(const MapAxes& axes, const MapPoint& point) {
+    const std::array<double, 4> x = coordinates_of(point);
+    std::vector<Neighbour> neighbours{{.bin = 0, .weight = 1.0}};
+    std::size_t a = 0;
+    for (const NamedAxis& axis : named(axes)) {
+        const Place place = place_on(axis, x[a++]);
+        std::vector<Neighbour> finer;
+        for (const Neighbour& coarse : neighbours) {
+            const std::size_t bin = coarse.bin * axis.values->size() + place.lower;
+            if (place.share < 1.0) {
+                finer.push_back({.bin = bin, .weight = coarse.weight * (1.0 - place.share)});
+            }
+            if (place.share > 0.0) {
+                finer.push_back({.bin = bin + 1, .weight = coarse.weight * place.share});
+            }
+        }
+        neighbours = std::move(finer);
+    }
+    return neighbours;
+}
+
+std::vector<MapPoint> middles_of(const MapAxes& axes) {
+    MapAxes middles;
+    const std::array targets{
+        &middles.altitude_m, &middles.pitch_rad, &middles.roll_rad, &middles.water_multiple};
+    std::size_t a = 0;
+    for (const NamedAxis& axis : named(axes)) {
+        const std::vector<double>& values = *axis.values;
+        std::vector<double>& target = *targets[a++];
+        if (values.size() == 1) target = values;
+        for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+            target.push_back(axis.is_ratio ? std::sqrt(values[i] * values[i + 1])
+                                           : 0.5 * (values[i] + values[i + 1]));
+        }
+    }
+    return points_of(middles);
+}
+
+Lightmap blended(std::span<const Lightmap* const> maps, std::span<const Neighbour> neighbours) {
+    if (maps.size() == 1) return *maps[0];
+    Lightmap map{.width_px = maps[0]->width_px, .height_px = maps[0]->height_px, .samples = {}};
+    map.samples.assign(maps[0]->samples.size(), 0.0F);
+    for (std::size_t n = 0; n < maps.size(); ++n) {
+        add_logarithm(*maps[n], static_cast<float>(neighbours[n].weight), map.samples);
+    }
+    for (std::size_t i = 0; i < map.samples.size(); ++i) {
+        if (std::isfinite(map.samples[i])) {
+            map.samples[i] = std::exp(map.samples[i]);
+            continue;
+        }
+        map.samples[i] = 0.0F;
+        for (std::size_t n = 0; n < maps.size(); ++n) {
+            map.samples[i] += static_cast<float>(neighbours[n].weight) * maps[n]->samples[i];
+        }
+    }
+    return map;
+}
+
+}  // namespace aphotic

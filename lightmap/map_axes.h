@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Maps over altitude, pitch, roll and water: where a sled is between the bins of an atlas, and the
+// map that its neighbours give.
+//
+//   S = exp( sum_i w_i ln S_i ),      w_i the product of 1 - t or t over the axes
+//
+// S_i  maps of the 2, 4, 8 or 16 bins about it (an axis of one value adds none)
+// t    0 at the lower bin, 1 at the upper: of ln(altitude), of the angles and the water's multiple
+//
+// Light falls about as a power of altitude and as an exponential of water, so its logarithm is
+// nearly straight where the light itself is not. Where a bin is black, the sum of w_i S_i stands
+// in. An edge of a cone lies elsewhere in each bin; between two of them it is two half steps.
+#pragma once
+
+#include "lightmap/lightmap.h"
+#include "scene_gen/rig.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct MapPoint {
+    Sled sled;
+    double water_multiple = 1.0;
+};
+
+// Each increasing and not empty.
+struct MapAxes {
+    std::vector<double> altitude_m;
+    std::vector<double> pitch_rad;
+    std::vector<double> roll_rad;
+    std::vector<double> water_multiple;
+};
+
+// In the order of bins: altitude slowest, water fastest.
+[[nodiscard]] std::vector<MapPoint> points_of(const MapAxes& axes);
+
+struct Neighbour {
+    std::size_t bin;
+    double weight;  // over 0; their sum is 1
+};
+
+// Throws InputError outside the axes, which says which and what they cover. An axis of one value
+// covers that alone.
+[[nodiscard]] std::vector<Neighbour> neighbours_of(const MapAxes& axes, const MapPoint& point);
+
+// The middles of all cells between bins, in the axes' own measures.
+[[nodiscard]] std::vector<MapPoint> middles_of(const MapAxes& axes);
+
+[[nodiscard]] Lightmap blended(std::span<const Lightmap* const> maps,
+                               std::span<const Neighbour> neighbours);
+
+}  // namespace aphotic

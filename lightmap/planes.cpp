@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lightmap/planes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+namespace aphotic {
+namespace {
+
+std::span<const float> plane_of(const Lightmap& map, std::size_t channel) {
+    const std::size_t size = map.samples.size() / kChannels;
+    return std::span(map.samples).subspan(channel * size, size);
+}
+
+std::string cone_name(const Beam& beam, std::size_t k) {
+    const std::string& part = beam.cones[k].part;
+    const auto bearers = std::ranges::count(beam.cones, part, &Cone::part);
+    return part.empty() || bearers > 1 ? fmt::format("cone{}", k + 1) : part;
+}
+
+}  // namespace
+
+std::vector<RigPart> parts_by_strobe(const Rig& rig) {
+    std::vector<RigPart> parts;
+    for (const Strobe& strobe : rig.strobes) {
+        parts.push_back({.name = strobe.name, .rig = rig});
+        parts.back().rig.strobes = {strobe};
+    }
+    return parts;
+}
+
+std::vector<RigPart> parts_by_cone(const Rig& rig) {
+    std::vector<RigPart> parts;
+    for (const RigPart& strobe : parts_by_strobe(rig)) {
+        const Beam& beam = strobe.rig.strobes.front().beam;
+        for (std::size_t k = 0; k < beam.cones.size(); ++k) {
+            parts.push_back({.name = strobe.name + "." + cone_name(beam, k), .rig = strobe.rig});
+            parts.back().rig.strobes.front().beam.cones = {beam.cones[k]};
+        }
+    }
+    return parts;
+}
+
+std::array<float, kChannels> peaks_of(const Lightmap& map) {
+    std::array<float, kChannels> peaks{};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const std::span<const float> plane = plane_of(map, c);
+        if (!plane.empty()) peaks[c] = *std::ranges::max_element(plane);
+    }
+    return peaks;
+}
+
+void divide_by(const std::array<float, kChannels>& peaks, Lightmap& map) {
+    const std::size_t size = map.samples.size() / kChannels;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        if (peaks[c] <= 0.0F) continue;
+        for (std::size_t i = c * size; i < (c + 1) * size; ++i) map.samples[i] /= peaks[c];
+    }
+}
+
+}  // namespace aphotic
