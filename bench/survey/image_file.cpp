@@ -34,12 +34,16 @@ CameraImage read_image(const std::filesystem::path& file) {
         throw InputError(fmt::format("{}: cannot be read: {}", file.string(), OIIO::geterror()));
     }
     const OIIO::ImageSpec spec = input->spec();
+    if (spec.nchannels < static_cast<int>(kChannels)) {
+        throw InputError(fmt::format(
+            "{}: found {} channels; allowed: R, G and B", file.string(), spec.nchannels));
+    }
     const std::size_t pixels = spec.image_pixels();
     CameraImage image{.width_px = spec.width,
                       .height_px = spec.height,
                       .samples = std::vector<float>(kChannels * pixels)};
     for (std::size_t c = 0; c < kChannels; ++c) {
-        const int channel = spec.nchannels < static_cast<int>(kChannels) ? 0 : static_cast<int>(c);
+        const auto channel = static_cast<int>(c);
         if (!input->read_image(
                 0, 0, channel, channel + 1, OIIO::TypeDesc::FLOAT, &image.samples[c * pixels])) {
             throw InputError(

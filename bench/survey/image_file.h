@@ -17,8 +17,8 @@ void write_tiff(const std::filesystem::path& file,
                 int height_px,
                 std::span<const std::uint16_t> samples);
 
-// The first three channels of an image of any format, or its one channel three times; integers are
-// scaled to 0..1. Throws InputError.
+// The first three channels of an image of any format; integers are scaled to 0..1. Throws
+// InputError.
 [[nodiscard]] CameraImage read_image(const std::filesystem::path& file);
 
 }  // namespace aphotic::survey
