@@ -52,10 +52,13 @@ constexpr const char* kWavelengths = "9";
 // there fills it.
 constexpr double kCardShare = 0.25;
 
+fs::path scene_of(const Options& options) {
+    return fs::absolute(options.rig).parent_path() / "survey.pov";
+}
+
 Json settings_of(const Options& options) {
-    const fs::path scene = fs::path(options.rig).parent_path() / "survey.pov";
     return {{"rig_sha256", sha256_of_file(options.rig)},
-            {"scene_sha256", sha256_of_file(scene)},
+            {"scene_sha256", sha256_of_file(scene_of(options))},
             {"seed", options.seed},
             {"noise", options.noise}};
 }
@@ -81,6 +84,8 @@ void generate_plan(const Options& options, const fs::path& plan) {
     const ProcessEnd end = run_process({.executable = APHOTIC_COMMAND,
                                         .arguments = {"generate",
                                                       fs::absolute(options.rig).string(),
+                                                      "--scene",
+                                                      scene_of(options).string(),
                                                       "--paths-m",
                                                       kPaths_m,
                                                       "--fitted",
@@ -165,7 +170,7 @@ void make_survey(const Options& options) {
             [&](const FrameProgress& done) {
                 line.show(fmt::format("frame {} of {}", done.frames_done, done.frames), done.share);
             },
-        .scene_folder = fs::absolute(options.rig).parent_path()};
+        .scene_folder = scene_of(options).parent_path()};
     render_pictures(find_povray(""), folder / "plan", pictures, run);
 
     const RawCamera camera = camera_of(folder);
