@@ -6,7 +6,8 @@
 #include "cli/outcome.h"
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
-#include "validation/comparison.h"
+#include "validation/comparison_page.h"
+#include "validation/scaling.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,14 +24,25 @@ struct Options {
     std::string reference;
     double bound = 6e-4;
     double black = 1e-6;
+    std::string scale;  // "image", "per-channel", or none
     std::string output;
+    std::string report;
     bool json = false;
 };
 
-std::vector<std::string> common_channels(const AnyImage& a, const AnyImage& b) {
+bool has_channel(const AnyImage& image, const std::string& channel) {
+    return std::ranges::find(image.channels, channel) != image.channels.end();
+}
+
+// What aphotic observe says of its averages. One factor cannot scale a count as well.
+bool is_about_samples(const std::string& channel) {
+    return channel.starts_with("count.") || channel.starts_with("stderr.");
+}
+
+std::vector<std::string> common_channels(const AnyImage& a, const AnyImage& b, bool scaled) {
     std::vector<std::string> common;
     std::ranges::copy_if(a.channels, std::back_inserter(common), [&](const std::string& name) {
-        return std::ranges::find(b.channels, name) != b.channels.end();
+        return has_channel(b, name) && !(scaled && is_about_samples(name));
     });
     return common;
 }
@@ -40,7 +52,81 @@ std::vector<float> samples_of(const AnyImage& image, const std::string& channel)
     return image.samples(static_cast<std::size_t>(found - image.channels.begin()));
 }
 
-std::vector<Comparison> compare_images(const Options& options) {
+// Marks what either image says that it never observed.
+std::vector<unsigned char> unobserved_in(const AnyImage& a,
+                                         const AnyImage& b,
+                                         const std::string& channel) {
+    std::vector<unsigned char> marks;
+    const std::string count = "count." + channel;
+    for (const AnyImage* image : {&a, &b}) {
+        if (!has_channel(*image, count)) continue;
+        const std::vector<float> counts = samples_of(*image, count);
+        marks.resize(counts.size(), 0);
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            if (counts[i] == 0.0F) marks[i] = kUnobserved;
+        }
+    }
+    return marks;
+}
+
+// Of every channel, the same or each its own.
+std::vector<double> scales_of(const AnyImage& a,
+                              const AnyImage& b,
+                              const std::vector<std::string>& channels,
+                              const Options& options) {
+    if (options.scale.empty()) return std::vector<double>(channels.size(), 1.0);
+    std::vector<Scaling> scalings(options.scale == "image" ? 1 : channels.size());
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        scalings[std::min(c, scalings.size() - 1)].add(samples_of(a, channels[c]),
+                                                       samples_of(b, channels[c]),
+                                                       unobserved_in(a, b, channels[c]));
+    }
+    std::vector<double> scales;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        scales.push_back(scalings[std::min(c, scalings.size() - 1)].scale());
+        if (!(scales.back() > 0.0)) {
+            throw InputError(
+                fmt::format("{}: channel {} is {:.3g} times that of {}; --scale "
+                            "needs a positive factor",
+                            options.image,
+                            channels[c],
+                            scales.back(),
+                            options.reference));
+        }
+    }
+    return scales;
+}
+
+ComparedChannel compare_channel(const AnyImage& a,
+                                const AnyImage& b,
+                                const std::string& name,
+                                double scale,
+                                const Options& options) {
+    ComparedChannel channel{.comparison = {},
+                            .scale = scale,
+                            .image = samples_of(a, name),
+                            .reference = samples_of(b, name),
+                            .marks = unobserved_in(a, b, name)};
+    if (scale != 1.0) {
+        for (float& sample : channel.image) sample = static_cast<float>(sample / scale);
+    }
+    float brightest = 0.0F;
+    for (const float sample : channel.reference) {
+        if (std::isfinite(sample)) brightest = std::max(brightest, std::abs(sample));
+    }
+    channel.comparison =
+        compare_planes(name,
+                       channel.image,
+                       std::vector<double>(channel.reference.begin(), channel.reference.end()),
+                       a.width_px,
+                       channel.marks,
+                       options.black * brightest,
+                       options.bound);
+    return channel;
+}
+
+// Without a report the samples of a channel are let go before the next is read.
+ComparedImages compare_images(const Options& options) {
     const AnyImage a = open_any_image(options.image);
     const AnyImage b = open_any_image(options.reference);
     if (a.width_px != b.width_px || a.height_px != b.height_px) {
@@ -52,7 +138,7 @@ std::vector<Comparison> compare_images(const Options& options) {
                                      b.height_px,
                                      options.reference));
     }
-    const std::vector<std::string> channels = common_channels(a, b);
+    const std::vector<std::string> channels = common_channels(a, b, !options.scale.empty());
     if (channels.empty()) {
         throw InputError(fmt::format("{} has the channels {}, {} has {}: none in common",
                                      options.image,
@@ -60,35 +146,35 @@ std::vector<Comparison> compare_images(const Options& options) {
                                      options.reference,
                                      fmt::join(b.channels, ", ")));
     }
-    std::vector<Comparison> comparisons;
-    for (const std::string& channel : channels) {
-        const std::vector<float> found = samples_of(a, channel);
-        const std::vector<float> wanted = samples_of(b, channel);
-        float brightest = 0.0F;
-        for (const float sample : wanted) {
-            if (std::isfinite(sample)) brightest = std::max(brightest, std::abs(sample));
+    const std::vector<double> scales = scales_of(a, b, channels, options);
+    ComparedImages images{.image = options.image,
+                          .reference = options.reference,
+                          .width_px = a.width_px,
+                          .height_px = a.height_px,
+                          .scaled = !options.scale.empty(),
+                          .channels = {}};
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        ComparedChannel channel = compare_channel(a, b, channels[c], scales[c], options);
+        if (options.report.empty()) {
+            channel.image = {};
+            channel.reference = {};
+            channel.marks = {};
         }
-        comparisons.push_back(compare_planes(channel,
-                                             found,
-                                             std::vector<double>(wanted.begin(), wanted.end()),
-                                             a.width_px,
-                                             {},
-                                             options.black * brightest,
-                                             options.bound));
+        images.channels.push_back(std::move(channel));
     }
-    return comparisons;
+    return images;
 }
 
-nlohmann::ordered_json json_of(const Options& options,
-                               const std::vector<Comparison>& comparisons,
-                               bool holds) {
+nlohmann::ordered_json json_of(const Options& options, const ComparedImages& images, bool holds) {
     nlohmann::ordered_json json{{"image", options.image},
                                 {"reference", options.reference},
                                 {"bound", options.bound},
                                 {"black", options.black},
                                 {"holds", holds},
                                 {"channels", nlohmann::ordered_json::array()}};
-    for (const Comparison& c : comparisons) {
+    if (images.scaled) json["scaled"] = options.scale;
+    for (const ComparedChannel& channel : images.channels) {
+        const Comparison& c = channel.comparison;
         json["channels"].push_back({{"name", c.name},
                                     {"holds", c.holds()},
                                     {"max_error", c.max_error},
@@ -98,43 +184,56 @@ nlohmann::ordered_json json_of(const Options& options,
                                     {"rms_error", c.rms_error},
                                     {"mean_error", c.mean_error},
                                     {"compared", c.compared},
+                                    {"unobserved", c.unobserved},
                                     {"not_finite", c.not_finite}});
+        if (images.scaled) json["channels"].back()["scale"] = channel.scale;
     }
     return json;
 }
 
+void print_channel(const ComparedChannel& channel, bool scaled) {
+    const Comparison& c = channel.comparison;
+    std::string notes;
+    if (scaled) notes += fmt::format("  / {:.6g}", channel.scale);
+    if (c.unobserved > 0) notes += fmt::format("  {} not observed", c.unobserved);
+    if (c.not_finite > 0) notes += fmt::format("  {} not finite", c.not_finite);
+    if (!c.holds()) notes += "  <-- out of bounds";
+    fmt::print("{:>18}  {:9.2e}  {:9.2e}  {:9.2e}  {:9.1e}  {}, {}{}\n",
+               c.name,
+               c.max_error,
+               c.percentile_999,
+               c.rms_error,
+               c.mean_error,
+               c.column,
+               c.row,
+               notes);
+}
+
 ExitStatus compare(const Options& options) {
-    const std::vector<Comparison> comparisons = compare_images(options);
-    const bool holds = std::ranges::all_of(comparisons, &Comparison::holds);
-    const std::string json = dumped(json_of(options, comparisons, holds)) + "\n";
+    const ComparedImages images = compare_images(options);
+    const bool holds = std::ranges::all_of(
+        images.channels, [](const ComparedChannel& c) { return c.comparison.holds(); });
+    const std::string json = dumped(json_of(options, images, holds)) + "\n";
     if (!options.output.empty()) write_text_file(options.output, json);
+    if (!options.report.empty()) write_text_file(options.report, comparison_html(images));
     if (options.json) {
         fmt::print("{}", json);
         return holds ? kDone : kAnswerIsNo;
     }
-    fmt::print("{:>18}  {:>9}  {:>9}  {:>9}  {:>9}  worst pixel\n",
+    fmt::print("{:>18}  {:>9}  {:>9}  {:>9}  {:>9}  worst pixel{}\n",
                "",
                "max |e|",
                "99.9 %",
                "rms",
-               "mean");
-    for (const Comparison& c : comparisons) {
-        fmt::print("{:>18}  {:9.2e}  {:9.2e}  {:9.2e}  {:9.1e}  {}, {}{}{}\n",
-                   c.name,
-                   c.max_error,
-                   c.percentile_999,
-                   c.rms_error,
-                   c.mean_error,
-                   c.column,
-                   c.row,
-                   c.not_finite > 0 ? fmt::format("  {} not finite", c.not_finite) : "",
-                   c.holds() ? "" : "  <-- out of bounds");
-    }
-    fmt::print("{} is {} {:.3g} of {}\n",
+               "mean",
+               images.scaled ? "  / scale" : "");
+    for (const ComparedChannel& channel : images.channels) print_channel(channel, images.scaled);
+    fmt::print("{} is {} {:.3g} of {}{}\n",
                options.image,
                holds ? "within" : "NOT within",
                options.bound,
-               options.reference);
+               options.reference,
+               images.scaled ? ", but for its scale" : "");
     return holds ? kDone : kAnswerIsNo;
 }
 
@@ -153,12 +252,23 @@ Action configure_compare(CLI::App& app) {
                    "what counts as black, as a share of the reference's largest sample")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
+    app.add_flag(
+           "--scale{image}",
+           options->scale,
+           "first divide the image by the factor that fits it to the reference best, one for\n"
+           "all channels; --scale=per-channel: each by its own")
+        ->check(CLI::IsMember({"image", "per-channel"}));
     app.add_option("-o,--output", options->output, "write the numbers as JSON to FILE")
         ->type_name("FILE");
+    app.add_option("--report",
+                   options->report,
+                   "write a page to FILE: both images in false colours, their difference, profiles")
+        ->type_name("FILE.html");
     app.add_flag("--json", options->json, "print the numbers as JSON");
     app.footer(
         "For every channel that both have, e = (a - b) / max(|b|, black). Exit status 0 when all\n"
-        "|e| are within the bound, 1 when not.");
+        "|e| are within the bound, 1 when not. Samples that a channel count.NAME of either image\n"
+        "says were never observed, as aphotic observe leaves it, are told and not compared.");
     return [options] { return compare(*options); };
 }
 

@@ -18,7 +18,7 @@ Comparison compare_planes(std::string name,
                           std::span<const float> a,
                           std::span<const double> b,
                           int width_px,
-                          std::span<const unsigned char> on_edge,
+                          std::span<const unsigned char> marks,
                           double floor,
                           double bound) {
     Comparison found{.name = std::move(name), .bound = bound};
@@ -27,9 +27,14 @@ Comparison compare_planes(std::string name,
     double sum = 0.0;
     double sum_of_squares = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
+        const unsigned char mark = marks.empty() ? 0 : marks[i];
+        if (mark == kUnobserved) {
+            ++found.unobserved;
+            continue;
+        }
         const double e = relative_error(a[i], b[i], floor);
         const double size = std::abs(e);
-        const bool is_on_edge = !on_edge.empty() && on_edge[i] != 0;
+        const bool is_on_edge = mark == kOnEdge;
         if (is_on_edge) ++found.on_edges;
         if (std::isnan(e)) {
             ++found.not_finite;

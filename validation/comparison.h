@@ -9,11 +9,12 @@
 //        rounding of nothing is not an infinite error
 //
 // Reported of |e|: the largest and where it is, the 99.9 percentile (nearest rank), the root
-// mean square; and the mean of e, with its sign. No factor is fitted.
+// mean square; and the mean of e, with its sign. No factor is fitted here; scaling.h does that.
 //
 // Samples on edges, where a pixel's centre falls on either side by rounding, are counted and
 // measured on their own. A comparison holds when the largest |e| off the edges is within the
-// bound, every sample, on edges too, is finite, and there is at least one off the edges.
+// bound, every sample, on edges too, is finite, and there is at least one off the edges. What was
+// never observed, as in an average of images, is counted and no more.
 #pragma once
 
 #include <cstddef>
@@ -33,6 +34,7 @@ struct Comparison {
     std::size_t compared = 0;
     std::size_t on_edges = 0;
     double max_error_on_edges = 0.0;
+    std::size_t unobserved = 0;
     std::size_t not_finite = 0;  // samples of a or b that are NaN or inf, edges included
     double bound = 0.0;
 
@@ -41,12 +43,16 @@ struct Comparison {
     }
 };
 
-// The planes are rows of width_px samples. on_edge: 1 for samples on edges; may be empty.
+// How a sample is marked that is not compared like the others.
+inline constexpr unsigned char kOnEdge = 1;
+inline constexpr unsigned char kUnobserved = 2;
+
+// The planes are rows of width_px samples. marks: 0 or one of these for each; may be empty.
 [[nodiscard]] Comparison compare_planes(std::string name,
                                         std::span<const float> a,
                                         std::span<const double> b,
                                         int width_px,
-                                        std::span<const unsigned char> on_edge,
+                                        std::span<const unsigned char> marks,
                                         double floor,
                                         double bound);
 

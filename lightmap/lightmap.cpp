@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lightmap/lightmap.h"
+
+#include "lightmap/row_light.h"
+#include "scene_gen/geometry.h"
+#include "spectral/error.h"
+#include "spectral/light_family.h"
+#include "spectral/refraction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <thread>
+
+namespace aphotic {
+namespace {
+
+using Eigen::ArrayXd;
+
+// Shares of the error that is asked for: the rest is dispersion's.
+constexpr double kGridShare = 0.1;
+constexpr double kTableShare = 0.5;
+
+void require_bare_floor(const Rig& rig) {
+    if (!rig.objects.empty()) {
+        throw InputError(
+            fmt::format("{}: the rig has objects, the first is '{}'; allowed: the bare floor, "
+                        "which is all that "
+                        "a lightmap is of",
+                        rig.title,
+                        rig.objects.front().name));
+    }
+    if (!rig.scene.empty()) {
+        throw InputError(
+            fmt::format("{}: the rig has a scene, {}; allowed: the bare floor, which is all that a "
+                        "lightmap is of",
+                        rig.title,
+                        rig.scene.string()));
+    }
+}
+
+bool is_same(const Spectrum& a, const Spectrum& b) {
+    return std::ranges::equal(a.lambda_nm(), b.lambda_nm()) &&
+           std::ranges::equal(a.values(), b.values());
+}
+
+// Each strobe's lamp spectrum: the first strobe that has it.
+std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
+    std::vector<std::size_t> lamps;
+    for (const Strobe& strobe : rig.strobes) {
+        std::size_t first = 0;
+        while (!is_same(rig.strobes[first].spectrum, strobe.spectrum)) ++first;
+        lamps.push_back(first);
+    }
+    return lamps;
+}
+
+double water_index(const Rig& rig, double lambda_nm) {
+    return seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
+}
+
+// The wavelength whose water index this is; the index falls with the wavelength.
+double wavelength_of_index(const Rig& rig, double index) {
+    WavelengthRange between = rig.camera.range;
+    constexpr int kHalvings = 60;
+    for (int i = 0; i < kHalvings; ++i) {
+        const double middle_nm = std::midpoint(between.first_nm, between.last_nm);
+        (water_index(rig, middle_nm) > index ? between.first_nm : between.last_nm) = middle_nm;
+    }
+    return between.first_nm;
+}
+
+// Chebyshev's points of the range of the index; the middle one is in the middle.
+std::vector<double> index_nodes_nm(const Rig& rig) {
+    if (!rig.camera.port) return {rig.camera.range.first_nm};
+    const double first = water_index(rig, rig.camera.range.first_nm);
+    const double last = water_index(rig, rig.camera.range.last_nm);
+    std::vector<double> nodes_nm;
+    for (std::size_t j = 0; j < kIndexNodes; ++j) {
+        const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / kIndexNodes;
+        const double index = std::midpoint(first, last) + 0.5 * (first - last) * std::cos(angle);
+        nodes_nm.push_back(wavelength_of_index(rig, index));
+    }
+    return nodes_nm;
+}
+
+// Lagrange's polynomial of node j over the indices of the nodes, at one wavelength.
+double lagrange(const Rig& rig, const std::vector<double>& nodes_nm, std::size_t j, double nm) {
+    double value = 1.0;
+    for (std::size_t m = 0; m < nodes_nm.size(); ++m) {
+        if (m == j) continue;
+        const double n_m = water_index(rig, nodes_nm[m]);
+        value *= (water_index(rig, nm) - n_m) / (water_index(rig, nodes_nm[j]) - n_m);
+    }
+    return value;
+}
+
+SpectralSum spectral_sum(const Rig& rig,
+                         const std::vector<WeightedWavelength>& grid,
+                         const std::function<double(double)>& light) {
+    const auto count = static_cast<Eigen::Index>(grid.size());
+    SpectralSum sum{.K_per_m = ArrayXd(count), .weights = Eigen::ArrayXXd(count, kChannels)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const WeightedWavelength& node = grid[static_cast<std::size_t>(i)];
+        sum.K_per_m(i) = rig.water.attenuation_per_m(node.lambda_nm);
+        const double value = light(node.lambda_nm);
+        for (Eigen::Index c = 0; c < kChannels; ++c) {
+            sum.weights(i, c) = node.weight[static_cast<std::size_t>(c)] * value;
+        }
+    }
+    return sum;
+}
+
+std::vector<LampTerms> lamps_of(const Rig& rig, const Strobe& strobe, const Plane& floor) {
+    LampTerms terms{.position_m = strobe.position_m,
+                    .axis = strobe.axis,
+                    .height_m = 0.0,
+                    .cone_cosine = {},
+                    .cone_intensity = {},
+                    .phong = rig.seafloor.phong,
+                    .phong_size = rig.seafloor.phong_size};
+    const auto positions_m = lamp_positions_m(strobe, lamp_grid(rig, strobe));
+    const double share =
+        strobe.power / (std::numbers::pi * static_cast<double>(positions_m.size()));
+    for (const Cone& cone : strobe.beam.cones) {
+        terms.cone_cosine.push_back(std::cos(cone.half_angle_rad));
+        terms.cone_intensity.push_back(share * axial_intensity(cone, strobe.beam.weights));
+    }
+    std::vector<LampTerms> lamps;
+    for (const Eigen::Vector3d& position_m : positions_m) {
+        terms.position_m = position_m;
+        terms.height_m = height_above(floor, position_m);
+        if (terms.height_m > 0.0) lamps.push_back(terms);
+    }
+    return lamps;
+}
+
+RayTerms ray_terms(const Rig& rig, const Plane& floor, double lambda_nm) {
+    RayTerms terms{.width_px = rig.camera.width_px,
+                   .slope_per_px = rig.camera.pixel_pitch_m / rig.camera.focal_length_m,
+                   .middle_column = 0.5 * rig.camera.width_px,
+                   .middle_row = 0.5 * rig.camera.height_px,
+                   .down = -floor.normal,
+                   .floor_m = height_above(floor, Eigen::Vector3d::Zero())};
+    if (!rig.camera.port) return terms;
+    terms.distance_m = rig.camera.port->distance_m;
+    terms.thickness_m = rig.camera.port->thickness_m;
+    terms.glass_index = rig.camera.port->glass.index(lambda_nm);
+    terms.water_index = water_index(rig, lambda_nm);
+    return terms;
+}
+
+void store(const SumBlock& sums, int row, int first_column, Lightmap& map) {
+    const auto width = static_cast<std::size_t>(map.width_px);
+    const std::size_t plane = width * static_cast<std::size_t>(map.height_px);
+    const auto first = static_cast<std::size_t>(first_column);
+    const std::size_t count = std::min(sums.size(), width - first);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        float* to = &map.samples[c * plane + static_cast<std::size_t>(row) * width + first];
+        for (std::size_t i = 0; i < count; ++i) to[i] = sums[i][c];
+    }
+}
+
+// One lamp, and which tables serve it.
+struct PlacedLamp {
+    LampTerms terms;
+    std::size_t spectrum;
+};
+
+// All that the rows of one map have in common.
+struct MapScene {
+    std::vector<RayTerms> rays;  // by index node, the middle one first
+    std::vector<PlacedLamp> lamps;
+};
+
+// The middle index first, for it tells where the cones end.
+std::vector<std::size_t> node_order(std::size_t nodes) {
+    std::vector<std::size_t> order{nodes / 2};
+    for (std::size_t j = 0; j < nodes; ++j) {
+        if (j != nodes / 2) order.push_back(j);
+    }
+    return order;
+}
+
+}  // namespace
+
+PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds) {
+    constexpr double kRoom = 1.02;
+    PathRange all{.shortest_m = std::numeric_limits<double>::infinity()};
+    for (const Sled& sled : sleds) {
+        Rig flown = rig;
+        flown.sled = sled;
+        const PathRange paths = path_range(flown);
+        if (paths.longest_m == 0.0) continue;
+        all.shortest_m = std::min(all.shortest_m, paths.shortest_m / kRoom);
+        all.longest_m = std::max(all.longest_m, paths.longest_m * kRoom);
+        all.has_horizon |= paths.has_horizon;
+    }
+    return all.longest_m > 0.0 ? all : PathRange{};
+}
+
+LightmapMaker::LightmapMaker(const Rig& rig,
+                             const std::optional<PathRange>& paths,
+                             const LightmapOptions& options)
+    : rig_(rig), options_(options), spectrum_of_strobe_(lamps_by_strobe(rig)) {
+    require_bare_floor(rig);
+    paths_ = paths ? *paths : path_range(rig);
+    // The rig's own end where the floor does, or else where its light does.
+    if (!paths) paths_.has_horizon = true;
+    index_nodes_nm_ = index_nodes_nm(rig_);
+    if (paths_.longest_m > 0.0) tabulate();
+}
+
+void LightmapMaker::tabulate() {
+    const bool has_highlight = rig_.seafloor.phong > 0.0;
+    const Spectrum& floor = rig_.seafloor.reflectance;
+    LightFamily family{.sources = {},
+                       .water = rig_.water,
+                       .shortest_path_m = paths_.shortest_m,
+                       .longest_path_m = paths_.longest_m};
+    for (const Strobe& strobe : rig_.strobes) {
+        family.sources.push_back({strobe.spectrum, floor});
+        if (has_highlight) family.sources.push_back({strobe.spectrum});
+    }
+    const auto grid =
+        reference_grid(rig_.camera.sensor, family, rig_.camera.range, kGridShare * options_.error);
+    grid_size_ = grid.size();
+
+    // Lagrange's polynomials of three of Chebyshev's points sum, in size, to 5/3 at most.
+    constexpr double kLebesgue = 5.0 / 3.0;
+    const double table_error = kTableShare * options_.error / (rig_.camera.port ? kLebesgue : 1.0);
+    steps_ = {};
+    std::vector<std::function<double(double)>> kinds;
+    const auto take_in = [&](const std::function<double(double)>& light) {
+        const PathSteps steps = path_steps(spectral_sum(rig_, grid, light), paths_, table_error);
+        if (steps.count > steps_.count) steps_ = steps;
+    };
+    for (const Strobe& strobe : rig_.strobes) {
+        take_in([&](double nm) { return strobe.spectrum.at(nm) * floor.at(nm); });
+        if (has_highlight) take_in([&](double nm) { return strobe.spectrum.at(nm); });
+    }
+    tables_.resize(rig_.strobes.size());
+    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+        if (spectrum_of_strobe_[s] != s) continue;
+        const Spectrum& lamp = rig_.strobes[s].spectrum;
+        for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
+            const auto share = [&](double nm) { return lagrange(rig_, index_nodes_nm_, j, nm); };
+            const auto diffuse = [&](double nm) { return share(nm) * lamp.at(nm) * floor.at(nm); };
+            tables_[s].diffuse.push_back(path_table(spectral_sum(rig_, grid, diffuse), steps_));
+            if (!has_highlight) continue;
+            const auto bare = [&](double nm) { return share(nm) * lamp.at(nm); };
+            tables_[s].highlight.push_back(path_table(spectral_sum(rig_, grid, bare), steps_));
+        }
+    }
+}
+
+Lightmap LightmapMaker::map(const Sled& sled) const {
+    Lightmap map;
+    map_into(sled, map);
+    return map;
+}
+
+void LightmapMaker::map_into(const Sled& sled, Lightmap& map) const {
+    map.width_px = rig_.camera.width_px;
+    map.height_px = rig_.camera.height_px;
+    map.samples.resize(kChannels * static_cast<std::size_t>(map.width_px) *
+                       static_cast<std::size_t>(map.height_px));
+    const Plane floor = floor_plane(sled);
+    const std::vector<std::size_t> nodes = node_order(index_nodes_nm_.size());
+    MapScene scene;
+    for (const std::size_t j : nodes)
+        scene.rays.push_back(ray_terms(rig_, floor, index_nodes_nm_[j]));
+    Rig flown = rig_;
+    flown.sled = sled;
+    for (std::size_t s = 0; s < rig_.strobes.size() && steps_.count > 0; ++s) {
+        for (const LampTerms& lamp : lamps_of(flown, rig_.strobes[s], floor)) {
+            scene.lamps.push_back({.terms = lamp, .spectrum = spectrum_of_strobe_[s]});
+        }
+    }
+
+    std::atomic<int> next_row = 0;
+    std::atomic<int> before = 0;
+    std::atomic<int> beyond = 0;
+    const auto make_rows = [&] {
+        std::array<RayBlock, kIndexNodes> rays;
+        LampBlock lit;
+        SumBlock sums;
+        Outside outside;
+        for (int row = next_row++; row < map.height_px; row = next_row++) {
+            for (int column = 0; column < map.width_px; column += kRowBlock) {
+                for (std::size_t j = 0; j < nodes.size(); ++j) {
+                    look_along(scene.rays[j], row, column, rays[j]);
+                }
+                sums = {};
+                for (const PlacedLamp& lamp : scene.lamps) {
+                    const LightTables& tables = tables_[lamp.spectrum];
+                    for (std::size_t j = 0; j < nodes.size(); ++j) {
+                        shine(rays[j], lamp.terms, lit);
+                        if (j == 0) find_cones(lamp.terms, lit);
+                        const Outside found = weigh(rays[j], lamp.terms, steps_, lit);
+                        outside.before += found.before;
+                        outside.beyond += found.beyond;
+                        look_up(lit, lit.diffuse, tables.diffuse[nodes[j]], sums);
+                        if (tables.highlight.empty()) continue;
+                        weigh_highlight(rays[j], lamp.terms, lit);
+                        look_up(lit, lit.highlight, tables.highlight[nodes[j]], sums);
+                    }
+                }
+                store(sums, row, column, map);
+            }
+        }
+        before += outside.before > 0 ? 1 : 0;
+        beyond += outside.beyond > 0 ? 1 : 0;
+    };
+    {
+        std::vector<std::jthread> others;
+        for (int t = 1; t < options_.threads; ++t) others.emplace_back(make_rows);
+        make_rows();
+    }
+    if (before > 0 || (beyond > 0 && !paths_.has_horizon)) {
+        throw InputError(fmt::format(
+            "altitude {} m, pitch {} rad, roll {} rad: the image sees paths {} than the lightmap's "
+            "tables serve; allowed: paths from {} to {} m",
+            sled.altitude_m,
+            sled.pitch_rad,
+            sled.roll_rad,
+            before > 0 ? "shorter" : "longer",
+            paths_.shortest_m,
+            paths_.longest_m));
+    }
+}
+
+}  // namespace aphotic

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The signal of the rig's camera on its bare flat floor, at the camera's pace.
+//
+//   S_c = sum_s sum_k  A_k cos(theta) cos(i) / (pi d^2) T_sc(d + r)  +  highlight
+//
+// as docs/physics.md has it, with T the signal over the path's length (path_table.h). Once per
+// water T is tabulated; then a map of any altitude and attitude is geometry and a look-up a pixel,
+// written so that compilers vectorise it (row_light.h).
+//
+// Behind a port every wavelength has its own ray. The light of one path, at one K, is a smooth
+// function of the water's index, for the ray moves smoothly with it. So it is interpolated between
+// kIndexNodes indices n_j by Lagrange's polynomials L_j:
+//
+//   S_c = sum_j  G_j T_jc(l_j),      T_jc(l) = int f Q_c L_j(n(lambda)) exp(-K l) dlambda
+//
+// with G_j and l_j the geometry of the ray of n_j: exact where G exp(-K l) is of degree
+// kIndexNodes - 1 in n over the range. A cone's edge, which dispersion spreads over several pixels,
+// is sharp here and stands where the middle index has it.
+//
+// An emitter of a size is the grid of lamps of scene_gen/geometry.h. Where the image sees no floor,
+// the map is black; and so it is beyond the longest path when the paths have a horizon, that is
+// when all that lies beyond is darker than kDarkShare of the brightest.
+#pragma once
+
+#include "lightmap/path_table.h"
+#include "scene_gen/light_paths.h"
+#include "scene_gen/rig.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+
+struct LightmapOptions {
+    double error =
+        1e-5;         // relative, of the spectral integral and of its table; arithmetic adds 1e-6
+    int threads = 1;  // changes no bit
+};
+
+// R, G, B planar: all rows of R, then of G, then of B.
+struct Lightmap {
+    int width_px = 0;
+    int height_px = 0;
+    std::vector<float> samples;
+};
+
+inline constexpr std::size_t kIndexNodes = 3;
+
+class LightmapMaker {
+  public:
+    // paths: what the tables must serve; none: what the rig's own sled sees. Throws InputError for
+    // a rig with objects or a scene of the user's: the map is of the bare floor.
+    LightmapMaker(const Rig& rig,
+                  const std::optional<PathRange>& paths,
+                  const LightmapOptions& options);
+
+    // Throws InputError when this sled sees paths that the tables do not serve.
+    [[nodiscard]] Lightmap map(const Sled& sled) const;
+    // The same into a map that is there: without allocation when it has the size.
+    void map_into(const Sled& sled, Lightmap& map) const;
+
+    [[nodiscard]] const PathRange& paths() const { return paths_; }
+    [[nodiscard]] std::size_t grid_size() const { return grid_size_; }
+    [[nodiscard]] int table_steps() const { return steps_.count; }
+
+  private:
+    // A lamp spectrum on the floor, and bare where the floor has a highlight, by index node.
+    struct LightTables {
+        std::vector<std::vector<float>> diffuse;
+        std::vector<std::vector<float>> highlight;
+    };
+
+    void tabulate();
+
+    Rig rig_;
+    LightmapOptions options_;
+    PathRange paths_;
+    PathSteps steps_;
+    std::size_t grid_size_ = 0;
+    std::vector<double> index_nodes_nm_;  // wavelengths whose rays are traced; one without a port
+    std::vector<LightTables> tables_;     // by lamp spectrum
+    std::vector<std::size_t> spectrum_of_strobe_;
+};
+
+// The paths that any of these sleds sees, with some room for those between them.
+[[nodiscard]] PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds);
+
+}  // namespace aphotic

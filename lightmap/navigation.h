@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where the sled was when each image was taken.
+//
+// A navigation file is CSV with a header row, whose columns may stand in any order, others among
+// them:
+//
+//   image,altitude_m,pitch_deg,roll_deg
+//   201207.0001.tif,2.05,4.8,-0.3
+//
+// or lines of four fields parted by blanks, without a header, as HabCam's .eic files:
+//
+//   201207.0001.tif 2.05 4.8 -0.3
+//
+// Lines that are empty or begin with # are comments. altitude_m is measured along the camera's
+// axis, pitch is positive bow up, roll positive starboard down: the rig's own conventions. A CSV
+// file without a column for pitch or roll leaves it as the rig has it.
+//
+// An image is known by its file name without folder and without an image's extension, so that a
+// line still holds when raw images were converted. A name that stands twice is an error.
+#pragma once
+
+#include "scene_gen/rig.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+namespace aphotic {
+
+struct ImagePose {
+    std::string image;  // as the file has it
+    std::size_t line = 0;
+    Sled sled;
+};
+
+class Navigation {
+  public:
+    // The pose of an image file. An InputError when there is no line for it, or when the line's
+    // numbers are none that a sled can have, such as the zeros and NaN of an altimeter that lost
+    // the floor: that is of one image, and the others can do without it.
+    [[nodiscard]] const ImagePose& pose_of(const std::filesystem::path& image) const;
+
+    [[nodiscard]] std::size_t size() const { return poses_.size(); }
+
+  private:
+    friend Navigation parse_navigation(const std::string&, std::string_view, const Sled&);
+
+    std::string name_;
+    std::unordered_map<std::string, ImagePose> poses_;  // by the image's key
+};
+
+// name stands in messages. A file that cannot be understood is an InputError that names the line.
+[[nodiscard]] Navigation parse_navigation(const std::string& name,
+                                          std::string_view text,
+                                          const Sled& rig_sled);
+[[nodiscard]] Navigation read_navigation(const std::filesystem::path& file, const Sled& rig_sled);
+
+// Whether the file's name ends as an image's does, such as .tif; in any letter case.
+[[nodiscard]] bool is_image_name(const std::filesystem::path& file);
+
+}  // namespace aphotic

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a camera wrote: a mosaic of one plane, whose pixels see one channel each, or red, green and
+// blue planes. Samples are the camera's own numbers (0 to 4095 of a 12-bit camera), linear in the
+// light; the black level is the number that no light gives.
+#pragma once
+
+#include "spectral/sensor.h"
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+// Named after the four sites at the top left, row by row.
+enum class Mosaic { None, Rggb, Bggr, Grbg, Gbrg };
+
+// "RGGB" and its kin, in any letter case.
+[[nodiscard]] std::optional<Mosaic> mosaic_named(std::string_view name);
+[[nodiscard]] std::string_view mosaic_name(Mosaic mosaic);
+
+// The channel that a site of a mosaic sees: 0, 1 or 2.
+[[nodiscard]] int channel_at(Mosaic mosaic, int column, int row);
+
+struct RawImage {
+    int width_px = 0;
+    int height_px = 0;
+    Mosaic mosaic = Mosaic::None;
+    std::vector<float> samples;  // row by row; without a mosaic R, G, B planar
+
+    [[nodiscard]] std::size_t pixels() const {
+        return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
+    }
+    [[nodiscard]] int planes() const { return mosaic == Mosaic::None ? kChannels : 1; }
+};
+
+struct SensorLevels {
+    float black = 0.0F;
+    float white = std::numeric_limits<float>::infinity();  // from here up it is saturated
+};
+
+// R, G, B planar from a mosaic of two pixels or more each way. A site keeps its own sample; the
+// other two channels are the mean of the nearest two or four sites, which is bilinear
+// interpolation. Beyond the edge the mosaic goes on mirrored about its outermost pixels, so that
+// sites keep their colours. A plane that is linear in column and row comes back unchanged, but at
+// the edge.
+[[nodiscard]] std::vector<float> demosaiced(std::span<const float> plane,
+                                            int width_px,
+                                            int height_px,
+                                            Mosaic mosaic);
+
+}  // namespace aphotic

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The inner loops of a lightmap: the rays of some pixels of a row, and the light of one lamp on
+// what they see. Arrays of one quantity each, without branches, for compilers to vectorise.
+//
+// A ray starts at o and goes along D, whose z is 1. With `down` the unit vertical, H the height of
+// o over the floor and w = down . D, it meets the floor at P = o + D H/w. From a lamp at s,
+// height h over the floor, with axis a, the light comes along
+//
+//   V = w (P - s) = w (o - s) + H D
+//
+// a vector that stays finite towards the horizon, and everything follows from it:
+//
+//   d = |V|/w     cos(theta) = V.a/|V|     cos(i) = h w/|V|     r = |D| H/w
+//   cos(theta) cos(i) / d^2 = h w^3 (V.a) / |V|^4
+//
+// and for the highlight, with m the ray mirrored at the floor and l the way to the lamp,
+//
+//   m.l = (2 w^2 h - D.V) / (|D| |V|)
+//
+// Through a flat port, (u, v) the slopes of the pixel's ray in air, D = (u a, v a, 1) and
+// o = (u b, v b, distance + thickness), for tan = sin/cos on both sides of Snell's law gives
+//
+//   a = 1/sqrt(n_w^2 + (n_w^2 - 1) q)     b = distance + thickness/sqrt(n_g^2 + (n_g^2 - 1) q)
+//
+// with q = u^2 + v^2. Double precision as far as the place in the table; from there on float.
+#pragma once
+
+#include "lightmap/path_table.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr int kRowBlock = 128;
+template <class T>
+using RowBlock = std::array<T, kRowBlock>;
+
+// What is the same for all rays of a map at one index.
+struct RayTerms {
+    int width_px = 0;
+    double slope_per_px = 0.0;
+    double middle_column = 0.0;  // of the image, where v is 0
+    double middle_row = 0.0;
+    double distance_m = 0.0;  // of the port; all 0 and indices 1 without one
+    double thickness_m = 0.0;
+    double glass_index = 1.0;
+    double water_index = 1.0;
+    Eigen::Vector3d down;
+    double floor_m = 0.0;  // from the pupil along `down`
+};
+
+struct RayBlock {
+    alignas(64) RowBlock<double> D_x;
+    alignas(64) RowBlock<double> D_y;
+    alignas(64) RowBlock<double> D_length;
+    alignas(64) RowBlock<double> o_x;
+    alignas(64) RowBlock<double> o_y;
+    alignas(64) RowBlock<double> w;  // 1 where the ray sees nothing
+    alignas(64) RowBlock<double> H;
+    alignas(64) RowBlock<double> sees;  // 1, or 0 where it meets no floor or the row has ended
+    double o_z = 0.0;
+};
+
+void look_along(const RayTerms& terms, int row, int first_column, RayBlock& rays);
+
+struct LampTerms {
+    Eigen::Vector3d position_m;
+    Eigen::Vector3d axis;
+    double height_m = 0.0;  // over the floor
+    std::vector<double> cone_cosine;
+    std::vector<double> cone_intensity;  // power A_k / (pi N)
+    double phong = 0.0;
+    double phong_size = 0.0;
+};
+
+// What the rays get of one lamp, ready to be looked up.
+struct LampBlock {
+    alignas(64) RowBlock<double> V_axis;  // V.a
+    alignas(64) RowBlock<double> V_length;
+    alignas(64) RowBlock<double> intensity;  // of the cones that reach there
+    alignas(64) RowBlock<double> place;      // in the table, in steps
+    alignas(64) RowBlock<int> step;
+    alignas(64) RowBlock<float> within_step;  // 0 to 1
+    alignas(64) RowBlock<float> diffuse;      // factor of T
+    alignas(64) RowBlock<float> highlight;    // factor of U, T without reflectance
+};
+
+void shine(const RayBlock& rays, const LampTerms& lamp, LampBlock& block);
+// Of the rays last shone on; it stays for rays of other indices.
+void find_cones(const LampTerms& lamp, LampBlock& block);
+// Pixels with light whose path is not in the table.
+struct Outside {
+    int before = 0;
+    int beyond = 0;
+};
+// The factors and the place in the table; black outside it.
+[[nodiscard]] Outside weigh(const RayBlock& rays,
+                            const LampTerms& lamp,
+                            const PathSteps& steps,
+                            LampBlock& block);
+void weigh_highlight(const RayBlock& rays, const LampTerms& lamp, LampBlock& block);
+
+// sums: kTableLanes for each pixel.
+using SumBlock = RowBlock<std::array<float, kTableLanes>>;
+void look_up(const LampBlock& block,
+             const RowBlock<float>& factors,
+             std::span<const float> table,
+             SumBlock& sums);
+
+}  // namespace aphotic

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Corrections of uneven light that know nothing of the lamps, but that their light changes slowly
+// over the image: what users did before they had a model, to hold it against. Each takes one plane
+// of samples, a channel or the sites of one colour of a mosaic, and keeps its brightness, so that
+// f(k I) = k f(I).
+//
+//   divided by a pattern        I / max(p, kLeastShare mean p)  mean p
+//     illumination-reflectance    p = G I, the image itself smoothed
+//     log-polynomial              p = exp(P), P fitted to the mean of log I over many images
+//     altitude-binned polynomial  p = P, fitted to the images of one bin of altitude
+//   homomorphic                 log out = l_mean + low (G l - l_mean) + high (l - G l)
+//   local equalisation          see local_equalisation.h
+//
+// G  a Gaussian blur (gaussian_blur.h)      P  a polynomial over the image (polynomial_surface.h)
+// l  log max(I, kBlackShare mean I): what is black has a logarithm, too
+// low, high  the gains of slow and of quick changes: 0 and 1 leave nothing slow, 1 and 1 change
+//            nothing
+//
+// What they cannot do: the first and the last two take whatever is broad for light, be it a lamp's
+// pattern or a pale patch of sand, and level the channels each by itself, so colour is lost with
+// it. The fitted ones know only the patterns that their polynomials can follow, and these follow no
+// edge of a cone. A polynomial can fall to 0 or below; the floor under the pattern bounds its gain
+// to 1 / kLeastShare.
+//
+// R. Garcia, T. Nicosevici and X. Cufi, "On the way to solve lighting problems in underwater
+// imaging", OCEANS 2002 (illumination-reflectance, homomorphic, local equalisation); H. Singh,
+// C. Roman, O. Pizarro, R. Eustice and A. Can, "Towards high-resolution imaging from underwater
+// vehicles", Int. J. Robotics Research 26(1), 2007 (log-polynomial).
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr double kLeastShare = 0.01;
+inline constexpr double kBlackShare = 1e-3;
+
+[[nodiscard]] std::vector<float> divided_by_pattern(std::span<const float> plane,
+                                                    std::span<const float> pattern);
+
+[[nodiscard]] std::vector<float> illumination_reflectance(std::span<const float> plane,
+                                                          int width_px,
+                                                          double sigma_px);
+
+struct Homomorphic {
+    double sigma_px = 1.0;
+    double low = 0.0;
+    double high = 1.0;
+};
+[[nodiscard]] std::vector<float> homomorphic(std::span<const float> plane,
+                                             int width_px,
+                                             const Homomorphic& filter);
+
+// l of every sample, 0 where the plane's mean is not above 0.
+[[nodiscard]] std::vector<float> logarithms(std::span<const float> plane);
+[[nodiscard]] std::vector<float> exponentials(std::span<const float> plane);
+
+}  // namespace aphotic

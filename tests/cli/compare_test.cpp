@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic compare with --scale and --report, as a user runs it.
+#include "spectral/exr.h"
+#include "support/page.h"
+#include "support/run_command.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kWidth_px = 24;
+constexpr int kHeight_px = 16;
+constexpr std::size_t kPixels = kWidth_px * kHeight_px;
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr double kFloat = 1e-6;  // roundings of samples as floats, relative
+
+using Plane = std::vector<float>;
+const std::vector<std::string> kRgb{"R", "G", "B"};
+
+class CommandCompare : public testing::Test {
+  protected:
+    void write(const std::string& name,
+               const std::vector<Plane>& planes,
+               const std::vector<std::string>& channels = kRgb) {
+        ExrWriter exr(folder_.path() / name, kWidth_px, kHeight_px, channels, {});
+        Plane samples;
+        for (const Plane& plane : planes) samples.insert(samples.end(), plane.begin(), plane.end());
+        exr.write_rows(kHeight_px, samples);
+        exr.finish();
+    }
+
+    CommandResult compare(const std::vector<std::string>& options) {
+        std::vector<std::string> arguments{"compare", "a.exr", "b.exr"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return run_aphotic(folder_.path(), arguments);
+    }
+
+    nlohmann::json json_of(std::vector<std::string> options, int status) {
+        options.emplace_back("--json");
+        const CommandResult result = compare(options);
+        EXPECT_EQ(result.status, status) << result.err << result.out;
+        return nlohmann::json::parse(result.out);
+    }
+
+    TempFolder folder_;
+};
+
+// Brightest in the middle, as a lamp's light.
+Plane pattern(double level) {
+    Plane plane;
+    for (std::size_t i = 0; i < kPixels; ++i) {
+        const double x = static_cast<double>(i % kWidth_px) / kWidth_px - 0.5;
+        const double y = static_cast<double>(i / kWidth_px) / kHeight_px - 0.5;
+        plane.push_back(static_cast<float>(level * std::exp(-3.0 * (x * x + y * y))));
+    }
+    return plane;
+}
+
+std::vector<Plane> times(std::vector<Plane> planes, std::array<double, 3> factors) {
+    for (std::size_t c = 0; c < planes.size(); ++c) {
+        for (float& sample : planes[c]) sample = static_cast<float>(sample * factors.at(c));
+    }
+    return planes;
+}
+
+const std::vector<Plane> kReference{pattern(1.0), pattern(2.0), pattern(0.5)};
+
+TEST_F(CommandCompare, ScaleTakesTheExposureAway) {
+    write("a.exr", times(kReference, {640.0, 640.0, 640.0}));
+    write("b.exr", kReference);
+    EXPECT_EQ(compare({}).status, 1) << "no factor is fitted unasked";
+    const nlohmann::json json = json_of({"--scale"}, 0);
+    EXPECT_EQ(json["scaled"], "image");
+    for (const auto& channel : json["channels"])
+        EXPECT_NEAR(channel["scale"].get<double>(), 640.0, 640.0 * kFloat);
+}
+
+TEST_F(CommandCompare, ScalePerChannelTakesTheColourAwayToo) {
+    write("a.exr", times(kReference, {2.0, 3.0, 5.0}));
+    write("b.exr", kReference);
+    const nlohmann::json one = json_of({"--scale"}, 1);
+    // Least squares of planes that are 1, 2 and 0.5 times the same.
+    const double wanted = (2.0 * 1.0 + 3.0 * 4.0 + 5.0 * 0.25) / (1.0 + 4.0 + 0.25);
+    const nlohmann::json each = json_of({"--scale=per-channel"}, 0);
+    for (const auto& channel : one["channels"])
+        EXPECT_NEAR(channel["scale"].get<double>(), wanted, wanted * kFloat);
+    for (const auto& channel : each["channels"]) {
+        const double own = channel["name"] == "R" ? 2.0 : channel["name"] == "G" ? 3.0 : 5.0;
+        EXPECT_NEAR(channel["scale"].get<double>(), own, own * kFloat) << channel["name"];
+    }
+    EXPECT_NE(compare({"--scale=per-channel"}).out.find("/ 5"), std::string::npos);
+}
+
+// A bent pattern is no factor away.
+TEST_F(CommandCompare, ScaleHidesNoOtherDifference) {
+    std::vector<Plane> bent = times(kReference, {7.0, 7.0, 7.0});
+    for (Plane& plane : bent) {
+        for (std::size_t i = 0; i < kPixels / 2; ++i) plane[i] *= 1.01F;
+    }
+    write("a.exr", bent);
+    write("b.exr", kReference);
+    EXPECT_EQ(compare({"--scale", "--bound", "0.004"}).status, 1);
+    EXPECT_EQ(compare({"--scale", "--bound", "0.011"}).status, 0);
+}
+
+TEST_F(CommandCompare, WhatWasNotObservedIsToldAndNotCompared) {
+    std::vector<Plane> observed = kReference;
+    Plane counts(kPixels, 9.0F);
+    for (std::size_t i = 0; i < kPixels; i += 2) {
+        observed[0][i] = kNaN;
+        counts[i] = 0.0F;
+    }
+    write("b.exr", kReference);
+    write("a.exr", observed);
+    EXPECT_EQ(compare({}).status, 1) << "nothing says that it was not observed";
+
+    observed.push_back(counts);
+    const std::vector<std::string> channels{"R", "G", "B", "count.R"};
+    write("a.exr", observed, channels);
+    const nlohmann::json json = json_of({"--scale"}, 0);
+    for (const auto& channel : json["channels"]) {
+        const std::size_t unobserved = channel["name"] == "R" ? kPixels / 2 : 0;
+        EXPECT_EQ(channel["unobserved"], unobserved);
+        EXPECT_EQ(channel["compared"], kPixels - unobserved);
+    }
+
+    observed[0][1] = kNaN;  // where it is said to have been seen nine times
+    write("a.exr", observed, channels);
+    EXPECT_EQ(compare({"--scale"}).status, 1);
+}
+
+TEST_F(CommandCompare, RefusesAScaleThatIsNone) {
+    write("a.exr", times(kReference, {-1.0, -1.0, -1.0}));
+    write("b.exr", kReference);
+    const CommandResult negative = compare({"--scale"});
+    EXPECT_EQ(negative.status, 2);
+    EXPECT_NE(negative.err.find("positive"), std::string::npos) << negative.err;
+    EXPECT_EQ(compare({"--scale=twice"}).status, 2);
+}
+
+TEST_F(CommandCompare, LeavesAPageOfBoth) {
+    std::vector<Plane> observed = times(kReference, {3.0, 3.0, 3.0});
+    observed[1][5] = kNaN;
+    observed.emplace_back(kPixels, 4.0F);
+    observed.back()[5] = 0.0F;
+    write("a.exr", observed, {"R", "G", "B", "count.G"});
+    write("b.exr", kReference);
+    ASSERT_EQ(compare({"--scale", "--report", "page.html"}).status, 0);
+    const std::string page = read_text_file(folder_.path() / "page.html");
+    EXPECT_EQ(first_unbalanced(page), "");
+    EXPECT_TRUE(contains(words_of(page), "a.exr is within"));
+    for (const char* part : {"id=\"row-R\"", "id=\"column-B\"", "data:image/png;base64,"})
+        EXPECT_TRUE(contains(page, part)) << part;
+}
+
+}  // namespace
+}  // namespace aphotic

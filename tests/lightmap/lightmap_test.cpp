@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Maps against the reference tracer, which shares the rig and the spectra with them and no line of
+// geometry or light.
+#include "lightmap/lightmap.h"
+
+#include "scene_gen/geometry.h"
+#include "scene_gen/rig_reader.h"
+#include "spectral/builtin.h"
+#include "spectral/error.h"
+#include "validation/tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+// What is promised to users at every pixel off the cones' edges.
+constexpr double kPromise = 1e-4;
+// The error that is asked for, the tracer's own grid, and the rounding of a sum of a dozen floats.
+constexpr double kAsked = 1e-5;
+constexpr double kWithoutPort = kAsked + kSpectralError + 12.0 * 0x1p-24;
+
+Rig scene(const std::string& name, int width_px, int height_px) {
+    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + name + ".toml");
+    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
+    rig.camera.width_px = width_px;
+    rig.camera.height_px = height_px;
+    return rig;
+}
+
+Lightmap map_of(const Rig& rig, int threads = 1) {
+    return LightmapMaker(rig, std::nullopt, {.error = kAsked, .threads = threads}).map(rig.sled);
+}
+
+struct Difference {
+    double worst = 0.0;  // relative, off the edges
+    int compared = 0;
+    int on_edges = 0;
+    std::size_t worst_at = 0;
+};
+
+void PrintTo(const Difference& d, std::ostream* out) {
+    *out << "worst relative error " << d.worst << " at sample " << d.worst_at << "; " << d.compared
+         << " pixels compared, " << d.on_edges << " on edges";
+}
+
+// The tracer takes the same lamps for an emitter: what they are worth is its tests' concern.
+Difference against_tracer(const Rig& rig, const Lightmap& map) {
+    TraceOptions options;
+    for (const Strobe& strobe : rig.strobes) {
+        if (!strobe.emitter) continue;
+        const LampGrid grid = lamp_grid(rig, strobe);
+        options.lamps_across = grid.across;
+        options.lamps_along = grid.along;
+    }
+    const Tracer tracer(rig, options);
+    const std::vector<double> wanted = tracer.rows(0, rig.camera.height_px);
+    const std::vector<unsigned char> edges = tracer.on_edges(rig.camera.range);
+    const std::size_t plane = edges.size();
+    Difference difference;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const auto first = wanted.begin() + static_cast<std::ptrdiff_t>(c * plane);
+        const double brightest =
+            *std::max_element(first, first + static_cast<std::ptrdiff_t>(plane));
+        for (std::size_t i = 0; i < plane; ++i) {
+            if (edges[i] != 0) continue;
+            const double expected = wanted[c * plane + i];
+            const double found = map.samples[c * plane + i];
+            // Beyond the longest path the map is black, and such light at most is lost.
+            const double off = std::abs(found - expected);
+            if (off <= kDarkShare * brightest) continue;
+            const double error = off / expected;
+            if (error > difference.worst) {
+                difference.worst = error;
+                difference.worst_at = c * plane + i;
+            }
+        }
+    }
+    difference.on_edges = static_cast<int>(std::count(edges.begin(), edges.end(), 1));
+    difference.compared = static_cast<int>(plane) - difference.on_edges;
+    return difference;
+}
+
+void expect_equal(const Rig& rig, double bound, const std::string& what) {
+    const Difference difference = against_tracer(rig, map_of(rig));
+    testing::Test::RecordProperty(what, std::to_string(difference.worst));
+    EXPECT_LE(difference.worst, bound) << what << ": " << testing::PrintToString(difference);
+    EXPECT_GT(difference.compared, difference.on_edges) << what;
+}
+
+// Some sled: strobes about the camera, each with cones of its own, one lamp spectrum or two.
+Rig random_rig(std::mt19937& engine) {
+    const auto between = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(engine);
+    };
+    Rig rig = scene("habcam", 96, 72);
+    rig.sled = {.altitude_m = between(0.5, 6.0),
+                .pitch_rad = between(-15.0, 15.0) * kDegree,
+                .roll_rad = between(-15.0, 15.0) * kDegree};
+    rig.camera.pixel_pitch_m *= between(0.5, 2.0);
+    rig.water.multiple = between(0.0, 3.0);
+    rig.water.uniform_loss_per_m = between(0.0, 0.2);
+    for (Strobe& strobe : rig.strobes) {
+        // No lamp at the height of the floor, even under the steepest attitude.
+        strobe.position_m = {between(-0.7, 0.7), between(-0.7, 0.7), between(-0.3, 0.1)};
+        strobe.axis = Eigen::Vector3d(between(-0.6, 0.6), between(-0.6, 0.6), 1.0).normalized();
+        strobe.power = between(0.1, 3.0);
+        strobe.beam.weights = between(0.0, 1.0) < 0.5 ? ConeWeights::Flux : ConeWeights::Literal;
+        for (Cone& cone : strobe.beam.cones) {
+            cone.half_angle_rad = between(5.0, 90.0) * kDegree;
+            cone.weight = between(0.0, 1.0);
+        }
+        if (between(0.0, 1.0) < 0.5) {
+            strobe.spectrum = load_curve("xenon-arc", CurveRole::LampSpectrum, {});
+        }
+    }
+    return rig;
+}
+
+TEST(Lightmap, IsThatOfTheTracerForRandomRigs) {
+    std::mt19937 engine(20110711);
+    for (int i = 0; i < 40; ++i) {
+        expect_equal(random_rig(engine), kWithoutPort, "rig " + std::to_string(i));
+    }
+}
+
+TEST(Lightmap, IsThatOfTheTracerForHabCam) {
+    expect_equal(scene("habcam", 272, 205), kWithoutPort, "habcam");
+}
+
+TEST(Lightmap, IsThatOfTheTracerBehindAPort) {
+    expect_equal(scene("port", 136, 102), kPromise, "port");
+}
+
+TEST(Lightmap, IsThatOfTheTracerForRandomRigsBehindPorts) {
+    std::mt19937 engine(20240229);
+    const auto between = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(engine);
+    };
+    const std::vector<const char*> glasses{"bk7", "sapphire", "fused-silica"};
+    for (int i = 0; i < 12; ++i) {
+        Rig rig = random_rig(engine);
+        rig.camera.width_px = 48;
+        rig.camera.height_px = 36;
+        rig.camera.pixel_pitch_m *= 2.0;
+        rig.camera.port = {.distance_m = between(0.0, 0.1),
+                           .thickness_m = between(0.0, 0.03),
+                           .glass = builtin_glass(glasses[static_cast<std::size_t>(i) % 3])};
+        expect_equal(rig, kPromise, "port " + std::to_string(i));
+    }
+}
+
+TEST(Lightmap, IsThatOfTheTracerForLampsOfASize) {
+    Rig rig = scene("habcam", 96, 72);
+    for (Strobe& strobe : rig.strobes) strobe.emitter = {.across_m = 0.0635, .along_m = 0.0302};
+    expect_equal(rig, kWithoutPort, "emitters");
+}
+
+TEST(Lightmap, IsThatOfTheTracerForGlossyFloors) {
+    Rig rig = scene("habcam", 96, 72);
+    rig.seafloor.phong = 0.7;
+    for (const double size : {0.0, 3.5, 40.0, 500.0}) {
+        rig.seafloor.phong_size = size;
+        expect_equal(rig, kWithoutPort, "phong " + std::to_string(size));
+    }
+}
+
+TEST(Lightmap, IsThatOfTheTracerUpToTheHorizon) {
+    Rig rig = scene("habcam", 96, 72);
+    rig.sled.pitch_rad = -80.0 * kDegree;
+    for (const double loss_per_m : {0.0, 0.3}) {
+        rig.water.uniform_loss_per_m = loss_per_m;
+        expect_equal(rig, kWithoutPort, "horizon " + std::to_string(loss_per_m));
+    }
+    rig.water.multiple = 0.0;
+    rig.water.uniform_loss_per_m = 0.0;
+    expect_equal(rig, kWithoutPort, "horizon in clear water");
+}
+
+// The same tables serve every sled within their paths, and give the map that its own would.
+TEST(Lightmap, ServesOtherSleds) {
+    Rig rig = scene("habcam", 96, 72);
+    const Sled low{.altitude_m = 1.0, .pitch_rad = -0.1, .roll_rad = 0.05};
+    const Sled high{.altitude_m = 4.0, .pitch_rad = 0.1, .roll_rad = -0.05};
+    const LightmapMaker maker(rig, paths_of(rig, {low, high}), {.error = kAsked, .threads = 1});
+    for (const Sled& sled : {low, high, Sled{.altitude_m = 2.3}}) {
+        rig.sled = sled;
+        const Difference difference = against_tracer(rig, maker.map(sled));
+        EXPECT_LE(difference.worst, kWithoutPort) << testing::PrintToString(difference);
+    }
+}
+
+TEST(Lightmap, RefusesSledsWhosePathsItsTablesDoNotServe) {
+    const Rig rig = scene("habcam", 32, 24);
+    const LightmapMaker maker(rig, PathRange{.shortest_m = 3.9, .longest_m = 5.0}, {});
+    EXPECT_NO_THROW((void)maker.map({.altitude_m = 2.0}));
+    EXPECT_THROW((void)maker.map({.altitude_m = 1.5}), InputError);
+    EXPECT_THROW((void)maker.map({.altitude_m = 2.8}), InputError);
+}
+
+TEST(Lightmap, RefusesObjectsAndScenes) {
+    Rig with_object = scene("habcam", 8, 6);
+    with_object.objects.push_back({.name = "ball",
+                                   .shape = Sphere{.centre_m = {0.0, 0.0, 1.5}, .radius_m = 0.1},
+                                   .reflectance = with_object.seafloor.reflectance});
+    EXPECT_THROW(map_of(with_object), InputError);
+    Rig with_scene = scene("habcam", 8, 6);
+    with_scene.scene = "reef.pov";
+    EXPECT_THROW(map_of(with_scene), InputError);
+}
+
+TEST(Lightmap, IsTheSameToTheBitForAnyThreads) {
+    Rig rig = scene("habcam", 200, 150);
+    const Lightmap one = map_of(rig, 1);
+    for (const int threads : {2, 3, 7}) EXPECT_EQ(map_of(rig, threads).samples, one.samples);
+}
+
+// Twice the lamps' power is twice the light, to the bit; and strobes add up.
+TEST(Lightmap, IsLinearInTheLamps) {
+    const Rig rig = scene("habcam", 96, 72);
+    const Lightmap map = map_of(rig);
+    Rig doubled = rig;
+    for (Strobe& strobe : doubled.strobes) strobe.power *= 2.0;
+    const Lightmap twice = map_of(doubled);
+    std::vector<double> sum(map.samples.size());
+    for (const Strobe& strobe : rig.strobes) {
+        Rig alone = rig;
+        alone.strobes = {strobe};
+        const Lightmap part = map_of(alone);
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part.samples[i];
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        EXPECT_EQ(twice.samples[i], 2.0F * map.samples[i]);
+        EXPECT_NEAR(sum[i] / map.samples[i], 1.0, 2.0 * kAsked);
+    }
+}
+
+TEST(Lightmap, IsBlackWhereThereIsNoFloor) {
+    Rig rig = scene("habcam", 32, 24);
+    rig.sled.pitch_rad = -std::numbers::pi;
+    const Lightmap map = map_of(rig);
+    EXPECT_TRUE(std::ranges::all_of(map.samples, [](float s) { return s == 0.0F; }));
+}
+
+}  // namespace
+}  // namespace aphotic

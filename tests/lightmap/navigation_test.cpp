@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Navigation files as loggers write them, and what is said of those that are wrong.
+#include "lightmap/navigation.h"
+
+#include "spectral/error.h"
+#include "support/temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace aphotic {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+const Sled kRigSled{.altitude_m = 2.0, .pitch_rad = 5.0 * kDegree, .roll_rad = 1.0 * kDegree};
+
+Navigation parsed(std::string_view text) {
+    return parse_navigation("nav.csv", text, kRigSled);
+}
+
+template <typename Function>
+std::string fault_of(Function function) {
+    try {
+        function();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "nothing was said";
+}
+
+std::string fault_in(std::string_view text) {
+    return fault_of([&] { static_cast<void>(parsed(text)); });
+}
+
+TEST(Navigation, ColumnsStandInAnyOrderAmongOthers) {
+    const Navigation nav = parsed(
+        "# a survey\n"
+        "roll_deg, latitude, image, pitch_deg, altitude_m\n"
+        "-3, 41.5, a.tif, 4, 1.5\n"
+        "\n"
+        "0.5, 41.6, b.tif, -2.5, +2.25\n");
+    EXPECT_EQ(nav.size(), 2U);
+    const ImagePose& b = nav.pose_of("b.tif");
+    EXPECT_EQ(b.line, 5U);
+    EXPECT_DOUBLE_EQ(b.sled.altitude_m, 2.25);
+    EXPECT_DOUBLE_EQ(b.sled.pitch_rad, -2.5 * kDegree);
+    EXPECT_DOUBLE_EQ(b.sled.roll_rad, 0.5 * kDegree);
+}
+
+TEST(Navigation, HabCamLinesHaveNoHeader) {
+    const Navigation nav = parsed("# eic\na.tif 1.5 4 -3\n  b.tif\t2.25   -2.5 0.5\r\n");
+    EXPECT_EQ(nav.size(), 2U);
+    EXPECT_DOUBLE_EQ(nav.pose_of("a.tif").sled.roll_rad, -3.0 * kDegree);
+    EXPECT_DOUBLE_EQ(nav.pose_of("b.tif").sled.pitch_rad, -2.5 * kDegree);
+}
+
+TEST(Navigation, WhatHasNoColumnIsAsTheRigHasIt) {
+    const Navigation nav = parsed("image,altitude_m\na.tif,1.5\n");
+    EXPECT_DOUBLE_EQ(nav.pose_of("a.tif").sled.altitude_m, 1.5);
+    EXPECT_DOUBLE_EQ(nav.pose_of("a.tif").sled.pitch_rad, kRigSled.pitch_rad);
+    EXPECT_DOUBLE_EQ(nav.pose_of("a.tif").sled.roll_rad, kRigSled.roll_rad);
+}
+
+TEST(Navigation, AnImageIsKnownByItsNameWithoutFolderAndExtension) {
+    const Navigation nav = parsed(
+        "image,altitude_m\n"
+        "\"D:\\\\raw\\\\20120623.171552346.1219.TIF\",1.5\n"
+        "/data/20120623.171552346.1220,2.5\n");
+    EXPECT_EQ(nav.pose_of("converted/20120623.171552346.1219.png").sled.altitude_m, 1.5);
+    EXPECT_EQ(nav.pose_of("20120623.171552346.1220.tif").sled.altitude_m, 2.5);
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("20120623.171552346.tif")); }),
+              "nav.csv has no line for it");
+}
+
+TEST(Navigation, ByteOrderMarkAndWindowsLinesAreNoMatter) {
+    const Navigation nav = parsed("\xEF\xBB\xBFimage,altitude_m\r\na.tif,1.5\r\n");
+    EXPECT_EQ(nav.pose_of("a.tif").sled.altitude_m, 1.5);
+}
+
+TEST(Navigation, AnAltimeterThatLostTheFloorCostsItsOwnImageAlone) {
+    const Navigation nav = parsed("a.tif 0 0 0\nb.tif nan 0 0\nc.tif 2 95 0\nd.tif 2 0 0\n");
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); }),
+              "nav.csv:1: altitude_m: found 0; allowed: 0.001 to 10000");
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
+              "nav.csv:2: altitude_m: found nan; allowed: 0.001 to 10000");
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("c.tif")); }),
+              "nav.csv:3: pitch_deg: found 95; allowed: -89.9 to 89.9");
+    EXPECT_EQ(nav.pose_of("d.tif").sled.altitude_m, 2.0);
+}
+
+TEST(Navigation, FaultsNameFileAndLine) {
+    EXPECT_EQ(fault_in("image,altitude\na.tif,2\n"),
+              "nav.csv:1: found the columns image,altitude; needed: 'altitude_m' (is it "
+              "'altitude'?); allowed besides: pitch_deg, roll_deg");
+    EXPECT_EQ(fault_in("image,altitude_m\na.tif,2 m\n"),
+              "nav.csv:2: altitude_m: found '2 m'; allowed: a number");
+    EXPECT_EQ(fault_in("image,altitude_m\na.tif,2,3\n"),
+              "nav.csv:2: found 3 fields; allowed: 2, as in the header row");
+    EXPECT_EQ(fault_in("a.tif 2 0\n"),
+              "nav.csv:1: found 3 fields; allowed: 4: image, altitude, pitch, roll");
+    EXPECT_EQ(fault_in("x/a.tif 2 0 0\nb.tif 2 0 0\ny/a.png 2 0 0\n"),
+              "nav.csv:3: the image 'a' stands twice, first on line 1");
+    EXPECT_EQ(fault_in("image,altitude_m,altitude_m\n"),
+              "nav.csv:1: the column 'altitude_m' stands twice");
+    EXPECT_EQ(fault_in("image,altitude_m\n,2\n"), "nav.csv:2: found no image's name");
+    EXPECT_EQ(fault_in("# nothing\n"), "nav.csv:2: the file ends without a line of an image");
+}
+
+TEST(Navigation, FilesAreReadAndNamed) {
+    const TempFolder folder;
+    const auto file = folder.path() / "nav.eic";
+    write_file(file, "a.tif 2 0\n");
+    EXPECT_TRUE(fault_of([&] {
+                    static_cast<void>(read_navigation(file, kRigSled));
+                }).starts_with(file.string() + ":1: found 3 fields"));
+    write_file(file, "a.tif 2 0 0\n");
+    EXPECT_EQ(read_navigation(file, kRigSled).size(), 1U);
+}
+
+}  // namespace
+}  // namespace aphotic

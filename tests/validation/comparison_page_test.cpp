@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "validation/comparison_page.h"
+
+#include "support/page.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace aphotic {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// Rec. 709's weights on the encoded values: a rough lightness, but one that has an order.
+double lightness(std::uint32_t colour) {
+    return 0.2126 * (colour >> 16 & 0xFFU) + 0.7152 * (colour >> 8 & 0xFFU) +
+           0.0722 * (colour & 0xFFU);
+}
+
+TEST(FalseColour, GetsLighterAllTheWay) {
+    for (int step = 0; step < 100; ++step)
+        EXPECT_LT(lightness(false_colour(step / 100.0)),
+                  lightness(false_colour((step + 1) / 100.0)))
+            << step;
+    EXPECT_EQ(false_colour(-1.0), false_colour(0.0));
+    EXPECT_EQ(false_colour(2.0), false_colour(1.0));
+}
+
+ComparedImages mosaic_of_two() {
+    ComparedChannel red{.comparison = {},
+                        .scale = 2.0,
+                        .image = {1, kNaN, 3, kNaN, kNaN, kNaN, kNaN, kNaN},
+                        .reference = {1, 9, 3, 9, 9, 9, 9, 9},
+                        .marks = {0, 2, 0, 2, 2, 2, 2, 2}};
+    const std::vector<double> reference(red.reference.begin(), red.reference.end());
+    red.comparison = compare_planes("R", red.image, reference, 4, red.marks, 0.0, 1e-6);
+    return {.image = "<observed> & co",
+            .reference = "model",
+            .width_px = 4,
+            .height_px = 2,
+            .scaled = true,
+            .channels = {red}};
+}
+
+TEST(ComparisonPage, IsWellFormedAndEscapesNames) {
+    const std::string page = comparison_html(mosaic_of_two());
+    EXPECT_EQ(first_unbalanced(page), "");
+    EXPECT_TRUE(contains(page, "&lt;observed&gt; &amp; co"));
+}
+
+// Its two blocks of 2 x 2 pixels hold one red site each, where both images agree.
+TEST(ComparisonPage, ShowsAMosaicByBlocksOfWhatWasObserved) {
+    const std::string page = comparison_html(mosaic_of_two());
+    EXPECT_TRUE(contains(page, R"(width="2" height="1")"));
+    EXPECT_FALSE(contains(page, "nan"));
+    EXPECT_TRUE(contains(words_of(page), "is within"));
+    EXPECT_TRUE(contains(page, "for −1.00, white")) << "no difference: a scale of 1";
+}
+
+TEST(ComparisonPage, SaysNoWhenOneChannelIsOut) {
+    ComparedImages images = mosaic_of_two();
+    images.channels.front().comparison.bound = 0.0;
+    images.channels.push_back(images.channels.front());
+    images.channels.back().comparison.max_error = 0.5;
+    const std::string page = comparison_html(images);
+    EXPECT_TRUE(contains(page, "verdict fails"));
+    EXPECT_TRUE(contains(words_of(page), "not within"));
+}
+
+}  // namespace
+}  // namespace aphotic
