@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The program `survey`, at the size of a thumbnail.
+// The program `survey`.
 #include "bench/survey/flight.h"
 #include "bench/survey/image_file.h"
 #include "spectral/exr.h"
