@@ -24,6 +24,12 @@ double uniform(std::mt19937_64& random) {
     return static_cast<double>(random() >> 11U) * 0x1p-53;
 }
 
+// By Box and Muller.
+double normal(std::mt19937_64& random) {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(random)));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform(random));
+}
+
 std::mt19937_64 random_of(std::uint64_t seed, int image) {
     std::seed_seq words{static_cast<std::uint32_t>(seed),
                         static_cast<std::uint32_t>(seed >> 32U),
@@ -52,6 +58,17 @@ std::vector<Leg> flight(std::uint64_t seed, int images) {
     std::vector<Leg> legs;
     for (int image = 1; image <= images; ++image) legs.push_back(leg(seed, image));
     return legs;
+}
+
+std::vector<Leg> as_measured(const std::vector<Leg>& legs, std::uint64_t seed) {
+    std::vector<Leg> measured = legs;
+    for (Leg& leg : measured) {
+        std::mt19937_64 random = random_of(~seed, leg.image);
+        leg.altitude_m += kAltimeterError_m * normal(random);
+        leg.pitch_deg += kAttitudeError_deg * normal(random);
+        leg.roll_deg += kAttitudeError_deg * normal(random);
+    }
+    return measured;
 }
 
 std::string navigation(const std::vector<Leg>& legs, const std::string& suffix) {

@@ -35,6 +35,12 @@ struct Leg {
 [[nodiscard]] Leg leg(std::uint64_t seed, int image);
 [[nodiscard]] std::vector<Leg> flight(std::uint64_t seed, int images);
 
+// The same flight as instruments of its kind tell it: each number off by an error of its own,
+// normal with these standard deviations.
+inline constexpr double kAltimeterError_m = 0.02;
+inline constexpr double kAttitudeError_deg = 0.5;
+[[nodiscard]] std::vector<Leg> as_measured(const std::vector<Leg>& legs, std::uint64_t seed);
+
 // A line for each image, as HabCam's metadata has it: imagename alt pitch roll.
 [[nodiscard]] std::string navigation(const std::vector<Leg>& legs, const std::string& suffix);
 

@@ -4,6 +4,7 @@
 //
 //   DIR/survey.json             what it was made with
 //   DIR/navigation.txt          imagename alt pitch roll, a line for each image
+//   DIR/navigation-rough.txt    the same with the errors of instruments (flight.h)
 //   DIR/raw/000001.tif          what the camera's file holds: 12 bits in 16, RGGB, black level 64,
 //                               one gain for the whole survey, shot and read noise
 //   DIR/truth/000001.exr        the camera's signal before that: float R, G, B, no noise
@@ -176,6 +177,8 @@ void make_survey(const Options& options) {
     const RawCamera camera = camera_of(folder);
     expose(legs, options, camera);
     write_text_file(folder / "navigation.txt", navigation(legs, ".tif"));
+    write_text_file(folder / "navigation-rough.txt",
+                    navigation(as_measured(legs, options.seed), ".tif"));
     write_text_file(folder / "survey.json", record_of(options, settings, camera).dump(2) + "\n");
     fmt::print("{}: {} images, {} with a chart\n",
                folder.string(),

@@ -59,6 +59,28 @@ TEST(Flight, IsWhatTheNavigationSays) {
     }
 }
 
+TEST(Flight, IsMeasuredWithTheErrorsOfInstruments) {
+    constexpr int kLegs = 4000;
+    const std::vector<Leg> legs = flight(kSeed, kLegs);
+    const std::vector<Leg> measured = as_measured(legs, kSeed);
+    double altitude = 0.0;
+    double pitch = 0.0;
+    double roll = 0.0;
+    double bias = 0.0;
+    for (std::size_t i = 0; i < legs.size(); ++i) {
+        altitude += std::pow(measured[i].altitude_m - legs[i].altitude_m, 2) / kLegs;
+        pitch += std::pow(measured[i].pitch_deg - legs[i].pitch_deg, 2) / kLegs;
+        roll += std::pow(measured[i].roll_deg - legs[i].roll_deg, 2) / kLegs;
+        bias += (measured[i].altitude_m - legs[i].altitude_m) / kLegs;
+    }
+    // Four standard deviations of a standard deviation of 4000, and of a mean.
+    const double tolerance = 4.0 / std::sqrt(2.0 * kLegs);
+    EXPECT_NEAR(std::sqrt(altitude) / kAltimeterError_m, 1.0, tolerance);
+    EXPECT_NEAR(std::sqrt(pitch) / kAttitudeError_deg, 1.0, tolerance);
+    EXPECT_NEAR(std::sqrt(roll) / kAttitudeError_deg, 1.0, tolerance);
+    EXPECT_NEAR(bias / kAltimeterError_m, 0.0, 4.0 / std::sqrt(kLegs));
+}
+
 TEST(Flight, LaysTheChartInTheFirstFiveAndThenEveryTenth) {
     std::string charts;
     for (const Leg& leg : flight(kSeed, 30)) {
