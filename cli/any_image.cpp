@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/any_image.h"
 
+#include "spectral/atomic_file.h"
 #include "spectral/error.h"
 
 #include <dlfcn.h>
@@ -29,6 +30,13 @@ AnyImage open_any_image(const std::filesystem::path& file) {
     AnyImage image;
     from_part<Open>("aphotic_open_any_image")(file, image);
     return image;
+}
+
+void write_any_image(const std::filesystem::path& file, const WrittenImage& image) {
+    using Write = void (*)(const std::filesystem::path&, const WrittenImage&);
+    AtomicFile destination(file);
+    from_part<Write>("aphotic_write_any_image")(destination.temporary(), image);
+    destination.commit();
 }
 
 std::vector<float> resized(std::vector<float> plane,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images of any format that OpenImageIO reads, and its filters.
+// Images of any format that OpenImageIO reads or writes, and its filters.
 //
 // OpenImageIO brings some two hundred libraries with it, which take 0.3 s and 100 MB to load: a
 // part of the command by itself, aphotic_any_image.so, loads it when such an image is asked for.
@@ -20,10 +20,28 @@ struct AnyImage {
     std::vector<std::string> channels;
     // The samples of one channel, rows from the top, as stored, integers scaled to 0..1.
     std::function<std::vector<float>(std::size_t channel)> samples;
+    // All of them, one channel after another, from one pass through the file.
+    std::function<std::vector<float>()> planes;
+    // What the integer stood for that is 1 here: 255, 4095, 65535. 0 of floats.
+    double full_scale = 0.0;
+    std::string description;  // the file's own words; empty when it has none
 };
 
 // An image that cannot be read is an InputError; a program installed without the part, a RunError.
 [[nodiscard]] AnyImage open_any_image(const std::filesystem::path& file);
+
+// Planes as an image, in the format that the file's extension names, whole or not there. Integers
+// are 0 to 1 over their range, rounded and clipped. What cannot be written is a RunError.
+enum class SampleType { Bits8, Bits16, Float };
+struct WrittenImage {
+    int width_px = 0;
+    int height_px = 0;
+    std::vector<std::string> channels;
+    std::vector<float> planes;
+    SampleType type = SampleType::Bits16;
+    std::string description;
+};
+void write_any_image(const std::filesystem::path& file, const WrittenImage& image);
 
 // One plane of from_width x from_height samples at another size, the image's edges in place, by one
 // of OpenImageIO's filters, such as "lanczos3". An unknown filter is an InputError.

@@ -8,6 +8,46 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <cmath>
+
+namespace {
+
+// A 12-bit camera's numbers come scaled to the 16 bits that hold them, when the file says so.
+double full_scale_of(const OIIO::ImageSpec& spec) {
+    if (spec.format.is_floating_point()) return 0.0;
+    const int bits =
+        spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+    return std::exp2(bits) - 1.0;
+}
+
+// Pixels with their channels side by side, as planes; and the way back.
+std::vector<float> planes_of(const std::vector<float>& pixels, std::size_t channels) {
+    const std::size_t count = pixels.size() / channels;
+    std::vector<float> planes(pixels.size());
+    for (std::size_t c = 0; c < channels; ++c) {
+        for (std::size_t i = 0; i < count; ++i) planes[c * count + i] = pixels[i * channels + c];
+    }
+    return planes;
+}
+
+std::vector<float> pixels_of(const std::vector<float>& planes, std::size_t channels) {
+    return planes_of(planes, planes.size() / channels);
+}
+
+OIIO::TypeDesc type_of(aphotic::cli::SampleType type) {
+    switch (type) {
+        case aphotic::cli::SampleType::Bits8:
+            return OIIO::TypeDesc::UINT8;
+        case aphotic::cli::SampleType::Bits16:
+            return OIIO::TypeDesc::UINT16;
+        case aphotic::cli::SampleType::Float:
+            return OIIO::TypeDesc::FLOAT;
+    }
+    return OIIO::TypeDesc::UNKNOWN;
+}
+
+}  // namespace
+
 extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
                                        aphotic::cli::AnyImage& image) {
     // Opened directly: an image cache could hand back the pixels of a file that was since replaced.
@@ -29,6 +69,36 @@ extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
         }
         return samples;
     };
+    image.planes = [input, spec, file] {
+        std::vector<float> pixels(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
+        if (!input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, pixels.data())) {
+            throw aphotic::InputError(
+                fmt::format("{}: cannot be read: {}", file.string(), input->geterror()));
+        }
+        return planes_of(pixels, static_cast<std::size_t>(spec.nchannels));
+    };
+    image.full_scale = full_scale_of(spec);
+    image.description = spec.get_string_attribute("ImageDescription");
+}
+
+extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
+                                        const aphotic::cli::WrittenImage& image) {
+    const auto fail = [&](const std::string& why) {
+        throw aphotic::RunError(fmt::format("{}: cannot be written: {}", file.string(), why));
+    };
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(file.string());
+    if (!output) fail(OIIO::geterror());
+    OIIO::ImageSpec spec(image.width_px,
+                         image.height_px,
+                         static_cast<int>(image.channels.size()),
+                         type_of(image.type));
+    spec.channelnames = image.channels;
+    if (!image.description.empty()) spec.attribute("ImageDescription", image.description);
+    const std::vector<float> pixels = pixels_of(image.planes, image.channels.size());
+    const bool is_whole = output->open(file.string(), spec) &&
+                          output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) &&
+                          output->close();
+    if (!is_whole) fail(output->geterror());
 }
 
 extern "C" void aphotic_resize(std::vector<float>& plane,

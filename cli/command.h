@@ -28,6 +28,7 @@ struct Command {
 };
 
 Action configure_compare(CLI::App& options);
+Action configure_correct(CLI::App& options);
 Action configure_data(CLI::App& options);
 Action configure_generate(CLI::App& options);
 Action configure_integrate(CLI::App& options);

@@ -38,6 +38,9 @@ constexpr std::array kCommands{
     Command{"stress",
             "hold both renderers at extremes against a long-double answer",
             aphotic::cli::configure_stress},
+    Command{"correct",
+            "survey images divided by the light that they were taken in",
+            aphotic::cli::configure_correct},
     Command{"compare", "how far one image is from another", aphotic::cli::configure_compare},
     Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
 };

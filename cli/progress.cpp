@@ -13,7 +13,12 @@ ProgressLine::ProgressLine()
     : start_(std::chrono::steady_clock::now()), is_terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
+    wipe();
+}
+
+void ProgressLine::wipe() {
     if (shown_) fmt::print(stderr, "\r\033[K");
+    shown_ = false;
 }
 
 void ProgressLine::show(std::string_view what, double share) {

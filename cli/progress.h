@@ -19,6 +19,9 @@ class ProgressLine {
     // share: of the work, 0 to 1.
     void show(std::string_view what, double share);
 
+    // Wipes the line until it is shown again, for something else to be said.
+    void wipe();
+
   private:
     std::chrono::steady_clock::time_point start_;
     bool is_terminal_;

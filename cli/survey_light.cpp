@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/survey_light.h"
+
+#include "lightmap/cone_edge.h"
+#include "lightmap/navigation.h"
+#include "scene_gen/rig_reader.h"
+#include "spectral/digest.h"
+#include "spectral/error.h"
+#include "spectral/exr.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+namespace aphotic::cli {
+
+namespace {
+
+struct RigLight {
+    Navigation navigation;
+    ConeEdges edges;
+    LightmapMaker maker;
+};
+
+void require_altitude(const Sled& sled, const std::vector<double>& altitudes_m) {
+    if (altitudes_m.empty()) return;
+    if (sled.altitude_m >= altitudes_m[0] && sled.altitude_m <= altitudes_m[1]) return;
+    throw InputError(fmt::format("altitude_m: found {}; allowed by --altitudes-m: {} to {}",
+                                 sled.altitude_m,
+                                 altitudes_m[0],
+                                 altitudes_m[1]));
+}
+
+// Least and most of what the sleds have, and 0 between them: at a level sled, paths are shortest.
+std::set<double> extremes(const std::vector<Sled>& sleds, double Sled::*part) {
+    const auto [least, most] = std::ranges::minmax(sleds, {}, part);
+    return {least.*part, std::clamp(0.0, least.*part, most.*part), most.*part};
+}
+
+PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds) {
+    std::vector<Sled> corners;
+    if (sleds.empty()) return {};
+    for (const double altitude_m : extremes(sleds, &Sled::altitude_m)) {
+        for (const double pitch_rad : extremes(sleds, &Sled::pitch_rad)) {
+            for (const double roll_rad : extremes(sleds, &Sled::roll_rad)) {
+                corners.push_back({altitude_m, pitch_rad, roll_rad});
+            }
+        }
+    }
+    return paths_of(rig, corners);
+}
+
+}  // namespace
+
+SurveyLight light_of_rig(const std::string& rig_file,
+                         const std::string& navigation_file,
+                         const std::vector<double>& altitudes_m,
+                         const std::vector<SurveyFile>& files) {
+    const Rig rig = read_rig(rig_file);
+    Navigation navigation = read_navigation(navigation_file, rig.sled);
+    std::vector<Sled> sleds;
+    for (const SurveyFile& file : files) {
+        try {
+            const Sled sled = navigation.pose_of(file.source).sled;
+            require_altitude(sled, altitudes_m);
+            sleds.push_back(sled);
+        } catch (const InputError&) {
+            // It is said of the image when its turn comes.
+        }
+    }
+    const auto light = [&] {
+        try {
+            return std::make_shared<const RigLight>(
+                RigLight{.navigation = std::move(navigation),
+                         .edges = ConeEdges(rig),
+                         .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), {})});
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("{}: {}", rig_file, error.what()));
+        }
+    }();
+    return {.digest = rig.digest,
+            .size = {rig.camera.width_px, rig.camera.height_px},
+            .pose =
+                [light, altitudes_m](const std::filesystem::path& image) {
+                    const Sled sled = light->navigation.pose_of(image).sled;
+                    require_altitude(sled, altitudes_m);
+                    return sled;
+                },
+            .map = [light](const Sled& sled) { return light->maker.map(sled); },
+            .edges = [light](const Sled& sled,
+                             int within_px) { return light->edges.mask(sled, within_px); },
+            .floor_colour = floor_colour(rig)};
+}
+
+SurveyLight light_of_map(const std::string& map_file) {
+    static const std::vector<std::string> kNames{"R", "G", "B"};
+    Lightmap map;
+    try {
+        ExrReader reader(map_file);
+        const std::vector<std::string> channels = reader.channels();
+        for (const std::string& name : kNames) {
+            if (std::ranges::find(channels, name) != channels.end()) continue;
+            throw InputError(fmt::format("{}: has no channel {}; needed: R, G, B", map_file, name));
+        }
+        map.width_px = reader.width_px();
+        map.height_px = reader.height_px();
+        map.samples.resize(kNames.size() * static_cast<std::size_t>(map.width_px) *
+                           static_cast<std::size_t>(map.height_px));
+        reader.read_rows(0, map.height_px, kNames, map.samples);
+    } catch (const RunError& error) {
+        throw InputError(error.what());  // the user named it
+    }
+    for (float& sample : map.samples) {
+        if (!std::isfinite(sample) || sample < 0.0F) sample = 0.0F;
+    }
+    const auto pixels = map.samples.size() / kNames.size();
+    return {.digest = sha256_of_file(map_file),
+            .size = {map.width_px, map.height_px},
+            .pose = [](const std::filesystem::path&) { return Sled{}; },
+            .map = [map](const Sled&) { return map; },
+            .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); },
+            .floor_colour = std::nullopt};
+}
+
+}  // namespace aphotic::cli
