@@ -20,11 +20,10 @@ struct Grid {
     int width_px = 0;
     int height_px = 0;
 
-    [[nodiscard]] std::size_t pixels() const {
-        return static_cast<std::size_t>(width_px) * height_px;
-    }
+    [[nodiscard]] std::size_t pixels() const { return at(0, height_px); }
     [[nodiscard]] std::size_t at(int column, int row) const {
-        return static_cast<std::size_t>(row) * width_px + column;
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px) +
+               static_cast<std::size_t>(column);
     }
     // Whether any pixel within reach, the image's own only, is so.
     template <typename Is>

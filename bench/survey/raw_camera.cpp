@@ -16,7 +16,7 @@ std::vector<std::uint16_t> raw_mosaic(const CameraImage& image,
                                       std::optional<std::uint64_t> noise_seed) {
     std::mt19937_64 random(noise_seed.value_or(0));
     std::normal_distribution<double> read_noise(0.0, camera.read_noise_e);
-    const auto pixels = static_cast<std::size_t>(image.width_px) * image.height_px;
+    const auto pixels = image.samples.size() / kChannels;
     std::vector<std::uint16_t> mosaic;
     mosaic.reserve(pixels);
     for (int row = 0; row < image.height_px; ++row) {
