@@ -27,11 +27,13 @@ struct Command {
     Action (*configure)(CLI::App& options);
 };
 
+Action configure_baseline(CLI::App& options);
 Action configure_compare(CLI::App& options);
 Action configure_correct(CLI::App& options);
 Action configure_data(CLI::App& options);
 Action configure_generate(CLI::App& options);
 Action configure_integrate(CLI::App& options);
+Action configure_observe(CLI::App& options);
 Action configure_plan(CLI::App& options);
 Action configure_render(CLI::App& options);
 Action configure_stress(CLI::App& options);

@@ -41,6 +41,12 @@ constexpr std::array kCommands{
     Command{"correct",
             "survey images divided by the light that they were taken in",
             aphotic::cli::configure_correct},
+    Command{"observe",
+            "average the images of one altitude into their pattern of light",
+            aphotic::cli::configure_observe},
+    Command{"baseline",
+            "correct images as one does without a model of the lamps",
+            aphotic::cli::configure_baseline},
     Command{"compare", "how far one image is from another", aphotic::cli::configure_compare},
     Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
 };

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/observation.h"
 
+#include "spectral/error.h"
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -165,12 +169,40 @@ Observed average_of(std::span<const std::vector<float>> images,
     return observed;
 }
 
-int rows_in_memory(std::size_t images, std::size_t samples_per_row, double memory_mb) {
+std::vector<float> by_channel(const std::vector<float>& samples,
+                              const RawImage& like,
+                              float elsewhere) {
+    if (like.mosaic == Mosaic::None) return samples;
+    const std::size_t pixels = like.pixels();
+    std::vector<float> planes(pixels * kChannels, elsewhere);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const auto width = static_cast<std::size_t>(like.width_px);
+        const int channel =
+            channel_at(like.mosaic, static_cast<int>(i % width), static_cast<int>(i / width));
+        planes[static_cast<std::size_t>(channel) * pixels + i] = samples[i];
+    }
+    return planes;
+}
+
+void divide_by_own_mean(RawImage& image) {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const float sample : image.samples) {
+        if (std::isnan(sample)) continue;
+        sum += sample;
+        count += 1.0;
+    }
+    const double mean = sum / count;
+    if (!(mean > 0.0))
+        throw InputError(fmt::format("its mean is {:.3g}; allowed: above 0, to divide by", mean));
+    for (float& sample : image.samples) sample = static_cast<float>(sample / mean);
+}
+
+std::size_t samples_in_memory(std::size_t images, double memory_mb) {
     constexpr double kMegabyte = 1e6;
-    constexpr double kMost = 1e6;  // rows: more than any image has
-    const double row_bytes =
-        static_cast<double>(std::max<std::size_t>(1, images * samples_per_row)) * sizeof(float);
-    return static_cast<int>(std::clamp(memory_mb * kMegabyte / row_bytes, 1.0, kMost));
+    constexpr double kMost = 1e12;  // more than any image has
+    const double bytes = static_cast<double>(std::max<std::size_t>(1, images)) * sizeof(float);
+    return static_cast<std::size_t>(std::clamp(memory_mb * kMegabyte / bytes, 1.0, kMost));
 }
 
 }  // namespace aphotic

@@ -23,6 +23,8 @@
 // two-sample trimmed t for unequal population variances", Biometrika 61(1), 1974.
 #pragma once
 
+#include "lightmap/raw_image.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -60,7 +62,17 @@ class RunningMean {
                                   double trim,
                                   int threads);
 
-// How many rows of so many images fit into so much memory, at least one.
-[[nodiscard]] int rows_in_memory(std::size_t images, std::size_t samples_per_row, double memory_mb);
+// Planes R, G and B of what was averaged of images like this one: of a mosaic each sample in the
+// plane of its site's channel, and `elsewhere` at the sites of the others.
+[[nodiscard]] std::vector<float> by_channel(const std::vector<float>& samples,
+                                            const RawImage& like,
+                                            float elsewhere);
+
+// So that images of brighter and of darker exposures, floors and altitudes count alike: their
+// pattern alone is left. An InputError when the mean of its samples is not above 0.
+void divide_by_own_mean(RawImage& image);
+
+// How many samples of each of so many images fit into so much memory, at least one.
+[[nodiscard]] std::size_t samples_in_memory(std::size_t images, double memory_mb);
 
 }  // namespace aphotic

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/observation.h"
 
+#include "spectral/error.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -128,9 +130,27 @@ TEST(Observation, ThreadsChangeNothing) {
     }
 }
 
-TEST(Observation, RowsInMemory) {
-    EXPECT_EQ(rows_in_memory(500, 1360, 272.0), 100);  // 500 * 1360 * 4 bytes a row: 2.72 MB
-    EXPECT_EQ(rows_in_memory(500, 1360, 0.001), 1) << "less than a row cannot be held";
+TEST(Observation, SitesOfAMosaicHoldTheirOwnChannel) {
+    const RawImage mosaic{.width_px = 2, .height_px = 2, .mosaic = Mosaic::Grbg, .samples = {}};
+    EXPECT_EQ(by_channel({1, 2, 3, 4}, mosaic, 0.0F),
+              (std::vector<float>{0, 2, 0, 0, 1, 0, 0, 4, 0, 0, 3, 0}));
+    const RawImage colours{.width_px = 1, .height_px = 1, .mosaic = Mosaic::None, .samples = {}};
+    EXPECT_EQ(by_channel({1, 2, 3}, colours, 0.0F), (std::vector<float>{1, 2, 3}));
+}
+
+TEST(Observation, DividedByItsMeanAnImageHasMeanOne) {
+    RawImage image{
+        .width_px = 2, .height_px = 1, .mosaic = Mosaic::None, .samples = {1, 2, kNaN, 3, 4, 10}};
+    divide_by_own_mean(image);
+    EXPECT_FLOAT_EQ(image.samples[0], 0.25F);
+    EXPECT_FLOAT_EQ(image.samples[5], 2.5F);
+    image.samples.assign(6, 0.0F);
+    EXPECT_THROW(divide_by_own_mean(image), InputError);
+}
+
+TEST(Observation, SamplesInMemory) {
+    EXPECT_EQ(samples_in_memory(500, 272.0), 136000U);  // of 4 bytes each
+    EXPECT_EQ(samples_in_memory(500, 1e-6), 1U) << "less than one cannot be held";
 }
 
 }  // namespace

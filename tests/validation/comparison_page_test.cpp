@@ -28,13 +28,15 @@ TEST(FalseColour, GetsLighterAllTheWay) {
 }
 
 ComparedImages mosaic_of_two() {
-    ComparedChannel red{.comparison = {},
-                        .scale = 2.0,
-                        .image = {1, kNaN, 3, kNaN, kNaN, kNaN, kNaN, kNaN},
-                        .reference = {1, 9, 3, 9, 9, 9, 9, 9},
-                        .marks = {0, 2, 0, 2, 2, 2, 2, 2}};
-    const std::vector<double> reference(red.reference.begin(), red.reference.end());
-    red.comparison = compare_planes("R", red.image, reference, 4, red.marks, 0.0, 1e-6);
+    const std::vector<float> image{1, kNaN, 3, kNaN, kNaN, kNaN, kNaN, kNaN};
+    const std::vector<float> reference{1, 9, 3, 9, 9, 9, 9, 9};
+    const std::vector<unsigned char> marks{0, 2, 0, 2, 2, 2, 2, 2};
+    const std::vector<double> wanted(reference.begin(), reference.end());
+    const ComparedChannel red{.comparison = compare_planes("R", image, wanted, 4, marks, 0.0, 1e-6),
+                              .scale = 2.0,
+                              .image = image,
+                              .reference = reference,
+                              .marks = marks};
     return {.image = "<observed> & co",
             .reference = "model",
             .width_px = 4,

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic baseline NAME IMAGES... -o DIR: images corrected without a model of the lamps.
+#include "lightmap/baseline.h"
+
+#include "cli/command.h"
+#include "cli/in_order.h"
+#include "cli/outcome.h"
+#include "cli/progress.h"
+#include "cli/raw_image_file.h"
+#include "cli/survey_files.h"
+#include "cli/words.h"
+#include "lightmap/navigation.h"
+#include "spectral/atomic_file.h"
+#include "spectral/error.h"
+#include "spectral/exr.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <set>
+#include <thread>
+
+namespace aphotic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    std::string name;
+    std::vector<std::string> images;
+    std::string navigation;
+    std::string folder;
+    BaselineOptions baseline;
+    RawFileOptions raw;
+    int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    bool json = false;
+};
+
+Baseline baseline_named(const std::string& name) {
+    const auto found = std::ranges::find(kBaselineNames, name);
+    return static_cast<Baseline>(found - kBaselineNames.begin());
+}
+
+// The survey, and what has been found of it so far.
+struct Survey {
+    std::vector<SurveyFile> files;
+    std::optional<Navigation> navigation;
+    std::map<fs::path, std::string> skipped;      // an image, and why
+    std::map<fs::path, std::string> found_later;  // the same, while others still ask for `skipped`
+
+    [[nodiscard]] double altitude_m(const SurveyFile& file) const {
+        return navigation ? navigation->pose_of(file.source).sled.altitude_m : 0.0;
+    }
+};
+
+RawImage read_finite(const SurveyFile& file, const Options& options) {
+    RawImage image = read_raw_image(file.source, options.raw);
+    if (!std::ranges::all_of(image.samples, [](float sample) { return std::isfinite(sample); })) {
+        throw InputError(
+            fmt::format("{}: a sample is infinite or not a number", file.source.string()));
+    }
+    return image;
+}
+
+void learn_survey(BaselineCorrector& corrector, Survey& survey, const Options& options) {
+    ProgressLine line;
+    std::optional<RawImage> first;
+    in_order(
+        survey.files.size(),
+        options.jobs,
+        [&](std::size_t i) { return read_finite(survey.files[i], options); },
+        [&](std::size_t i, const RawImage& image) {
+            if (!first) first = image;
+            check_same_size(survey.files[i].source, image, *first);
+            corrector.learn(image, survey.altitude_m(survey.files[i]));
+            line.show("learning",
+                      static_cast<double>(i + 1) / static_cast<double>(survey.files.size()));
+        },
+        [&](std::size_t i, const std::string& why) {
+            survey.skipped.emplace(survey.files[i].source, why);
+        });
+}
+
+// A mosaic's other channels are filled in after the correction, never before.
+void write_image(const fs::path& file, const RawImage& image, const std::string& name) {
+    make_folder(file.parent_path());
+    const std::vector<std::string> channels(kChannelNames.begin(), kChannelNames.end());
+    ExrWriter exr(file,
+                  image.width_px,
+                  image.height_px,
+                  channels,
+                  {{"aphotic:version", APHOTIC_VERSION}, {"aphotic:baseline", name}});
+    exr.write_rows(image.height_px,
+                   image.mosaic == Mosaic::None
+                       ? image.samples
+                       : demosaiced(image.samples, image.width_px, image.height_px, image.mosaic));
+    exr.finish();
+}
+
+std::size_t correct_survey(const BaselineCorrector& corrector,
+                           Survey& survey,
+                           const Options& options) {
+    ProgressLine line;
+    std::size_t corrected = 0;
+    in_order(
+        survey.files.size(),
+        options.jobs,
+        [&](std::size_t i) {
+            const SurveyFile& file = survey.files[i];
+            // What could not be learned has its reason already.
+            if (survey.skipped.contains(file.source)) return false;
+            const RawImage image = read_finite(file, options);
+            write_image(fs::path(options.folder) / (file.name.string() + ".exr"),
+                        corrector.corrected(image, survey.altitude_m(file)),
+                        options.name);
+            return true;
+        },
+        [&](std::size_t i, bool is_done) {
+            if (is_done) ++corrected;
+            line.show("correcting",
+                      static_cast<double>(i + 1) / static_cast<double>(survey.files.size()));
+        },
+        [&](std::size_t i, const std::string& why) {
+            survey.found_later.emplace(survey.files[i].source, why);
+        });
+    return corrected;
+}
+
+ExitStatus correct(const Options& options) {
+    BaselineCorrector corrector(baseline_named(options.name), options.baseline);
+    if (corrector.needs_altitude() && options.navigation.empty())
+        throw InputError(
+            fmt::format("{}: needs --nav, for the altitude of each image", options.name));
+    Survey survey{.files = survey_files(options.images, options.folder),
+                  .navigation = {},
+                  .skipped = {},
+                  .found_later = {}};
+    if (corrector.needs_altitude()) survey.navigation = read_navigation(options.navigation, Sled{});
+    make_folder(options.folder);
+    if (corrector.learns()) learn_survey(corrector, survey, options);
+    const std::size_t corrected = correct_survey(corrector, survey, options);
+    survey.skipped.merge(survey.found_later);
+
+    for (const auto& [image, why] : survey.skipped)
+        fmt::print(stderr, "aphotic: skipped {}\n", why);
+    if (options.json) {
+        nlohmann::ordered_json json{{"baseline", options.name},
+                                    {"folder", options.folder},
+                                    {"corrected", corrected},
+                                    {"skipped", nlohmann::ordered_json::array()}};
+        for (const auto& [image, why] : survey.skipped)
+            json["skipped"].push_back({{"image", image.string()}, {"why", why}});
+        fmt::print("{}\n", dumped(json));
+    } else {
+        fmt::print("{}: {} corrected by {}, {} skipped\n",
+                   options.folder,
+                   counted(corrected, "image"),
+                   options.name,
+                   survey.skipped.size());
+    }
+    return survey.skipped.empty() ? kDone : kAnswerIsNo;
+}
+
+void add_baseline_options(CLI::App& app, BaselineOptions& options) {
+    app.add_option("--sigma",
+                   options.sigma,
+                   "of the blur of illumination-reflectance and homomorphic, as a share of the\n"
+                   "image's width")
+        ->check(CLI::Range(1e-4, 10.0))
+        ->capture_default_str();
+    app.add_option("--low", options.low, "homomorphic: the gain of what is slow")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+    app.add_option("--high", options.high, "homomorphic: the gain of what is quick")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+    app.add_option("--tiles", options.tiles, "local-equalisation: tiles across and down")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+    app.add_option("--clip",
+                   options.clip,
+                   "local-equalisation: the most a bin counts, in mean bins; 1 changes nothing")
+        ->check(CLI::Range(1.0, 1e6))
+        ->capture_default_str();
+    app.add_option("--order", options.order, "of the polynomials")
+        ->check(CLI::Range(0, 12))
+        ->capture_default_str();
+    app.add_option("--bin", options.bin_m, "binned-polynomial: the width of a bin of altitude [m]")
+        ->check(CLI::Range(1e-3, 1e4))
+        ->capture_default_str();
+}
+
+}  // namespace
+
+Action configure_baseline(CLI::App& app) {
+    const auto options = std::make_shared<Options>();
+    app.add_option("NAME", options->name, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
+        ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
+        ->required();
+    app.add_option("IMAGES", options->images, "images, and folders of images, in any format")
+        ->required();
+    app.add_option("-o,--output", options->folder, "where the corrected images go, as float EXR")
+        ->type_name("DIR")
+        ->required();
+    app.add_option("--nav",
+                   options->navigation,
+                   "the altitude of each image, for binned-polynomial; as for observe")
+        ->type_name("FILE");
+    add_baseline_options(app, options->baseline);
+    add_raw_file_options(app, options->raw);
+    app.add_option("--jobs", options->jobs, "images at a time")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    app.add_flag("--json", options->json, "print what was done as JSON");
+    app.footer(
+        "What users do without a model of the lamps, to hold it against. The polynomials learn "
+        "from\n"
+        "all images given, the others from each alone. An image that cannot be used is told and\n"
+        "skipped; the exit status is then 1.");
+    return [options] { return correct(*options); };
+}
+
+}  // namespace aphotic::cli

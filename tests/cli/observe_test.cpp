@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic observe and aphotic baseline on small surveys, as a user runs them.
+#include "spectral/exr.h"
+#include "support/run_command.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kWidth_px = 20;
+constexpr int kHeight_px = 12;
+constexpr std::size_t kPixels = kWidth_px * kHeight_px;
+constexpr double kFloat = 2e-6;  // a few roundings of a float, relative
+
+using Plane = std::vector<float>;
+const std::vector<std::string> kRgb{"R", "G", "B"};
+
+Plane channel_of(const fs::path& file, const std::string& channel) {
+    ExrReader exr(file);
+    Plane samples(static_cast<std::size_t>(exr.width_px()) *
+                  static_cast<std::size_t>(exr.height_px()));
+    exr.read_rows(0, exr.height_px(), std::vector<std::string>{channel}, samples);
+    return samples;
+}
+
+// Light that falls off to the right, a little more in blue.
+float light(std::size_t pixel, std::size_t channel) {
+    const double x = (static_cast<double>(pixel % kWidth_px) + 0.5) / kWidth_px;
+    return static_cast<float>(100.0 * (1.0 - (0.4 + 0.1 * static_cast<double>(channel)) * x));
+}
+
+class Survey : public testing::Test {
+  protected:
+    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+
+    static void write_exr(const fs::path& file,
+                          const std::vector<std::string>& channels,
+                          const Plane& samples,
+                          int width_px = kWidth_px) {
+        const int height_px = static_cast<int>(samples.size() / channels.size()) / width_px;
+        ExrWriter exr(file, width_px, height_px, channels, {});
+        exr.write_rows(height_px, samples);
+        exr.finish();
+    }
+
+    // The light times a factor of the image.
+    void write_image(const std::string& name, float factor) {
+        Plane samples;
+        for (std::size_t c = 0; c < kRgb.size(); ++c) {
+            for (std::size_t i = 0; i < kPixels; ++i) samples.push_back(factor * light(i, c));
+        }
+        fs::create_directories(path("raw"));
+        write_exr(path("raw") / (name + ".exr"), kRgb, samples);
+    }
+
+    // Factors 0.5, 1 and 3 at 2 m, and a tenth of the light higher up.
+    void write_survey() {
+        write_image("a", 0.5F);
+        write_image("b", 1.0F);
+        write_image("c", 3.0F);
+        write_image("high", 0.1F);
+        write_file(path("nav.csv"),
+                   "image,altitude_m,pitch_deg,roll_deg\n"
+                   "a.exr,1.9,1,0\nb.exr,2.0,2,0\nc.exr,2.1,6,0\nhigh.exr,3.5,0,0\n");
+    }
+
+    CommandResult run(const std::vector<std::string>& arguments) {
+        return run_aphotic(folder_.path(), arguments);
+    }
+    CommandResult observe(const std::vector<std::string>& options) {
+        std::vector<std::string> arguments{
+            "observe", "raw", "--nav", "nav.csv", "-o", "map.exr", "--altitude", "2"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return run(arguments);
+    }
+
+    TempFolder folder_;
+};
+using CommandObserve = Survey;
+using CommandBaseline = Survey;
+
+TEST_F(CommandObserve, AveragesTheImagesOfOneAltitude) {
+    write_survey();
+    const CommandResult result = observe({"--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["images"], 3);
+    EXPECT_EQ(json["outside"], 1);
+    EXPECT_NEAR(json["altitude_m"].get<double>(), 2.0, kFloat);
+    EXPECT_NEAR(json["pitch_deg"].get<double>(), 3.0, kFloat);
+    const std::array<Plane, 3> found{channel_of(path("map.exr"), "B"),
+                                     channel_of(path("map.exr"), "stderr.B"),
+                                     channel_of(path("map.exr"), "count.B")};
+    // 0.5, 1 and 3: mean 1.5, squares 1 + 0.25 + 2.25 about it, over n (n - 1) = 6.
+    const double error = std::sqrt(3.5 / 6.0);
+    for (std::size_t i = 0; i < kPixels; ++i) {
+        ASSERT_NEAR(found[0][i], 1.5 * light(i, 2), 150.0 * kFloat);
+        ASSERT_NEAR(found[1][i], error * light(i, 2), 100.0 * kFloat);
+        ASSERT_EQ(found[2][i], 3.0F);
+    }
+}
+
+TEST_F(CommandObserve, MedianAndTrimmedMeanOfBandsAreThoseOfTheWhole) {
+    write_survey();
+    for (const std::string method : {"median", "trimmed"}) {
+        // A few hundred bytes: bands of 83 samples, which end within rows and channels.
+        for (const std::string memory : {"1000", "0.001"}) {
+            ASSERT_EQ(observe({"--method", method, "--trim", "0.4", "--memory", memory}).status, 0);
+            const Plane red = channel_of(path("map.exr"), "R");
+            for (std::size_t i = 0; i < kPixels; ++i)
+                ASSERT_NEAR(red[i], light(i, 0), 100.0 * kFloat) << method << memory;
+        }
+    }
+}
+
+// One pattern under three exposures: with each divided by its mean they are one image.
+TEST_F(CommandObserve, NormalisedImagesAreTheirPatternAlone) {
+    write_survey();
+    ASSERT_EQ(observe({"--normalise"}).status, 0);
+    const Plane error = channel_of(path("map.exr"), "stderr.G");
+    for (const float e : error) ASSERT_NEAR(e, 0.0, kFloat);
+    double sum = 0.0;
+    for (const std::string& channel : kRgb) {
+        for (const float sample : channel_of(path("map.exr"), channel)) sum += sample;
+    }
+    EXPECT_NEAR(sum / (3.0 * kPixels), 1.0, kFloat);
+}
+
+TEST_F(CommandObserve, SitesOfAMosaicHoldTheirOwnChannel) {
+    fs::create_directories(path("raw"));
+    Plane mosaic;
+    for (std::size_t i = 0; i < kPixels; ++i)
+        mosaic.push_back(5.0F + static_cast<float>(i % 2 + 2 * (i / kWidth_px % 2)));
+    write_exr(path("raw/one.exr"), {"Y"}, mosaic);
+    write_exr(path("raw/two.exr"), {"Y"}, mosaic);
+    write_file(path("nav.csv"), "one 2.0 0 0\ntwo 2.05 0 0\n");
+    ASSERT_EQ(observe({"--bayer", "RGGB", "--black", "5"}).status, 0);
+    const Plane green = channel_of(path("map.exr"), "G");
+    const Plane count = channel_of(path("map.exr"), "count.G");
+    EXPECT_TRUE(std::isnan(green[0]));
+    EXPECT_EQ(count[0], 0.0F);
+    EXPECT_EQ(green[1], 1.0F);
+    EXPECT_EQ(green[kWidth_px], 2.0F);
+    EXPECT_EQ(count[1], 2.0F);
+    ASSERT_EQ(observe({"--bayer", "RGGB", "--demosaic"}).status, 0);
+    EXPECT_FALSE(std::isnan(channel_of(path("map.exr"), "G")[0]));
+    EXPECT_EQ(channel_of(path("map.exr"), "count.G")[0], 0.0F) << "filled in, not observed";
+    EXPECT_EQ(observe({}).status, 2) << "one channel, and no mosaic named";
+}
+
+TEST_F(CommandObserve, SkipsBadImagesAndSaysSo) {
+    write_survey();
+    write_file(path("raw/broken.png"), "no picture");
+    write_exr(path("raw/small.exr"), kRgb, Plane(3 * 16, 1.0F), 4);
+    write_image("stray", 1.0F);
+    write_file(path("nav.csv"),
+               read_text_file(path("nav.csv")) + "broken.png,2,0,0\nsmall.exr,2,0,0\n");
+    for (const std::string method : {"mean", "median"}) {
+        const CommandResult result = observe({"--json", "--method", method});
+        EXPECT_EQ(result.status, 1);
+        const nlohmann::json json = nlohmann::json::parse(result.out);
+        EXPECT_EQ(json["images"], 3) << method;
+        EXPECT_EQ(json["skipped"].size(), 3U);
+        for (const char* name : {"broken.png", "small.exr", "stray.exr"})
+            EXPECT_NE(result.err.find(name), std::string::npos) << name;
+        EXPECT_EQ(channel_of(path("map.exr"), "count.R")[0], 3.0F);
+    }
+}
+
+TEST_F(CommandObserve, WritesNoMapOfNoImage) {
+    write_survey();
+    const CommandResult result =
+        run({"observe", "raw", "--nav", "nav.csv", "-o", "map.exr", "--altitude", "2.8"});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("the nearest is 0.7 m off"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(path("map.exr")));
+}
+
+// The paper's section 3.2 in small: an observed map is its model, but for the exposure.
+TEST_F(CommandObserve, ItsMapComparesWithAModelUpToOneScale) {
+    write_survey();
+    Plane model;
+    for (std::size_t c = 0; c < kRgb.size(); ++c) {
+        for (std::size_t i = 0; i < kPixels; ++i) model.push_back(0.01F * light(i, c));
+    }
+    write_exr(path("model.exr"), kRgb, model);
+    ASSERT_EQ(observe({}).status, 0);
+    const CommandResult result =
+        run({"compare", "map.exr", "model.exr", "--scale", "--bound", "1e-5", "--json"});
+    ASSERT_EQ(result.status, 0) << result.out << result.err;
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_NEAR(json["channels"][0]["scale"].get<double>(), 150.0, 150.0 * kFloat);
+}
+
+TEST_F(CommandBaseline, PolynomialsLearnTheSurveyAndFlattenIt) {
+    write_survey();
+    for (const std::string name : {"log-polynomial", "binned-polynomial"}) {
+        const CommandResult result =
+            run({"baseline", name, "raw", "-o", "out", "--nav", "nav.csv", "--json"});
+        ASSERT_EQ(result.status, 0) << result.err;
+        EXPECT_EQ(nlohmann::json::parse(result.out)["corrected"], 4);
+        const Plane flat = channel_of(path("out/b.exr"), "B");
+        // Of the logarithm of a line a quartic leaves little, of the line itself nothing.
+        const double bound = name == "log-polynomial" ? 2e-3 : 1e-5;
+        for (const float sample : flat) ASSERT_NEAR(sample / flat[0], 1.0, bound) << name;
+    }
+}
+
+TEST_F(CommandBaseline, EveryOneLeavesAFlatImageFlatInPlaceOfItsMosaic) {
+    fs::create_directories(path("raw"));
+    write_exr(path("raw/flat.exr"), {"Y"}, Plane(kPixels, 700.0F));
+    write_file(path("nav.csv"), "flat 2 0 0\n");
+    for (const std::string name : {"illumination-reflectance",
+                                   "local-equalisation",
+                                   "homomorphic",
+                                   "log-polynomial",
+                                   "binned-polynomial"}) {
+        const CommandResult result = run({"baseline",
+                                          name,
+                                          "raw",
+                                          "-o",
+                                          "out",
+                                          "--nav",
+                                          "nav.csv",
+                                          "--bayer",
+                                          "GBRG",
+                                          "--tiles",
+                                          "2",
+                                          "--black",
+                                          "100"});
+        ASSERT_EQ(result.status, 0) << name << result.err;
+        for (const std::string& channel : kRgb) {
+            for (const float sample : channel_of(path("out/flat.exr"), channel))
+                ASSERT_NEAR(sample, 600.0, 0.01) << name;
+        }
+    }
+}
+
+TEST_F(CommandBaseline, SkipsBadImagesAndSaysSo) {
+    write_survey();
+    write_file(path("raw/broken.png"), "no picture");
+    for (const std::string name : {"homomorphic", "log-polynomial"}) {
+        const CommandResult result = run({"baseline", name, "raw", "-o", "out", "--json"});
+        EXPECT_EQ(result.status, 1);
+        const nlohmann::json json = nlohmann::json::parse(result.out);
+        EXPECT_EQ(json["corrected"], 4);
+        ASSERT_EQ(json["skipped"].size(), 1U);
+        EXPECT_EQ(json["skipped"][0]["image"], "raw/broken.png");
+        EXPECT_TRUE(fs::exists(path("out/high.exr")));
+    }
+}
+
+TEST_F(CommandBaseline, RefusesWhatItCannotDo) {
+    write_survey();
+    EXPECT_EQ(run({"baseline", "magic", "raw", "-o", "out"}).status, 2);
+    const CommandResult blind = run({"baseline", "binned-polynomial", "raw", "-o", "out"});
+    EXPECT_EQ(blind.status, 2);
+    EXPECT_NE(blind.err.find("--nav"), std::string::npos);
+    EXPECT_EQ(run({"baseline", "homomorphic", "nowhere", "-o", "out"}).status, 2);
+    EXPECT_FALSE(fs::exists(path("out")));
+}
+
+}  // namespace
+}  // namespace aphotic
