@@ -7,25 +7,53 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <string>
+#include <vector>
 
 namespace aphotic::survey {
 
-void write_tiff(const std::filesystem::path& file,
-                int width_px,
-                int height_px,
-                std::span<const std::uint16_t> samples) {
+namespace {
+
+template <typename Sample>
+void write_samples(const std::filesystem::path& file,
+                   const std::string& format,
+                   const OIIO::ImageSpec& spec,
+                   std::span<const Sample> samples) {
     AtomicFile destination(file);
-    OIIO::ImageSpec spec(width_px, height_px, 1, OIIO::TypeDesc::UINT16);
-    spec.attribute("compression", "zip");
-    const auto output = OIIO::ImageOutput::create("tiff");
+    const auto output = OIIO::ImageOutput::create(format);
     if (!output || !output->open(destination.temporary().string(), spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT16, samples.data()) || !output->close()) {
+        !output->write_image(spec.format, samples.data()) || !output->close()) {
         throw RunError(fmt::format("{}: cannot be written: {}",
                                    file.string(),
                                    output ? output->geterror() : OIIO::geterror()));
     }
     destination.commit();
+}
+
+}  // namespace
+
+void write_tiff(const std::filesystem::path& file,
+                int width_px,
+                int height_px,
+                std::span<const std::uint16_t> samples) {
+    OIIO::ImageSpec spec(width_px, height_px, 1, OIIO::TypeDesc::UINT16);
+    spec.attribute("compression", "zip");
+    write_samples(file, "tiff", spec, samples);
+}
+
+void write_picture(const std::filesystem::path& file,
+                   int width_px,
+                   std::span<const std::uint32_t> pixels) {
+    std::vector<std::uint8_t> samples;
+    for (const std::uint32_t pixel : pixels) {
+        for (const unsigned shift : {16U, 8U, 0U}) {
+            samples.push_back(static_cast<std::uint8_t>(pixel >> shift & 0xFFU));
+        }
+    }
+    const int height_px = static_cast<int>(pixels.size()) / width_px;
+    OIIO::ImageSpec spec(width_px, height_px, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("CompressionQuality", 88);  // of JPEG
+    write_samples<std::uint8_t>(file, file.extension().string().substr(1), spec, samples);
 }
 
 CameraImage read_image(const std::filesystem::path& file) {

@@ -6,13 +6,12 @@
 // the survey's, whatever their suffix. Prints a table in Markdown, a row for each NAME; --json
 // prints the same as JSON. NAME=SURVEY/truth is the row of no correction at all.
 //
-// --picture FILE.png puts the images of --show side by side: a row for each of them, a column for
+// --picture FILE puts the images of --show side by side: a row for each of them, a column for
 // each NAME. Every column has one exposure and one white balance, which show the light tiles of its
 // images grey in the mean: what differs within a column differs in the corrected images.
 #include "bench/survey/chart.h"
 #include "bench/survey/flight.h"
 #include "bench/survey/image_file.h"
-#include "spectral/atomic_file.h"
 #include "spectral/error.h"
 #include "spectral/preview.h"
 
@@ -171,9 +170,9 @@ void put_column(const std::vector<CameraImage>& images,
     }
 }
 
-void write_picture(const Options& options,
-                   const std::vector<Correction>& corrections,
-                   const std::vector<std::map<std::string, ChartScore>>& scores) {
+void write_sheet(const Options& options,
+                 const std::vector<Correction>& corrections,
+                 const std::vector<std::map<std::string, ChartScore>>& scores) {
     std::vector<std::uint32_t> sheet;
     std::size_t width_px = 0;
     for (std::size_t column = 0; column < corrections.size(); ++column) {
@@ -188,9 +187,7 @@ void write_picture(const Options& options,
         }
         put_column(images, scale_of(scores[column], options.show), column, width_px, sheet);
     }
-    write_text_file(
-        options.picture,
-        png_of(sheet, static_cast<int>(width_px), static_cast<int>(sheet.size() / width_px)));
+    write_picture(options.picture, static_cast<int>(width_px), sheet);
 }
 
 void judge(const Options& options) {
@@ -209,7 +206,7 @@ void judge(const Options& options) {
         scores.push_back(scores_of(correction, charts));
         json[correction.name] = json_of(total_of(scores.back()));
     }
-    if (!options.picture.empty()) write_picture(options, corrections, scores);
+    if (!options.picture.empty()) write_sheet(options, corrections, scores);
     if (options.json) {
         fmt::print("{}\n", json.dump(2));
         return;
@@ -234,8 +231,14 @@ int main(int argc, char** argv) {
     app.add_option("CORRECTION", options.corrections, "NAME=DIR: a folder of corrected images")
         ->required();
     app.add_option("--images", options.images, "of the survey's first so many; 0: all");
-    auto* picture = app.add_option("--picture", options.picture, "the images side by side (PNG)")
-                        ->type_name("FILE");
+    auto* picture =
+        app.add_option("--picture", options.picture, "the images side by side, as PNG or JPEG")
+            ->type_name("FILE")
+            ->check([](const std::string& file) {
+                return file.ends_with(".png") || file.ends_with(".jpg")
+                           ? std::string()
+                           : file + ": allowed: a name that ends in .png or .jpg";
+            });
     app.add_option("--show", options.show, "names of images for the picture, such as 000001")
         ->delimiter(',')
         ->needs(picture);
