@@ -52,7 +52,7 @@ void write_picture(const std::filesystem::path& file,
     }
     const int height_px = static_cast<int>(pixels.size()) / width_px;
     OIIO::ImageSpec spec(width_px, height_px, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("CompressionQuality", 88);  // of JPEG
+    spec.attribute("CompressionQuality", 75);  // of JPEG
     write_samples<std::uint8_t>(file, file.extension().string().substr(1), spec, samples);
 }
 
