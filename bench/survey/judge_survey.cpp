@@ -181,9 +181,10 @@ void write_sheet(const Options& options,
             images.push_back(read_image(image_in(corrections[column].folder, name)));
         }
         if (sheet.empty()) {
-            width_px = corrections.size() * (images[0].width_px + kGap_px) - kGap_px;
-            const std::size_t height_px = images.size() * (images[0].height_px + kGap_px) - kGap_px;
-            sheet.assign(width_px * height_px, 0xFFFFFFU);
+            const auto width = static_cast<std::size_t>(images[0].width_px);
+            const auto height = static_cast<std::size_t>(images[0].height_px);
+            width_px = corrections.size() * (width + kGap_px) - kGap_px;
+            sheet.assign(width_px * (images.size() * (height + kGap_px) - kGap_px), 0xFFFFFFU);
         }
         put_column(images, scale_of(scores[column], options.show), column, width_px, sheet);
     }

@@ -11,7 +11,7 @@ namespace {
 
 CameraImage uniform(int side_px, std::array<float, kChannels> signal) {
     CameraImage image{.width_px = side_px, .height_px = side_px, .samples = {}};
-    const auto pixels = static_cast<std::size_t>(side_px) * side_px;
+    const auto pixels = static_cast<std::size_t>(side_px * side_px);
     for (const float s : signal) image.samples.insert(image.samples.end(), pixels, s);
     return image;
 }
