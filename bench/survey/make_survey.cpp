@@ -195,7 +195,11 @@ int main(int argc, char** argv) {
     app.add_option("-o,--output", options.folder, "the folder to write to")->required();
     app.add_option("--images", options.images, "how many")->check(CLI::Range(1, 999999));
     app.add_option("--seed", options.seed, "of all that is random");
-    app.add_option("--rig", options.rig, "the rig, beside its survey.pov")->capture_default_str();
+    app.add_option("--rig",
+                   options.rig,
+                   "the rig, beside its survey.pov; camera and strobes where survey.toml has them, "
+                   "for the plan serves these paths")
+        ->capture_default_str();
     app.add_flag("!--no-noise", options.noise, "raw images without shot and read noise");
     app.add_option("--jobs", options.jobs, "frames at a time")->check(CLI::PositiveNumber);
     CLI11_PARSE(app, argc, argv);

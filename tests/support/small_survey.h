@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A simulated survey of small images, in a folder of its own: the rig and scene of scenes/survey with
-// fewer pixels, and the program `survey` run on them.
+// A simulated survey of small images, in a folder of its own: the rig and scene of scenes/survey
+// with fewer pixels, and the program `survey` run on them.
 #pragma once
 
 #include "bench/survey/flight.h"
@@ -28,7 +28,8 @@ class SmallSurvey {
         fs::copy(scenes / "user/reef", folder() / "scenes/user/reef");
         write_file(
             rig(),
-            with("pixel_pitch_um", "51.6", with("resolution", "[170, 128]", read_text_file(rig()))));
+            with(
+                "pixel_pitch_um", "51.6", with("resolution", "[170, 128]", read_text_file(rig()))));
     }
 
     [[nodiscard]] const std::filesystem::path& folder() const { return temp_.path(); }
