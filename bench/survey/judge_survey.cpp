@@ -244,7 +244,11 @@ int main(int argc, char** argv) {
         ->delimiter(',')
         ->needs(picture);
     app.add_flag("--json", options.json, "the table as JSON");
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
     try {
         if (!options.picture.empty() && options.show.empty()) options.show = {"000001"};
         aphotic::survey::judge(options);

@@ -155,8 +155,8 @@ Json record_of(const Options& options, const Json& settings, const RawCamera& ca
 
 void make_survey(const Options& options) {
     const fs::path folder = options.folder;
-    for (const char* part : {"raw", "truth", "card"}) make_folder(folder / part);
     const Json settings = settings_of(options);
+    for (const char* part : {"raw", "truth", "card"}) make_folder(folder / part);
     require_same_survey(folder / "survey.json", settings);
     write_text_file(folder / "survey.json", Json{{"settings", settings}}.dump(2) + "\n");
     generate_plan(options, folder / "plan");
@@ -199,10 +199,15 @@ int main(int argc, char** argv) {
                    options.rig,
                    "the rig, beside its survey.pov; camera and strobes where survey.toml has them, "
                    "for the plan serves these paths")
+        ->check(CLI::ExistingFile)
         ->capture_default_str();
     app.add_flag("!--no-noise", options.noise, "raw images without shot and read noise");
     app.add_option("--jobs", options.jobs, "frames at a time")->check(CLI::PositiveNumber);
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
     try {
         aphotic::survey::make_survey(options);
     } catch (const aphotic::InputError& error) {

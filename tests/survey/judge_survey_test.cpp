@@ -95,6 +95,8 @@ TEST_F(Judge, ShowsImagesSideBySideUnderOneExposureAColumn) {
 TEST_F(Judge, RefusesWhatIsNotThere) {
     EXPECT_EQ(judge({"a=nowhere"}), 2);
     EXPECT_NE(said().find("allowed: NAME=DIR"), std::string::npos) << said();
+    EXPECT_EQ(judge({"a=flat", "--picture", "sheet.txt"}), 2);
+    EXPECT_NE(said().find("allowed: a name that ends in"), std::string::npos) << said();
     fs::remove(folder_.path() / "flat" / "000010.exr");
     EXPECT_EQ(judge({"a=flat"}), 2);
     EXPECT_NE(said().find("flat: found no image 000010"), std::string::npos) << said();

@@ -59,5 +59,13 @@ TEST(MakeSurvey, GoesOnWhereItStoppedAndRefusesAnotherSurvey) {
     EXPECT_EQ(read_text_file(first), bytes);
 }
 
+TEST(MakeSurvey, RefusesARigThatIsNotThereAndLeavesNothing) {
+    const SmallSurvey survey;
+    fs::remove(survey.rig());
+    EXPECT_EQ(survey.make({}), 2);
+    EXPECT_NE(survey.said().find("survey.toml"), std::string::npos) << survey.said();
+    EXPECT_FALSE(fs::exists(survey.folder() / "out"));
+}
+
 }  // namespace
 }  // namespace aphotic::survey
