@@ -61,8 +61,7 @@ struct Survey {
 RawImage read_finite(const SurveyFile& file, const Options& options) {
     RawImage image = read_raw_image(file.source, options.raw);
     if (!std::ranges::all_of(image.samples, [](float sample) { return std::isfinite(sample); })) {
-        throw InputError(
-            fmt::format("{}: a sample is infinite or not a number", file.source.string()));
+        throw InputError("a sample is infinite or not a number");
     }
     return image;
 }
@@ -76,7 +75,7 @@ void learn_survey(BaselineCorrector& corrector, Survey& survey, const Options& o
         [&](std::size_t i) { return read_finite(survey.files[i], options); },
         [&](std::size_t i, const RawImage& image) {
             if (!first) first = image;
-            check_same_size(survey.files[i].source, image, *first);
+            check_same_size(image, *first);
             corrector.learn(image, survey.altitude_m(survey.files[i]));
             line.show("learning",
                       static_cast<double>(i + 1) / static_cast<double>(survey.files.size()));
@@ -146,8 +145,7 @@ ExitStatus correct(const Options& options) {
     const std::size_t corrected = correct_survey(corrector, survey, options);
     survey.skipped.merge(survey.found_later);
 
-    for (const auto& [image, why] : survey.skipped)
-        fmt::print(stderr, "aphotic: skipped {}\n", why);
+    for (const auto& [image, why] : survey.skipped) print_skipped(image, why);
     if (options.json) {
         nlohmann::ordered_json json{{"baseline", options.name},
                                     {"folder", options.folder},

@@ -7,12 +7,12 @@
 // done is noted as it is done, and an image that cannot be corrected costs no other.
 #include "lightmap/correction.h"
 
-#include "cli/any_image.h"
 #include "cli/command.h"
 #include "cli/journal.h"
 #include "cli/outcome.h"
 #include "cli/progress.h"
 #include "cli/survey_files.h"
+#include "cli/survey_image.h"
 #include "cli/survey_light.h"
 #include "cli/words.h"
 #include "spectral/atomic_file.h"
@@ -50,8 +50,7 @@ struct Options {
     std::string folder;
     std::string bayer;
     bool keep_mosaic = false;
-    float black_level = 0.0F;
-    std::optional<float> white_level;
+    CameraNumbers camera;
     std::vector<double> gain;
     std::optional<double> middle;
     std::size_t gain_images = 16;
@@ -75,7 +74,7 @@ struct Skipped {
 struct Survey {
     std::vector<SurveyFile> files;
     SurveyLight light;
-    Mosaic mosaic = Mosaic::None;
+    CameraNumbers camera;
 };
 
 struct Gain {
@@ -84,71 +83,12 @@ struct Gain {
     std::vector<std::string> images;  // that it was taken from
 };
 
-// A camera's image and what it says of itself.
-struct TakenImage {
-    RawImage raw;
-    SensorLevels levels;
-    std::string description;
-};
-
 constexpr std::array<std::pair<std::string_view, std::uint8_t>, 5> kDoubts{
     {{"dark", kDark},
      {"saturated", kSaturated},
      {"black", kBlack},
      {"edge", kEdge},
      {"clipped", kClipped}}};
-
-// The order in which the file has its channels.
-std::vector<std::size_t> wanted_channels(const AnyImage& image, Mosaic mosaic) {
-    if (mosaic != Mosaic::None) {
-        if (image.channels.size() == 1) return {0};
-        throw InputError(fmt::format("found the channels {}; allowed with --bayer: one",
-                                     fmt::join(image.channels, ", ")));
-    }
-    std::vector<std::size_t> order;
-    for (const std::string_view name : kChannelNames) {
-        const auto found = std::ranges::find(image.channels, name);
-        if (found == image.channels.end()) {
-            throw InputError(
-                fmt::format("found the channels {}; allowed: R, G, B, or one of a mosaic that "
-                            "--bayer names",
-                            fmt::join(image.channels, ", ")));
-        }
-        order.push_back(static_cast<std::size_t>(found - image.channels.begin()));
-    }
-    return order;
-}
-
-TakenImage read_image(const SurveyFile& file, const Survey& survey, const Options& options) {
-    const AnyImage image = open_any_image(file.source);
-    const PlaneSize size = survey.light.size;
-    if (image.width_px != size.width_px || image.height_px != size.height_px) {
-        throw InputError(fmt::format("found {} x {} pixels; allowed: {} x {}, as the map has",
-                                     image.width_px,
-                                     image.height_px,
-                                     size.width_px,
-                                     size.height_px));
-    }
-    const std::vector<std::size_t> order = wanted_channels(image, survey.mosaic);
-    const std::vector<float> planes = image.planes();
-    const auto scale = static_cast<float>(image.full_scale > 0.0 ? image.full_scale : 1.0);
-    TakenImage taken{.raw = {.width_px = size.width_px,
-                             .height_px = size.height_px,
-                             .mosaic = survey.mosaic,
-                             .samples = {}},
-                     .levels = {.black = options.black_level},
-                     .description = image.description};
-    const std::size_t pixels = taken.raw.pixels();
-    taken.raw.samples.reserve(order.size() * pixels);
-    for (const std::size_t channel : order) {
-        for (std::size_t i = channel * pixels; i < (channel + 1) * pixels; ++i) {
-            taken.raw.samples.push_back(planes[i] * scale);
-        }
-    }
-    if (image.full_scale > 0.0) taken.levels.white = scale;
-    if (options.white_level) taken.levels.white = *options.white_level;
-    return taken;
-}
 
 // A message of an image without its name, which stands before it.
 std::string without_name(const std::string& message, const SurveyFile& file) {
@@ -203,7 +143,8 @@ Gain measured_gain(const Survey& survey, const Options& options) {
     for_each_of(count, options.jobs, [&](std::size_t i) {
         try {
             const Sled sled = survey.light.pose(file_of(i).source);
-            const TakenImage taken = read_image(file_of(i), survey, options);
+            const SurveyImage taken =
+                read_survey_image(file_of(i).source, survey.light.size, survey.camera);
             middles[i] = middle_quotient(
                 taken.raw, survey.light.map(sled), taken.levels, options.limit.share);
         } catch (const InputError&) {
@@ -235,9 +176,9 @@ Gain measured_gain(const Survey& survey, const Options& options) {
 Json settings_of(const Survey& survey, const Options& options) {
     Json json{{"aphotic", APHOTIC_VERSION},
               {options.map.empty() ? "rig_sha256" : "map_sha256", survey.light.digest},
-              {"bayer", mosaic_name(survey.mosaic)},
+              {"bayer", mosaic_name(survey.camera.mosaic)},
               {"keep_mosaic", options.keep_mosaic},
-              {"black_level", options.black_level},
+              {"black_level", options.camera.black_level},
               {"white_level", nullptr},
               {"gain", options.gain},
               {"middle", wanted_middle(survey, options)},
@@ -248,7 +189,7 @@ Json settings_of(const Survey& survey, const Options& options) {
               {"edge_px", options.edge_px},
               {"mask", options.mask},
               {"format", options.format}};
-    if (options.white_level) json["white_level"] = *options.white_level;
+    if (options.camera.white_level) json["white_level"] = *options.camera.white_level;
     return json;
 }
 
@@ -293,46 +234,6 @@ void mark_clipped(CorrectedImage& result) {
     }
 }
 
-std::vector<std::string> channel_names(const RawImage& image) {
-    if (image.mosaic != Mosaic::None) return {"Y"};
-    return {kChannelNames.begin(), kChannelNames.end()};
-}
-
-void write_result(const fs::path& file, const CorrectedImage& result, const TakenImage& taken) {
-    const RawImage& image = result.image;
-    if (file.extension() == ".exr") {
-        ExrAttributes attributes{{"aphotic:version", APHOTIC_VERSION}};
-        if (!taken.description.empty()) attributes.emplace_back("comments", taken.description);
-        ExrWriter writer(file, image.width_px, image.height_px, channel_names(image), attributes);
-        writer.write_rows(image.height_px, image.samples);
-        writer.finish();
-        return;
-    }
-    write_any_image(file,
-                    {.width_px = image.width_px,
-                     .height_px = image.height_px,
-                     .channels = channel_names(image),
-                     .planes = image.samples,
-                     .type = SampleType::Bits16,
-                     .description = taken.description});
-}
-
-void write_mask(const fs::path& file, const CorrectedImage& result) {
-    constexpr float kByte = 255.0F;
-    std::vector<float> plane;
-    plane.reserve(result.doubts.size());
-    for (const std::uint8_t doubt : result.doubts) {
-        plane.push_back(static_cast<float>(doubt) / kByte);
-    }
-    write_any_image(file,
-                    {.width_px = result.image.width_px,
-                     .height_px = result.image.height_px,
-                     .channels = {"Y"},
-                     .planes = std::move(plane),
-                     .type = SampleType::Bits8,
-                     .description = ""});
-}
-
 fs::path result_of(const SurveyFile& file, const Options& options) {
     return file.name.string() + (options.format == "tiff" ? ".tif" : "." + options.format);
 }
@@ -357,7 +258,7 @@ Json correct_image(const SurveyFile& file,
                    const Survey& survey,
                    const Options& options,
                    const Gain& gain) {
-    const TakenImage taken = read_image(file, survey, options);
+    const SurveyImage taken = read_survey_image(file.source, survey.light.size, survey.camera);
     const Correction correction{
         .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = options.limit};
     CorrectedImage result = corrected(taken.raw, survey.light.map(sled), correction);
@@ -370,7 +271,7 @@ Json correct_image(const SurveyFile& file,
     const fs::path folder(options.folder);
     make_folder((folder / file.name).parent_path());
     if (options.mask) write_mask(folder / mask_of(file), result);
-    write_result(folder / result_of(file, options), result, taken);
+    write_corrected(folder / result_of(file, options), result.image, taken.description);
     return doubts_in(result.doubts);
 }
 
@@ -523,13 +424,14 @@ Survey survey_of(const Options& options) {
                                      options.altitudes_m[1]));
     }
     Survey survey;
+    survey.camera = options.camera;
     if (!options.bayer.empty()) {
         const auto mosaic = mosaic_named(options.bayer);
         if (!mosaic) {
             throw InputError(
                 fmt::format("--bayer: found '{}'; allowed: RGGB, BGGR, GRBG, GBRG", options.bayer));
         }
-        survey.mosaic = *mosaic;
+        survey.camera.mosaic = *mosaic;
     }
     survey.files = survey_files(options.images, options.folder);
     require_sources_stay(survey, options);
@@ -543,6 +445,7 @@ ExitStatus correct(const Options& options) {
     const auto start = std::chrono::steady_clock::now();
     const Survey survey = survey_of(options);
     make_folder(options.folder);
+    remove_abandoned(options.folder);
     set_exr_threads(0);  // the images themselves are spread over the threads
     const Json settings = settings_of(survey, options);
     const std::string settings_sha256 = sha256_of_text(settings.dump());
@@ -592,10 +495,10 @@ void add_camera_options(CLI::App& app, Options& options) {
                    "the images are mosaics of one channel: RGGB, BGGR, GRBG or GBRG")
         ->type_name("SITES");
     app.add_flag("--keep-mosaic", options.keep_mosaic, "write mosaics as such, not R, G, B");
-    app.add_option("--black-level", options.black_level, "the camera's number for no light")
+    app.add_option("--black-level", options.camera.black_level, "the camera's number for no light")
         ->capture_default_str();
     app.add_option("--white-level",
-                   options.white_level,
+                   options.camera.white_level,
                    "the camera's number at saturation, such as 4095; by default the largest that "
                    "the file's integers hold");
     app.add_option("--read-noise",

@@ -102,7 +102,7 @@ class Pass {
             [&](std::size_t i) { return read_image(selection_.images[i]); },
             [&](std::size_t i, const RawImage& image) {
                 if (first_.width_px == 0) first_ = like(image);
-                check_same_size(selection_.images[i], image, first_);
+                check_same_size(image, first_);
                 use(i, image);
                 line_.show(
                     "averaging",
@@ -126,13 +126,8 @@ class Pass {
     [[nodiscard]] RawImage read_image(const std::filesystem::path& file) const {
         RawImage image = read_raw_image(file, options_.raw);
         if (std::ranges::any_of(image.samples, [](float s) { return std::isinf(s); }))
-            throw InputError(fmt::format("{}: a sample is infinite", file.string()));
-        if (!options_.normalise) return image;
-        try {
-            divide_by_own_mean(image);
-        } catch (const InputError& error) {
-            throw InputError(fmt::format("{}: {}", file.string(), error.what()));
-        }
+            throw InputError("a sample is infinite");
+        if (options_.normalise) divide_by_own_mean(image);
         return image;
     }
 
@@ -283,7 +278,7 @@ void print_summary(const Options& options,
                    const nlohmann::ordered_json& json) {
     fmt::print("{}: the {} of {} at {:.3f} m, pitch {:.2f} deg, roll {:.2f} deg on average\n",
                options.output,
-               name_of(options.average),
+               options.average == Average::Trimmed ? "trimmed mean" : name_of(options.average),
                counted(selection.images.size(), "image"),
                json["altitude_m"].get<double>(),
                json["pitch_deg"].get<double>(),
@@ -307,8 +302,7 @@ ExitStatus observe(const Options& options) {
                                                     : ranked_by_bands(pass, selection, options);
         like = pass.first();
     }
-    for (const Skipped& skipped : selection.skipped)
-        fmt::print(stderr, "aphotic: skipped {}\n", skipped.why);
+    for (const Skipped& skipped : selection.skipped) print_skipped(skipped.image, skipped.why);
     if (selection.images.empty()) {
         const std::string others =
             selection.outside > 0
@@ -332,7 +326,8 @@ ExitStatus observe(const Options& options) {
 
 void add_average_options(CLI::App& app, Options& options) {
     app.add_option("--method", options.average, "mean, median or trimmed (mean)")
-        ->transform(CLI::CheckedTransformer(kAverages))
+        ->transform(CLI::CheckedTransformer(kAverages).description(""))
+        ->type_name("METHOD")
         ->default_str("mean");
     app.add_option("--trim",
                    options.trim,

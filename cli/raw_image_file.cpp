@@ -24,13 +24,35 @@ std::vector<std::size_t> colours_of(const AnyImage& image) {
     return places;
 }
 
-[[noreturn]] void refuse_channels(const std::filesystem::path& file,
-                                  const AnyImage& image,
-                                  std::string_view allowed) {
-    throw InputError(fmt::format("{}: found the channels {}; allowed: {}",
-                                 file.string(),
-                                 fmt::join(image.channels, ", "),
-                                 allowed));
+[[noreturn]] void refuse_channels(const AnyImage& image, std::string_view allowed) {
+    throw InputError(fmt::format(
+        "found the channels {}; allowed: {}", fmt::join(image.channels, ", "), allowed));
+}
+
+RawImage raw_of(const AnyImage& image, const RawFileOptions& options) {
+    const Mosaic mosaic = mosaic_named(options.mosaic).value_or(Mosaic::None);
+    std::vector<std::size_t> places = colours_of(image);
+    if (mosaic != Mosaic::None) places = {0};
+    if (mosaic != Mosaic::None && image.channels.size() != 1)
+        refuse_channels(image, "one, of a mosaic");
+    if (places.empty()) refuse_channels(image, "R, G and B, or one with --bayer");
+    if (mosaic != Mosaic::None && std::min(image.width_px, image.height_px) < 2) {
+        throw InputError(
+            fmt::format("found {} x {} pixels; allowed: 2 or more each way, of a mosaic",
+                        image.width_px,
+                        image.height_px));
+    }
+    const std::vector<float> planes = image.planes();
+    const std::size_t pixels = planes.size() / image.channels.size();
+    RawImage raw{
+        .width_px = image.width_px, .height_px = image.height_px, .mosaic = mosaic, .samples = {}};
+    raw.samples.reserve(pixels * places.size());
+    const double full_scale = image.full_scale > 0.0 ? image.full_scale : 1.0;
+    for (const std::size_t place : places) {
+        for (std::size_t i = place * pixels; i < (place + 1) * pixels; ++i)
+            raw.samples.push_back(static_cast<float>(planes[i] * full_scale - options.black_level));
+    }
+    return raw;
 }
 
 }  // namespace
@@ -45,51 +67,33 @@ void add_raw_file_options(CLI::App& app, RawFileOptions& options) {
                 return mosaic_named(name) ? "" : "allowed: RGGB, BGGR, GRBG or GBRG; found " + name;
             },
             "PATTERN"));
-    app.add_option("--black",
-                   options.black,
+    app.add_option("--black-level",
+                   options.black_level,
                    "the black level, in the camera's own numbers, which is taken off")
         ->capture_default_str();
 }
 
 RawImage read_raw_image(const std::filesystem::path& file, const RawFileOptions& options) {
-    const AnyImage image = open_any_image(file);
-    const Mosaic mosaic = mosaic_named(options.mosaic).value_or(Mosaic::None);
-    std::vector<std::size_t> places = colours_of(image);
-    if (mosaic != Mosaic::None) places = {0};
-    if (mosaic != Mosaic::None && image.channels.size() != 1)
-        refuse_channels(file, image, "one, of a mosaic");
-    if (places.empty()) refuse_channels(file, image, "R, G and B, or one with --bayer");
-    if (mosaic != Mosaic::None && std::min(image.width_px, image.height_px) < 2) {
-        throw InputError(
-            fmt::format("{}: found {} x {} pixels; allowed: 2 or more each way, of a "
-                        "mosaic",
-                        file.string(),
-                        image.width_px,
-                        image.height_px));
+    try {
+        return raw_of(open_any_image(file), options);
+    } catch (const InputError& error) {
+        const std::string_view words = error.what();
+        const std::string name = file.string() + ": ";
+        throw InputError(std::string(words.starts_with(name) ? words.substr(name.size()) : words));
     }
-    const std::vector<float> planes = image.planes();
-    const std::size_t pixels = planes.size() / image.channels.size();
-    RawImage raw{
-        .width_px = image.width_px, .height_px = image.height_px, .mosaic = mosaic, .samples = {}};
-    raw.samples.reserve(pixels * places.size());
-    const double full_scale = image.full_scale > 0.0 ? image.full_scale : 1.0;
-    for (const std::size_t place : places) {
-        for (std::size_t i = place * pixels; i < (place + 1) * pixels; ++i)
-            raw.samples.push_back(static_cast<float>(planes[i] * full_scale - options.black));
-    }
-    return raw;
 }
 
-void check_same_size(const std::filesystem::path& file,
-                     const RawImage& image,
-                     const RawImage& first) {
+void check_same_size(const RawImage& image, const RawImage& first) {
     if (image.width_px == first.width_px && image.height_px == first.height_px) return;
-    throw InputError(fmt::format("{}: found {} x {} pixels; allowed: {} x {}, as the first image",
-                                 file.string(),
+    throw InputError(fmt::format("found {} x {} pixels; allowed: {} x {}, as the first image",
                                  image.width_px,
                                  image.height_px,
                                  first.width_px,
                                  first.height_px));
+}
+
+void print_skipped(const std::filesystem::path& file, const std::string& why) {
+    fmt::print(stderr, "aphotic: {}: {}; skipped\n", file.string(), why);
 }
 
 }  // namespace aphotic::cli

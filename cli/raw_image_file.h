@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Raw images as files of any format that OpenImageIO reads, in the camera's own numbers less the
-// black level; and what was made of them as float EXR.
+// black level.
 #pragma once
 
 #include "lightmap/raw_image.h"
@@ -15,18 +15,19 @@ namespace aphotic::cli {
 
 struct RawFileOptions {
     std::string mosaic;  // "RGGB" and its kin; empty: R, G, B
-    double black = 0.0;
+    double black_level = 0.0;
 };
 void add_raw_file_options(CLI::App& app, RawFileOptions& options);
 
 // An InputError when it cannot be read, or does not hold what the options say: one channel for a
-// mosaic, else R, G and B.
+// mosaic, else R, G and B. Of many images one is passed over: messages do not name it, for
+// print_skipped() does.
 [[nodiscard]] RawImage read_raw_image(const std::filesystem::path& file,
                                       const RawFileOptions& options);
 
-// An InputError unless it is as large as the first, and of its kind.
-void check_same_size(const std::filesystem::path& file,
-                     const RawImage& image,
-                     const RawImage& first);
+// An InputError unless it is as large as the first.
+void check_same_size(const RawImage& image, const RawImage& first);
+
+void print_skipped(const std::filesystem::path& file, const std::string& why);
 
 }  // namespace aphotic::cli

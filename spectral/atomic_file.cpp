@@ -4,17 +4,37 @@
 #include "spectral/error.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <string>
 #include <system_error>
+#include <vector>
 
 namespace aphotic {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// Of the temporary names below, whose writer is gone.
+bool is_abandoned(const std::string& name) {
+    const std::size_t part = name.rfind(".part");
+    if (!name.starts_with('.') || part == std::string::npos || part == 0) return false;
+    const std::size_t dot = name.rfind('.', part - 1);
+    pid_t pid = 0;
+    const char* const end = name.data() + part;
+    const auto [stop, error] = std::from_chars(name.data() + dot + 1, end, pid);
+    if (error != std::errc() || stop != end || pid <= 0) return false;
+    return ::kill(pid, 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
 
 AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path)) {
     // The extension stays last: some writers choose their format by it.
@@ -38,6 +58,14 @@ void AtomicFile::commit() {
             fmt::format("{}: cannot be written: {}", final_path_.string(), error.message()));
     }
     committed_ = true;
+}
+
+void remove_abandoned(const fs::path& folder) {
+    std::vector<fs::path> abandoned;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (is_abandoned(entry.path().filename().string())) abandoned.push_back(entry.path());
+    }
+    for (const fs::path& file : abandoned) fs::remove(file);
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {

@@ -32,6 +32,10 @@ class AtomicFile {
     bool committed_ = false;
 };
 
+// Removes what was left beside such files, in this folder and those below, by processes of this
+// machine that were killed: those that run are left alone.
+void remove_abandoned(const std::filesystem::path& folder);
+
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 // The whole file. An unreadable one is an InputError: users name such files.

@@ -31,12 +31,13 @@ struct Blocks {
     }
 };
 
-// Two pixels or more where some were not observed: a block of a mosaic holds every colour.
+// For pictures of half a page's width. Two pixels or more where some were not observed: a block of
+// a mosaic holds every colour.
 int side_of(const ComparedImages& images) {
     const bool is_whole = std::ranges::all_of(images.channels, [](const ComparedChannel& channel) {
         return channel.comparison.unobserved == 0;
     });
-    return std::max(block_side(images.width_px, images.height_px), is_whole ? 1 : 2);
+    return std::max(block_side(2 * images.width_px, 2 * images.height_px), is_whole ? 1 : 2);
 }
 
 Blocks blocks_of(const ComparedChannel& channel, const ComparedImages& images) {
@@ -46,16 +47,18 @@ Blocks blocks_of(const ComparedChannel& channel, const ComparedImages& images) {
                   .down = (images.height_px + side - 1) / side,
                   .image = {},
                   .reference = {}};
-    const auto size =
-        static_cast<std::size_t>(blocks.across) * static_cast<std::size_t>(blocks.down);
+    const auto width = static_cast<std::size_t>(images.width_px);
+    const auto span = static_cast<std::size_t>(side);
+    const auto across = static_cast<std::size_t>(blocks.across);
+    const std::size_t size = across * static_cast<std::size_t>(blocks.down);
     blocks.image.assign(size, 0.0);
     blocks.reference.assign(size, 0.0);
     std::vector<double> counts(size, 0.0);
     for (std::size_t i = 0; i < channel.image.size(); ++i) {
         if (!channel.marks.empty() && channel.marks[i] == kUnobserved) continue;
-        const int column = static_cast<int>(i % static_cast<std::size_t>(images.width_px));
-        const int row = static_cast<int>(i / static_cast<std::size_t>(images.width_px));
-        const auto block = static_cast<std::size_t>(row / side * blocks.across + column / side);
+        const std::size_t column = i % width;
+        const std::size_t row = i / width;
+        const std::size_t block = row / span * across + column / span;
         blocks.image[block] += channel.image[i];
         blocks.reference[block] += channel.reference[i];
         counts[block] += 1.0;
@@ -116,12 +119,15 @@ std::string patterns(const Blocks& blocks, const ComparedImages& images) {
                                 std::max(range.most - range.least, 1e-300));
         };
     };
+    if (range.least > range.most) return html_paragraph("No sample of both was observed.");
     return fmt::format(
-        "<div class=\"pair\">\n{}{}</div>\n",
+        "<div class=\"pair\">\n{}{}</div>\n{}",
         figure(picture(blocks, "the image in false colours", shown(blocks.image)),
                user_text(images.image) + (images.scaled ? ", divided by its scale" : "")),
         figure(picture(blocks, "the reference in false colours", shown(blocks.reference)),
-               user_text(images.reference)));
+               user_text(images.reference)),
+        html_paragraph(fmt::format(
+            "From {:.4g}, dark blue, to {:.4g}, yellow, in both.", range.least, range.most)));
 }
 
 std::string differences(const Blocks& blocks, double scale) {

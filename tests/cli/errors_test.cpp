@@ -95,8 +95,16 @@ TEST_F(CommandErrors, CommandLineMistakesAreBadInput) {
 
 TEST_F(CommandErrors, HelpAndVersionAreNoErrors) {
     const std::string manual = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/docs/aphotic.1");
-    for (const char* command :
-         {"render", "plan", "generate", "integrate", "trace", "validate", "compare", "data"}) {
+    for (const char* command : {"render",
+                                "plan",
+                                "generate",
+                                "integrate",
+                                "trace",
+                                "validate",
+                                "observe",
+                                "baseline",
+                                "compare",
+                                "data"}) {
         const CommandResult run = run_aphotic(folder_.path(), {command, "--help"});
         EXPECT_EQ(run.status, 0);
         EXPECT_NE(run.out.find("--json"), std::string::npos) << command;

@@ -142,7 +142,7 @@ TEST_F(CommandObserve, SitesOfAMosaicHoldTheirOwnChannel) {
     write_exr(path("raw/one.exr"), {"Y"}, mosaic);
     write_exr(path("raw/two.exr"), {"Y"}, mosaic);
     write_file(path("nav.csv"), "one 2.0 0 0\ntwo 2.05 0 0\n");
-    ASSERT_EQ(observe({"--bayer", "RGGB", "--black", "5"}).status, 0);
+    ASSERT_EQ(observe({"--bayer", "RGGB", "--black-level", "5"}).status, 0);
     const Plane green = channel_of(path("map.exr"), "G");
     const Plane count = channel_of(path("map.exr"), "count.G");
     EXPECT_TRUE(std::isnan(green[0]));
@@ -234,7 +234,7 @@ TEST_F(CommandBaseline, EveryOneLeavesAFlatImageFlatInPlaceOfItsMosaic) {
                                           "GBRG",
                                           "--tiles",
                                           "2",
-                                          "--black",
+                                          "--black-level",
                                           "100"});
         ASSERT_EQ(result.status, 0) << name << result.err;
         for (const std::string& channel : kRgb) {

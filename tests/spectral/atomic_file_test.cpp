@@ -140,6 +140,21 @@ TEST(MakeFolder, MakesParentsAndAcceptsWhatIsThere) {
     EXPECT_NO_THROW(make_folder(deep));
 }
 
+TEST(RemoveAbandoned, TakesWhatTheDeadLeftAndNothingElse) {
+    constexpr long kNobody = 999999999;  // over the kernel's largest process number, 2^22
+    const TempFolder folder;
+    make_folder(folder.path() / "below");
+    const std::string of_the_dead = "image." + std::to_string(kNobody) + ".part.tif";
+    const std::string ours = ".image." + std::to_string(::getpid()) + ".part.tif";
+    write_file(folder.path() / "below" / ("." + of_the_dead), "");
+    const std::vector<std::string> stay{
+        ".part.tif", ".x.part", ours, of_the_dead, "image.tif", ".image.12x.part.tif"};
+    for (const std::string& name : stay) write_file(folder.path() / name, "");
+    remove_abandoned(folder.path());
+    for (const std::string& name : stay) EXPECT_TRUE(fs::exists(folder.path() / name)) << name;
+    EXPECT_TRUE(fs::is_empty(folder.path() / "below"));
+}
+
 TEST(MakeFolder, NamesTheFolderThatCannotBeMade) {
     const TempFolder folder;
     const fs::path file = folder.path() / "file";

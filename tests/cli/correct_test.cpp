@@ -1,0 +1,465 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The correction of surveys as a user runs it. The images are made of the reference tracer's light,
+// which shares no geometry and no light with the maps that they are divided by.
+#include "lightmap/correction.h"
+
+#include "lightmap/cone_edge.h"
+#include "scene_gen/rig_reader.h"
+#include "spectral/exr.h"
+#include "spectral/preview.h"
+#include "support/png.h"
+#include "support/run_command.h"
+#include "support/tiff.h"
+#include "validation/tracer.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <regex>
+#include <thread>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr int kAnswerIsNo = 1;
+constexpr int kBadInput = 2;
+
+constexpr int kWidth = 48;
+constexpr int kHeight = 36;
+constexpr std::size_t kPixels = kWidth * kHeight;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+constexpr double kBlackLevel = 60.0;
+constexpr double kWhiteLevel = 4095.0;
+// The maps' stated error and the tracer's, with room.
+constexpr double kMapError = 1e-4;
+
+// A patch of the floor that reflects half as much again as the rest.
+constexpr double kPatch = 1.5;
+bool is_patch(std::size_t pixel) {
+    const auto column = static_cast<int>(pixel) % kWidth;
+    const auto row = static_cast<int>(pixel) / kWidth;
+    return column >= 12 && column < 20 && row >= 10 && row < 18;
+}
+
+class CorrectCommand : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+        text = std::regex_replace(
+            text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [48, 36]");
+        // The same view in fewer pixels.
+        text = std::regex_replace(
+            text, std::regex(R"(\n\s*pixel_pitch_um\s*=[^\n]*)"), "\npixel_pitch_um = 182.75");
+        write_file(path("rig.toml"), text);
+        fs::create_directories(path("raw"));
+    }
+
+    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+
+    [[nodiscard]] Rig rig_at(const Sled& sled) const {
+        Rig rig = read_rig(path("rig.toml"));
+        rig.sled = sled;
+        return rig;
+    }
+
+    // What the camera records over its black level: planes R, G, B. The first image sets the
+    // exposure, such that the patch reaches `peak` at most.
+    [[nodiscard]] std::vector<double> seen(const Sled& sled, double peak) const {
+        const Tracer tracer(rig_at(sled), {.signals = true, .planes_nm = {}, .threads = 1});
+        std::vector<double> numbers = tracer.rows(0, kHeight);
+        if (exposure_ == 0.0) exposure_ = peak / kPatch / std::ranges::max(numbers);
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            numbers[i] *= exposure_ * (is_patch(i % kPixels) ? kPatch : 1.0);
+        }
+        return numbers;
+    }
+
+    // The mosaic of 12 bits in a 16-bit file, and its line of navigation.
+    void take(const std::string& name, const Sled& sled) {
+        constexpr double kPeak = 3900.0;
+        const std::vector<double> planes = seen(sled, kPeak);
+        std::vector<std::uint16_t> mosaic;
+        for (std::size_t i = 0; i < kPixels; ++i) {
+            const int channel = channel_at(
+                Mosaic::Grbg, static_cast<int>(i) % kWidth, static_cast<int>(i) / kWidth);
+            const double number =
+                kBlackLevel + planes[static_cast<std::size_t>(channel) * kPixels + i];
+            mosaic.push_back(
+                static_cast<std::uint16_t>(std::lround(std::min(number, kWhiteLevel))));
+        }
+        write_file(path("raw/" + name), tiff_of(mosaic, kWidth, kHeight, "lat=41.5,lon=-70.6"));
+        note(name, sled);
+    }
+
+    void note(const std::string& name, const Sled& sled) {
+        lines_ += fmt::format("{} {} {} {}\n",
+                              name,
+                              sled.altitude_m,
+                              sled.pitch_rad / kDegree,
+                              sled.roll_rad / kDegree);
+        write_file(path("nav.eic"), lines_);
+    }
+
+    // The lowest first, for it is the brightest and sets the exposure.
+    std::vector<Sled> take_survey() {
+        const std::vector<Sled> sleds{{1.7, 5.0 * kDegree, 0.0},
+                                      {2.0, -3.0 * kDegree, 4.0 * kDegree},
+                                      {2.3, 0.0, 0.0},
+                                      {2.6, 7.0 * kDegree, -6.0 * kDegree}};
+        for (std::size_t i = 0; i < sleds.size(); ++i) take(fmt::format("{}.tif", i), sleds[i]);
+        return sleds;
+    }
+
+    [[nodiscard]] CommandResult correct(const std::vector<std::string>& more,
+                                        const std::string& output = "out") const {
+        std::vector<std::string> arguments{"correct",
+                                           "raw",
+                                           "--rig",
+                                           "rig.toml",
+                                           "--nav",
+                                           "nav.eic",
+                                           "-o",
+                                           output,
+                                           "--bayer",
+                                           "GRBG",
+                                           "--black-level",
+                                           "60",
+                                           "--white-level",
+                                           "4095"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_aphotic(folder_.path(), arguments);
+    }
+
+    static std::vector<float> exr_samples(const fs::path& file,
+                                          const std::vector<std::string>& channels) {
+        ExrReader reader(file);
+        std::vector<float> samples(channels.size() * kPixels);
+        reader.read_rows(0, kHeight, channels, samples);
+        return samples;
+    }
+
+    // Every file below, with its bytes.
+    [[nodiscard]] std::map<std::string, std::string> files_in(const std::string& folder) const {
+        std::map<std::string, std::string> files;
+        for (const auto& entry : fs::recursive_directory_iterator(path(folder))) {
+            if (!entry.is_regular_file()) continue;
+            files[fs::relative(entry.path(), path(folder)).string()] = read_text_file(entry.path());
+        }
+        return files;
+    }
+
+    TempFolder folder_;
+    mutable double exposure_ = 0.0;
+    std::string lines_;
+};
+
+// The floor comes out as the rig's floor at every altitude and attitude, the patch as half as much
+// again, up to half a step of the camera's whole numbers there.
+TEST_F(CorrectCommand, AFloorIsEvenAndOneColourOverAltitudeAndAttitude) {
+    const std::vector<Sled> sleds = take_survey();
+    const CommandResult run =
+        correct({"--format", "exr", "--keep-mosaic", "--mask", "--edge-px", "1", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Json summary = Json::parse(run.out);
+    EXPECT_EQ(summary["corrected"], sleds.size());
+    EXPECT_EQ(summary["gain_from"].size(), sleds.size());
+    const PerChannel floor = floor_colour(rig_at(sleds[0]));
+    for (std::size_t i = 0; i < sleds.size(); ++i) {
+        const std::string name = std::to_string(i);
+        const std::vector<float> found = exr_samples(path("out/" + name + ".exr"), {"Y"});
+        const DecodedPng mask = decode_png(read_text_file(path("out/" + name + ".mask.png")));
+        const std::vector<double> numbers = seen(sleds[i], 0.0);
+        const std::vector<std::uint8_t> edges = ConeEdges(rig_at(sleds[i])).mask(sleds[i], 1);
+        std::size_t good = 0;
+        for (std::size_t p = 0; p < kPixels; ++p) {
+            EXPECT_EQ((mask.pixels[p] & kEdge) != 0, edges[p] != 0) << p;
+            if ((mask.pixels[p] & 0xFFU) != 0) continue;
+            const auto c = static_cast<std::size_t>(channel_at(
+                Mosaic::Grbg, static_cast<int>(p) % kWidth, static_cast<int>(p) / kWidth));
+            const double wanted = floor[c] * (is_patch(p) ? kPatch : 1.0);
+            // The gain's own images were whole numbers too: half a step of some hundreds.
+            constexpr double kGainError = 2e-3;
+            const double rounding = 0.5 / numbers[c * kPixels + p];
+            EXPECT_NEAR(found[p] / wanted, 1.0, rounding + kGainError + kMapError)
+                << name << ": " << p;
+            ++good;
+        }
+        EXPECT_GT(good, kPixels / 2) << name;
+    }
+}
+
+TEST_F(CorrectCommand, TiffOfSixteenBitsHasThreeChannelsAndTheSourcesWords) {
+    take("a.tif", {2.0, 5.0 * kDegree, 0.0});
+    ASSERT_EQ(correct({}).status, 0);
+    ASSERT_EQ(correct({"--format", "exr"}, "exact").status, 0);
+    // 1/65536 of white; the floor is 0.1 and more.
+    constexpr const char* kStep = "1e-4";
+    const CommandResult same =
+        run_aphotic(folder_.path(),
+                    {"compare", "out/a.tif", "exact/a.exr", "--bound", kStep, "--black", "0.5"});
+    EXPECT_EQ(same.status, 0) << same.out << same.err;
+    EXPECT_NE(same.out.find(" B "), std::string::npos) << same.out;
+    EXPECT_NE(read_text_file(path("out/a.tif")).find("lat=41.5,lon=-70.6"), std::string::npos);
+    EXPECT_EQ(ExrReader(path("exact/a.exr")).attribute("comments"), "lat=41.5,lon=-70.6");
+    ASSERT_EQ(correct({"--format", "png"}, "png").status, 0);
+    EXPECT_EQ(decode_png(read_text_file(path("png/a.png"))).width, kWidth);
+}
+
+TEST_F(CorrectCommand, PngOfRgbAndExrOfFloatsAreRead) {
+    const Sled sled{2.0, 5.0 * kDegree, 0.0};
+    constexpr double kPeak = 250.0;
+    const std::vector<double> planes = seen(sled, kPeak);
+    std::vector<std::uint32_t> pixels;
+    for (std::size_t p = 0; p < kPixels; ++p) {
+        const auto byte = [&](std::size_t c) {
+            return static_cast<std::uint32_t>(std::lround(planes[c * kPixels + p]));
+        };
+        pixels.push_back(byte(0) << 16U | byte(1) << 8U | byte(2));
+    }
+    write_file(path("raw/a.png"), png_of(pixels, kWidth, kHeight));
+    ExrWriter writer(path("raw/b.exr"), kWidth, kHeight, {"R", "G", "B"}, {});
+    writer.write_rows(kHeight, std::vector<float>(planes.begin(), planes.end()));
+    writer.finish();
+    note("a.png", sled);
+    note("b.exr", sled);
+    const CommandResult run = run_aphotic(folder_.path(),
+                                          {"correct",
+                                           "raw",
+                                           "--rig",
+                                           "rig.toml",
+                                           "--nav",
+                                           "nav.eic",
+                                           "-o",
+                                           "out",
+                                           "--format",
+                                           "exr",
+                                           "--gain",
+                                           fmt::format("{:.17g}", 1.0 / exposure_)});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const std::vector<float> a = exr_samples(path("out/a.exr"), {"R", "G", "B"});
+    const std::vector<float> b = exr_samples(path("out/b.exr"), {"R", "G", "B"});
+    const std::vector<std::uint8_t> edges = ConeEdges(rig_at(sled)).mask(sled, 1);
+    std::size_t good = 0;
+    for (std::size_t i = 0; i < b.size(); ++i) {
+        if (edges[i % kPixels] != 0) continue;
+        const double wanted = is_patch(i % kPixels) ? kPatch : 1.0;
+        EXPECT_NEAR(b[i], wanted, kMapError * wanted) << i;
+        EXPECT_NEAR(a[i] / wanted, 1.0, 0.5 / planes[i] + kMapError) << i;
+        ++good;
+    }
+    EXPECT_GT(good, kPixels);
+}
+
+TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
+    take_survey();
+    const std::string whole = read_text_file(path("raw/0.tif"));
+    write_file(path("raw/cut.tif"), whole.substr(0, whole.size() / 2));
+    write_file(path("raw/words.png"), "this is no image");
+    write_file(path("raw/small.tif"), tiff_of({1, 2, 3, 4}, 2, 2, ""));
+    write_file(path("raw/unknown.tif"), whole);
+    write_file(path("raw/low.tif"), whole);
+    write_file(path("raw/notes.txt"), "no image by its name: not taken up");
+    for (const char* name : {"cut.tif", "words.png", "small.tif"}) note(name, {2.0, 0.0, 0.0});
+    note("low.tif", {0.0, 0.0, 0.0});
+    const CommandResult run = correct({"--json"});
+    EXPECT_EQ(run.status, kAnswerIsNo);
+    const Json summary = Json::parse(run.out);
+    EXPECT_EQ(summary["corrected"], 4);
+    std::map<std::string, std::string> why;
+    for (const Json& one : summary["skipped"]) why[one["image"]] = one["why"];
+    EXPECT_EQ(why.size(), 5U) << summary.dump(2);
+    EXPECT_NE(why["raw/cut.tif"].find("cannot be read"), std::string::npos) << why["raw/cut.tif"];
+    EXPECT_NE(why["raw/words.png"].find("cannot be read"), std::string::npos);
+    EXPECT_EQ(why["raw/small.tif"], "found 2 x 2 pixels; allowed: 48 x 36, as the map has");
+    EXPECT_EQ(why["raw/unknown.tif"], "nav.eic has no line for it");
+    EXPECT_EQ(why["raw/low.tif"], "nav.eic:8: altitude_m: found 0; allowed: 0.001 to 10000");
+    for (const auto& [image, reason] : why) {
+        EXPECT_NE(run.err.find("aphotic: " + image + ": " + reason + "; skipped"),
+                  std::string::npos)
+            << run.err;
+    }
+    EXPECT_EQ(Json::parse(read_text_file(path("out/correction.json"))), summary);
+    const auto files = files_in("out");
+    EXPECT_EQ(files.size(), 4U + 2U);  // the images, and the two that say what was done
+}
+
+TEST_F(CorrectCommand, GivenAgainItDoesWhatIsNewAlone) {
+    take_survey();
+    ASSERT_EQ(correct({}).status, 0);
+    const auto counts = [&](const CommandResult& run) {
+        const Json summary = Json::parse(run.out);
+        return std::pair(summary["corrected"].get<int>(), summary["kept"].get<int>());
+    };
+    EXPECT_EQ(counts(correct({"--json"})), std::pair(0, 4));
+
+    // An image that comes later has the gain of the others, which are kept.
+    const Json before = Json::parse(read_text_file(path("out/correction.json")));
+    take("later.tif", {1.9, 0.0, 0.0});
+    EXPECT_EQ(counts(correct({"--json"})), std::pair(1, 4));
+    EXPECT_EQ(Json::parse(read_text_file(path("out/correction.json")))["gain"], before["gain"]);
+
+    fs::remove(path("out/1.tif"));
+    write_file(path("out/2.tif"), "cut");
+    EXPECT_EQ(counts(correct({"--json"})), std::pair(2, 3));
+
+    // Another attitude of one image, and other settings of all.
+    lines_ = std::regex_replace(lines_, std::regex("0.tif 1.7"), "0.tif 1.71");
+    write_file(path("nav.eic"), lines_);
+    EXPECT_EQ(counts(correct({"--json"})), std::pair(1, 4));
+    EXPECT_EQ(counts(correct({"--json", "--least-light", "0.02"})), std::pair(5, 0));
+
+    // A line that was cut short counts for nothing.
+    const std::string journal = read_text_file(path("out/corrected.jsonl"));
+    write_file(path("out/corrected.jsonl"), journal.substr(0, journal.size() - 20));
+    EXPECT_EQ(counts(correct({"--json", "--least-light", "0.02"})), std::pair(1, 4));
+}
+
+TEST_F(CorrectCommand, KilledAnywhereItGoesOnToTheSameImages) {
+    take_survey();
+    const std::string image = read_text_file(path("raw/1.tif"));
+    constexpr int kMore = 60;
+    for (int i = 0; i < kMore; ++i) {
+        const std::string name = fmt::format("more{:02}.tif", i);
+        write_file(path("raw/" + name), image);
+        note(name, {2.0 + 0.01 * i, 0.0, 0.0});
+    }
+    const std::vector<std::string> settings{"--mask", "--gain-images", "4", "--jobs", "2"};
+    ASSERT_EQ(correct(settings, "whole").status, 0);
+    {
+        std::vector<std::string> arguments{"correct",
+                                           "raw",
+                                           "--rig",
+                                           "rig.toml",
+                                           "--nav",
+                                           "nav.eic",
+                                           "-o",
+                                           "out",
+                                           "--bayer",
+                                           "GRBG",
+                                           "--black-level",
+                                           "60",
+                                           "--white-level",
+                                           "4095"};
+        arguments.insert(arguments.end(), settings.begin(), settings.end());
+        Process process({.executable = APHOTIC_COMMAND,
+                         .arguments = arguments,
+                         .folder = folder_.path(),
+                         .environment = {},
+                         .log = path("log")});
+        const auto has_begun = [&] {
+            std::error_code error;
+            const auto size = fs::file_size(path("out/corrected.jsonl"), error);
+            return !error && size > 0;
+        };
+        while (!has_begun() && !process.poll()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }  // killed
+    write_file(path("out/.more07.999999999.part.tif"), "left by one that was killed");
+    const CommandResult again = correct([&] {
+        std::vector<std::string> more = settings;
+        more.emplace_back("--json");
+        return more;
+    }());
+    ASSERT_EQ(again.status, 0) << again.err;
+    const Json summary = Json::parse(again.out);
+    EXPECT_GE(summary["kept"], 1);
+    EXPECT_EQ(summary["kept"].get<int>() + summary["corrected"].get<int>(), kMore + 4);
+    auto whole = files_in("whole");
+    auto out = files_in("out");
+    for (auto* files : {&whole, &out}) {
+        files->erase("corrected.jsonl");  // in the order in which they were done
+        files->erase("correction.json");  // holds the seconds
+    }
+    EXPECT_EQ(out.size(), 2U * (kMore + 4));
+    EXPECT_TRUE(out == whole);
+}
+
+// One map for all: here the rig's own, so that the results are the same.
+TEST_F(CorrectCommand, AMapTakesThePlaceOfRigAndNavigation) {
+    const Sled sled{2.0, 5.0 * kDegree, 0.0};  // as the rig file has it
+    take("a.tif", sled);
+    const Tracer tracer(rig_at(sled), {.signals = true, .planes_nm = {}, .threads = 1});
+    std::vector<double> map = tracer.rows(0, kHeight);
+    map[100] = std::numeric_limits<double>::quiet_NaN();  // as where nothing was observed
+    ExrWriter writer(path("map.exr"), kWidth, kHeight, {"R", "G", "B"}, {});
+    writer.write_rows(kHeight, std::vector<float>(map.begin(), map.end()));
+    writer.finish();
+    const std::vector<std::string> common{"--format", "exr", "--keep-mosaic", "--gain", "0.001"};
+    ASSERT_EQ(correct(common, "by-rig").status, 0);
+    std::vector<std::string> arguments{"correct",
+                                       "raw",
+                                       "--map",
+                                       "map.exr",
+                                       "-o",
+                                       "by-map",
+                                       "--bayer",
+                                       "GRBG",
+                                       "--black-level",
+                                       "60",
+                                       "--white-level",
+                                       "4095",
+                                       "--middle",
+                                       "0.3",
+                                       "--mask"};
+    arguments.insert(arguments.end(), common.begin(), common.end());
+    const CommandResult run = run_aphotic(folder_.path(), arguments);
+    ASSERT_EQ(run.status, 0) << run.err;
+    const std::vector<float> by_map = exr_samples(path("by-map/a.exr"), {"Y"});
+    const std::vector<float> by_rig = exr_samples(path("by-rig/a.exr"), {"Y"});
+    const DecodedPng mask = decode_png(read_text_file(path("by-map/a.mask.png")));
+    const std::vector<std::uint8_t> edges = ConeEdges(rig_at(sled)).mask(sled, 1);
+    for (std::size_t p = 0; p < kPixels; ++p) {
+        EXPECT_TRUE(std::isfinite(by_map[p]));
+        if (edges[p] == 0 && (mask.pixels[p] & 0xFFU) == 0) {
+            EXPECT_NEAR(by_map[p] / by_rig[p], 1.0, kMapError) << p;
+        }
+    }
+}
+
+TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
+    take("a.tif", {2.0, 0.0, 0.0});
+    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& part) {
+        std::vector<std::string> all{"correct"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        const CommandResult run = run_aphotic(folder_.path(), all);
+        EXPECT_EQ(run.status, kBadInput) << part;
+        EXPECT_EQ(run.out, "") << part;
+        EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+        EXPECT_FALSE(fs::exists(path("out"))) << part;
+    };
+    const std::vector<std::string> rig{"--rig", "rig.toml", "--nav", "nav.eic"};
+    const auto with = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), rig.begin(), rig.end());
+        return arguments;
+    };
+    refused({"raw", "-o", "out"}, "--rig with --nav, or --map");
+    refused({"raw", "-o", "out", "--rig", "rig.toml"}, "--rig and --nav go together");
+    refused(with({"rew", "-o", "out"}), "rew: there is no such file or folder");
+    refused(with({"raw", "raw/a.tif", "-o", "out"}), "would both become out/a");
+    refused(with({"raw", "-o", "out", "--bayer", "RGB"}), "--bayer: found 'RGB'");
+    refused(with({"raw", "-o", "out", "--gain", "1,2"}), "--gain: found 2 numbers");
+    refused(with({"raw", "-o", "out", "--altitudes-m", "4,1"}), "--altitudes-m: found 4,1");
+    refused(with({"raw/a.tif", "-o", "raw"}), "would be overwritten by the result");
+    refused(with({"raw", "-o", "raw"}), "found the folder to write to");
+    refused({"raw", "-o", "out", "--map", "none.exr"}, "none.exr");
+    fs::create_directories(path("empty"));
+    refused(with({"empty", "-o", "out"}), "empty: the folder holds no image");
+    write_file(path("nav.eic"), "a.tif two 0 0\n");
+    refused(with({"raw", "-o", "out"}), "nav.eic:1: altitude_m: found 'two'; allowed: a number");
+}
+
+}  // namespace
+}  // namespace aphotic

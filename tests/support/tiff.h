@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A 16-bit TIFF file of one plane, as cameras write their mosaics: TIFF 6.0, uncompressed, one
+// strip, little-endian.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+inline std::string tiff_of(const std::vector<std::uint16_t>& samples,
+                           std::uint32_t width,
+                           std::uint32_t height,
+                           std::string_view description) {
+    std::string bytes;
+    const auto put = [&](std::uint32_t number, int size) {
+        for (int i = 0; i < size; ++i) {
+            bytes += static_cast<char>(number >> static_cast<unsigned>(8 * i) & 0xFFU);
+        }
+    };
+    constexpr std::uint32_t kHeaderBytes = 8;
+    const auto pixel_bytes = static_cast<std::uint32_t>(2 * samples.size());
+    const auto text_bytes = static_cast<std::uint32_t>(description.size() + 1);
+    const std::uint32_t even_text = text_bytes + text_bytes % 2;
+    bytes += "II";
+    put(42, 2);
+    put(kHeaderBytes + pixel_bytes + even_text, 4);
+    for (const std::uint16_t sample : samples) put(sample, 2);
+    bytes += description;
+    bytes.append(even_text - description.size(), '\0');
+    struct Entry {
+        std::uint32_t tag, type, count, value;
+    };
+    constexpr std::uint32_t kText = 2;
+    constexpr std::uint32_t kShort = 3;
+    constexpr std::uint32_t kLong = 4;
+    const std::vector<Entry> entries{{256, kLong, 1, width},
+                                     {257, kLong, 1, height},
+                                     {258, kShort, 1, 16},  // bits a sample
+                                     {259, kShort, 1, 1},   // not compressed
+                                     {262, kShort, 1, 1},   // 0 is black
+                                     {270, kText, text_bytes, kHeaderBytes + pixel_bytes},
+                                     {273, kLong, 1, kHeaderBytes},
+                                     {277, kShort, 1, 1},
+                                     {278, kLong, 1, height},
+                                     {279, kLong, 1, pixel_bytes}};
+    put(static_cast<std::uint32_t>(entries.size()), 2);
+    for (const Entry& entry : entries) {
+        put(entry.tag, 2);
+        put(entry.type, 2);
+        put(entry.count, 4);
+        put(entry.value, 4);  // a short's two bytes come first, then zeros
+    }
+    put(0, 4);
+    return bytes;
+}
+
+}  // namespace aphotic
