@@ -12,7 +12,8 @@
 //   DIR/plan/                   the frames' scenes (`aphotic generate`)
 //
 // Nothing of lightmap/ takes part. Given again it goes on where it stopped, and with more images
-// it goes on from those that are there; with other settings it is refused.
+// it goes on from those that are there; with fewer, the navigation tells the first of them. With
+// other settings it is refused.
 #include "bench/survey/image_file.h"
 #include "bench/survey/raw_camera.h"
 #include "bench/survey/render.h"
