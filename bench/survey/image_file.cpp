@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/survey/image_file.h"
+
+#include "spectral/atomic_file.h"
+#include "spectral/error.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+namespace aphotic::survey {
+
+namespace {
+
+template <typename Sample>
+void write_samples(const std::filesystem::path& file,
+                   const std::string& format,
+                   const OIIO::ImageSpec& spec,
+                   std::span<const Sample> samples) {
+    AtomicFile destination(file);
+    const auto output = OIIO::ImageOutput::create(format);
+    if (!output || !output->open(destination.temporary().string(), spec) ||
+        !output->write_image(spec.format, samples.data()) || !output->close()) {
+        throw RunError(fmt::format("{}: cannot be written: {}",
+                                   file.string(),
+                                   output ? output->geterror() : OIIO::geterror()));
+    }
+    destination.commit();
+}
+
+}  // namespace
+
+void write_tiff(const std::filesystem::path& file,
+                int width_px,
+                int height_px,
+                std::span<const std::uint16_t> samples) {
+    OIIO::ImageSpec spec(width_px, height_px, 1, OIIO::TypeDesc::UINT16);
+    spec.attribute("compression", "zip");
+    write_samples(file, "tiff", spec, samples);
+}
+
+void write_picture(const std::filesystem::path& file,
+                   int width_px,
+                   std::span<const std::uint32_t> pixels) {
+    std::vector<std::uint8_t> samples;
+    for (const std::uint32_t pixel : pixels) {
+        for (const unsigned shift : {16U, 8U, 0U}) {
+            samples.push_back(static_cast<std::uint8_t>(pixel >> shift & 0xFFU));
+        }
+    }
+    const int height_px = static_cast<int>(pixels.size()) / width_px;
+    OIIO::ImageSpec spec(width_px, height_px, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("CompressionQuality", 75);  // of JPEG
+    write_samples<std::uint8_t>(file, file.extension().string().substr(1), spec, samples);
+}
+
+CameraImage read_image(const std::filesystem::path& file) {
+    const auto input = OIIO::ImageInput::open(file.string());
+    if (!input) {
+        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), OIIO::geterror()));
+    }
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.nchannels < static_cast<int>(kChannels)) {
+        throw InputError(fmt::format(
+            "{}: found {} channels; allowed: R, G and B", file.string(), spec.nchannels));
+    }
+    const std::size_t pixels = spec.image_pixels();
+    CameraImage image{.width_px = spec.width,
+                      .height_px = spec.height,
+                      .samples = std::vector<float>(kChannels * pixels)};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const auto channel = static_cast<int>(c);
+        if (!input->read_image(
+                0, 0, channel, channel + 1, OIIO::TypeDesc::FLOAT, &image.samples[c * pixels])) {
+            throw InputError(
+                fmt::format("{}: cannot be read: {}", file.string(), input->geterror()));
+        }
+    }
+    return image;
+}
+
+}  // namespace aphotic::survey

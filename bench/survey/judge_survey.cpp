@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// judge SURVEY NAME=DIR ...: what corrections made of a simulated survey's grey chart.
+//
+// SURVEY is a folder of the program `survey`, DIR one of corrected images: files by the names of
+// the survey's, whatever their suffix. Prints a table in Markdown, a row for each NAME; --json
+// prints the same as JSON. NAME=SURVEY/truth is the row of no correction at all.
+//
+// --picture FILE puts the images of --show side by side: a row for each of them, a column for
+// each NAME. Every column has one exposure and one white balance, which show the light tiles of its
+// images grey in the mean: what differs within a column differs in the corrected images.
+#include "bench/survey/chart.h"
+#include "bench/survey/flight.h"
+#include "bench/survey/image_file.h"
+#include "spectral/error.h"
+#include "spectral/preview.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace aphotic::survey {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+    std::string survey;
+    std::vector<std::string> corrections;  // NAME=DIR
+    int images = 0;
+    std::string picture;
+    std::vector<std::string> show;
+    bool json = false;
+};
+
+struct Correction {
+    std::string name;
+    fs::path folder;
+};
+
+Correction correction_of(const std::string& words) {
+    const std::size_t equals = words.find('=');
+    if (equals == std::string::npos || equals == 0 || !fs::is_directory(words.substr(equals + 1))) {
+        throw InputError(
+            fmt::format("found \"{}\"; allowed: NAME=DIR, a folder of corrected images", words));
+    }
+    return {.name = words.substr(0, equals), .folder = words.substr(equals + 1)};
+}
+
+// The image of that name: the first, in the order of the alphabet, that begins with it and is one.
+fs::path image_in(const fs::path& folder, const std::string& name) {
+    static const std::set<std::string> kSuffixes{".exr", ".png", ".tif", ".tiff"};
+    for (const std::string& suffix : kSuffixes) {
+        if (fs::path file = folder / (name + suffix); fs::exists(file)) return file;
+    }
+    throw InputError(fmt::format("{}: found no image {}; allowed: one of {}",
+                                 folder.string(),
+                                 name,
+                                 "its name and .exr, .png, .tif or .tiff"));
+}
+
+// The charts of a survey's first images, by the images' names.
+using Charts = std::map<std::string, std::vector<Tile>>;
+
+Charts charts_of(const fs::path& survey, int images) {
+    Charts charts;
+    for (const auto& entry : fs::directory_iterator(survey / "card")) {
+        const std::string name = entry.path().stem().string();
+        if (images > 0 && std::stoi(name) > images) continue;
+        charts[name] = find_chart(read_signals(survey / "truth" / (name + ".exr")),
+                                  read_signals(entry.path()));
+    }
+    if (charts.empty()) {
+        throw InputError(fmt::format(
+            "{}: found no image with a chart; allowed: a folder of `survey`", survey.string()));
+    }
+    return charts;
+}
+
+std::map<std::string, ChartScore> scores_of(const Correction& correction, const Charts& charts) {
+    std::map<std::string, ChartScore> scores;
+    for (const auto& [name, tiles] : charts) {
+        const fs::path file = image_in(correction.folder, name);
+        const CameraImage image = read_image(file);
+        if (image.samples.size() != kChannels * tiles.size()) {
+            throw InputError(fmt::format("{}: found {} x {} pixels; allowed: the survey's",
+                                         file.string(),
+                                         image.width_px,
+                                         image.height_px));
+        }
+        scores[name] = score_chart(image, tiles);
+    }
+    return scores;
+}
+
+SurveyScore total_of(const std::map<std::string, ChartScore>& scores) {
+    std::vector<ChartScore> all;
+    for (const auto& [name, score] : scores) all.push_back(score);
+    return summed_up(all);
+}
+
+Json json_of(const SurveyScore& score) {
+    return {{"images", score.images},
+            {"unevenness", score.unevenness},
+            {"worst_unevenness", score.worst_unevenness},
+            {"tone", score.tone},
+            {"colour_spread", score.colour_spread},
+            {"level_spread", score.level_spread}};
+}
+
+void print_row(const std::string& name, const SurveyScore& score) {
+    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.2f} | {:.2f} |\n",
+               name,
+               score.images,
+               100.0 * score.unevenness,
+               100.0 * score.worst_unevenness,
+               score.tone,
+               100.0 * score.colour_spread,
+               100.0 * score.level_spread);
+}
+
+// The light tiles of the shown images are grey of this level in the mean, sand somewhat lighter.
+constexpr double kShownGrey = 0.35;
+constexpr std::size_t kGap_px = 6;  // white, between pictures
+
+std::array<double, kChannels> scale_of(const std::map<std::string, ChartScore>& scores,
+                                       const std::vector<std::string>& show) {
+    std::array<double, kChannels> scale{};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        double sum = 0.0;
+        for (const std::string& name : show) sum += scores.at(name).light[c];
+        scale[c] = kShownGrey * static_cast<double>(show.size()) / sum;
+    }
+    return scale;
+}
+
+std::uint32_t shown(const CameraImage& image,
+                    const std::array<double, kChannels>& scale,
+                    std::size_t pixel) {
+    const std::size_t pixels = image.samples.size() / kChannels;
+    std::uint32_t colour = 0;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const double level = srgb_encoded(scale[c] * image.samples[c * pixels + pixel]);
+        colour = colour << 8U | static_cast<std::uint32_t>(std::lround(255.0 * level));
+    }
+    return colour;
+}
+
+// One column of pictures, put into its place of the sheet.
+void put_column(const std::vector<CameraImage>& images,
+                const std::array<double, kChannels>& scale,
+                std::size_t column,
+                std::size_t sheet_width_px,
+                std::vector<std::uint32_t>& sheet) {
+    std::size_t top = 0;
+    for (const CameraImage& image : images) {
+        const auto width = static_cast<std::size_t>(image.width_px);
+        const auto height = static_cast<std::size_t>(image.height_px);
+        const std::size_t left = column * (width + kGap_px);
+        for (std::size_t i = 0; i < width * height; ++i) {
+            sheet.at((top + i / width) * sheet_width_px + left + i % width) =
+                shown(image, scale, i);
+        }
+        top += height + kGap_px;
+    }
+}
+
+void write_sheet(const Options& options,
+                 const std::vector<Correction>& corrections,
+                 const std::vector<std::map<std::string, ChartScore>>& scores) {
+    std::vector<std::uint32_t> sheet;
+    std::size_t width_px = 0;
+    for (std::size_t column = 0; column < corrections.size(); ++column) {
+        std::vector<CameraImage> images;
+        for (const std::string& name : options.show) {
+            images.push_back(read_image(image_in(corrections[column].folder, name)));
+        }
+        if (sheet.empty()) {
+            const auto width = static_cast<std::size_t>(images[0].width_px);
+            const auto height = static_cast<std::size_t>(images[0].height_px);
+            width_px = corrections.size() * (width + kGap_px) - kGap_px;
+            sheet.assign(width_px * (images.size() * (height + kGap_px) - kGap_px), 0xFFFFFFU);
+        }
+        put_column(images, scale_of(scores[column], options.show), column, width_px, sheet);
+    }
+    write_picture(options.picture, static_cast<int>(width_px), sheet);
+}
+
+void judge(const Options& options) {
+    std::vector<Correction> corrections;
+    for (const std::string& words : options.corrections)
+        corrections.push_back(correction_of(words));
+    const Charts charts = charts_of(options.survey, options.images);
+    for (const std::string& name : options.show) {
+        if (!charts.contains(name)) {
+            throw InputError(fmt::format("--show: found {}; allowed: an image with a chart", name));
+        }
+    }
+    std::vector<std::map<std::string, ChartScore>> scores;
+    Json json = Json::object();
+    for (const Correction& correction : corrections) {
+        scores.push_back(scores_of(correction, charts));
+        json[correction.name] = json_of(total_of(scores.back()));
+    }
+    if (!options.picture.empty()) write_sheet(options, corrections, scores);
+    if (options.json) {
+        fmt::print("{}\n", json.dump(2));
+        return;
+    }
+    fmt::print(
+        "| correction | images | unevenness, % rms | worst, % | tone | colour over altitude, "
+        "% | level over altitude, % |\n|---|---|---|---|---|---|---|\n");
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+        print_row(corrections[i].name, total_of(scores[i]));
+    }
+}
+
+}  // namespace
+}  // namespace aphotic::survey
+
+int main(int argc, char** argv) {
+    aphotic::survey::Options options;
+    CLI::App app{"What corrections made of a simulated survey's grey chart."};
+    app.add_option("SURVEY", options.survey, "a folder of `survey`")
+        ->required()
+        ->check(CLI::ExistingDirectory);
+    app.add_option("CORRECTION", options.corrections, "NAME=DIR: a folder of corrected images")
+        ->required();
+    app.add_option("--images", options.images, "of the survey's first so many; 0: all");
+    auto* picture =
+        app.add_option("--picture", options.picture, "the images side by side, as PNG or JPEG")
+            ->type_name("FILE")
+            ->check([](const std::string& file) {
+                return file.ends_with(".png") || file.ends_with(".jpg")
+                           ? std::string()
+                           : file + ": allowed: a name that ends in .png or .jpg";
+            });
+    app.add_option("--show", options.show, "names of images for the picture, such as 000001")
+        ->delimiter(',')
+        ->needs(picture);
+    app.add_flag("--json", options.json, "the table as JSON");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    try {
+        if (!options.picture.empty() && options.show.empty()) options.show = {"000001"};
+        aphotic::survey::judge(options);
+    } catch (const aphotic::InputError& error) {
+        fmt::print(stderr, "judge: {}\n", error.what());
+        return 2;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "judge: {}\n", error.what());
+        return 3;
+    }
+    return 0;
+}
