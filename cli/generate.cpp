@@ -65,6 +65,7 @@ ExitStatus generate_scenes(const Options& options) {
         throw InputError("found neither --output nor --quick-look; allowed: one of them");
     }
     const SceneSet scenes = scenes_of(plan_rig(options.planning), options.planning);
+    require_place_for_scenes(options.folder, scenes);
     require_room(needs_of_scenes(scenes), options.folder, options.planning.ignore_needs);
     const FolderLock lock = claim_folder(options.folder);
     const Manifest manifest = generate(options.folder, scenes);

@@ -71,7 +71,7 @@ Json account_of(const Options& options, const Manifest& manifest) {
 
 ExitStatus integrate_frames(const Options& options) {
     const fs::path images = images_folder(options);
-    static_cast<void>(read_manifest(options.folder));  // a folder without one stays as it is
+    static_cast<void>(manifest_of(options));  // frames that cannot serve leave no folder behind
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
     const Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
     Json outcome = integrate_folder(options.folder, manifest, options.preview, images);

@@ -30,6 +30,7 @@ ExitStatus render_rig(const Options& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const SceneSet scenes = scenes_of(planned, options.planning);
     const PovRay povray = find_povray(options.planning.povray);
+    require_place_for_scenes(options.folder, scenes);
     require_room(needs_of(scenes, options.folder, options.jobs),
                  options.folder,
                  options.planning.ignore_needs);

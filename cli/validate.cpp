@@ -107,10 +107,11 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
         "  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);
 }
 
-void require_room_for(const Options& options, const PlannedRender& planned) {
+void require_place_and_room(const Options& options, const PlannedRender& planned) {
     Needs needs;
     if (options.rendered_folder.empty()) {
         const SceneSet scenes = scenes_of(planned, options.planning);
+        require_place_for_scenes(options.folder, scenes);
         needs = larger_of(needs_of(scenes, options.folder, options.jobs),
                           validation_needs(image_size(scenes.manifest), options.jobs));
     } else {
@@ -122,7 +123,7 @@ void require_room_for(const Options& options, const PlannedRender& planned) {
 
 ExitStatus validate_rig(const Options& options) {
     const PlannedRender planned = plan_rig(options.planning);
-    require_room_for(options, planned);
+    require_place_and_room(options, planned);
     const bool is_rendered = !options.rendered_folder.empty();
     const std::vector<FolderLock> locks =
         claim_folders(options.folder, is_rendered ? options.rendered_folder : options.folder);
