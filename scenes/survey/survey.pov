@@ -55,7 +55,7 @@ Aphotic_Rig ()
 #declare Gravel = pigment {
    crackle solid scale 0.02
    pigment_map {
-      [0.35 Aphotic_Pigment ("../user/reef/rock.csv")]
+      [0.35 Aphotic_Pigment ("rock.csv")]
       [0.60 Aphotic_Pigment ("sand")]
       [0.90 Aphotic_Pigment ("brown-algae")]
    }
@@ -63,7 +63,7 @@ Aphotic_Rig ()
 #declare Sand = pigment {
    granite scale 0.03
    pigment_map {
-      [0.25 Aphotic_Pigment ("../user/reef/rock.csv")]
+      [0.25 Aphotic_Pigment ("rock.csv")]
       [0.50 Aphotic_Pigment ("sand")]
    }
 }
@@ -79,7 +79,7 @@ Aphotic_Rig ()
    bozo turbulence 0.5 scale 0.04
    pigment_map {
       [0.40 Aphotic_Pigment ("red-algae")]
-      [0.60 Aphotic_Pigment ("../user/reef/rock.csv")]
+      [0.60 Aphotic_Pigment ("rock.csv")]
    }
 }
 #macro Ground ()
@@ -119,7 +119,7 @@ Aphotic_Rig ()
          granite scale 0.1
          pigment_map {
             [0.30 Aphotic_Pigment ("brown-algae")]
-            [0.45 Aphotic_Pigment ("../user/reef/rock.csv")]
+            [0.45 Aphotic_Pigment ("rock.csv")]
             [0.70 Aphotic_Pigment ("red-algae")]
          }
       }
@@ -135,8 +135,8 @@ Aphotic_Rig ()
       pigment {
          onion phase rand(R) frequency 4
          pigment_map {
-            [0.2 Aphotic_Pigment ("../user/reef/scallop-brick.csv")]
-            [0.7 Aphotic_Pigment ("../user/reef/scallop-cream.csv")]
+            [0.2 Aphotic_Pigment ("scallop-brick.csv")]
+            [0.7 Aphotic_Pigment ("scallop-cream.csv")]
          }
       }
       finish { Matt }
