@@ -56,10 +56,8 @@ struct Options {
     std::optional<double> middle;
     std::size_t gain_images = 16;
     std::vector<double> altitudes_m;
-    NoiseLimit limit{.share = 0.01,
-                     .relative = 0.1,
-                     .read_noise = 0.3,  // the rounding to whole numbers alone: 1/sqrt(12)
-                     .electrons_per_number = 0.0};
+    NoiseLimit limit;
+    std::optional<double> read_noise;  // none: what the file's numbers are rounded by
     int edge_px = 2;
     bool mask = false;
     std::string format = "tiff";
@@ -185,11 +183,12 @@ Json settings_of(const Survey& survey, const Options& options) {
               {"middle", wanted_middle(survey, options)},
               {"least_light", options.limit.share},
               {"most_noise", options.limit.relative},
-              {"read_noise", options.limit.read_noise},
+              {"read_noise", nullptr},
               {"electrons", options.limit.electrons_per_number},
               {"edge_px", options.edge_px},
               {"mask", options.mask},
               {"format", options.format}};
+    if (options.read_noise) json["read_noise"] = *options.read_noise;
     if (options.camera.white_level) json["white_level"] = *options.camera.white_level;
     return json;
 }
@@ -260,8 +259,12 @@ Json correct_image(const SurveyFile& file,
                    const Options& options,
                    const Gain& gain) {
     const SurveyImage taken = read_survey_image(file.source, survey.light.size, survey.camera);
+    NoiseLimit limit = options.limit;
+    limit.read_noise = options.read_noise.value_or(taken.rounding);
+    // Of a gain by itself nobody knows how much light the survey's middle has.
+    if (!options.gain.empty() && !options.middle) limit = {.share = options.limit.share};
     const Correction correction{
-        .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = options.limit};
+        .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = limit};
     CorrectedImage result = corrected(taken.raw, survey.light.map(sled), correction);
     if (result.image.mosaic != Mosaic::None && !options.keep_mosaic) result = demosaiced(result);
     const std::vector<std::uint8_t> edges = survey.light.edges(sled, options.edge_px);
@@ -505,10 +508,10 @@ void add_camera_options(CLI::App& app, Options& options) {
                    "the camera's number at saturation, such as 4095; by default the largest that "
                    "the file's integers hold");
     app.add_option("--read-noise",
-                   options.limit.read_noise,
-                   "its noise without light, in the camera's numbers")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
+                   options.read_noise,
+                   "its noise without light, in the camera's numbers; by default what rounding to "
+                   "whole numbers makes, 0.3, and none for floats")
+        ->check(CLI::NonNegativeNumber);
     app.add_option("--electrons",
                    options.limit.electrons_per_number,
                    "electrons a number, for shot noise; 0 leaves it aside")

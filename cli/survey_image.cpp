@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace aphotic::cli {
@@ -70,7 +71,10 @@ SurveyImage read_survey_image(const std::filesystem::path& file,
             taken.raw.samples.push_back(planes[i] * scale);
         }
     }
-    if (image.full_scale > 0.0) taken.levels.white = scale;
+    if (image.full_scale > 0.0) {
+        taken.levels.white = scale;
+        taken.rounding = 1.0 / std::sqrt(12.0);  // of whole numbers
+    }
     if (camera.white_level) taken.levels.white = *camera.white_level;
     return taken;
 }

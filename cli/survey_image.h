@@ -23,6 +23,7 @@ struct CameraNumbers {
 struct SurveyImage {
     RawImage raw;
     SensorLevels levels;
+    double rounding = 0.0;  // of its numbers, as a standard deviation: of floats, none
     std::string description;
     std::string date_time;
 };

@@ -200,6 +200,20 @@ TEST_F(CorrectCommand, AFloorIsEvenAndOneColourOverAltitudeAndAttitude) {
     }
 }
 
+// How much light the middle has is not known of a gain by itself, so noise holds nothing then.
+TEST_F(CorrectCommand, AGainByItselfLeavesTheDarkToItsShare) {
+    take("a.tif", {2.0, 5.0 * kDegree, 0.0});
+    const auto dark_share = [&](const std::vector<std::string>& more, const std::string& output) {
+        std::vector<std::string> arguments{"--format", "exr", "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const CommandResult run = correct(arguments, output);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return Json::parse(run.out).at("doubtful").at("dark").get<double>();
+    };
+    EXPECT_EQ(dark_share({"--gain", "1"}, "one"), 0.0);
+    EXPECT_GT(dark_share({"--gain", "1", "--least-light", "0.5"}, "half"), 0.0);
+}
+
 TEST_F(CorrectCommand, TiffOfSixteenBitsHasThreeChannelsAndTheSourcesWords) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
     ASSERT_EQ(correct({}).status, 0);

@@ -64,7 +64,7 @@ class Proof : public testing::Test {
 };
 
 TEST_F(Proof, TheChartIsFlatAndOfOneColourOverAltitude) {
-    const SurveyScore after = corrected("truth", {"--read-noise", "0"});
+    const SurveyScore after = corrected("truth", {});
     EXPECT_LT(after.worst_unevenness, kFlat);
     EXPECT_NEAR(after.tone, 1.0, kOneColour);
     EXPECT_LT(after.colour_spread, kOneColour);
