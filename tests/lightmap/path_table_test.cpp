@@ -30,7 +30,7 @@ std::array<double, kChannels> by_hand(double path_m) {
 double looked_up(const std::vector<float>& table, const PathSteps& steps, double path_m, int c) {
     const double place = (path_m - steps.first_m) * steps.steps_per_m;
     const int step = std::min(static_cast<int>(place), steps.count - 1);
-    const auto at = static_cast<std::size_t>(step * kTableStride + c);
+    const auto at = static_cast<std::size_t>(step) * kTableStride + static_cast<std::size_t>(c);
     const double t = place - step;
     return table[at] + t * (table[at + kTableLanes] +
                             t * (table[at + 2 * kTableLanes] + t * table[at + 3 * kTableLanes]));
