@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <string_view>
 
 namespace {
@@ -47,6 +49,23 @@ OIIO::TypeDesc type_of(aphotic::cli::SampleType type) {
     return OIIO::TypeDesc::UNKNOWN;
 }
 
+// Of a file without compression that is cut short, libtiff reads the missing rows as zeros.
+void require_whole(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+    if (spec.get_string_attribute("compression") != "none") return;
+    constexpr std::size_t kBitsInByte = 8;
+    const auto bits = static_cast<std::size_t>(spec.get_int_attribute(
+        "oiio:BitsPerSample", static_cast<int>(spec.format.size() * kBitsInByte)));
+    const std::size_t bytes =
+        spec.image_pixels() * static_cast<std::size_t>(spec.nchannels) * bits / kBitsInByte;
+    const std::uintmax_t found = std::filesystem::file_size(file);
+    if (found >= bytes) return;
+    throw aphotic::InputError(
+        fmt::format("{}: cannot be read: it is cut short: found {} bytes of {} and more",
+                    file.string(),
+                    found,
+                    bytes));
+}
+
 }  // namespace
 
 extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
@@ -58,6 +77,7 @@ extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
             fmt::format("{}: cannot be read: {}", file.string(), OIIO::geterror()));
     }
     const OIIO::ImageSpec spec = input->spec();
+    require_whole(file, spec);
     image.width_px = spec.width;
     image.height_px = spec.height;
     image.channels = spec.channelnames;

@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/outcome.h"
+#include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/words.h"
 #include "lightmap/atlas_export.h"
@@ -179,6 +180,8 @@ ExitStatus make_atlas(const Options& options) {
                          .progress = {}};
     std::size_t computed = 0;
     nlohmann::ordered_json exports;
+    const FolderLock lock = claim_folder(options.folder);
+    remove_abandoned_files(fs::path(options.folder) / "bins");
     set_exr_threads(options.map.threads);
     try {
         if (options.tolerance > 0.0) request.axes = axes_for(rig, finest, options.tolerance);

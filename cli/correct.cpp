@@ -139,6 +139,7 @@ Gain measured_gain(const Survey& survey, const Options& options) {
     };
     ProgressLine line;
     std::mutex line_mutex;
+    std::string first_why;
     for_each_of(count, options.jobs, [&](std::size_t i) {
         try {
             const Sled sled = survey.light.pose(file_of(i).source);
@@ -146,8 +147,12 @@ Gain measured_gain(const Survey& survey, const Options& options) {
                 read_survey_image(file_of(i).source, survey.light.size, survey.camera);
             middles[i] = middle_quotient(
                 taken.raw, survey.light.map(sled), taken.levels, options.limit.share);
-        } catch (const InputError&) {
-            // It is said of the image when its turn comes.
+        } catch (const InputError& error) {
+            // It is said of the image when its turn comes, if one does.
+            const std::scoped_lock lock(line_mutex);
+            if (first_why.empty()) {
+                first_why = fmt::format("; {}: {}", file_of(i).name.string(), error.what());
+            }
         }
         const std::scoped_lock lock(line_mutex);
         line.show("taking the gain", static_cast<double>(i + 1) / static_cast<double>(count));
@@ -164,8 +169,9 @@ Gain measured_gain(const Survey& survey, const Options& options) {
     if (gain.images.empty()) {
         throw InputError(
             fmt::format("no gain can be taken from these images: of {} looked at, none has light "
-                        "and a map in every channel; allowed: --gain",
-                        count));
+                        "and a map in every channel; allowed: --gain{}",
+                        count,
+                        first_why));
     }
     for (std::size_t c = 0; c < kChannels; ++c)
         gain.gain[c] = gain.middle[c] / median(quotients[c]);

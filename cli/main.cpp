@@ -2,6 +2,7 @@
 //
 // The `aphotic` command: a table of subcommands, and what each kind of failure exits with.
 #include "cli/command.h"
+#include "cli/option_checks.h"
 #include "plugin/interruption.h"
 #include "spectral/error.h"
 #include "spectral/printable.h"
@@ -111,7 +112,14 @@ int main(int argc, char** argv) {
     Action chosen;
     for (const Command& command : kCommands) {
         CLI::App* sub = app.add_subcommand(command.name, command.summary);
-        sub->callback([&chosen, action = command.configure(*sub)] { chosen = action; });
+        const Action action = command.configure(*sub);
+        aphotic::cli::refuse_nan(*sub);
+        sub->callback([&chosen, action, sub] {
+            chosen = [action, sub] {
+                aphotic::cli::require_separate_files(*sub);
+                return action();
+            };
+        });
     }
     try {
         app.parse(argc, argv);

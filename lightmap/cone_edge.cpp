@@ -123,22 +123,22 @@ std::vector<std::uint8_t> ConeEdges::mask(const Sled& sled, int within_px) const
     Counts above(counts);
     for (int row = 0; row < height_px_; ++row) {
         count_row(row, sled, counts);
-        std::uint8_t* const here = mask.data() + size_of(row) * width;
+        const std::size_t first = size_of(row) * width;
         for (std::size_t k = 0; k < counts.size(); ++k) {
             const std::vector<std::uint8_t>& now = counts[k];
             const std::size_t most = most_of(k);
             for (std::size_t i = 0; i < width; ++i) {
-                here[i] |= static_cast<std::uint8_t>(now[i] > 0 && now[i] < most);
+                mask[first + i] |= static_cast<std::uint8_t>(now[i] > 0 && now[i] < most);
             }
             for (std::size_t i = 1; i < width; ++i) {
                 const auto differs = static_cast<std::uint8_t>(now[i] != now[i - 1]);
-                here[i] |= differs;
-                here[i - 1] |= differs;
+                mask[first + i] |= differs;
+                mask[first + i - 1] |= differs;
             }
             for (std::size_t i = 0; row > 0 && i < width; ++i) {
                 const auto differs = static_cast<std::uint8_t>(now[i] != above[k][i]);
-                here[i] |= differs;
-                here[i - width] |= differs;
+                mask[first + i] |= differs;
+                mask[first + i - width] |= differs;
             }
         }
         std::swap(counts, above);

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -110,6 +111,14 @@ Layout layout_of(const std::string& name,
                          near.empty() ? "" : fmt::format(" (is it '{}'?)", near),
                          kPitch,
                          kRoll));
+    }
+    // Of an optional one under another name, the rig's would be taken and nobody be told.
+    for (const auto& [wanted, word] : {std::pair{kPitch, "pitch"}, std::pair{kRoll, "roll"}}) {
+        if (column_named(columns, wanted)) continue;
+        for (const std::string_view column : columns) {
+            if (!column.starts_with(word)) continue;
+            fail(name, line, fmt::format("found the column '{}'; allowed: '{}'", column, wanted));
+        }
     }
     return {.has_commas = true,
             .fields = columns.size(),

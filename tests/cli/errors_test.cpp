@@ -93,6 +93,34 @@ TEST_F(CommandErrors, CommandLineMistakesAreBadInput) {
     }
 }
 
+TEST_F(CommandErrors, NotANumberIsNoNumber) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"lightmap", "rig.toml", "-o", "map.exr", "--altitude-m", "nan"},
+          std::vector<std::string>{"plan", "rig.toml", "--tolerance", "nan"}}) {
+        const CommandResult run = run_aphotic(folder_.path(), arguments);
+        EXPECT_EQ(run.status, kBadInput) << arguments[0];
+        EXPECT_NE(run.err.find("found nan; allowed: a number"), std::string::npos) << run.err;
+    }
+    EXPECT_FALSE(fs::exists(folder_.path() / "map.exr"));
+}
+
+TEST_F(CommandErrors, NoResultTakesThePlaceOfWhatItIsMadeFrom) {
+    const std::string rig = read_text_file(folder_.path() / "rig.toml");
+    expect_one_message(run_aphotic(folder_.path(), {"lightmap", "rig.toml", "-o", "rig.toml"}),
+                       kBadInput,
+                       "--output: found rig.toml, which RIG names too");
+    EXPECT_EQ(read_text_file(folder_.path() / "rig.toml"), rig);
+    fs::create_directory(folder_.path() / "raw");
+    write_file(folder_.path() / "raw/a.tif", "raw");
+    write_file(folder_.path() / "nav.csv", "image,altitude_m\na.tif,2\n");
+    expect_one_message(
+        run_aphotic(folder_.path(),
+                    {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "raw/a.tif"}),
+        kBadInput,
+        "--output: found raw/a.tif, which IMAGES names too");
+    EXPECT_EQ(read_text_file(folder_.path() / "raw/a.tif"), "raw");
+}
+
 TEST_F(CommandErrors, HelpAndVersionAreNoErrors) {
     const std::string manual = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/docs/aphotic.1");
     for (const char* command : {"render",

@@ -49,6 +49,14 @@ TEST(Navigation, ColumnsStandInAnyOrderAmongOthers) {
     EXPECT_DOUBLE_EQ(b.sled.roll_rad, 0.5 * kDegree);
 }
 
+// Of a misspelt column the rig's own attitude would be taken, and nobody be told.
+TEST(Navigation, AnAttitudeUnderAnotherNameIsRefused) {
+    EXPECT_EQ(fault_in("image,altitude_m,pitch,roll_deg\na.tif,2,1,0\n"),
+              "nav.csv:1: found the column 'pitch'; allowed: 'pitch_deg'");
+    EXPECT_EQ(fault_in("image,altitude_m,roll_rad\na.tif,2,1\n"),
+              "nav.csv:1: found the column 'roll_rad'; allowed: 'roll_deg'");
+}
+
 TEST(Navigation, HabCamLinesHaveNoHeader) {
     const Navigation nav = parsed("# eic\na.tif 1.5 4 -3\n  b.tif\t2.25   -2.5 0.5\r\n");
     EXPECT_EQ(nav.size(), 2U);

@@ -14,23 +14,26 @@ namespace aphotic {
 inline std::string tiff_of(const std::vector<std::uint16_t>& samples,
                            std::uint32_t width,
                            std::uint32_t height,
-                           std::string_view description) {
-    std::string bytes;
-    const auto put = [&](std::uint32_t number, int size) {
+                           std::string_view description,
+                           bool directory_first = false) {
+    const auto put = [](std::string& bytes, std::uint32_t number, int size) {
         for (int i = 0; i < size; ++i) {
             bytes += static_cast<char>(number >> static_cast<unsigned>(8 * i) & 0xFFU);
         }
     };
     constexpr std::uint32_t kHeaderBytes = 8;
+    constexpr std::uint32_t kDirectoryBytes = 2 + 10 * 12 + 4;
     const auto pixel_bytes = static_cast<std::uint32_t>(2 * samples.size());
     const auto text_bytes = static_cast<std::uint32_t>(description.size() + 1);
     const std::uint32_t even_text = text_bytes + text_bytes % 2;
-    bytes += "II";
-    put(42, 2);
-    put(kHeaderBytes + pixel_bytes + even_text, 4);
-    for (const std::uint16_t sample : samples) put(sample, 2);
-    bytes += description;
-    bytes.append(even_text - description.size(), '\0');
+    const std::uint32_t pixels_at = kHeaderBytes + (directory_first ? kDirectoryBytes : 0);
+    std::string data;
+    for (const std::uint16_t sample : samples) put(data, sample, 2);
+    data += description;
+    data.append(even_text - description.size(), '\0');
+    std::string header = "II";
+    put(header, 42, 2);
+    put(header, directory_first ? kHeaderBytes : kHeaderBytes + pixel_bytes + even_text, 4);
     struct Entry {
         std::uint32_t tag, type, count, value;
     };
@@ -42,20 +45,21 @@ inline std::string tiff_of(const std::vector<std::uint16_t>& samples,
                                      {258, kShort, 1, 16},  // bits a sample
                                      {259, kShort, 1, 1},   // not compressed
                                      {262, kShort, 1, 1},   // 0 is black
-                                     {270, kText, text_bytes, kHeaderBytes + pixel_bytes},
-                                     {273, kLong, 1, kHeaderBytes},
+                                     {270, kText, text_bytes, pixels_at + pixel_bytes},
+                                     {273, kLong, 1, pixels_at},
                                      {277, kShort, 1, 1},
                                      {278, kLong, 1, height},
                                      {279, kLong, 1, pixel_bytes}};
-    put(static_cast<std::uint32_t>(entries.size()), 2);
+    std::string directory;
+    put(directory, static_cast<std::uint32_t>(entries.size()), 2);
     for (const Entry& entry : entries) {
-        put(entry.tag, 2);
-        put(entry.type, 2);
-        put(entry.count, 4);
-        put(entry.value, 4);  // a short's two bytes come first, then zeros
+        put(directory, entry.tag, 2);
+        put(directory, entry.type, 2);
+        put(directory, entry.count, 4);
+        put(directory, entry.value, 4);  // a short's two bytes come first, then zeros
     }
-    put(0, 4);
-    return bytes;
+    put(directory, 0, 4);
+    return directory_first ? header + directory + data : header + data + directory;
 }
 
 }  // namespace aphotic
