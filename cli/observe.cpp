@@ -64,6 +64,14 @@ struct Selection {
     std::vector<Skipped> skipped;
 };
 
+// NaN stands for what the navigation does not tell: there is no rig here to take it from.
+Sled known_of(Sled sled, const Navigation& navigation) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    if (!navigation.has_pitch()) sled.pitch_rad = kUnknown;
+    if (!navigation.has_roll()) sled.roll_rad = kUnknown;
+    return sled;
+}
+
 Selection selected(const Options& options) {
     constexpr double kRounding_m = 1e-9;  // 2.1 lies within 0.1 of 2
     const Navigation navigation = read_navigation(options.navigation, Sled{});
@@ -78,7 +86,7 @@ Selection selected(const Options& options) {
                 continue;
             }
             selection.images.push_back(file.source);
-            selection.sleds.push_back(sled);
+            selection.sleds.push_back(known_of(sled, navigation));
         } catch (const InputError& error) {
             selection.skipped.push_back({.image = file.source, .why = error.what()});
         }
@@ -276,13 +284,17 @@ nlohmann::ordered_json json_of(const Options& options,
 void print_summary(const Options& options,
                    const Selection& selection,
                    const nlohmann::ordered_json& json) {
-    fmt::print("{}: the {} of {} at {:.3f} m, pitch {:.2f} deg, roll {:.2f} deg on average\n",
+    const auto angle = [&](const char* key) {
+        const auto degrees = json[key].get<double>();
+        return std::isnan(degrees) ? "unknown" : fmt::format("{:.2f} deg", degrees);
+    };
+    fmt::print("{}: the {} of {} at {:.3f} m, pitch {}, roll {} on average\n",
                options.output,
                options.average == Average::Trimmed ? "trimmed mean" : name_of(options.average),
                counted(selection.images.size(), "image"),
                json["altitude_m"].get<double>(),
-               json["pitch_deg"].get<double>(),
-               json["roll_deg"].get<double>());
+               angle("pitch_deg"),
+               angle("roll_deg"));
     if (json["relative_error"].is_number() && std::isfinite(json["relative_error"].get<double>())) {
         fmt::print("standard error: {:.2g} of the map's mean (rms)\n",
                    json["relative_error"].get<double>());

@@ -223,6 +223,8 @@ Navigation parse_navigation(const std::string& name, std::string_view text, cons
         if (content.empty() || content.front() == '#') continue;
         if (!layout && content.find(',') != std::string_view::npos) {
             layout = layout_of(name, line, comma_fields(content));
+            navigation.has_pitch_ = layout->pitch.has_value();
+            navigation.has_roll_ = layout->roll.has_value();
             continue;
         }
         if (!layout) layout = Layout{};

@@ -45,10 +45,16 @@ class Navigation {
 
     [[nodiscard]] std::size_t size() const { return poses_.size(); }
 
+    // Whether the file tells them; else poses have the rig's.
+    [[nodiscard]] bool has_pitch() const { return has_pitch_; }
+    [[nodiscard]] bool has_roll() const { return has_roll_; }
+
   private:
     friend Navigation parse_navigation(const std::string&, std::string_view, const Sled&);
 
     std::string name_;
+    bool has_pitch_ = true;
+    bool has_roll_ = true;
     std::unordered_map<std::string, ImagePose> poses_;  // by the image's key
 };
 

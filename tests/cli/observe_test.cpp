@@ -87,6 +87,18 @@ class Survey : public testing::Test {
 using CommandObserve = Survey;
 using CommandBaseline = Survey;
 
+TEST_F(CommandObserve, AnAttitudeThatNobodyToldIsUnknown) {
+    write_survey();
+    write_file(path("nav.csv"),
+               "image,altitude_m,roll_deg\na.exr,2,3\nb.exr,2,1\nc.exr,2,2\nhigh.exr,3,0\n");
+    const CommandResult words = observe({});
+    EXPECT_EQ(words.status, 0) << words.err;
+    EXPECT_NE(words.out.find("pitch unknown, roll 2.00 deg"), std::string::npos) << words.out;
+    const nlohmann::json json = nlohmann::json::parse(observe({"--json"}).out);
+    EXPECT_TRUE(json["pitch_deg"].is_null());
+    EXPECT_NEAR(json["roll_deg"].get<double>(), 2.0, kFloat);
+}
+
 TEST_F(CommandObserve, AveragesTheImagesOfOneAltitude) {
     write_survey();
     const CommandResult result = observe({"--json"});
