@@ -31,8 +31,11 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Surv
     const auto options = fs::directory_options::follow_directory_symlink;
     for (fs::recursive_directory_iterator it(folder, options), end; it != end; ++it) {
         const fs::path& file = it->path();
-        if (it->is_directory() && fs::equivalent(file, output, none))
+        // Results are no raw images: those of this run, nor those of an earlier one.
+        if (it->is_directory() &&
+            (fs::equivalent(file, output, none) || fs::exists(file / "correction.json"))) {
             it.disable_recursion_pending();
+        }
         const bool is_hidden = file.filename().string().starts_with('.');
         if (!is_image_name(file) || is_hidden || !it->is_regular_file()) continue;
         files.push_back({.source = file, .name = without_extension(fs::relative(file, folder))});

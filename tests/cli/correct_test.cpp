@@ -408,6 +408,25 @@ TEST_F(CorrectCommand, KilledAnywhereItGoesOnToTheSameImages) {
 }
 
 // One map for all: here the rig's own, so that the results are the same.
+TEST_F(CorrectCommand, ResultsOfAnEarlierRunAreNoRawImages) {
+    take("a.tif", {2.0, 5.0 * kDegree, 0.0});
+    ASSERT_EQ(correct({}).status, 0);
+    const CommandResult run = run_aphotic(folder_.path(),
+                                          {"correct",
+                                           ".",
+                                           "--rig",
+                                           "rig.toml",
+                                           "--nav",
+                                           "nav.eic",
+                                           "-o",
+                                           "out2",
+                                           "--bayer",
+                                           "GRBG",
+                                           "--json"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(Json::parse(run.out).at("corrected"), 1) << run.out;
+}
+
 TEST_F(CorrectCommand, AMapTakesThePlaceOfRigAndNavigation) {
     const Sled sled{2.0, 5.0 * kDegree, 0.0};  // as the rig file has it
     take("a.tif", sled);
