@@ -37,9 +37,12 @@ std::string name_from(const std::filesystem::path& folder, const NamedSpectrum& 
     const std::string& name = material.spectrum.name();
     const std::size_t first = name.find('\'') + 1;
     const std::string file = name.substr(first, name.rfind('\'') - first);
+    if (!names_a_file(file)) return material.name;
+    // From the folder first: how long and how strange the way to it is, is not the scene's matter.
+    const std::string here =
+        std::filesystem::path(file).lexically_proximate(folder).generic_string();
     // A scene cannot ask for a name that POV-Ray cannot hold: the one that is unique will do.
-    if (!names_a_file(file) || scene_name(file) != file) return material.name;
-    return std::filesystem::path(file).lexically_proximate(folder).generic_string();
+    return scene_name(here) == here ? here : material.name;
 }
 
 std::vector<NamedSpectrum> reflectances_for(const Rig& rig, const std::filesystem::path& folder) {
