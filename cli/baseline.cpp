@@ -7,8 +7,8 @@
 #include "cli/in_order.h"
 #include "cli/outcome.h"
 #include "cli/progress.h"
-#include "cli/raw_image_file.h"
 #include "cli/survey_files.h"
+#include "cli/survey_image.h"
 #include "cli/words.h"
 #include "lightmap/navigation.h"
 #include "spectral/atomic_file.h"
@@ -36,7 +36,7 @@ struct Options {
     std::string navigation;
     std::string folder;
     BaselineOptions baseline;
-    RawFileOptions raw;
+    CameraNumbers camera;
     int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     bool json = false;
 };
@@ -59,7 +59,7 @@ struct Survey {
 };
 
 RawImage read_finite(const SurveyFile& file, const Options& options) {
-    RawImage image = read_raw_image(file.source, options.raw);
+    RawImage image = without_black(read_survey_image(file.source, options.camera));
     if (!std::ranges::all_of(image.samples, [](float sample) { return std::isfinite(sample); })) {
         throw InputError("a sample is infinite or not a number");
     }
@@ -75,7 +75,7 @@ void learn_survey(BaselineCorrector& corrector, Survey& survey, const Options& o
         [&](std::size_t i) { return read_finite(survey.files[i], options); },
         [&](std::size_t i, const RawImage& image) {
             if (!first) first = image;
-            check_same_size(image, *first);
+            require_size(image, first->width_px, first->height_px, "as the first image");
             corrector.learn(image, survey.altitude_m(survey.files[i]));
             line.show("learning",
                       static_cast<double>(i + 1) / static_cast<double>(survey.files.size()));
@@ -210,7 +210,7 @@ Action configure_baseline(CLI::App& app) {
                    "the altitude of each image, for binned-polynomial; as for observe")
         ->type_name("FILE");
     add_baseline_options(app, options->baseline);
-    add_raw_file_options(app, options->raw);
+    add_camera_options(app, options->camera);
     app.add_option("--jobs", options->jobs, "images at a time")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();

@@ -2,19 +2,12 @@
 //
 // aphotic correct IMAGES... --rig RIG --nav FILE -o DIR: survey images divided by the map of their
 // own altitude and attitude.
-//
-// Images are streamed: each of --jobs threads holds one of them, its map and its result. What is
-// done is noted as it is done, and an image that cannot be corrected costs no other.
-#include "lightmap/correction.h"
-
 #include "cli/command.h"
 #include "cli/journal.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
-#include "cli/progress.h"
-#include "cli/survey_files.h"
-#include "cli/survey_image.h"
-#include "cli/survey_light.h"
+#include "cli/survey_correction.h"
+#include "cli/survey_gain.h"
 #include "cli/words.h"
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
@@ -25,17 +18,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <chrono>
-#include <cmath>
-#include <exception>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
-#include <thread>
-#include <utility>
+#include <system_error>
 
 namespace aphotic::cli {
 namespace {
@@ -48,80 +35,14 @@ struct Options {
     std::string rig;
     std::string nav;
     std::string map;
-    std::string folder;
-    std::string bayer;
-    bool keep_mosaic = false;
     CameraNumbers camera;
     std::vector<double> gain;
     std::optional<double> middle;
     std::size_t gain_images = 16;
     std::vector<double> altitudes_m;
-    NoiseLimit limit;
-    std::optional<double> read_noise;  // none: what the file's numbers are rounded by
-    int edge_px = 2;
-    bool mask = false;
-    std::string format = "tiff";
-    std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
+    ResultOptions result;
     bool json = false;
 };
-
-struct Skipped {
-    std::string image;
-    std::string why;
-};
-
-struct Survey {
-    std::vector<SurveyFile> files;
-    SurveyLight light;
-    CameraNumbers camera;
-};
-
-struct Gain {
-    PerChannel gain{};
-    PerChannel middle{};
-    std::vector<std::string> images;  // that it was taken from
-};
-
-constexpr std::array<std::pair<std::string_view, std::uint8_t>, 5> kDoubts{
-    {{"dark", kDark},
-     {"saturated", kSaturated},
-     {"black", kBlack},
-     {"edge", kEdge},
-     {"clipped", kClipped}}};
-
-// A message of an image without its name, which stands before it.
-std::string without_name(const std::string& message, const SurveyFile& file) {
-    const std::string name = file.source.string() + ": ";
-    return message.starts_with(name) ? message.substr(name.size()) : message;
-}
-
-// Calls work(i) for each of `count` on several threads. What it throws stops all, and comes out.
-template <typename Work>
-void for_each_of(std::size_t count, std::size_t jobs, const Work& work) {
-    std::atomic<std::size_t> next = 0;
-    std::mutex mutex;
-    std::exception_ptr fault;
-    const auto take = [&] {
-        try {
-            for (std::size_t i = next++; i < count; i = next++) work(i);
-        } catch (...) {
-            const std::scoped_lock lock(mutex);
-            if (!fault) fault = std::current_exception();
-            next = count;
-        }
-    };
-    std::vector<std::jthread> others;
-    for (std::size_t t = 1; t < std::min(jobs, count); ++t) others.emplace_back(take);
-    take();
-    others.clear();
-    if (fault) std::rethrow_exception(fault);
-}
-
-double median(std::vector<double> numbers) {
-    const auto middle = numbers.begin() + std::ssize(numbers) / 2;
-    std::ranges::nth_element(numbers, middle);
-    return *middle;
-}
 
 PerChannel wanted_middle(const Survey& survey, const Options& options) {
     constexpr double kGrey = 0.2;
@@ -130,230 +51,70 @@ PerChannel wanted_middle(const Survey& survey, const Options& options) {
     return {middle, middle, middle};
 }
 
-// The survey's middle quotient: of images spread evenly over it, the median of each one's own.
-Gain measured_gain(const Survey& survey, const Options& options) {
-    const std::size_t count = std::min(options.gain_images, survey.files.size());
-    std::vector<std::optional<PerChannel>> middles(count);
-    const auto file_of = [&](std::size_t i) -> const SurveyFile& {
-        return survey.files[i * survey.files.size() / count];
-    };
-    ProgressLine line;
-    std::mutex line_mutex;
-    std::string first_why;
-    for_each_of(count, options.jobs, [&](std::size_t i) {
-        try {
-            const Sled sled = survey.light.pose(file_of(i).source);
-            const SurveyImage taken =
-                read_survey_image(file_of(i).source, survey.light.size, survey.camera);
-            middles[i] = middle_quotient(
-                taken.raw, survey.light.map(sled), taken.levels, options.limit.share);
-        } catch (const InputError& error) {
-            // It is said of the image when its turn comes, if one does.
-            const std::scoped_lock lock(line_mutex);
-            if (first_why.empty()) {
-                first_why = fmt::format("; {}: {}", file_of(i).name.string(), error.what());
-            }
-        }
-        const std::scoped_lock lock(line_mutex);
-        line.show("taking the gain", static_cast<double>(i + 1) / static_cast<double>(count));
-    });
-    Gain gain{.gain = {}, .middle = wanted_middle(survey, options), .images = {}};
-    std::array<std::vector<double>, kChannels> quotients;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (!middles[i] || !std::ranges::all_of(*middles[i], [](double q) { return q > 0.0; })) {
-            continue;
-        }
-        gain.images.push_back(file_of(i).name.string());
-        for (std::size_t c = 0; c < kChannels; ++c) quotients[c].push_back((*middles[i])[c]);
-    }
-    if (gain.images.empty()) {
-        throw InputError(
-            fmt::format("no gain can be taken from these images: of {} looked at, none has light "
-                        "and a map in every channel; allowed: --gain{}",
-                        count,
-                        first_why));
-    }
-    for (std::size_t c = 0; c < kChannels; ++c)
-        gain.gain[c] = gain.middle[c] / median(quotients[c]);
-    return gain;
-}
-
 Json settings_of(const Survey& survey, const Options& options) {
     Json json{{"aphotic", APHOTIC_VERSION},
               {options.map.empty() ? "rig_sha256" : "map_sha256", survey.light.digest},
-              {"bayer", mosaic_name(survey.camera.mosaic)},
-              {"keep_mosaic", options.keep_mosaic},
+              {"bayer", mosaic_name(options.camera.mosaic)},
+              {"keep_mosaic", options.result.keep_mosaic},
               {"black_level", options.camera.black_level},
               {"white_level", nullptr},
               {"gain", options.gain},
               {"middle", wanted_middle(survey, options)},
-              {"least_light", options.limit.share},
-              {"most_noise", options.limit.relative},
+              {"least_light", options.result.limit.share},
+              {"most_noise", options.result.limit.relative},
               {"read_noise", nullptr},
-              {"electrons", options.limit.electrons_per_number},
-              {"edge_px", options.edge_px},
-              {"mask", options.mask},
-              {"format", options.format}};
-    if (options.read_noise) json["read_noise"] = *options.read_noise;
+              {"electrons", options.result.limit.electrons_per_number},
+              {"edge_px", options.result.edge_px},
+              {"mask", options.result.mask},
+              {"format", options.result.format}};
+    if (options.result.read_noise) json["read_noise"] = *options.result.read_noise;
     if (options.camera.white_level) json["white_level"] = *options.camera.white_level;
     return json;
 }
 
 fs::path notes_of(const Options& options) {
-    return fs::path(options.folder) / "correction.json";
+    return options.result.folder / "correction.json";
 }
 
 // A folder keeps its gain while its settings stay, so that images that come later fit the others.
-std::optional<Gain> noted_gain(const Options& options, const std::string& settings_sha256) {
+std::optional<SurveyGain> noted_gain(const Options& options, const std::string& settings_sha256) {
     if (!fs::exists(notes_of(options))) return std::nullopt;
     const Json notes = Json::parse(read_text_file(notes_of(options)), nullptr, false);
     if (!notes.is_object() || notes.value("settings_sha256", "") != settings_sha256) {
         return std::nullopt;
     }
     try {
-        return Gain{.gain = notes.at("gain").get<PerChannel>(),
-                    .middle = notes.at("settings").at("middle").get<PerChannel>(),
-                    .images = notes.at("gain_from").get<std::vector<std::string>>()};
+        return SurveyGain{.gain = notes.at("gain").get<PerChannel>(),
+                          .middle = notes.at("settings").at("middle").get<PerChannel>(),
+                          .images = notes.at("gain_from").get<std::vector<std::string>>()};
     } catch (const Json::exception&) {
         return std::nullopt;  // not as we wrote it: taken again
     }
 }
 
-Gain gain_of(const Survey& survey, const Options& options, const std::string& settings_sha256) {
+SurveyGain gain_of(const Survey& survey,
+                   const Options& options,
+                   const std::string& settings_sha256) {
     if (!options.gain.empty()) {
-        Gain gain{.gain = {}, .middle = wanted_middle(survey, options), .images = {}};
+        SurveyGain gain{.gain = {}, .middle = wanted_middle(survey, options), .images = {}};
         for (std::size_t c = 0; c < kChannels; ++c) {
             gain.gain[c] = options.gain[options.gain.size() == 1 ? 0 : c];
         }
         return gain;
     }
     if (const auto noted = noted_gain(options, settings_sha256)) return *noted;
-    return measured_gain(survey, options);
-}
-
-// Samples that the format cannot hold are marked; the writer clips them.
-void mark_clipped(CorrectedImage& result) {
-    const std::size_t pixels = result.doubts.size();
-    for (std::size_t i = 0; i < result.image.samples.size(); ++i) {
-        const float sample = result.image.samples[i];
-        if (sample < 0.0F || sample > 1.0F) result.doubts[i % pixels] |= kClipped;
+    try {
+        return measured_gain(survey,
+                             {.middle = wanted_middle(survey, options),
+                              .most_images = options.gain_images,
+                              .least_light = options.result.limit.share,
+                              .jobs = options.result.jobs});
+    } catch (const InputError&) {
+        // Refused before anything is written: no folder is left either, unless it holds something.
+        std::error_code ignored;
+        fs::remove(options.result.folder, ignored);
+        throw;
     }
-}
-
-fs::path result_of(const SurveyFile& file, const Options& options) {
-    return file.name.string() + (options.format == "tiff" ? ".tif" : "." + options.format);
-}
-
-fs::path mask_of(const SurveyFile& file) {
-    return file.name.string() + ".mask.png";
-}
-
-// By pixels, for each kind.
-Json doubts_in(const std::vector<std::uint8_t>& doubts) {
-    Json counts;
-    for (const auto& [name, bit] : kDoubts) {
-        counts[std::string(name)] =
-            std::ranges::count_if(doubts, [bit = bit](std::uint8_t d) { return (d & bit) != 0; });
-    }
-    return counts;
-}
-
-// The whole work on an image; what is noted of it.
-Json correct_image(const SurveyFile& file,
-                   const Sled& sled,
-                   const Survey& survey,
-                   const Options& options,
-                   const Gain& gain) {
-    const SurveyImage taken = read_survey_image(file.source, survey.light.size, survey.camera);
-    NoiseLimit limit = options.limit;
-    limit.read_noise = options.read_noise.value_or(taken.rounding);
-    // Of a gain by itself nobody knows how much light the survey's middle has.
-    if (!options.gain.empty() && !options.middle) limit = {.share = options.limit.share};
-    const Correction correction{
-        .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = limit};
-    CorrectedImage result = corrected(taken.raw, survey.light.map(sled), correction);
-    if (result.image.mosaic != Mosaic::None && !options.keep_mosaic) result = demosaiced(result);
-    const std::vector<std::uint8_t> edges = survey.light.edges(sled, options.edge_px);
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        if (edges[i] != 0) result.doubts[i] |= kEdge;
-    }
-    if (options.format != "exr") mark_clipped(result);
-    const fs::path folder(options.folder);
-    make_folder((folder / file.name).parent_path());
-    if (options.mask) write_mask(folder / mask_of(file), result);
-    write_corrected(folder / result_of(file, options), result.image, taken);
-    return doubts_in(result.doubts);
-}
-
-// Of all that an image's result depends on.
-std::string digest_of(const SurveyFile& file,
-                      const Sled& sled,
-                      const std::string& settings_sha256,
-                      const Gain& gain) {
-    return sha256_of_text(fmt::format("{} {} {} {} {} {} {}",
-                                      settings_sha256,
-                                      fmt::join(gain.gain, " "),
-                                      sled.altitude_m,
-                                      sled.pitch_rad,
-                                      sled.roll_rad,
-                                      fs::file_size(file.source),
-                                      fs::last_write_time(file.source).time_since_epoch().count()));
-}
-
-struct Outcome {
-    std::size_t corrected = 0;
-    std::size_t kept = 0;
-    std::vector<Skipped> skipped;  // in the order of the images
-    std::vector<std::string> done;
-};
-
-Outcome correct_all(const Survey& survey,
-                    const Options& options,
-                    const Gain& gain,
-                    const std::string& settings_sha256,
-                    Journal& journal) {
-    Outcome outcome;
-    std::vector<std::string> whys(survey.files.size());
-    std::size_t count = 0;
-    std::mutex mutex;
-    ProgressLine line;
-    for_each_of(survey.files.size(), options.jobs, [&](std::size_t i) {
-        const SurveyFile& file = survey.files[i];
-        const std::string name = file.name.string();
-        try {
-            const Sled sled = survey.light.pose(file.source);
-            const std::string digest = digest_of(file, sled, settings_sha256, gain);
-            std::unique_lock lock(mutex);
-            if (journal.is_done(name, digest)) {
-                ++outcome.kept;
-            } else {
-                lock.unlock();
-                const Json doubts = correct_image(file, sled, survey, options, gain);
-                lock.lock();
-                std::vector<fs::path> files{result_of(file, options)};
-                if (options.mask) files.push_back(mask_of(file));
-                journal.note(name, digest, files, doubts);
-                ++outcome.corrected;
-            }
-        } catch (const InputError& error) {
-            const std::scoped_lock lock(mutex);
-            whys[i] = without_name(error.what(), file);
-            line.wipe();
-            fmt::print(stderr, "aphotic: {}: {}; skipped\n", file.source.string(), whys[i]);
-        }
-        const std::scoped_lock lock(mutex);
-        ++count;
-        line.show(fmt::format("{} of {} images", count, survey.files.size()),
-                  static_cast<double>(count) / static_cast<double>(survey.files.size()));
-    });
-    for (std::size_t i = 0; i < whys.size(); ++i) {
-        if (whys[i].empty()) {
-            outcome.done.push_back(survey.files[i].name.string());
-        } else {
-            outcome.skipped.push_back({survey.files[i].source.string(), whys[i]});
-        }
-    }
-    return outcome;
 }
 
 // As shares of all pixels of the images that are done.
@@ -409,7 +170,7 @@ void require_sources_stay(const Survey& survey, const Options& options) {
     std::set<fs::path> sources;
     for (const SurveyFile& file : survey.files) sources.insert(fs::weakly_canonical(file.source));
     for (const SurveyFile& file : survey.files) {
-        const fs::path result = fs::path(options.folder) / result_of(file, options);
+        const fs::path result = options.result.folder / result_of(file, options.result);
         if (!sources.contains(fs::weakly_canonical(result))) continue;
         throw InputError(
             fmt::format("{}: would be overwritten by the result; allowed: another "
@@ -435,15 +196,7 @@ Survey survey_of(const Options& options) {
     }
     Survey survey;
     survey.camera = options.camera;
-    if (!options.bayer.empty()) {
-        const auto mosaic = mosaic_named(options.bayer);
-        if (!mosaic) {
-            throw InputError(
-                fmt::format("--bayer: found '{}'; allowed: RGGB, BGGR, GRBG, GBRG", options.bayer));
-        }
-        survey.camera.mosaic = *mosaic;
-    }
-    survey.files = survey_files(options.images, options.folder);
+    survey.files = survey_files(options.images, options.result.folder);
     require_sources_stay(survey, options);
     survey.light = options.map.empty()
                        ? light_of_rig(options.rig, options.nav, options.altitudes_m, survey.files)
@@ -454,22 +207,24 @@ Survey survey_of(const Options& options) {
 ExitStatus correct(const Options& options) {
     const auto start = std::chrono::steady_clock::now();
     const Survey survey = survey_of(options);
-    const FolderLock lock = claim_folder(options.folder);
-    for (const auto& entry : fs::recursive_directory_iterator(options.folder)) {
+    const FolderLock lock = claim_folder(options.result.folder);
+    for (const auto& entry : fs::recursive_directory_iterator(options.result.folder)) {
         if (entry.is_directory()) remove_abandoned_files(entry.path());
     }
     set_exr_threads(0);  // the images themselves are spread over the threads
     const Json settings = settings_of(survey, options);
     const std::string settings_sha256 = sha256_of_text(settings.dump());
-    const Gain gain = gain_of(survey, options, settings_sha256);
+    const SurveyGain gain = gain_of(survey, options, settings_sha256);
     Json notes{{"settings", settings},
                {"settings_sha256", settings_sha256},
                {"gain", gain.gain},
                {"gain_from", gain.images}};
     write_text_file(notes_of(options), dumped(notes) + "\n");
 
-    Journal journal(fs::path(options.folder) / "corrected.jsonl");
-    const Outcome outcome = correct_all(survey, options, gain, settings_sha256, journal);
+    Journal journal(options.result.folder / "corrected.jsonl");
+    ResultOptions result = options.result;
+    result.limits_noise = options.gain.empty() || options.middle;
+    const Outcome outcome = correct_survey(survey, gain, result, settings_sha256, journal);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     notes.update(json_of(outcome));
     notes["doubtful"] = doubtful_shares(outcome, survey, journal);
@@ -501,25 +256,20 @@ void add_light_options(CLI::App& app, Options& options) {
         ->check(CLI::NonNegativeNumber);
 }
 
-void add_camera_options(CLI::App& app, Options& options) {
-    app.add_option("--bayer",
-                   options.bayer,
-                   "the images are mosaics of one channel: RGGB, BGGR, GRBG or GBRG")
-        ->type_name("SITES");
-    app.add_flag("--keep-mosaic", options.keep_mosaic, "write mosaics as such, not R, G, B");
-    app.add_option("--black-level", options.camera.black_level, "the camera's number for no light")
-        ->capture_default_str();
+void add_raw_options(CLI::App& app, Options& options) {
+    add_camera_options(app, options.camera);
+    app.add_flag("--keep-mosaic", options.result.keep_mosaic, "write mosaics as such, not R, G, B");
     app.add_option("--white-level",
                    options.camera.white_level,
                    "the camera's number at saturation, such as 4095; by default the largest that "
                    "the file's integers hold");
     app.add_option("--read-noise",
-                   options.read_noise,
+                   options.result.read_noise,
                    "its noise without light, in the camera's numbers; by default what rounding to "
                    "whole numbers makes, 0.3, and none for floats")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--electrons",
-                   options.limit.electrons_per_number,
+                   options.result.limit.electrons_per_number,
                    "electrons a number, for shot noise; 0 leaves it aside")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
@@ -547,21 +297,22 @@ void add_result_options(CLI::App& app, Options& options) {
         ->check(CLI::Range(std::size_t{1}, kMostImages))
         ->capture_default_str();
     app.add_option("--least-light",
-                   options.limit.share,
+                   options.result.limit.share,
                    "the gain is held where the map is under this share of its brightest")
         ->check(CLI::Range(kLeastShare, 1.0))
         ->capture_default_str();
     app.add_option("--most-noise",
-                   options.limit.relative,
+                   options.result.limit.relative,
                    "and where the middle's noise would be over this share of it")
         ->check(CLI::Range(kLeastNoise, kMostNoise))
         ->capture_default_str();
-    app.add_option("--edge-px", options.edge_px, "pixels about a cone's edge that are doubtful")
+    app.add_option(
+           "--edge-px", options.result.edge_px, "pixels about a cone's edge that are doubtful")
         ->check(CLI::Range(0, kMostEdge_px))
         ->capture_default_str();
-    app.add_flag("--mask", options.mask, "write NAME.mask.png beside each image");
+    app.add_flag("--mask", options.result.mask, "write NAME.mask.png beside each image");
     app.add_option("--format",
-                   options.format,
+                   options.result.format,
                    "tiff or png, of 16 bits with 65535 for white, or exr, of floats")
         ->check(CLI::IsMember({"tiff", "png", "exr"}))
         ->capture_default_str();
@@ -576,12 +327,12 @@ Action configure_correct(CLI::App& app) {
            "IMAGES", options->images, "raw images, or folders of them: TIFF, PNG, EXR, JPEG")
         ->required();
     add_light_options(app, *options);
-    app.add_option("-o,--output", options->folder, "the folder to write to")
+    app.add_option("-o,--output", options->result.folder, "the folder to write to")
         ->required()
         ->type_name("DIR");
-    add_camera_options(app, *options);
+    add_raw_options(app, *options);
     add_result_options(app, *options);
-    app.add_option("--jobs", options->jobs, "images at a time; by default the cores")
+    app.add_option("--jobs", options->result.jobs, "images at a time; by default the cores")
         ->check(CLI::Range(std::size_t{1}, kMostJobs))
         ->capture_default_str();
     app.add_flag("--json", options->json, "print DIR/correction.json");

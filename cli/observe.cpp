@@ -6,8 +6,8 @@
 #include "cli/in_order.h"
 #include "cli/outcome.h"
 #include "cli/progress.h"
-#include "cli/raw_image_file.h"
 #include "cli/survey_files.h"
+#include "cli/survey_image.h"
 #include "cli/words.h"
 #include "lightmap/navigation.h"
 #include "lightmap/observation.h"
@@ -36,7 +36,7 @@ struct Options {
     double trim = 0.1;
     bool normalise = false;
     bool demosaic = false;
-    RawFileOptions raw;
+    CameraNumbers camera;
     double memory_mb = 1000.0;
     int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     bool json = false;
@@ -110,7 +110,7 @@ class Pass {
             [&](std::size_t i) { return read_image(selection_.images[i]); },
             [&](std::size_t i, const RawImage& image) {
                 if (first_.width_px == 0) first_ = like(image);
-                check_same_size(image, first_);
+                require_size(image, first_.width_px, first_.height_px, "as the first image");
                 use(i, image);
                 line_.show(
                     "averaging",
@@ -132,7 +132,7 @@ class Pass {
 
   private:
     [[nodiscard]] RawImage read_image(const std::filesystem::path& file) const {
-        RawImage image = read_raw_image(file, options_.raw);
+        RawImage image = without_black(read_survey_image(file, options_.camera));
         if (std::ranges::any_of(image.samples, [](float s) { return std::isinf(s); }))
             throw InputError("a sample is infinite");
         if (options_.normalise) divide_by_own_mean(image);
@@ -378,7 +378,7 @@ Action configure_observe(CLI::App& app) {
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     add_average_options(app, *options);
-    add_raw_file_options(app, options->raw);
+    add_camera_options(app, options->camera);
     app.add_option("--memory",
                    options->memory_mb,
                    "for the images that a median or a trimmed mean holds at a time [MB]")

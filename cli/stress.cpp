@@ -15,12 +15,11 @@
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
 #include "spectral/integrator.h"
+#include "spectral/parallel.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -62,38 +61,20 @@ std::vector<StressFound> measured(const std::vector<StressCase>& cases,
                                   const PovRay& povray) {
     constexpr int kWaiting = 2;
     std::vector<StressFound> found(cases.size());
-    std::atomic<std::size_t> next = 0;
-    std::atomic<std::size_t> done = 0;
+    const StressRender render = [&](const Rig& rig, const StressCase& asked, const fs::path& to) {
+        return render_case(povray, options.stall_timeout_s, rig, asked, to);
+    };
     std::mutex mutex;  // of what follows
-    std::exception_ptr failure;
+    std::size_t done = 0;
     ProgressLine line;
-    const auto work = [&] {
-        for (std::size_t i = next++; i < cases.size(); i = next++) {
-            const StressRender render =
-                [&](const Rig& rig, const StressCase& asked, const fs::path& to) {
-                    return render_case(povray, options.stall_timeout_s, rig, asked, to);
-                };
-            found[i] = measure_stress(cases[i], fs::path(options.folder) / cases[i].name, render);
-            ++done;
-            const std::scoped_lock lock(mutex);
-            line.show(fmt::format("{} of {} cases", done.load(), cases.size()),
-                      static_cast<double>(done) / static_cast<double>(cases.size()));
-        }
-    };
-    std::vector<std::jthread> others;
-    const auto work_or_note = [&] {
-        try {
-            work();
-        } catch (...) {
-            next = cases.size();
-            const std::scoped_lock lock(mutex);
-            failure = std::current_exception();
-        }
-    };
-    for (int t = 1; t < kWaiting * options.jobs; ++t) others.emplace_back(work_or_note);
-    work_or_note();
-    others.clear();
-    if (failure) std::rethrow_exception(failure);
+    const auto threads = static_cast<std::size_t>(kWaiting * options.jobs);
+    parallel_for(cases.size(), threads, [&](std::size_t i, std::size_t) {
+        found[i] = measure_stress(cases[i], fs::path(options.folder) / cases[i].name, render);
+        const std::scoped_lock lock(mutex);
+        ++done;
+        line.show(fmt::format("{} of {} cases", done, cases.size()),
+                  static_cast<double>(done) / static_cast<double>(cases.size()));
+    });
     return found;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/survey_image.h"
 
+#include "cli/any_image.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
 
@@ -13,27 +14,63 @@
 
 namespace aphotic::cli {
 
+namespace fs = std::filesystem;
+
 namespace {
 
-// The order in which the file has its channels.
-std::vector<std::size_t> wanted_channels(const AnyImage& image, Mosaic mosaic) {
+[[noreturn]] void refuse_channels(const AnyImage& image, std::string_view allowed) {
+    throw InputError(fmt::format(
+        "found the channels {}; allowed: {}", fmt::join(image.channels, ", "), allowed));
+}
+
+// Where those that are wanted stand among the file's.
+std::vector<std::size_t> places_of(const AnyImage& image, Mosaic mosaic) {
     if (mosaic != Mosaic::None) {
-        if (image.channels.size() == 1) return {0};
-        throw InputError(fmt::format("found the channels {}; allowed with --bayer: one",
-                                     fmt::join(image.channels, ", ")));
+        if (image.channels.size() != 1) refuse_channels(image, "one, with --bayer");
+        return {0};
     }
-    std::vector<std::size_t> order;
+    std::vector<std::size_t> places;
     for (const std::string_view name : kChannelNames) {
         const auto found = std::ranges::find(image.channels, name);
         if (found == image.channels.end()) {
-            throw InputError(
-                fmt::format("found the channels {}; allowed: R, G, B, or one of a mosaic that "
-                            "--bayer names",
-                            fmt::join(image.channels, ", ")));
+            refuse_channels(image, "R, G, B, or one of a mosaic that --bayer names");
         }
-        order.push_back(static_cast<std::size_t>(found - image.channels.begin()));
+        places.push_back(static_cast<std::size_t>(found - image.channels.begin()));
     }
-    return order;
+    return places;
+}
+
+SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) {
+    const std::vector<std::size_t> places = places_of(image, camera.mosaic);
+    if (camera.mosaic != Mosaic::None && std::min(image.width_px, image.height_px) < 2) {
+        throw InputError(
+            fmt::format("found {} x {} pixels; allowed: 2 or more each way, of a mosaic",
+                        image.width_px,
+                        image.height_px));
+    }
+    const bool is_whole_numbers = image.full_scale > 0.0;
+    const double scale = is_whole_numbers ? image.full_scale : 1.0;
+    SurveyImage taken{.raw = {.width_px = image.width_px,
+                              .height_px = image.height_px,
+                              .mosaic = camera.mosaic,
+                              .samples = {}},
+                      .levels = {.black = camera.black_level},
+                      .description = image.description,
+                      .date_time = image.date_time};
+    const std::vector<float> planes = image.planes();
+    const std::size_t pixels = taken.raw.pixels();
+    taken.raw.samples.reserve(places.size() * pixels);
+    for (const std::size_t place : places) {
+        for (std::size_t i = place * pixels; i < (place + 1) * pixels; ++i) {
+            taken.raw.samples.push_back(static_cast<float>(planes[i] * scale));
+        }
+    }
+    if (is_whole_numbers) {
+        taken.levels.white = static_cast<float>(scale);
+        taken.rounding = 1.0 / std::sqrt(12.0);
+    }
+    if (camera.white_level) taken.levels.white = *camera.white_level;
+    return taken;
 }
 
 std::vector<std::string> channel_names(const RawImage& image) {
@@ -43,45 +80,52 @@ std::vector<std::string> channel_names(const RawImage& image) {
 
 }  // namespace
 
-SurveyImage read_survey_image(const std::filesystem::path& file,
-                              PlaneSize size,
-                              const CameraNumbers& camera) {
-    const AnyImage image = open_any_image(file);
-    if (image.width_px != size.width_px || image.height_px != size.height_px) {
-        throw InputError(fmt::format("found {} x {} pixels; allowed: {} x {}, as the map has",
-                                     image.width_px,
-                                     image.height_px,
-                                     size.width_px,
-                                     size.height_px));
-    }
-    const std::vector<std::size_t> order = wanted_channels(image, camera.mosaic);
-    const std::vector<float> planes = image.planes();
-    const auto scale = static_cast<float>(image.full_scale > 0.0 ? image.full_scale : 1.0);
-    SurveyImage taken{.raw = {.width_px = size.width_px,
-                              .height_px = size.height_px,
-                              .mosaic = camera.mosaic,
-                              .samples = {}},
-                      .levels = {.black = camera.black_level},
-                      .description = image.description,
-                      .date_time = image.date_time};
-    const std::size_t pixels = taken.raw.pixels();
-    taken.raw.samples.reserve(order.size() * pixels);
-    for (const std::size_t channel : order) {
-        for (std::size_t i = channel * pixels; i < (channel + 1) * pixels; ++i) {
-            taken.raw.samples.push_back(planes[i] * scale);
-        }
-    }
-    if (image.full_scale > 0.0) {
-        taken.levels.white = scale;
-        taken.rounding = 1.0 / std::sqrt(12.0);  // of whole numbers
-    }
-    if (camera.white_level) taken.levels.white = *camera.white_level;
-    return taken;
+void add_camera_options(CLI::App& app, CameraNumbers& camera) {
+    const auto wrong = [](const std::string& name) {
+        return mosaic_named(name)
+                   ? ""
+                   : fmt::format("found '{}'; allowed: RGGB, BGGR, GRBG, GBRG", name);
+    };
+    app.add_option_function<std::string>(
+           "--bayer",
+           [&camera](const std::string& name) { camera.mosaic = *mosaic_named(name); },
+           "the images are mosaics of one channel, named after the four pixels at the top left: "
+           "RGGB, BGGR, GRBG or GBRG")
+        ->check(CLI::Validator(wrong, "PATTERN"));
+    app.add_option("--black-level", camera.black_level, "the camera's number for no light")
+        ->capture_default_str();
 }
 
-void write_corrected(const std::filesystem::path& file,
-                     const RawImage& image,
-                     const SurveyImage& source) {
+SurveyImage read_survey_image(const fs::path& file, const CameraNumbers& camera) {
+    try {
+        return survey_image_of(open_any_image(file), camera);
+    } catch (const InputError& error) {
+        const std::string_view words = error.what();
+        const std::string name = file.string() + ": ";
+        throw InputError(std::string(words.starts_with(name) ? words.substr(name.size()) : words));
+    }
+}
+
+RawImage without_black(SurveyImage taken) {
+    for (float& sample : taken.raw.samples) sample -= taken.levels.black;
+    return std::move(taken.raw);
+}
+
+void require_size(const RawImage& image, int width_px, int height_px, std::string_view as) {
+    if (image.width_px == width_px && image.height_px == height_px) return;
+    throw InputError(fmt::format("found {} x {} pixels; allowed: {} x {}, {}",
+                                 image.width_px,
+                                 image.height_px,
+                                 width_px,
+                                 height_px,
+                                 as));
+}
+
+void print_skipped(const fs::path& file, const std::string& why) {
+    fmt::print(stderr, "aphotic: {}: {}; skipped\n", file.string(), why);
+}
+
+void write_corrected(const fs::path& file, const RawImage& image, const SurveyImage& source) {
     if (file.extension() == ".exr") {
         ExrAttributes attributes{{"aphotic:version", APHOTIC_VERSION}};
         if (!source.description.empty()) attributes.emplace_back("comments", source.description);
@@ -101,7 +145,7 @@ void write_corrected(const std::filesystem::path& file,
                      .date_time = source.date_time});
 }
 
-void write_mask(const std::filesystem::path& file, const CorrectedImage& image) {
+void write_mask(const fs::path& file, const CorrectedImage& image) {
     constexpr float kByte = 255.0F;
     std::vector<float> plane;
     plane.reserve(image.doubts.size());

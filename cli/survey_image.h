@@ -3,13 +3,15 @@
 // A survey's images as files: raw ones as cameras write them, corrected ones and their masks.
 #pragma once
 
-#include "cli/any_image.h"
 #include "lightmap/correction.h"
 #include "lightmap/raw_image.h"
+
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace aphotic::cli {
 
@@ -20,19 +22,30 @@ struct CameraNumbers {
     std::optional<float> white_level;  // none: the largest that the file's integers hold
 };
 
+// --bayer and --black-level.
+void add_camera_options(CLI::App& app, CameraNumbers& camera);
+
 struct SurveyImage {
-    RawImage raw;
+    RawImage raw;  // in the camera's own numbers
     SensorLevels levels;
     double rounding = 0.0;  // of its numbers, as a standard deviation: of floats, none
     std::string description;
     std::string date_time;
 };
 
-// An InputError when it cannot be read, is not of this size, or has not the channels that it
-// should.
+// An InputError when it cannot be read, or has not the channels that it should: one for a mosaic,
+// else R, G and B. Of many images one is passed over: messages do not name it, for print_skipped()
+// does.
 [[nodiscard]] SurveyImage read_survey_image(const std::filesystem::path& file,
-                                            PlaneSize size,
                                             const CameraNumbers& camera);
+
+// Its light alone: the black level is taken off.
+[[nodiscard]] RawImage without_black(SurveyImage taken);
+
+// An InputError unless it is of this size, "as the map has".
+void require_size(const RawImage& image, int width_px, int height_px, std::string_view as);
+
+void print_skipped(const std::filesystem::path& file, const std::string& why);
 
 // In the format that the extension names: .exr of floats, all others of 16 bits; with what the
 // source says of itself.

@@ -5,15 +5,14 @@
 #include "lightmap/atlas_plan.h"
 #include "spectral/atomic_file.h"
 #include "spectral/exr.h"
+#include "spectral/parallel.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <string>
-#include <thread>
 
 namespace aphotic {
 
@@ -51,28 +50,22 @@ std::vector<float> fitted(const AltitudeFitter& fitter,
                           int threads) {
     const std::size_t plane = maps.front().samples.size() / kChannels;
     std::vector<float> planes(kChannels * kFitted.size() * plane);
-    std::atomic<std::size_t> next = 0;
+    const std::size_t samples = kChannels * plane;
     constexpr std::size_t kAtOnce = 1024;
-    const auto fit_some = [&] {
+    const auto fit_some = [&](std::size_t part, std::size_t) {
         std::vector<double> signal(maps.size());
-        for (std::size_t from = next.fetch_add(kAtOnce); from < kChannels * plane;
-             from = next.fetch_add(kAtOnce)) {
-            for (std::size_t i = from; i < std::min(from + kAtOnce, kChannels * plane); ++i) {
-                std::ranges::transform(
-                    maps, signal.begin(), [&](const Lightmap& map) { return map.samples[i]; });
-                const AltitudeFit fit = fitter.fit(signal);
-                float* to = &planes[i / plane * kFitted.size() * plane + i % plane];
-                for (const double value : {fit.a, fit.b_per_m, fit.c, fit.residual}) {
-                    *to = static_cast<float>(value);
-                    to += plane;
-                }
+        for (std::size_t i = part * kAtOnce; i < std::min((part + 1) * kAtOnce, samples); ++i) {
+            std::ranges::transform(
+                maps, signal.begin(), [&](const Lightmap& map) { return map.samples[i]; });
+            const AltitudeFit fit = fitter.fit(signal);
+            float* to = &planes[i / plane * kFitted.size() * plane + i % plane];
+            for (const double value : {fit.a, fit.b_per_m, fit.c, fit.residual}) {
+                *to = static_cast<float>(value);
+                to += plane;
             }
         }
     };
-    std::vector<std::jthread> others;
-    for (int t = 1; t < threads; ++t) others.emplace_back(fit_some);
-    fit_some();
-    others.clear();
+    parallel_for((samples + kAtOnce - 1) / kAtOnce, static_cast<std::size_t>(threads), fit_some);
     return planes;
 }
 

@@ -5,12 +5,12 @@
 #include "scene_gen/geometry.h"
 #include "spectral/error.h"
 #include "spectral/light_family.h"
+#include "spectral/parallel.h"
 #include "spectral/refraction.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -20,7 +20,6 @@
 #include <numeric>
 #include <random>
 #include <span>
-#include <thread>
 
 namespace aphotic {
 namespace {
@@ -171,20 +170,7 @@ struct PlacedLamp {
     std::size_t spectrum;
 };
 
-// Rows are taken as threads come free; each thread has a workspace of its own.
-template <class Workspace, class Work>
-void for_each_row(int rows, std::span<Workspace> workspaces, const Work& work) {
-    std::atomic<int> next_row = 0;
-    const auto take_rows = [&](Workspace& workspace) {
-        for (int row = next_row++; row < rows; row = next_row++) work(row, workspace);
-    };
-    std::vector<std::jthread> others;
-    for (Workspace& workspace : workspaces.subspan(1)) {
-        others.emplace_back([&take_rows, &workspace] { take_rows(workspace); });
-    }
-    take_rows(workspaces.front());
-}
-
+// Of one thread.
 struct Workspace {
     std::array<RayBlock, kIndexNodes> rays;
     LampBlock lit;
@@ -370,7 +356,11 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
         }
     };
     std::vector<Workspace> workspaces(static_cast<std::size_t>(options_.threads));
-    for_each_row(count, std::span(workspaces), make_row);
+    parallel_for(static_cast<std::size_t>(count),
+                 workspaces.size(),
+                 [&](std::size_t row, std::size_t thread) {
+                     make_row(static_cast<int>(row), workspaces[thread]);
+                 });
     const auto sum_of = [&](int Outside::*kind) {
         long long sum = 0;
         for (const Workspace& work : workspaces) sum += work.outside.*kind;

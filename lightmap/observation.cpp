@@ -2,13 +2,13 @@
 #include "lightmap/observation.h"
 
 #include "spectral/error.h"
+#include "spectral/parallel.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <future>
 #include <limits>
 #include <numeric>
 
@@ -97,6 +97,7 @@ Estimate estimate_of(std::span<float> samples, Average average, double trim) {
 
 // A few places at a time, so that each image is read by whole cache lines.
 constexpr std::size_t kPlaces = 64;
+constexpr std::size_t kPlacesOfAPart = 64 * kPlaces;  // that a thread takes at once
 
 struct Places {
     std::size_t first = 0;
@@ -157,15 +158,12 @@ Observed average_of(std::span<const std::vector<float>> images,
     assert(trim >= 0.0 && trim < 0.5 && threads > 0);
     const std::size_t samples = images.empty() ? 0 : images.front().size();
     Observed observed = unobserved(samples);
-    const std::size_t share = samples / static_cast<std::size_t>(threads) + 1;
-    std::vector<std::future<void>> parts;
-    for (std::size_t first = 0; first < samples; first += share) {
-        parts.push_back(std::async(std::launch::async, [&, first] {
-            const Places places{.first = first, .last = std::min(first + share, samples)};
-            average_places(images, places, average, trim, observed);
-        }));
-    }
-    for (std::future<void>& part : parts) part.get();
+    const std::size_t parts = (samples + kPlacesOfAPart - 1) / kPlacesOfAPart;
+    parallel_for(parts, static_cast<std::size_t>(threads), [&](std::size_t part, std::size_t) {
+        const std::size_t first = part * kPlacesOfAPart;
+        const Places places{.first = first, .last = std::min(first + kPlacesOfAPart, samples)};
+        average_places(images, places, average, trim, observed);
+    });
     return observed;
 }
 

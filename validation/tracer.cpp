@@ -3,6 +3,7 @@
 
 #include "spectral/error.h"
 #include "spectral/light_family.h"
+#include "spectral/parallel.h"
 #include "spectral/refraction.h"
 
 #include <fmt/format.h>
@@ -10,11 +11,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <thread>
 
 namespace aphotic {
 
@@ -587,15 +586,10 @@ std::size_t Tracer::planes() const {
     return (options_.signals ? kChannels : 0U) + options_.planes_nm.size();
 }
 
-// Rows are taken as threads come free.
 void Tracer::for_each_row(int count, const std::function<void(int)>& work) const {
-    std::atomic<int> next_row = 0;
-    const auto take_rows = [&] {
-        for (int row = next_row++; row < count; row = next_row++) work(row);
-    };
-    std::vector<std::jthread> others;
-    for (int t = 1; t < options_.threads; ++t) others.emplace_back(take_rows);
-    take_rows();
+    parallel_for(static_cast<std::size_t>(count),
+                 static_cast<std::size_t>(options_.threads),
+                 [&](std::size_t row, std::size_t) { work(static_cast<int>(row)); });
 }
 
 std::vector<double> Tracer::rows(int first_row, int count) const {

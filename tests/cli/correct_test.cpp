@@ -494,6 +494,11 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     refused(with({"raw/a.tif", "-o", "raw"}), "would be overwritten by the result");
     refused(with({"raw", "-o", "raw"}), "found the folder to write to");
     refused({"raw", "-o", "out", "--map", "none.exr"}, "none.exr");
+    fs::create_directories(path("dark"));
+    const std::vector<std::uint16_t> black(kPixels, static_cast<std::uint16_t>(kBlackLevel));
+    write_file(path("dark/a.tif"), tiff_of(black, kWidth, kHeight, ""));
+    refused(with({"dark", "-o", "out", "--bayer", "GRBG", "--black-level", "60"}),
+            "no gain can be taken from these images");
     fs::create_directories(path("empty"));
     refused(with({"empty", "-o", "out"}), "empty: the folder holds no image");
     write_file(path("nav.eic"), "a.tif two 0 0\n");

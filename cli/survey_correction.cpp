@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/survey_correction.h"
+
+#include "cli/progress.h"
+#include "spectral/atomic_file.h"
+#include "spectral/digest.h"
+#include "spectral/error.h"
+#include "spectral/parallel.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <mutex>
+
+namespace aphotic::cli {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+fs::path result_of(const SurveyFile& file, const ResultOptions& options) {
+    return file.name.string() + (options.format == "tiff" ? ".tif" : "." + options.format);
+}
+
+namespace {
+
+// Samples that the format cannot hold are marked; the writer clips them.
+void mark_clipped(CorrectedImage& result) {
+    const std::size_t pixels = result.doubts.size();
+    for (std::size_t i = 0; i < result.image.samples.size(); ++i) {
+        const float sample = result.image.samples[i];
+        if (sample < 0.0F || sample > 1.0F) result.doubts[i % pixels] |= kClipped;
+    }
+}
+
+fs::path mask_of(const SurveyFile& file) {
+    return file.name.string() + ".mask.png";
+}
+
+// By pixels, for each kind.
+Json doubts_in(const std::vector<std::uint8_t>& doubts) {
+    Json counts;
+    for (const auto& [name, bit] : kDoubts) {
+        counts[std::string(name)] =
+            std::ranges::count_if(doubts, [bit = bit](std::uint8_t d) { return (d & bit) != 0; });
+    }
+    return counts;
+}
+
+// The whole work on an image; what is noted of it.
+Json correct_image(const SurveyFile& file,
+                   const Sled& sled,
+                   const Survey& survey,
+                   const ResultOptions& options,
+                   const SurveyGain& gain) {
+    const SurveyImage taken = read_survey_image(file.source, survey.camera);
+    const PlaneSize size = survey.light.size;
+    require_size(taken.raw, size.width_px, size.height_px, "as the map has");
+    NoiseLimit limit = options.limit;
+    limit.read_noise = options.read_noise.value_or(taken.rounding);
+    if (!options.limits_noise) limit = {.share = options.limit.share};
+    const Correction correction{
+        .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = limit};
+    CorrectedImage result = corrected(taken.raw, survey.light.map(sled), correction);
+    if (result.image.mosaic != Mosaic::None && !options.keep_mosaic) result = demosaiced(result);
+    const std::vector<std::uint8_t> edges = survey.light.edges(sled, options.edge_px);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (edges[i] != 0) result.doubts[i] |= kEdge;
+    }
+    if (options.format != "exr") mark_clipped(result);
+    make_folder((options.folder / file.name).parent_path());
+    if (options.mask) write_mask(options.folder / mask_of(file), result);
+    write_corrected(options.folder / result_of(file, options), result.image, taken);
+    return doubts_in(result.doubts);
+}
+
+// Of all that an image's result depends on.
+std::string digest_of(const SurveyFile& file,
+                      const Sled& sled,
+                      const std::string& settings_sha256,
+                      const SurveyGain& gain) {
+    return sha256_of_text(fmt::format("{} {} {} {} {} {} {}",
+                                      settings_sha256,
+                                      fmt::join(gain.gain, " "),
+                                      sled.altitude_m,
+                                      sled.pitch_rad,
+                                      sled.roll_rad,
+                                      fs::file_size(file.source),
+                                      fs::last_write_time(file.source).time_since_epoch().count()));
+}
+
+}  // namespace
+
+Outcome correct_survey(const Survey& survey,
+                       const SurveyGain& gain,
+                       const ResultOptions& options,
+                       const std::string& settings_sha256,
+                       Journal& journal) {
+    Outcome outcome;
+    std::vector<std::string> whys(survey.files.size());
+    std::size_t count = 0;
+    std::mutex mutex;
+    ProgressLine line;
+    parallel_for(survey.files.size(), options.jobs, [&](std::size_t i, std::size_t) {
+        const SurveyFile& file = survey.files[i];
+        const std::string name = file.name.string();
+        try {
+            const Sled sled = survey.light.pose(file.source);
+            const std::string digest = digest_of(file, sled, settings_sha256, gain);
+            std::unique_lock lock(mutex);
+            if (journal.is_done(name, digest)) {
+                ++outcome.kept;
+            } else {
+                lock.unlock();
+                const Json doubts = correct_image(file, sled, survey, options, gain);
+                lock.lock();
+                std::vector<fs::path> files{result_of(file, options)};
+                if (options.mask) files.push_back(mask_of(file));
+                journal.note(name, digest, files, doubts);
+                ++outcome.corrected;
+            }
+        } catch (const InputError& error) {
+            const std::scoped_lock lock(mutex);
+            whys[i] = error.what();
+            line.wipe();
+            print_skipped(file.source, whys[i]);
+        }
+        const std::scoped_lock lock(mutex);
+        ++count;
+        line.show(fmt::format("{} of {} images", count, survey.files.size()),
+                  static_cast<double>(count) / static_cast<double>(survey.files.size()));
+    });
+    for (std::size_t i = 0; i < whys.size(); ++i) {
+        if (whys[i].empty()) {
+            outcome.done.push_back(survey.files[i].name.string());
+        } else {
+            outcome.skipped.push_back({survey.files[i].source.string(), whys[i]});
+        }
+    }
+    return outcome;
+}
+
+}  // namespace aphotic::cli
