@@ -4,6 +4,7 @@
 #include "lightmap/atlas.h"
 
 #include "cli/command.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/progress.h"
@@ -246,7 +247,7 @@ Action configure_atlas(CLI::App& app) {
                    options->tolerance,
                    "of these, only as many as keep interpolation between bins within this relative "
                    "error, off the cones' edges")
-        ->check(CLI::Range(kLeastTolerance, 1.0));
+        ->check(in_range(kLeastTolerance, 1.0));
     app.add_option("--export",
                    options->exports,
                    "beside the atlas, over all altitudes at the rig's own attitude and water: RGGB "
@@ -255,7 +256,7 @@ Action configure_atlas(CLI::App& app) {
         ->check(CLI::IsMember({"bayer", "exponential"}))
         ->option_text("bayer,exponential");
     app.add_option("--threads", options->map.threads, "threads to map with; by default the cores")
-        ->check(CLI::Range(1, kMostThreads))
+        ->check(in_range(1, kMostThreads))
         ->capture_default_str();
     app.add_flag("--json", options->json, "say what was made as JSON");
     app.footer(

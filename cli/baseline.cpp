@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/in_order.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/progress.h"
 #include "cli/survey_files.h"
@@ -169,27 +170,27 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options) {
                    options.sigma,
                    "of the blur of illumination-reflectance and homomorphic, as a share of the\n"
                    "image's width")
-        ->check(CLI::Range(1e-4, 10.0))
+        ->check(in_range(1e-4, 10.0))
         ->capture_default_str();
     app.add_option("--low", options.low, "homomorphic: the gain of what is slow")
-        ->check(CLI::Range(0.0, 10.0))
+        ->check(in_range(0.0, 10.0))
         ->capture_default_str();
     app.add_option("--high", options.high, "homomorphic: the gain of what is quick")
-        ->check(CLI::Range(0.0, 10.0))
+        ->check(in_range(0.0, 10.0))
         ->capture_default_str();
     app.add_option("--tiles", options.tiles, "local-equalisation: tiles across and down")
-        ->check(CLI::Range(1, 256))
+        ->check(in_range(1, 256))
         ->capture_default_str();
     app.add_option("--clip",
                    options.clip,
                    "local-equalisation: the most a bin counts, in mean bins; 1 changes nothing")
-        ->check(CLI::Range(1.0, 1e6))
+        ->check(in_range(1.0, 1e6))
         ->capture_default_str();
     app.add_option("--order", options.order, "of the polynomials")
-        ->check(CLI::Range(0, 12))
+        ->check(in_range(0, 12))
         ->capture_default_str();
     app.add_option("--bin", options.bin_m, "binned-polynomial: the width of a bin of altitude [m]")
-        ->check(CLI::Range(1e-3, 1e4))
+        ->check(in_range(1e-3, 1e4))
         ->capture_default_str();
 }
 
@@ -212,7 +213,7 @@ Action configure_baseline(CLI::App& app) {
     add_baseline_options(app, options->baseline);
     add_camera_options(app, options->camera);
     app.add_option("--jobs", options->jobs, "images at a time")
-        ->check(CLI::Range(1, 1024))
+        ->check(in_range(1, 1024))
         ->capture_default_str();
     app.add_flag("--json", options->json, "print what was done as JSON");
     app.footer(

@@ -3,6 +3,7 @@
 // aphotic compare A B: how far image A is from the reference B, channel by channel.
 #include "cli/any_image.h"
 #include "cli/command.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
@@ -245,12 +246,12 @@ Action configure_compare(CLI::App& app) {
         ->required();
     app.add_option("REFERENCE", options->reference, "what it should be")->required();
     app.add_option("--bound", options->bound, "the largest |e| that is allowed")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->capture_default_str();
     app.add_option("--black",
                    options->black,
                    "what counts as black, as a share of the reference's largest sample")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(in_range(0.0, 1.0))
         ->capture_default_str();
     app.add_flag(
            "--scale{image}",

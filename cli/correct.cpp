@@ -4,6 +4,7 @@
 // own altitude and attitude.
 #include "cli/command.h"
 #include "cli/journal.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/survey_correction.h"
@@ -253,7 +254,7 @@ void add_light_options(CLI::App& app, Options& options) {
                    "least,most altitude; images from beyond are skipped")
         ->delimiter(',')
         ->expected(2)
-        ->check(CLI::NonNegativeNumber);
+        ->check(not_negative());
 }
 
 void add_raw_options(CLI::App& app, Options& options) {
@@ -267,11 +268,11 @@ void add_raw_options(CLI::App& app, Options& options) {
                    options.result.read_noise,
                    "its noise without light, in the camera's numbers; by default what rounding to "
                    "whole numbers makes, 0.3, and none for floats")
-        ->check(CLI::NonNegativeNumber);
+        ->check(not_negative());
     app.add_option("--electrons",
                    options.result.limit.electrons_per_number,
                    "electrons a number, for shot noise; 0 leaves it aside")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->capture_default_str();
 }
 
@@ -287,28 +288,28 @@ void add_result_options(CLI::App& app, Options& options) {
                    "taken from the survey")
         ->delimiter(',')
         ->expected(1, kChannels)
-        ->check(CLI::PositiveNumber);
+        ->check(positive());
     app.add_option("--middle",
                    options.middle,
                    "what the survey's middle pixel comes out as, such as 0.2, grey; by default the "
                    "colour of the rig's floor, with --map 0.2")
-        ->check(CLI::PositiveNumber);
+        ->check(positive());
     app.add_option("--gain-images", options.gain_images, "images that the gain is taken from")
-        ->check(CLI::Range(std::size_t{1}, kMostImages))
+        ->check(in_range(1, kMostImages))
         ->capture_default_str();
     app.add_option("--least-light",
                    options.result.limit.share,
                    "the gain is held where the map is under this share of its brightest")
-        ->check(CLI::Range(kLeastShare, 1.0))
+        ->check(in_range(kLeastShare, 1.0))
         ->capture_default_str();
     app.add_option("--most-noise",
                    options.result.limit.relative,
                    "and where the middle's noise would be over this share of it")
-        ->check(CLI::Range(kLeastNoise, kMostNoise))
+        ->check(in_range(kLeastNoise, kMostNoise))
         ->capture_default_str();
     app.add_option(
            "--edge-px", options.result.edge_px, "pixels about a cone's edge that are doubtful")
-        ->check(CLI::Range(0, kMostEdge_px))
+        ->check(in_range(0, kMostEdge_px))
         ->capture_default_str();
     app.add_flag("--mask", options.result.mask, "write NAME.mask.png beside each image");
     app.add_option("--format",
@@ -333,7 +334,7 @@ Action configure_correct(CLI::App& app) {
     add_raw_options(app, *options);
     add_result_options(app, *options);
     app.add_option("--jobs", options->result.jobs, "images at a time; by default the cores")
-        ->check(CLI::Range(std::size_t{1}, kMostJobs))
+        ->check(in_range(1, kMostJobs))
         ->capture_default_str();
     app.add_flag("--json", options->json, "print DIR/correction.json");
     app.footer(

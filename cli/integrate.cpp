@@ -3,6 +3,7 @@
 // aphotic integrate DIR: the frames of a folder to images, wherever they were rendered; with --rig,
 // to those of a rig of other water, lamps, materials or sensor.
 #include "cli/command.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "scene_gen/reintegration.h"
@@ -96,7 +97,7 @@ Action configure_integrate(CLI::App& app) {
     app.add_option("--tolerance",
                    options->tolerance,
                    "with --rig: relative error that no pixel's signal is to exceed")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(in_range(0.0, 1.0))
         ->needs(rig)
         ->capture_default_str();
     app.add_option("-o,--output",

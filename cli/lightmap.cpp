@@ -4,6 +4,7 @@
 #include "lightmap/lightmap.h"
 
 #include "cli/command.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/words.h"
 #include "lightmap/planes.h"
@@ -176,11 +177,11 @@ void add_sled_options(CLI::App& app, Options& options) {
     constexpr double kMostAltitude_m = 10000.0;
     constexpr double kMostTilt_deg = 89.9;
     app.add_option("--altitude-m", options.altitude_m, "instead of the rig's altitude")
-        ->check(CLI::Range(kLeastAltitude_m, kMostAltitude_m));
+        ->check(in_range(kLeastAltitude_m, kMostAltitude_m));
     app.add_option("--pitch-deg", options.pitch_deg, "instead of the rig's pitch, bow up")
-        ->check(CLI::Range(-kMostTilt_deg, kMostTilt_deg));
+        ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
     app.add_option("--roll-deg", options.roll_deg, "instead of the rig's roll, starboard down")
-        ->check(CLI::Range(-kMostTilt_deg, kMostTilt_deg));
+        ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
 }
 
 }  // namespace
@@ -209,13 +210,13 @@ Action configure_lightmap(CLI::App& app) {
     app.add_option("--error",
                    options->map.error,
                    "relative error that no signal off the cones' edges is to exceed")
-        ->check(CLI::Range(kLeastError, kMostError))
+        ->check(in_range(kLeastError, kMostError))
         ->capture_default_str();
     app.add_option("--preview", options->preview_file, "a picture to look at, too")
         ->type_name("FILE.png");
     add_preview_options(app, options->preview);
     app.add_option("--threads", options->map.threads, "threads to map with; by default the cores")
-        ->check(CLI::Range(1, kMostThreads))
+        ->check(in_range(1, kMostThreads))
         ->capture_default_str();
     app.add_flag("--json", options->json, "say what was made as JSON");
     app.footer(

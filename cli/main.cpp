@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
     for (const Command& command : kCommands) {
         CLI::App* sub = app.add_subcommand(command.name, command.summary);
         const Action action = command.configure(*sub);
-        aphotic::cli::refuse_nan(*sub);
+        aphotic::cli::add_common_checks(*sub);
         sub->callback([&chosen, action, sub] {
             chosen = [action, sub] {
                 aphotic::cli::require_separate_files(*sub);

@@ -4,6 +4,7 @@
 // pattern of light that they share.
 #include "cli/command.h"
 #include "cli/in_order.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/progress.h"
 #include "cli/survey_files.h"
@@ -344,7 +345,7 @@ void add_average_options(CLI::App& app, Options& options) {
     app.add_option("--trim",
                    options.trim,
                    "the share of samples that is left out at either end, of a trimmed mean")
-        ->check(CLI::Range(0.0, 0.49))
+        ->check(in_range(0.0, 0.49))
         ->capture_default_str();
     app.add_flag("--normalise",
                  options.normalise,
@@ -372,20 +373,20 @@ Action configure_observe(CLI::App& app) {
         ->type_name("MAP.exr")
         ->required();
     app.add_option("--altitude", options->altitude_m, "the altitude to observe [m]")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->required();
     app.add_option("--within", options->within_m, "how far an image may be off it [m]")
-        ->check(CLI::NonNegativeNumber)
+        ->check(not_negative())
         ->capture_default_str();
     add_average_options(app, *options);
     add_camera_options(app, options->camera);
     app.add_option("--memory",
                    options->memory_mb,
                    "for the images that a median or a trimmed mean holds at a time [MB]")
-        ->check(CLI::PositiveNumber)
+        ->check(positive())
         ->capture_default_str();
     app.add_option("--jobs", options->jobs, "images read at a time")
-        ->check(CLI::Range(1, 1024))
+        ->check(in_range(1, 1024))
         ->capture_default_str();
     app.add_flag("--json", options->json, "print what was done as JSON");
     app.footer(

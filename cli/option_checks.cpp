@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -36,19 +38,65 @@ bool takes_place_of(const fs::path& file, const fs::path& named) {
     return inner.starts_with(outer);
 }
 
+// What is no number the parser says itself.
+std::optional<double> number_in(const std::string& text) {
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (end == text.c_str()) return std::nullopt;
+    return number;
+}
+
+CLI::Validator number_that(std::function<bool(double)> is_allowed, const std::string& allowed) {
+    return CLI::Validator(
+        [is_allowed, allowed](const std::string& text) {
+            const std::optional<double> number = number_in(text);
+            const bool is_good = !number || std::isnan(*number) || is_allowed(*number);
+            return is_good ? "" : fmt::format("found {}; allowed: {}", text, allowed);
+        },
+        allowed);
+}
+
+void refuse_nan(CLI::Option& option) {
+    option.check(
+        [](const std::string& text) -> std::string {
+            const std::optional<double> number = number_in(text);
+            return number && std::isnan(*number) ? "found nan; allowed: a number" : "";
+        },
+        "");
+}
+
+void require_extension(CLI::Option& option, const std::string& extension) {
+    option.check(
+        [extension](const std::string& text) {
+            return fs::path(text).extension() == extension
+                       ? ""
+                       : fmt::format("found {}; allowed: a name that ends in {}", text, extension);
+        },
+        "");
+}
+
 }  // namespace
 
-void refuse_nan(CLI::App& command) {
+CLI::Validator in_range(double least, double most) {
+    return number_that([=](double number) { return number >= least && number <= most; },
+                       fmt::format("{} to {}", least, most));
+}
+
+CLI::Validator positive() {
+    return number_that([](double number) { return number > 0.0 && std::isfinite(number); },
+                       "more than 0");
+}
+
+CLI::Validator not_negative() {
+    return number_that([](double number) { return number >= 0.0 && std::isfinite(number); },
+                       "0 or more");
+}
+
+void add_common_checks(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
-        if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
-        option->check(
-            [](const std::string& text) -> std::string {
-                char* end = nullptr;
-                const double number = std::strtod(text.c_str(), &end);
-                return end != text.c_str() && std::isnan(number) ? "found nan; allowed: a number"
-                                                                 : "";
-            },
-            "");
+        const std::string type = option->get_type_name();
+        if (type.find("FLOAT") != std::string::npos) refuse_nan(*option);
+        if (is_written(*option) && type.ends_with(".exr")) require_extension(*option, ".exr");
     }
 }
 

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a parser of command lines does not see: numbers that are none, and files that would be
-// written in the place of what they are made from.
+// What a parser of command lines does not see: numbers out of their range or that are none, and
+// files that would be written in the place of what they are made from or under the name of another
+// format.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace aphotic::cli {
 
-// Every option of the command that takes a number refuses NaN, which no range does.
-void refuse_nan(CLI::App& command);
+// A number from least to most; over 0; from 0 up. The last two are finite.
+[[nodiscard]] CLI::Validator in_range(double least, double most);
+[[nodiscard]] CLI::Validator positive();
+[[nodiscard]] CLI::Validator not_negative();
+
+// Every option of the command that takes a number refuses NaN, which no range does; one that writes
+// a file of one format, whose type name is such as FILE.exr, refuses other extensions.
+void add_common_checks(CLI::App& command);
 
 // Once parsed: throws InputError when a file to be written is one that another option names, or
 // one that stands in a folder that another option names.

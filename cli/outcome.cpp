@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/outcome.h"
 
+#include "cli/option_checks.h"
 #include "cli/progress.h"
 #include "cli/words.h"
 #include "plugin/interruption.h"
@@ -32,7 +33,7 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
         ->transform(CLI::CheckedTransformer(kWhites))
         ->option_text("lamp|image|none");
     app.add_option("--preview-stops", options.stops, "the preview brighter by 2^STOPS")
-        ->check(CLI::Range(-kMostStops, kMostStops))
+        ->check(in_range(-kMostStops, kMostStops))
         ->capture_default_str();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/planning.h"
 
+#include "cli/option_checks.h"
 #include "cli/progress.h"
 #include "plugin/scene_survey.h"
 #include "scene_gen/rig_reader.h"
@@ -125,7 +126,7 @@ void add_povray_options(CLI::App& app, std::string& povray, double& stall_timeou
            stall_timeout_s,
            "seconds after which POV-Ray is stopped when it neither prints anything nor uses "
            "the processor")
-        ->check(CLI::Range(kLeast_s, kMost_s))
+        ->check(in_range(kLeast_s, kMost_s))
         ->type_name("S")
         ->capture_default_str();
 }
@@ -140,18 +141,18 @@ void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
                                      options.tolerance,
                                      "relative error that no pixel's signal is to exceed; as few "
                                      "wavelengths are fitted as keep it")
-                          ->check(CLI::Range(0.0, 1.0))
+                          ->check(in_range(0.0, 1.0))
                           ->capture_default_str();
     auto* fitted = app.add_option("--fitted",
                                   options.fitted,
                                   "instead, so many fitted wavelengths, whatever they keep")
-                       ->check(CLI::Range(1, kMostFitted))
+                       ->check(in_range(1, kMostFitted))
                        ->excludes(tolerance);
     auto* bands = app.add_option("--bands",
                                  options.bands,
                                  "instead, so many equal bands over the sensor's range, each at "
                                  "its middle")
-                      ->check(CLI::Range(1, kMostBands))
+                      ->check(in_range(1, kMostBands))
                       ->excludes(tolerance)
                       ->excludes(fitted);
     app.add_option("--wavelengths",
@@ -167,7 +168,7 @@ void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
                    "a plan that serves several rigs; by default what this one sees")
         ->delimiter(',')
         ->expected(2)
-        ->check(CLI::Range(kLeastPath_m, kMostPath_m));
+        ->check(in_range(kLeastPath_m, kMostPath_m));
 }
 
 void add_planning_options(CLI::App& app, PlanningOptions& options) {
@@ -190,7 +191,7 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
                    options.antialias,
                    "so many by so many further rays to each pixel: edges are smooth, and no longer "
                    "those that the reference traces; costs their number in time")
-        ->check(CLI::Range(0, kMostAntialias));
+        ->check(in_range(0, kMostAntialias));
     app.add_option("--povray-ini",
                    options.povray_ini,
                    "a setting of POV-Ray's own that changes its speed, such as Bounding_Method=2")
@@ -199,13 +200,13 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
     app.add_option("--per-frame",
                    options.per_frame,
                    "wavelengths that share a frame at most, one a channel")
-        ->check(CLI::Range(1, 3))
+        ->check(in_range(1, 3))
         ->capture_default_str();
     app.add_option("--pixel-shift",
                    options.pixel_shift,
                    "how far apart behind a port, in pixels at the image's corner, wavelengths may "
                    "lie that share a frame")
-        ->check(CLI::Range(0.0, kMostShift_px))
+        ->check(in_range(0.0, kMostShift_px))
         ->capture_default_str();
     app.add_option(
            "--emitter-lamps",
@@ -214,7 +215,7 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
            "many as the distance asks for")
         ->delimiter(',')
         ->expected(2)
-        ->check(CLI::Range(1, kMostLamps));
+        ->check(in_range(1, kMostLamps));
 }
 
 PlannedRender plan_rig(const PlanningOptions& options) {

@@ -4,6 +4,7 @@
 #include "plugin/render.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
@@ -77,7 +78,7 @@ Action configure_render(CLI::App& app) {
         ->required()
         ->type_name("DIR");
     app.add_option("--jobs", options->jobs, "frames at a time; by default the cores")
-        ->check(CLI::Range(1, kMostJobs))
+        ->check(in_range(1, kMostJobs))
         ->capture_default_str();
     add_preview_options(app, options->preview);
     add_needs_option(app, options->planning.ignore_needs);

@@ -4,6 +4,7 @@
 #include "validation/stress.h"
 
 #include "cli/command.h"
+#include "cli/option_checks.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/progress.h"
@@ -126,13 +127,13 @@ Action configure_stress(CLI::App& app) {
         ->required()
         ->type_name("DIR");
     app.add_option("--width", options->width_px, "of the images, in pixels")
-        ->check(CLI::Range(1, kMostWidth_px))
+        ->check(in_range(1, kMostWidth_px))
         ->capture_default_str();
     app.add_option("--only", options->only, "the cases alone whose folders' names hold this")
         ->type_name("TEXT");
     add_povray_options(app, options->povray, options->stall_timeout_s);
     app.add_option("--jobs", options->jobs, "cases at a time, two for each; by default the cores")
-        ->check(CLI::Range(1, kMostJobs))
+        ->check(in_range(1, kMostJobs))
         ->capture_default_str();
     app.add_flag("--json", options->json, "print stress.json");
     app.footer(

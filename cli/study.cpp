@@ -6,6 +6,7 @@
 #include "cli/any_image.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
@@ -348,7 +349,7 @@ Action configure_study(CLI::App& app) {
     app.add_option("--tolerance",
                    options->tolerance,
                    "the largest error for which a setting is recommended")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(in_range(0.0, 1.0))
         ->capture_default_str();
     app.add_flag("--quick",
                  options->quick,

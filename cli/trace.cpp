@@ -3,6 +3,7 @@
 // aphotic trace RIG -o DIR: the same images by the reference tracer, without POV-Ray.
 #include "cli/command.h"
 #include "cli/needs_check.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
@@ -113,7 +114,7 @@ Action configure_trace(CLI::App& app) {
         ->required()
         ->type_name("DIR");
     app.add_option("--threads", options->threads, "threads to trace with; by default the cores")
-        ->check(CLI::Range(1, kMostThreads))
+        ->check(in_range(1, kMostThreads))
         ->capture_default_str();
     add_preview_options(app, options->preview);
     add_needs_option(app, options->planning.ignore_needs);

@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/needs_check.h"
+#include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
@@ -187,7 +188,7 @@ Action configure_validate(CLI::App& app) {
                    "a finished render to validate, instead of rendering: its wavelengths count")
         ->type_name("DIR");
     app.add_option("--jobs", options->jobs, "frames and threads at a time; by default the cores")
-        ->check(CLI::Range(1, kMostJobs))
+        ->check(in_range(1, kMostJobs))
         ->capture_default_str();
     add_needs_option(app, options->planning.ignore_needs);
     app.add_flag("--json", options->json, "print validation.json");

@@ -104,21 +104,45 @@ TEST_F(CommandErrors, NotANumberIsNoNumber) {
     EXPECT_FALSE(fs::exists(folder_.path() / "map.exr"));
 }
 
+TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
+    struct Case {
+        std::vector<std::string> arguments;
+        std::string message;
+    };
+    const std::vector<Case> cases{
+        {{"observe", "raw", "--nav", "n", "-o", "m.exr", "--altitude", "2", "--trim", "0.5"},
+         "--trim: found 0.5; allowed: 0 to 0.49"},
+        {{"observe", "raw", "--nav", "n", "-o", "m.exr", "--altitude", "-1"},
+         "--altitude: found -1; allowed: more than 0"},
+        {{"observe", "raw", "--nav", "n", "-o", "m.exr", "--altitude", "2", "--within", "inf"},
+         "--within: found inf; allowed: 0 or more"},
+        {{"trace", "rig.toml", "-o", "out", "--threads", "0"},
+         "--threads: found 0; allowed: 1 to "},
+        {{"lightmap", "rig.toml", "-o", "map.png"},
+         "--output: found map.png; allowed: a name that ends in .exr"}};
+    for (const Case& wrong : cases) {
+        const CommandResult run = run_aphotic(folder_.path(), wrong.arguments);
+        EXPECT_EQ(run.status, kBadInput) << wrong.message;
+        EXPECT_NE(run.err.find(wrong.message), std::string::npos) << run.err;
+    }
+    EXPECT_FALSE(fs::exists(folder_.path() / "map.png"));
+}
+
 TEST_F(CommandErrors, NoResultTakesThePlaceOfWhatItIsMadeFrom) {
     const std::string rig = read_text_file(folder_.path() / "rig.toml");
-    expect_one_message(run_aphotic(folder_.path(), {"lightmap", "rig.toml", "-o", "rig.toml"}),
+    expect_one_message(run_aphotic(folder_.path(), {"plan", "rig.toml", "--plot", "rig.toml"}),
                        kBadInput,
-                       "--output: found rig.toml, which RIG names too");
+                       "--plot: found rig.toml, which RIG names too");
     EXPECT_EQ(read_text_file(folder_.path() / "rig.toml"), rig);
     fs::create_directory(folder_.path() / "raw");
-    write_file(folder_.path() / "raw/a.tif", "raw");
-    write_file(folder_.path() / "nav.csv", "image,altitude_m\na.tif,2\n");
+    write_file(folder_.path() / "raw/a.exr", "raw");
+    write_file(folder_.path() / "nav.csv", "image,altitude_m\na.exr,2\n");
     expect_one_message(
         run_aphotic(folder_.path(),
-                    {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "raw/a.tif"}),
+                    {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "raw/a.exr"}),
         kBadInput,
-        "--output: found raw/a.tif, which IMAGES names too");
-    EXPECT_EQ(read_text_file(folder_.path() / "raw/a.tif"), "raw");
+        "--output: found raw/a.exr, which IMAGES names too");
+    EXPECT_EQ(read_text_file(folder_.path() / "raw/a.exr"), "raw");
 }
 
 TEST_F(CommandErrors, HelpAndVersionAreNoErrors) {
