@@ -7,10 +7,10 @@
 // Where the loader can choose (ELF with glibc on x86-64), each loop is compiled for wider vectors
 // too. They change no bit: the same IEEE operations, and none is fused. Unoptimised code has no
 // vectors to choose from, and sanitizers are not ready when the loader asks.
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define APHOTIC_IS_SANITIZED 1
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define APHOTIC_IS_SANITIZED 1
 #endif
 #endif
