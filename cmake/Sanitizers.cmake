@@ -1,6 +1,6 @@
 # For the whole tree, since instrumented and plain objects in one program report faults that
 # are none. A finding ends the program, so that no test passes over it.
-# Every program of ours links to aphotic_sanitizers, which names the leaks that are not ours.
+# Every program of ours links to aphotic_sanitizers, which names the findings that are not ours.
 add_library(aphotic_sanitizers INTERFACE)
 
 if(APHOTIC_SANITIZE)
@@ -8,6 +8,10 @@ if(APHOTIC_SANITIZE)
                         -fno-omit-frame-pointer)
     add_link_options(-fsanitize=${APHOTIC_SANITIZE})
 
-    add_library(aphotic_known_leaks OBJECT cmake/known_leaks.cpp)
-    target_sources(aphotic_sanitizers INTERFACE $<TARGET_OBJECTS:aphotic_known_leaks>)
+    if(APHOTIC_SANITIZE STREQUAL "thread")
+        add_library(aphotic_known_findings OBJECT cmake/uninstrumented.cpp)
+    else()
+        add_library(aphotic_known_findings OBJECT cmake/known_leaks.cpp)
+    endif()
+    target_sources(aphotic_sanitizers INTERFACE $<TARGET_OBJECTS:aphotic_known_findings>)
 endif()

@@ -82,6 +82,27 @@ void sum_signals(const Manifest& manifest, Block& block) {
     }
 }
 
+// Weights and exposures that no plan of ours has may lead beyond what floats hold.
+void require_finite(const fs::path& folder, const Manifest& manifest, const Block& block) {
+    const auto at =
+        std::ranges::find_if_not(block.samples, [](float x) { return std::isfinite(x); });
+    if (at == block.samples.end()) return;
+    const auto index = static_cast<std::size_t>(at - block.samples.begin());
+    const auto width = static_cast<std::size_t>(manifest.width_px);
+    const std::size_t channel = index / block.plane;
+    const std::size_t pixel = index % block.plane;
+    throw RunError(fmt::format(
+        "{}: {} comes out as {} at column {}, row {}; allowed: weights and exposures that keep it "
+        "finite",
+        manifest_path(folder).string(),
+        channel < kChannels
+            ? std::string(kChannelNames[channel])
+            : fmt::format("{} nm", manifest.wavelengths[channel - kChannels].lambda_nm),
+        *at,
+        pixel % width,
+        static_cast<std::size_t>(block.first_row) + pixel / width));
+}
+
 void require_noted_frames(const fs::path& folder, const Manifest& manifest) {
     for (const ManifestFrame& frame : manifest.frames) {
         const fs::path file = image_path(folder, frame);
@@ -120,6 +141,7 @@ void integrate_into(const fs::path& folder,
         block.samples.resize(block.plane * (kChannels + manifest.wavelengths.size()));
         read_radiance(folder, manifest, block);
         sum_signals(manifest, block);
+        require_finite(folder, manifest, block);
         images.write_rows(block.rows, std::move(block.samples));
         if (report) report(static_cast<double>(row + block.rows) / height_px);
     }

@@ -2,6 +2,7 @@
 #include "spectral/manifest.h"
 
 #include "spectral/atomic_file.h"
+#include "spectral/digest.h"
 #include "spectral/error.h"
 
 #include <fmt/format.h>
@@ -17,10 +18,24 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* kFormat = "aphotic-manifest-2";
+constexpr const char* kFormat = "aphotic-manifest-3";
 // A thousand times what the manifest of 100 wavelengths takes.
 constexpr std::size_t kMostManifestBytes = 64 * kMebibyte;
 constexpr int kLargestImagePx = 16384;
+
+constexpr const char* kChecksum = "sha256";
+
+// Titles are the user's: bytes that are no UTF-8 are replaced, not refused.
+std::string text_of(const Json& json) {
+    constexpr int kIndent = 2;
+    return json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
+}
+
+// Of all that the manifest holds beside it.
+std::string checksum_of(Json json) {
+    json.erase(kChecksum);
+    return sha256_of_text(text_of(json));
+}
 
 // Reads keys of one JSON object, and says which one is wrong.
 class Reader {
@@ -265,15 +280,23 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
                                        {"flux", w.flux},
                                        {"reflectance", w.reflectance}});
     }
-    // Titles are the user's: bytes that are no UTF-8 are replaced, not refused.
-    constexpr int kIndent = 2;
-    const std::string text = json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
-    write_text_file(manifest_path(folder), text + "\n");
+    json[kChecksum] = checksum_of(json);
+    write_text_file(manifest_path(folder), text_of(json) + "\n");
 }
 
 Manifest read_manifest(const fs::path& folder) {
     const fs::path file = manifest_path(folder);
-    return parse_manifest(file.string(), read_text_file(file, kMostManifestBytes));
+    const std::string text = read_text_file(file, kMostManifestBytes);
+    Manifest manifest = parse_manifest(file.string(), text);
+    const Json json = Json::parse(text);
+    if (Reader(json, file.string()).text(kChecksum) != checksum_of(json)) {
+        throw InputError(fmt::format(
+            "{}: {}: is not that of the rest, which was changed since it was written; allowed: a "
+            "manifest as aphotic wrote it",
+            file.string(),
+            kChecksum));
+    }
+    return manifest;
 }
 
 Manifest parse_manifest(const std::string& file_name, std::string_view text) {

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <functional>
 #include <limits>
@@ -356,6 +357,28 @@ TEST_F(Faults, AClockSetBackChangesNothing) {
         EXPECT_EQ(contents(file("out") / "povray" / "frames"), before);
         EXPECT_EQ(integrate().status, 0);
     }
+}
+
+// What it says would still mean something: other weights, another promise.
+TEST_F(Faults, AManifestEditedByHandIsRefused) {
+    ASSERT_EQ(render().status, 0);
+    const std::string image = sha256_of_file(file("out") / "image.exr");
+    const std::string good = read_text_file(file("out") / "manifest.json");
+    for (const char* key : {"weight", "exposure_log2", "frame_error", "rig_title"}) {
+        SCOPED_TRACE(key);
+        nlohmann::ordered_json json = nlohmann::ordered_json::parse(good);
+        if (std::string_view(key) == "weight") json["wavelengths"][0][key][1] = 1.0;
+        if (std::string_view(key) == "exposure_log2") json["wavelengths"][0][key] = 3;
+        if (std::string_view(key) == "frame_error") json[key] = 1e-12;
+        if (std::string_view(key) == "rig_title") json[key] = "another";
+        write_file(file("out") / "manifest.json", json.dump());
+        expect_message(integrate(), kBadInput, "manifest.json: sha256: is not that of the rest");
+        expect_message(render(), kBadInput, "manifest.json: sha256: is not that of the rest");
+        EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
+    }
+    // Laid out anew it says what it said.
+    write_file(file("out") / "manifest.json", nlohmann::ordered_json::parse(good).dump());
+    EXPECT_EQ(integrate().status, 0);
 }
 
 TEST_F(Faults, AManifestThatCannotBeReadIsNotWrittenOver) {

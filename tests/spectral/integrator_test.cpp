@@ -325,6 +325,24 @@ TEST(Integrator, NamesTheFrameAndThePixelOfABadSample) {
     }
 }
 
+TEST(Integrator, RefusesWhatNoFloatHolds) {
+    Render signal(3, 2);
+    signal.add_frame("f", [](int, int row, int x) { return row == 1 && x == 2 ? 4.0F : 1.0F; });
+    signal.add_wavelength(450.0, {1.0, 0x1p125, 1.0}, 0, "R", 0);
+    EXPECT_EQ(signal.error(), "no error");
+    signal.manifest().wavelengths[0].weight[1] = 0x1p126;
+    EXPECT_EQ(signal.error(),
+              (signal.folder() / "manifest.json").string() +
+                  ": G comes out as inf at column 2, row 1; allowed: weights and exposures that "
+                  "keep it finite");
+
+    Render radiance(1, 1);
+    radiance.add_frame("f", [](int, int, int) { return 1.0F; });
+    radiance.add_wavelength(450.0, {0x1p-10, 0x1p-10, 0x1p-10}, 0, "R", -130);
+    EXPECT_NE(radiance.error().find(": R comes out as inf at column 0, row 0"),
+              std::string::npos);
+}
+
 TEST(Integrator, RefusesAFrameOfAnotherSize) {
     Render render(4, 3);
     fill(render);

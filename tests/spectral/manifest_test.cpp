@@ -70,14 +70,11 @@ Manifest of_a_user_scene() {
 std::string error_after(const std::function<void(Json&)>& change) {
     Json json = some_json();
     change(json);
-    const TempFolder folder;
-    const fs::path file = folder.path() / "manifest.json";
-    write_file(file, json.dump());
     try {
-        static_cast<void>(read_manifest(folder.path()));
+        static_cast<void>(parse_manifest("manifest.json", json.dump()));
     } catch (const InputError& error) {
         const std::string message = error.what();
-        const std::string where = file.string() + ": ";
+        const std::string where = "manifest.json: ";
         return message.starts_with(where) ? message.substr(where.size()) : "elsewhere: " + message;
     }
     return "no error";
@@ -215,7 +212,8 @@ TEST(Manifest, ThatIsNoJsonIsRefused) {
 
 TEST(Manifest, NamesEachKeyThatIsMissing) {
     EXPECT_EQ(error_after([](Json&) {}), "no error");
-    const Json whole = some_json();
+    Json whole = some_json();
+    whole.erase("sha256");  // is asked for of files alone
     for (const auto& [key, value] : whole.items()) {
         const std::string message = error_after([gone = key](Json& json) { json.erase(gone); });
         EXPECT_TRUE(message.starts_with(key + ": found nothing; allowed: ")) << message;
@@ -234,9 +232,38 @@ TEST(Manifest, NamesEachKeyThatIsMissing) {
     }
 }
 
+// Whatever changed: what is read from a folder is what was written to it.
+TEST(Manifest, ChangedSinceItWasWrittenIsRefused) {
+    const TempFolder folder;
+    write_manifest(folder.path(), some_manifest());
+    const fs::path file = folder.path() / "manifest.json";
+    const auto error_of = [&](const std::function<void(Json&)>& change) -> std::string {
+        Json json = some_json();
+        change(json);
+        write_file(file, json.dump());
+        try {
+            static_cast<void>(read_manifest(folder.path()));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    EXPECT_EQ(error_of([](Json&) {}), "no error") << "laid out anew";
+    const std::string refused = file.string() +
+                                ": sha256: is not that of the rest, which was changed since it was "
+                                "written; allowed: a manifest as aphotic wrote it";
+    EXPECT_EQ(error_of([](Json& json) { json["rig_title"] = "another"; }), refused);
+    EXPECT_EQ(error_of([](Json& json) { json["tolerance"] = 0.5; }), refused);
+    EXPECT_EQ(error_of([](Json& json) { json["frames"][1]["image_sha256"] = "d4"; }), refused);
+    EXPECT_EQ(error_of([](Json& json) { json["wavelengths"][1]["weight"][2] = 0.5; }), refused);
+    EXPECT_EQ(error_of([](Json& json) { json["more"] = 1; }), refused);
+    EXPECT_EQ(error_of([](Json& json) { json.erase("sha256"); }),
+              file.string() + ": sha256: found nothing; allowed: a text");
+}
+
 TEST(Manifest, OfAnotherFormatIsRefused) {
     EXPECT_EQ(error_with("format", "aphotic-manifest-1"),
-              "format: found \"aphotic-manifest-1\"; allowed: \"aphotic-manifest-2\"");
+              "format: found \"aphotic-manifest-1\"; allowed: \"aphotic-manifest-3\"");
 }
 
 TEST(Manifest, NamesEachKeyOfTheWrongType) {
