@@ -52,11 +52,11 @@ fs::path rig_of(const fs::path& folder, int width_px, int height_px) {
     return folder / "rig.toml";
 }
 
-// A command with AddressSanitizer takes several times the memory of the one that is shipped.
-#if defined(__SANITIZE_ADDRESS__)
+// A command with a sanitizer takes several times the memory of the one that is shipped.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kIsSanitized = true;
 #elif defined(__has_feature)
-constexpr bool kIsSanitized = __has_feature(address_sanitizer);
+constexpr bool kIsSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
 #else
 constexpr bool kIsSanitized = false;
 #endif
