@@ -160,7 +160,13 @@ StressCase case_of(const toml::table& base,
                     .tables = tables_of(words),
                     .peak_log2 = words["peak_log2"].value<int>(),
                     .wavelengths_nm = {},
-                    .expected = expected};
+                    .expected = expected,
+                    .says = {}};
+    if (const auto* says = extreme["says"].as_array()) {
+        for (const toml::node& words_of : *says) {
+            made.says.push_back(words_of.value_or(std::string()));
+        }
+    }
     if (const auto* wavelengths = words["wavelengths_nm"].as_array()) {
         for (const toml::node& nm : *wavelengths) made.wavelengths_nm.push_back(nm.value_or(0.0));
     }
@@ -312,6 +318,14 @@ std::string_view answer_word(StressAnswer answer) {
             return "grows";
     }
     return "";
+}
+
+bool StressFound::as_expected() const {
+    if (answer != asked.expected) return false;
+    return answer != StressAnswer::Refused ||
+           std::ranges::any_of(asked.says, [this](const std::string& words) {
+               return said.find(words) != std::string::npos;
+           });
 }
 
 std::vector<StressCase> stress_cases(int width_px) {

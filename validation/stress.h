@@ -57,6 +57,7 @@ struct StressCase {
     std::optional<int> peak_log2;        // of the frames' exposure, if not the usual
     std::vector<double> wavelengths_nm;  // none: as a render plans them
     StressAnswer expected = StressAnswer::Holds;
+    std::vector<std::string> says;  // one of these stands in the words of a refusal
 };
 
 // width_px: of every image whose size is not what the case is about; the field of view stays.
@@ -74,7 +75,8 @@ struct StressFound {
     double traced_signal = 0.0;
     std::size_t on_edges = 0;
 
-    [[nodiscard]] bool as_expected() const { return answer == asked.expected; }
+    // A refusal for another reason, such as a POV-Ray that fails, is not.
+    [[nodiscard]] bool as_expected() const;
 };
 
 // How a case is rendered through POV-Ray: its rig, its name's folder. Throws InputError where a

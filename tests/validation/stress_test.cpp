@@ -71,7 +71,8 @@ TEST_F(Stress, EveryCaseHasAFolderOfItsOwnAndAllGroupsAreThere) {
     }
     EXPECT_EQ(names.size(), cases_.size());
     EXPECT_EQ(groups,
-              (std::set<std::string>{"water", "geometry", "cones", "spectra", "images", "frames"}));
+              (std::set<std::string>{
+                  "water", "geometry", "cones", "spectra", "images", "frames", "sums"}));
 }
 
 TEST_F(Stress, APerfectRenderHolds) {
@@ -146,13 +147,27 @@ TEST_F(Stress, ARefusalKeepsItsWords) {
         });
     EXPECT_EQ(found.answer, StressAnswer::Refused);
     EXPECT_NE(found.said.find("rig.toml:2: sled.altitude_m"), std::string::npos) << found.said;
+    EXPECT_TRUE(found.as_expected());
+}
+
+TEST_F(Stress, ARefusalForAnotherReasonIsNotAsExpected) {
+    StressCase misspelt = case_of(cases_, "altitude-m-100000");
+    misspelt.rig.replace(misspelt.rig.find("altitude_m"), 10, "altitude_n");
+    const StressFound found = measure_stress(misspelt, folder_.path() / "case", {});
+    EXPECT_EQ(found.answer, StressAnswer::Refused);
+    EXPECT_FALSE(found.as_expected()) << found.said;
+    for (const StressCase& one : cases_) {
+        if (one.expected != StressAnswer::Refused) continue;
+        EXPECT_FALSE(one.says.empty()) << one.name;
+    }
 }
 
 TEST_F(Stress, TablesSayWhatWasFoundAndWhatWasExpected) {
     StressFound refused;
     refused.asked = case_of(cases_, "altitude-m-100000");
     refused.answer = StressAnswer::Refused;
-    refused.said = "/some/where/" + refused.asked.name + "/rig.toml:2: no | yes";
+    refused.said = "/some/where/" + refused.asked.name +
+                   "/rig.toml:2: sled.altitude_m: found no | yes, .frame.123.part.exr";
     StressFound surprise;
     surprise.asked = case_of(cases_, "altitude-m-1");
     surprise.answer = StressAnswer::Grows;
@@ -160,7 +175,10 @@ TEST_F(Stress, TablesSayWhatWasFoundAndWhatWasExpected) {
     write_stress(std::vector{refused, surprise}, folder_.path());
 
     const std::string text = read_text_file(folder_.path() / "stress.md");
-    EXPECT_NE(text.find("refused: `rig.toml:2: no \\| yes`"), std::string::npos) << text;
+    EXPECT_NE(
+        text.find("refused: `rig.toml:2: sled.altitude_m: found no \\| yes, .frame.part.exr`"),
+        std::string::npos)
+        << text;
     EXPECT_NE(text.find("not finite | **NOT AS EXPECTED:** grows |"), std::string::npos) << text;
     const auto json = nlohmann::json::parse(read_text_file(folder_.path() / "stress.json"));
     ASSERT_EQ(json.size(), 2U);
