@@ -57,6 +57,18 @@ bool still_holds(const fs::path& folder,
            is_whole(image_path(folder, earlier), manifest);
 }
 
+// Drawn, and not yet noted when the earlier run was killed. What stands under the name of a frame
+// that is noted as pending was made for its scene, for render() clears these names first. Of a
+// user's scene nobody checked that it was still the same.
+bool only_lacks_its_note(const fs::path& folder,
+                         const ManifestFrame& earlier,
+                         const ManifestFrame& wanted,
+                         const SceneSet& set) {
+    return !earlier.done() && earlier.scene_sha256 == wanted.scene_sha256 &&
+           set.scene_file.empty() && fs::exists(image_path(folder, earlier)) &&
+           is_whole(image_path(folder, earlier), set.manifest);
+}
+
 void take_away(const fs::path& file) {
     std::error_code error;
     fs::remove(file, error);
@@ -119,6 +131,8 @@ RenderResult render(const PovRay& povray,
         }
         if (before && still_holds(folder, *before, frame, set.manifest)) {
             frame.image_sha256 = before->image_sha256;
+        } else if (before && only_lacks_its_note(folder, *before, frame, set)) {
+            frame.image_sha256 = sha256_of_file(image_path(folder, frame));
         } else {
             missing.push_back(frame);
         }
@@ -126,6 +140,7 @@ RenderResult render(const PovRay& povray,
     result.rendered = missing.size();
     result.kept = set.scenes.size() - missing.size();
     take_away_what_is_past(folder, earlier, result.manifest);
+    for (const ManifestFrame& frame : missing) take_away(image_path(folder, frame));
     write_scenes(folder, set);
     write_manifest(folder, result.manifest);
 

@@ -18,6 +18,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <regex>
 #include <sstream>
 
 namespace aphotic {
@@ -328,6 +329,41 @@ TEST_F(Faults, ExactlyTheFramesThatAreNotWholeAreRenderedAgain) {
             EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
         }
     }
+}
+
+// As SIGKILL leaves it between a frame's end and its note.
+TEST_F(Faults, AFrameThatOnlyLacksItsNoteIsKept) {
+    ASSERT_EQ(render().status, 0);
+    const std::string image = sha256_of_file(file("out") / "image.exr");
+    const auto forget = [&] {
+        Manifest manifest = read_manifest(file("out"));
+        manifest.frames[1].image_sha256.clear();
+        write_manifest(file("out"), manifest);
+    };
+    forget();
+    EXPECT_NE(render().out.find("0 frames rendered, 2 kept"), std::string::npos);
+    EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
+    EXPECT_TRUE(read_manifest(file("out")).frames[1].done());
+    for (const SpoiltFrame& spoilt : kSpoiltFrames) {
+        SCOPED_TRACE(spoilt.how);
+        forget();
+        spoilt.spoil(frame(1), frame(0));
+        EXPECT_NE(render().out.find("1 frame rendered, 1 kept"), std::string::npos);
+    }
+}
+
+// What stands under its name was drawn for a scene that the rig no longer asks for.
+TEST_F(Faults, AFrameOfAnEarlierRigIsNeverKept) {
+    ASSERT_EQ(render().status, 0);
+    const std::string image = sha256_of_file(file("out") / "image.exr");
+    const std::string rig = read_text_file(file("rig.toml"));
+    write_file(
+        file("rig.toml"),
+        std::regex_replace(rig, std::regex(R"(altitude_m\s*=\s*[0-9.]+)"), "altitude_m = 2.5"));
+    // Killed before its first frame ends: the manifest of the new rig, the frames of the old.
+    expect_message(render(povray_that("exit 1")), kRunFailed, "POV-Ray");
+    EXPECT_NE(render().out.find("2 frames rendered, 0 kept"), std::string::npos);
+    EXPECT_NE(sha256_of_file(file("out") / "image.exr"), image);
 }
 
 // A frame of the same size, samples in order, and from another plan.

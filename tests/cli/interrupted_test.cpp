@@ -68,15 +68,14 @@ std::vector<pid_t> processes_in(const fs::path& folder) {
     return pids;
 }
 
-// By frame, the inode of those that the manifest notes as done: a frame that is rendered again is
+// By frame, the inode of those that are there, noted or not: a frame that is rendered again is
 // another file.
 std::map<std::string, ino_t> done_frames(const fs::path& out) {
     std::map<std::string, ino_t> done;
     if (!fs::exists(manifest_path(out))) return done;
     for (const ManifestFrame& frame : read_manifest(out).frames) {
         struct stat file {};
-        if (frame.done() && ::stat(image_path(out, frame).c_str(), &file) == 0)
-            done[frame.name] = file.st_ino;
+        if (::stat(image_path(out, frame).c_str(), &file) == 0) done[frame.name] = file.st_ino;
     }
     return done;
 }

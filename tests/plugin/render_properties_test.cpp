@@ -92,6 +92,7 @@ void for_each_rig(const std::function<void(const Rig&, const Radiance&)>& claim)
         claim(rig, rendered(rig));
         if (++lit == kRigs || testing::Test::HasFailure()) return;
     }
+    ADD_FAILURE() << "only " << lit << " of the rigs light what they see";
 }
 
 // Relative to the expected sample, or to where the darker of both exposures loses digits.
