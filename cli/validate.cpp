@@ -117,6 +117,7 @@ void require_place_and_room(const Options& options, const PlannedRender& planned
                           validation_needs(image_size(scenes.manifest), options.jobs));
     } else {
         const Manifest rendered = read_manifest(options.rendered_folder);
+        require_rendered(options.rendered_folder);
         needs = validation_needs(image_size(rendered), options.jobs);
     }
     require_room(needs, options.folder, options.planning.ignore_needs);
