@@ -12,6 +12,7 @@
 #include "spectral/error.h"
 #include "spectral/manifest.h"
 #include "spectral/output_images.h"
+#include "spectral/row_blocks.h"
 #include "spectral/traced_image.h"
 #include "validation/tracer.h"
 
@@ -44,7 +45,6 @@ void require_no_render(const std::filesystem::path& folder) {
 }
 
 ExitStatus trace_rig(const Options& options) {
-    constexpr int kRows = 64;
     require_no_render(options.folder);
     const PlannedRender planned = plan_rig(options.planning);
     if (!planned.rig.scene.empty()) {
@@ -80,10 +80,11 @@ ExitStatus trace_rig(const Options& options) {
                          {kRendererAttribute, kReferenceTracer}});
     {
         ProgressLine line;
-        for (int row = 0; row < camera.height_px; row += kRows) {
-            const int rows = std::min(kRows, camera.height_px - row);
-            const std::vector<double> block = tracer.rows(row, rows);
-            images.write_rows(rows, {block.begin(), block.end()});
+        const int block = traced_rows(camera.width_px, tracer.planes(), options.threads);
+        for (int row = 0; row < camera.height_px; row += block) {
+            const int rows = std::min(block, camera.height_px - row);
+            const std::vector<double> samples = tracer.rows(row, rows);
+            images.write_rows(rows, {samples.begin(), samples.end()});
             line.show("tracing", static_cast<double>(row + rows) / camera.height_px);
         }
     }
