@@ -148,11 +148,11 @@ ExitStatus validate_rig(const Options& options) {
     }
     const fs::path images = is_rendered ? options.rendered_folder : options.folder;
 
-    if (planned.plan.scene.user_scene) {
+    if (rendering.manifest.scene) {
         fmt::print(
             stderr,
             "aphotic: the reference traces the rig's floor and objects; it does not read {}\n",
-            planned.plan.scene.user_scene->file.string());
+            rendering.manifest.scene->file);
     }
     ValidationReport report = [&] {
         ProgressLine line;
@@ -161,6 +161,7 @@ ExitStatus validate_rig(const Options& options) {
                         options.jobs,
                         [&](double share) { line.show("tracing", share); });
     }();
+    if (rendering.manifest.scene) report.scene_file = rendering.manifest.scene->file;
     report.aphotic_version = APHOTIC_VERSION;
     report.povray_version = rendering.manifest.povray_version;
     report.lamp_signal = rendering.manifest.lamp_signal;

@@ -273,7 +273,7 @@ std::string made_with(const ValidationReport& report) {
 void write_validation_html(const ValidationReport& report, const std::filesystem::path& file) {
     report.check();
     std::string page = header(report);
-    page += html_section("rig", "The rig", rig_in_words(report.rig));
+    page += html_section("rig", "The rig", rig_in_words(report.rig, report.scene_file));
     page += html_section("images", "Both images", images(report));
     page += map_section(report);
     page += html_section("profiles", "Profiles", profiles(report));
