@@ -45,7 +45,6 @@ void require_no_render(const std::filesystem::path& folder) {
 }
 
 ExitStatus trace_rig(const Options& options) {
-    require_no_render(options.folder);
     const PlannedRender planned = plan_rig(options.planning);
     if (!planned.rig.scene.empty()) {
         fmt::print(stderr,
@@ -68,7 +67,7 @@ ExitStatus trace_rig(const Options& options) {
     const auto start = std::chrono::steady_clock::now();
     const Tracer tracer(planned.rig, request);
     const FolderLock lock = claim_folder(options.folder);
-    require_no_render(options.folder);  // as it stands now that nobody changes it
+    require_no_render(options.folder);
     set_exr_threads(options.threads);
     OutputImages images(options.folder,
                         camera.width_px,
