@@ -2,9 +2,11 @@
 //
 // aphotic compare A B: how far image A is from the reference B, channel by channel.
 #include "cli/any_image.h"
+#include "cli/channel_pairs.h"
 #include "cli/command.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
+#include "cli/words.h"
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
 #include "validation/comparison_page.h"
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace aphotic::cli {
 namespace {
@@ -25,7 +28,8 @@ struct Options {
     std::string reference;
     double bound = 6e-4;
     double black = 1e-6;
-    std::string scale;  // "image", "per-channel", or none
+    std::optional<std::string> channels;  // that the user names
+    std::string scale;                    // "image", "per-channel", or none
     std::string output;
     std::string report;
     bool json = false;
@@ -35,17 +39,16 @@ bool has_channel(const AnyImage& image, const std::string& channel) {
     return std::ranges::find(image.channels, channel) != image.channels.end();
 }
 
-// What aphotic observe says of its averages. One factor cannot scale a count as well.
-bool is_about_samples(const std::string& channel) {
-    return channel.starts_with("count.") || channel.starts_with("stderr.");
-}
-
-std::vector<std::string> common_channels(const AnyImage& a, const AnyImage& b, bool scaled) {
-    std::vector<std::string> common;
-    std::ranges::copy_if(a.channels, std::back_inserter(common), [&](const std::string& name) {
-        return has_channel(b, name) && !(scaled && is_about_samples(name));
-    });
-    return common;
+ChannelPairs channels_of(const AnyImage& a, const AnyImage& b, const Options& options) {
+    ChannelPairs pairs = options.channels
+                             ? named_channels(*options.channels, a.channels, b.channels)
+                             : pair_channels(a.channels, b.channels, !options.scale.empty());
+    if (!pairs.compared.empty()) return pairs;
+    throw InputError(fmt::format("{} has the channels {}, {} has {}: none in common",
+                                 options.image,
+                                 fmt::join(a.channels, ", "),
+                                 options.reference,
+                                 fmt::join(b.channels, ", ")));
 }
 
 std::vector<float> samples_of(const AnyImage& image, const std::string& channel) {
@@ -115,13 +118,14 @@ ComparedChannel compare_channel(const AnyImage& a,
     for (const float sample : channel.reference) {
         if (std::isfinite(sample)) brightest = std::max(brightest, std::abs(sample));
     }
+    channel.black = options.black * brightest;
     channel.comparison =
         compare_planes(name,
                        channel.image,
                        std::vector<double>(channel.reference.begin(), channel.reference.end()),
                        a.width_px,
                        channel.marks,
-                       options.black * brightest,
+                       channel.black,
                        options.bound);
     return channel;
 }
@@ -139,21 +143,19 @@ ComparedImages compare_images(const Options& options) {
                                      b.height_px,
                                      options.reference));
     }
-    const std::vector<std::string> channels = common_channels(a, b, !options.scale.empty());
-    if (channels.empty()) {
-        throw InputError(fmt::format("{} has the channels {}, {} has {}: none in common",
-                                     options.image,
-                                     fmt::join(a.channels, ", "),
-                                     options.reference,
-                                     fmt::join(b.channels, ", ")));
-    }
+    const ChannelPairs pairs = channels_of(a, b, options);
+    const std::vector<std::string>& channels = pairs.compared;
     const std::vector<double> scales = scales_of(a, b, channels, options);
     ComparedImages images{.image = options.image,
                           .reference = options.reference,
                           .width_px = a.width_px,
                           .height_px = a.height_px,
+                          .black = options.black,
                           .scaled = !options.scale.empty(),
-                          .channels = {}};
+                          .channels = {},
+                          .only_in_image = pairs.only_in_image,
+                          .only_in_reference = pairs.only_in_reference,
+                          .left_aside = pairs.left_aside};
     for (std::size_t c = 0; c < channels.size(); ++c) {
         ComparedChannel channel = compare_channel(a, b, channels[c], scales[c], options);
         if (options.report.empty()) {
@@ -166,22 +168,26 @@ ComparedImages compare_images(const Options& options) {
     return images;
 }
 
-nlohmann::ordered_json json_of(const Options& options, const ComparedImages& images, bool holds) {
+nlohmann::ordered_json json_of(const Options& options, const ComparedImages& images) {
     nlohmann::ordered_json json{{"image", options.image},
                                 {"reference", options.reference},
                                 {"bound", options.bound},
                                 {"black", options.black},
-                                {"holds", holds},
+                                {"holds", images.holds()},
+                                {"only_in_image", images.only_in_image},
+                                {"only_in_reference", images.only_in_reference},
+                                {"left_aside", images.left_aside},
                                 {"channels", nlohmann::ordered_json::array()}};
     if (images.scaled) json["scaled"] = options.scale;
     for (const ComparedChannel& channel : images.channels) {
         const Comparison& c = channel.comparison;
         json["channels"].push_back({{"name", c.name},
                                     {"holds", c.holds()},
+                                    {"floor", channel.black},
                                     {"max_error", c.max_error},
                                     {"column", c.column},
                                     {"row", c.row},
-                                    {"percentile_99_9", c.percentile_999},
+                                    {"percentile_999", c.percentile_999},
                                     {"rms_error", c.rms_error},
                                     {"mean_error", c.mean_error},
                                     {"compared", c.compared},
@@ -210,16 +216,38 @@ void print_channel(const ComparedChannel& channel, bool scaled) {
                notes);
 }
 
+void print_unpaired(const Options& options, const ComparedImages& images) {
+    const auto print = [](const std::vector<std::string>& channels, const std::string& words) {
+        if (!channels.empty()) fmt::print("{}: {}\n", words, fmt::join(channels, " "));
+    };
+    print(images.only_in_image, "only in " + options.image);
+    print(images.only_in_reference, "only in " + options.reference);
+    print(images.left_aside, "left aside");
+}
+
+void print_verdict(const Options& options, const ComparedImages& images) {
+    fmt::print("{} is {} {:.3g} of {}{}\n",
+               options.image,
+               images.are_within() ? "within" : "NOT within",
+               options.bound,
+               options.reference,
+               images.scaled ? ", but for its scale" : "");
+    if (images.unpaired() > 0) {
+        fmt::print(
+            "but {} WITHOUT a partner in the other image; --channels names those to compare\n",
+            counted(images.unpaired(), "channel"));
+    }
+}
+
 ExitStatus compare(const Options& options) {
     const ComparedImages images = compare_images(options);
-    const bool holds = std::ranges::all_of(
-        images.channels, [](const ComparedChannel& c) { return c.comparison.holds(); });
-    const std::string json = dumped(json_of(options, images, holds)) + "\n";
+    const ExitStatus status = images.holds() ? kDone : kAnswerIsNo;
+    const std::string json = dumped(json_of(options, images)) + "\n";
     if (!options.output.empty()) write_text_file(options.output, json);
     if (!options.report.empty()) write_text_file(options.report, comparison_html(images));
     if (options.json) {
         fmt::print("{}", json);
-        return holds ? kDone : kAnswerIsNo;
+        return status;
     }
     fmt::print("{:>18}  {:>9}  {:>9}  {:>9}  {:>9}  worst pixel{}\n",
                "",
@@ -229,13 +257,9 @@ ExitStatus compare(const Options& options) {
                "mean",
                images.scaled ? "  / scale" : "");
     for (const ComparedChannel& channel : images.channels) print_channel(channel, images.scaled);
-    fmt::print("{} is {} {:.3g} of {}{}\n",
-               options.image,
-               holds ? "within" : "NOT within",
-               options.bound,
-               options.reference,
-               images.scaled ? ", but for its scale" : "");
-    return holds ? kDone : kAnswerIsNo;
+    print_unpaired(options, images);
+    print_verdict(options, images);
+    return status;
 }
 
 }  // namespace
@@ -253,6 +277,11 @@ Action configure_compare(CLI::App& app) {
                    "what counts as black, as a share of the reference's largest sample")
         ->check(in_range(0.0, 1.0))
         ->capture_default_str();
+    app.add_option("--channels",
+                   options->channels,
+                   "compare these alone, such as R,G,B; by default all, and each is to be in\n"
+                   "both images")
+        ->type_name("NAMES");
     app.add_flag(
            "--scale{image}",
            options->scale,
@@ -263,13 +292,16 @@ Action configure_compare(CLI::App& app) {
         ->type_name("FILE");
     app.add_option("--report",
                    options->report,
-                   "write a page to FILE: both images in false colours, their difference, profiles")
+                   "write a page to FILE: both images in false colours, the errors, profiles")
         ->type_name("FILE.html");
     app.add_flag("--json", options->json, "print the numbers as JSON");
     app.footer(
-        "For every channel that both have, e = (a - b) / max(|b|, black). Exit status 0 when all\n"
-        "|e| are within the bound, 1 when not. Samples that a channel count.NAME of either image\n"
-        "says were never observed, as aphotic observe leaves it, are told and not compared.");
+        "For every channel, e = (a - b) / max(|b|, black). Exit status 0 when all |e| are within\n"
+        "the bound and every channel is in both images, 1 when not. Opacity and what aphotic "
+        "observe\n"
+        "says of its averages (count.NAME, stderr.NAME) need no partner. Samples of a count of 0 "
+        "were\n"
+        "never observed: they are told and not compared.");
     return [options] { return compare(*options); };
 }
 

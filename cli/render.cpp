@@ -30,7 +30,7 @@ struct Options {
 ExitStatus render_rig(const Options& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const SceneSet scenes = scenes_of(planned, options.planning);
-    const PovRay povray = find_povray(options.planning.povray);
+    const PovRay povray = povray_for(planned, options.planning, options.folder);
     require_place_for_scenes(options.folder, scenes);
     require_room(needs_of(scenes, options.folder, options.jobs),
                  options.folder,

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/rendered_images.h"
 
+#include "spectral/error.h"
 #include "spectral/exr.h"
 #include "spectral/integrator.h"
+#include "spectral/traced_image.h"
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <string>
@@ -24,6 +28,17 @@ std::vector<float> radiance_planes(const fs::path& file, const std::vector<std::
 }
 
 }  // namespace
+
+void require_rendered(const fs::path& folder) {
+    for (const char* name : {"image.exr", "spectral.exr"}) {
+        if (!is_traced(folder / name)) continue;
+        throw InputError(
+            fmt::format("{}: found an image of the reference tracer; allowed: one of POV-Ray's "
+                        "frames, as `aphotic integrate {}` makes it",
+                        (folder / name).string(),
+                        folder.string()));
+    }
+}
 
 RenderedImages images_in(const fs::path& folder,
                          const Manifest& manifest,

@@ -11,6 +11,9 @@
 
 namespace aphotic::cli {
 
+// Throws InputError when the reference tracer made one of them: it would be held against itself.
+void require_rendered(const std::filesystem::path& folder);
+
 // family: of the plan that was rendered, for what frames shared behind a port may shift.
 [[nodiscard]] RenderedImages images_in(const std::filesystem::path& folder,
                                        const Manifest& manifest,

@@ -2,12 +2,29 @@
 #include "cli/rendering.h"
 
 #include "cli/progress.h"
+#include "cli/words.h"
+#include "spectral/error.h"
 
 #include <fmt/format.h>
 
 #include <chrono>
 
 namespace aphotic::cli {
+
+PovRay povray_for(const PlannedRender& planned,
+                  const PlanningOptions& options,
+                  const std::string& folder) {
+    try {
+        return find_povray(options.povray);
+    } catch (const RunError& error) {
+        if (planned.plan.scene.user_scene) throw;
+        throw RunError(fmt::format(
+            "{}. Without POV-Ray, `aphotic trace {} -o {}` makes the same images, by the reference",
+            error.what(),
+            shell_word(options.rig_file),
+            shell_word(folder)));
+    }
+}
 
 RenderedFrames render_frames(const PovRay& povray,
                              const std::filesystem::path& folder,

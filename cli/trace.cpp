@@ -9,7 +9,11 @@
 #include "cli/planning.h"
 #include "cli/progress.h"
 #include "spectral/atomic_file.h"
+#include "spectral/error.h"
+#include "spectral/manifest.h"
 #include "spectral/output_images.h"
+#include "spectral/row_blocks.h"
+#include "spectral/traced_image.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>
@@ -30,8 +34,17 @@ struct Options {
     bool json = false;
 };
 
+// Its images have the same names, and would be held against the reference as if POV-Ray had made
+// them.
+void require_no_render(const std::filesystem::path& folder) {
+    if (!std::filesystem::exists(manifest_path(folder))) return;
+    throw InputError(
+        fmt::format("{}: found the manifest of a render; allowed: a folder without one, for the "
+                    "traced images would take the place of the rendered ones",
+                    manifest_path(folder).string()));
+}
+
 ExitStatus trace_rig(const Options& options) {
-    constexpr int kRows = 64;
     const PlannedRender planned = plan_rig(options.planning);
     if (!planned.rig.scene.empty()) {
         fmt::print(stderr,
@@ -54,6 +67,7 @@ ExitStatus trace_rig(const Options& options) {
     const auto start = std::chrono::steady_clock::now();
     const Tracer tracer(planned.rig, request);
     const FolderLock lock = claim_folder(options.folder);
+    require_no_render(options.folder);
     set_exr_threads(options.threads);
     OutputImages images(options.folder,
                         camera.width_px,
@@ -62,13 +76,14 @@ ExitStatus trace_rig(const Options& options) {
                         {{"aphotic:version", APHOTIC_VERSION},
                          {"aphotic:rig_title", planned.rig.title},
                          {"aphotic:rig_sha256", planned.rig.digest},
-                         {"aphotic:renderer", "reference tracer"}});
+                         {kRendererAttribute, kReferenceTracer}});
     {
         ProgressLine line;
-        for (int row = 0; row < camera.height_px; row += kRows) {
-            const int rows = std::min(kRows, camera.height_px - row);
-            const std::vector<double> block = tracer.rows(row, rows);
-            images.write_rows(rows, {block.begin(), block.end()});
+        const int block = traced_rows(camera.width_px, tracer.planes(), options.threads);
+        for (int row = 0; row < camera.height_px; row += block) {
+            const int rows = std::min(block, camera.height_px - row);
+            const std::vector<double> samples = tracer.rows(row, rows);
+            images.write_rows(rows, {samples.begin(), samples.end()});
             line.show("tracing", static_cast<double>(row + rows) / camera.height_px);
         }
     }

@@ -44,8 +44,8 @@ struct Rendering {
     double integrate_s = 0.0;
 };
 
-Rendering render_here(const Options& options, const SceneSet& scenes) {
-    const RenderedFrames frames = render_frames(find_povray(options.planning.povray),
+Rendering render_here(const Options& options, const PovRay& povray, const SceneSet& scenes) {
+    const RenderedFrames frames = render_frames(povray,
                                                 options.folder,
                                                 scenes,
                                                 {.jobs = options.jobs,
@@ -58,9 +58,12 @@ Rendering render_here(const Options& options, const SceneSet& scenes) {
     return rendering;
 }
 
-void require_same_size(const Rig& rig, const Manifest& manifest, const std::string& folder) {
+// Of a render that can be held against the rig's reference.
+Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
+    Manifest manifest = read_manifest(folder);
+    require_rendered(folder);
     if (manifest.width_px == rig.camera.width_px && manifest.height_px == rig.camera.height_px)
-        return;
+        return manifest;
     throw InputError(fmt::format("{}: found images of {} x {} pixels; allowed: the rig's {} x {}",
                                  folder,
                                  manifest.width_px,
@@ -116,7 +119,7 @@ void require_place_and_room(const Options& options, const PlannedRender& planned
         needs = larger_of(needs_of(scenes, options.folder, options.jobs),
                           validation_needs(image_size(scenes.manifest), options.jobs));
     } else {
-        const Manifest rendered = read_manifest(options.rendered_folder);
+        const Manifest rendered = rendered_manifest(options.rendered_folder, planned.rig);
         needs = validation_needs(image_size(rendered), options.jobs);
     }
     require_room(needs, options.folder, options.planning.ignore_needs);
@@ -124,14 +127,16 @@ void require_place_and_room(const Options& options, const PlannedRender& planned
 
 ExitStatus validate_rig(const Options& options) {
     const PlannedRender planned = plan_rig(options.planning);
-    require_place_and_room(options, planned);
     const bool is_rendered = !options.rendered_folder.empty();
+    // All that can be refused is refused before there is a folder.
+    const PovRay povray =
+        is_rendered ? PovRay{} : povray_for(planned, options.planning, options.folder);
+    require_place_and_room(options, planned);
     const std::vector<FolderLock> locks =
         claim_folders(options.folder, is_rendered ? options.rendered_folder : options.folder);
     Rendering rendering;
     if (is_rendered) {
-        rendering.manifest = read_manifest(options.rendered_folder);
-        require_same_size(planned.rig, rendering.manifest, options.rendered_folder);
+        rendering.manifest = rendered_manifest(options.rendered_folder, planned.rig);
         if (rendering.manifest.rig_sha256 != planned.rig.digest) {
             fmt::print(stderr,
                        "aphotic: {} was rendered from another rig file than {}; going on\n",
@@ -139,15 +144,15 @@ ExitStatus validate_rig(const Options& options) {
                        options.planning.rig_file);
         }
     } else {
-        rendering = render_here(options, scenes_of(planned, options.planning));
+        rendering = render_here(options, povray, scenes_of(planned, options.planning));
     }
     const fs::path images = is_rendered ? options.rendered_folder : options.folder;
 
-    if (planned.plan.scene.user_scene) {
+    if (rendering.manifest.scene) {
         fmt::print(
             stderr,
             "aphotic: the reference traces the rig's floor and objects; it does not read {}\n",
-            planned.plan.scene.user_scene->file.string());
+            rendering.manifest.scene->file);
     }
     ValidationReport report = [&] {
         ProgressLine line;
@@ -156,6 +161,7 @@ ExitStatus validate_rig(const Options& options) {
                         options.jobs,
                         [&](double share) { line.show("tracing", share); });
     }();
+    if (rendering.manifest.scene) report.scene_file = rendering.manifest.scene->file;
     report.aphotic_version = APHOTIC_VERSION;
     report.povray_version = rendering.manifest.povray_version;
     report.lamp_signal = rendering.manifest.lamp_signal;

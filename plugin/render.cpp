@@ -6,6 +6,7 @@
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/frame_check.h"
+#include "spectral/traced_image.h"
 
 #include <fmt/format.h>
 
@@ -77,10 +78,18 @@ void take_away(const fs::path& file) {
     }
 }
 
+// The reference tracer's, which beside a manifest would be taken for the render's.
+void take_away_a_trace(const fs::path& folder) {
+    if (!is_traced(folder / "image.exr") && !is_traced(folder / "spectral.exr")) return;
+    for (const char* file : {"trace.json", "preview.png", "spectral.exr", "image.exr"})
+        take_away(folder / file);
+}
+
 // Frames of the earlier run that this one does not have, and the images made of them.
 void take_away_what_is_past(const fs::path& folder,
                             const std::optional<Manifest>& earlier,
                             const Manifest& wanted) {
+    take_away_a_trace(folder);
     if (!earlier) return;
     for (const ManifestFrame& frame : earlier->frames) {
         if (frame_named(wanted, frame.name)) continue;

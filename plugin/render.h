@@ -8,7 +8,7 @@
 // that whatever interrupts a render costs the frames under way and nothing else.
 //
 // What an earlier run left of other frames, and images made from them, is taken away: it could
-// not be used again, only be mistaken for this rig's.
+// not be used again, only be mistaken for this rig's. So are the reference tracer's images.
 //
 // A user's scene that is edited meanwhile ends the render: no frame of the edited one is noted, and
 // those noted before belong to the scene as it was, so the next run renders them again.
@@ -35,8 +35,8 @@ RenderResult render(const PovRay& povray,
                     const SceneSet& set,
                     const RunOptions& options);
 
-// Writes scenes and manifest without rendering. Images of earlier scenes are taken away, so that
-// they cannot be taken for images of these.
+// Writes scenes and manifest without rendering. Images of earlier scenes, and the reference
+// tracer's, are taken away, so that they cannot be taken for images of these.
 Manifest generate(const std::filesystem::path& folder, const SceneSet& set);
 
 }  // namespace aphotic

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/needs.h"
 
+#include "spectral/row_blocks.h"
 #include "spectral/sensor.h"
 
 #include <fmt/format.h>
@@ -19,8 +20,7 @@ constexpr std::uint64_t kHalf_bytes = 2;
 
 constexpr std::uint64_t kHeader_bytes = 4096;       // of an image; and what a short log holds
 constexpr std::uint64_t kChannelHeader_bytes = 64;  // its name and type
-constexpr std::uint64_t kRowsOfZip = 16;            // OpenEXR compresses so many at a time,
-constexpr std::uint64_t kBlockHeader_bytes = 16;    // and notes of each where it is and how long
+constexpr std::uint64_t kBlockHeader_bytes = 16;    // OpenEXR notes where it is and how long
 constexpr std::uint64_t kPixelsOfLogByte = 20;      // POV-Ray says every 0.1 s how far it is
 constexpr std::uint64_t kPovrayPixel_bytes = 20;    // five floats
 constexpr std::uint64_t kPovrayState_bytes = 21;  // these, and a header for each square of 32 x 32
@@ -33,7 +33,6 @@ constexpr std::uint64_t kValidationPlanes = 6;                // held at a time 
 constexpr std::uint64_t kImageLibrary_bytes = 128ULL << 20U;  // OpenImageIO and what it brings
 constexpr std::uint64_t kStudy_bytes = 64;
 constexpr std::uint64_t kStudyReference_bytes = 13;  // its signals, and what lies on edges
-constexpr int kTracedRows = 64;                      // at a time (cli/trace.cpp)
 
 std::uint64_t pixels_of(const ImageSize& size) {
     return static_cast<std::uint64_t>(size.width_px) * static_cast<std::uint64_t>(size.height_px);
@@ -43,19 +42,30 @@ std::uint64_t channels_of(const ImageSize& size) {
     return kChannels + size.wavelengths;
 }
 
+std::uint64_t blocks_of(const ImageSize& size, std::uint64_t channels) {
+    const int rows = rows_compressed_together(size.width_px, channels);
+    return static_cast<std::uint64_t>(size.height_px / rows) + 1;
+}
+
 std::uint64_t exr_bytes(const ImageSize& size, std::uint64_t channels, std::uint64_t sample_bytes) {
-    const auto height = static_cast<std::uint64_t>(size.height_px);
     return kHeader_bytes + channels * (kChannelHeader_bytes + sample_bytes * pixels_of(size)) +
-           kBlockHeader_bytes * (height / kRowsOfZip + 1);
+           kBlockHeader_bytes * blocks_of(size, channels);
 }
 
 // OpenEXR's own rows: two blocks a thread, each as it is and packed, and a bit.
-std::uint64_t compression_bytes(const ImageSize& size, int threads) {
+std::uint64_t file_memory_bytes(const ImageSize& size, std::uint64_t channels, int threads) {
     const std::uint64_t blocks =
-        std::min(2 * static_cast<std::uint64_t>(threads),
-                 static_cast<std::uint64_t>(size.height_px) / kRowsOfZip + 1);
-    const std::uint64_t block_px = kRowsOfZip * static_cast<std::uint64_t>(size.width_px);
-    return 5 * blocks * block_px * kFloat_bytes * (kChannels + channels_of(size)) / 2;
+        std::min(2 * static_cast<std::uint64_t>(threads), blocks_of(size, channels));
+    const auto block_px =
+        static_cast<std::uint64_t>(rows_compressed_together(size.width_px, channels)) *
+        static_cast<std::uint64_t>(size.width_px);
+    return 5 * blocks * block_px * kFloat_bytes * channels / 2;
+}
+
+// Of image.exr and spectral.exr.
+std::uint64_t compression_bytes(const ImageSize& size, int threads) {
+    return file_memory_bytes(size, kChannels, threads) +
+           file_memory_bytes(size, channels_of(size), threads);
 }
 
 // Rows in work, sample_bytes for each channel of a pixel, beside the whole signals; then the
@@ -109,7 +119,8 @@ std::uint64_t integration_memory_bytes(const ImageSize& size, int threads) {
 
 std::uint64_t trace_memory_bytes(const ImageSize& size, int threads) {
     const std::uint64_t pixel_bytes = (kDouble_bytes + 2 * kFloat_bytes) * channels_of(size);
-    return streamed_bytes(size, kTracedRows, pixel_bytes, threads);
+    return streamed_bytes(
+        size, traced_rows(size.width_px, channels_of(size), threads), pixel_bytes, threads);
 }
 
 std::uint64_t validation_memory_bytes(const ImageSize& size, int threads) {

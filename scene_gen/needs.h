@@ -19,9 +19,9 @@
 //
 //   POV-Ray       28 P a process, of which 8 P where the image is in /tmp, and kProgram_bytes
 //   integration   12 P of signals, and the blocks of rows under way: two of ours, and two a thread
-//   of
-//                 OpenEXR's, 16 rows each; then the preview, at which 25 P are held together
-//   trace         the same, with blocks of doubles
+//                 of OpenEXR's (spectral/row_blocks.h); then the preview, at which 25 P are held
+//                 together
+//   trace         the same, with 16 MiB of rows, or a row for each thread
 //   validation    whole planes: 70 P, and 12 P for each wavelength of up to six at a time
 //   study         64 P, and 128 MiB of OpenImageIO: the reference, a setting's image, and what
 //                 compares them

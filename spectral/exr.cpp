@@ -3,6 +3,7 @@
 
 #include "spectral/error.h"
 #include "spectral/exr_header.h"
+#include "spectral/row_blocks.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -144,7 +145,9 @@ ExrWriter::ExrWriter(const fs::path& file,
       width_px_(width_px),
       height_px_(height_px) {
     Imf::Header header(width_px, height_px);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = rows_compressed_together(width_px, channels_.size()) == kRowsOfZip
+                               ? Imf::ZIP_COMPRESSION
+                               : Imf::ZIPS_COMPRESSION;
     header.zipCompressionLevel() = kZipLevel;
     for (const std::string& name : channels_)
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));

@@ -48,7 +48,8 @@ class ExrReader {
 
 using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 
-// Float samples, ZIP. The file appears under its name when finish() has written it whole.
+// Float samples, ZIP or ZIPS (row_blocks.h). The file appears under its name when finish() has
+// written it whole.
 class ExrWriter {
   public:
     ExrWriter(const std::filesystem::path& file,

@@ -5,6 +5,7 @@
 #include "spectral/error.h"
 #include "spectral/exr.h"
 #include "spectral/frame_check.h"
+#include "spectral/row_blocks.h"
 
 #include <fmt/format.h>
 
@@ -19,10 +20,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // A block holds this many samples of spectral radiance at most (64 MiB of floats), and whole
-// blocks of OpenEXR's ZIP, which compresses 16 rows at a time.
+// blocks of OpenEXR's ZIP, in which POV-Ray's frames are.
 constexpr std::size_t kBlockSamples = std::size_t{1} << 24;
-constexpr int kRowsOfZip = 16;
-constexpr int kMostRows = 64;
 
 struct Block {
     int first_row = 0;
@@ -150,8 +149,7 @@ void integrate_into(const fs::path& folder,
 }  // namespace
 
 int rows_per_block(int width_px, std::size_t wavelengths) {
-    const std::size_t row = static_cast<std::size_t>(width_px) * wavelengths;
-    const int rows = static_cast<int>(std::min<std::size_t>(kBlockSamples / row, kMostRows));
+    const int rows = rows_holding(kBlockSamples, width_px, wavelengths);
     return std::max(kRowsOfZip, rows / kRowsOfZip * kRowsOfZip);
 }
 

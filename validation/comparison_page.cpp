@@ -2,6 +2,7 @@
 #include "validation/comparison_page.h"
 
 #include "spectral/preview.h"
+#include "validation/error_view.h"
 #include "validation/html.h"
 #include "validation/report_pictures.h"
 #include "validation/report_style.h"
@@ -25,10 +26,6 @@ struct Blocks {
     int down = 0;
     std::vector<double> image;
     std::vector<double> reference;
-
-    [[nodiscard]] double error(std::size_t block, double largest) const {
-        return (image[block] - reference[block]) / largest;
-    }
 };
 
 // For pictures of half a page's width. Two pixels or more where some were not observed: a block of
@@ -68,14 +65,6 @@ Blocks blocks_of(const ComparedChannel& channel, const ComparedImages& images) {
         blocks.reference[block] /= counts[block];
     }
     return blocks;
-}
-
-double largest_of(const std::vector<double>& values) {
-    double largest = 0.0;
-    for (const double value : values) {
-        if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
-    }
-    return largest;
 }
 
 struct Range {
@@ -130,19 +119,34 @@ std::string patterns(const Blocks& blocks, const ComparedImages& images) {
             "From {:.4g}, dark blue, to {:.4g}, yellow, in both.", range.least, range.most)));
 }
 
-std::string differences(const Blocks& blocks, double scale) {
-    constexpr int kMost = (kColourSteps - 1) / 2;
-    const double largest = largest_of(blocks.reference);
-    const std::string map = picture(blocks, "where they differ", [&](std::size_t block) {
-        const double error = blocks.error(block, largest);
-        if (!std::isfinite(error)) return kNotFiniteColour;
-        return error_colour(
-            static_cast<int>(std::lround(std::clamp(error / scale, -1.0, 1.0) * kMost)));
-    });
-    return figure(map,
-                  fmt::format("Image less reference, over the reference’s largest: blue for −{0}, "
-                              "white for 0, red for +{0}; black where there is nothing to show.",
-                              scientific(scale)));
+// Of each sample, by the rule; what was never observed is set apart.
+std::string differences(const ComparedChannel& channel, const ComparedImages& images, int side) {
+    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    std::vector<float> errors;
+    std::vector<float> image = channel.image;
+    std::vector<float> reference = channel.reference;
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        if (!channel.marks.empty() && channel.marks[i] == kUnobserved) {
+            image[i] = reference[i] = 0.0F;  // neither here nor there, and no fault
+            errors.push_back(kNaN);
+        } else {
+            errors.push_back(
+                static_cast<float>(relative_error(image[i], reference[i], channel.black)));
+        }
+    }
+    const Comparison& c = channel.comparison;
+    return error_map_html(
+        {.comparison = &c,
+         .errors = errors,
+         .image = image,
+         .reference = reference,
+         .width_px = images.width_px,
+         .least_side = side,
+         .image_name = "the image",
+         .set_apart = c.unobserved > 0 ? "not observed: " + counted(c.unobserved, "sample") : "",
+         .row = images.height_px / 2,
+         .column = images.width_px / 2,
+         .bar_id = "colour-bar-" + escaped(c.name)});
 }
 
 struct Line {
@@ -205,13 +209,8 @@ std::string profile(const Blocks& blocks, const std::string& name, bool is_row, 
 
 std::string section(const ComparedChannel& channel, const ComparedImages& images) {
     const Blocks blocks = blocks_of(channel, images);
-    const double largest = largest_of(blocks.reference);
-    std::vector<double> errors;
-    for (std::size_t block = 0; block < blocks.image.size(); ++block)
-        errors.push_back(blocks.error(block, largest));
-    const double error = largest_of(errors);
     std::string content = patterns(blocks, images);
-    if (largest > 0.0) content += differences(blocks, error > 0.0 ? round_up(error) : 1.0);
+    content += "<h3>Relative error</h3>\n" + differences(channel, images, side_of(images));
     content += html_paragraph(
         "Profiles through the middle: the broad pale line is the reference, the dashed one the "
         "image.");
@@ -226,12 +225,15 @@ std::string table(const ComparedImages& images) {
     for (const ComparedChannel& channel : images.channels) {
         const Comparison& c = channel.comparison;
         rows += fmt::format(
-            "<tr class=\"{}\"><th>{}</th><td>{:.6g}</td><td>{}</td><td>{}</td><td>{}</td>"
-            "<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+            "<tr class=\"{}\"><th>{}</th><td>{:.6g}</td><td>{}</td><td>{}</td><td>{}, {}</td>"
+            "<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
             c.holds() ? "holds" : "fails",
             escaped(c.name),
             channel.scale,
+            scientific(channel.black),
             scientific(c.max_error),
+            c.column,
+            c.row,
             scientific(c.percentile_999),
             scientific(c.rms_error),
             scientific(c.mean_error),
@@ -241,24 +243,54 @@ std::string table(const ComparedImages& images) {
     }
     return fmt::format(
         "<div class=\"wide\"><table>\n<thead><tr><th>channel</th><th>scale</th>"
-        "<th>largest |e|</th><th>99.9 %</th><th>rms</th><th>mean</th><th>compared</th>"
+        "<th>black</th><th>largest |<i>e</i>|</th><th class=\"at\">at column, row</th>"
+        "<th>99.9 %</th><th>rms</th><th>mean</th><th>compared</th>"
         "<th>not observed</th><th>not finite</th></tr></thead>\n<tbody>\n{}</tbody></table></div>"
         "\n",
         rows);
 }
 
 std::string verdict(const ComparedImages& images) {
-    const bool holds = std::ranges::all_of(
-        images.channels, [](const ComparedChannel& c) { return c.comparison.holds(); });
+    std::string partners;
+    if (images.unpaired() > 0) {
+        partners = fmt::format("<p>But {} without a partner in the other image.</p>\n",
+                               counted(images.unpaired(), "channel"));
+    }
     return fmt::format(
         "<div class=\"verdict {}\" id=\"verdict\">\n<p class=\"word\">{} is {} {} of {}{}.</p>\n"
-        "</div>\n",
-        holds ? "holds" : "fails",
+        "{}</div>\n",
+        images.holds() ? "holds" : "fails",
         user_text(images.image),
-        holds ? "within" : "not within",
+        images.are_within() ? "within" : "not within",
         scientific(images.channels.front().comparison.bound),
         user_text(images.reference),
-        images.scaled ? ", but for its scale" : "");
+        images.scaled ? ", but for its scale" : "",
+        partners);
+}
+
+std::string not_compared(const ComparedImages& images) {
+    std::string list;
+    const auto add = [&](const std::string& term, const std::vector<std::string>& channels) {
+        std::string names;
+        for (const std::string& name : channels)
+            names += (names.empty() ? "" : ", ") + escaped(name);
+        if (!names.empty()) list += fmt::format("<dt>{}</dt><dd>{}</dd>\n", term, names);
+    };
+    add("Only in " + user_text(images.image), images.only_in_image);
+    add("Only in " + user_text(images.reference), images.only_in_reference);
+    add("Left aside", images.left_aside);
+    return list.empty()
+               ? ""
+               : "<h3>Channels not compared</h3>\n<dl id=\"not-compared\">\n" + list + "</dl>\n";
+}
+
+std::string rule(const ComparedImages& images) {
+    return error_rule(
+        images.scaled ? "the image’s sample, divided by its channel’s scale" : "the image’s sample",
+        "the reference’s sample",
+        fmt::format("what counts as black, {} of the reference’s largest sample: under it a "
+                    "difference is measured against it",
+                    scientific(images.black)));
 }
 
 }  // namespace
@@ -286,9 +318,8 @@ std::string comparison_html(const ComparedImages& images) {
         user_text(images.image),
         user_text(images.reference),
         verdict(images),
-        html_paragraph("e = (image / scale − reference) / max(|reference|, black), at every "
-                       "sample."));
-    content += table(images);
+        rule(images));
+    content += table(images) + not_compared(images);
     for (const ComparedChannel& channel : images.channels) content += section(channel, images);
     return html_page("Comparison of " + images.image, kReportStyle, content);
 }

@@ -46,6 +46,12 @@ Json wavelengths_of(const ValidationReport& report) {
     return list;
 }
 
+Json rig_of(const ValidationReport& report) {
+    Json rig{{"title", report.rig.title}, {"sha256", report.rig.digest}};
+    if (!report.scene_file.empty()) rig["scene"] = report.scene_file;
+    return rig;
+}
+
 Json channels_of(const ValidationReport& report) {
     Json list = Json::array();
     for (const Comparison& channel : report.channels) list.push_back(json_of(channel));
@@ -112,7 +118,7 @@ void write_validation_json(const ValidationReport& report, const std::filesystem
         {"rule",
          "e = (a - b) / max(|b|, floor), a: POV-Ray's image, b: the reference; holds: max |e| off "
          "the edges <= bound and every sample finite"},
-        {"rig", {{"title", report.rig.title}, {"sha256", report.rig.digest}}},
+        {"rig", rig_of(report)},
         {"image",
          {{"width_px", report.rendered.width_px}, {"height_px", report.rendered.height_px}}},
         {"wavelengths", wavelengths_of(report)},

@@ -17,6 +17,7 @@ namespace aphotic {
 
 struct ValidationReport {
     Rig rig;
+    std::string scene_file{};  // of the user's own, which POV-Ray rendered and the reference not
     std::string aphotic_version{};
     std::string povray_version{};
     std::vector<Comparison> wavelengths{};  // radiance, POV-Ray's against the reference's

@@ -3,6 +3,7 @@
 // The page is well-formed XML too, so that a strict reader finds what a browser would forgive.
 #include "spectral/atomic_file.h"
 #include "spectral/preview.h"
+#include "validation/error_view.h"
 #include "validation/html.h"
 #include "validation/report.h"
 #include "validation/report_pictures.h"
@@ -127,126 +128,22 @@ std::span<const float> plane(const std::vector<float>& samples, std::size_t chan
     return std::span(samples).subspan(channel * size, size);
 }
 
-struct MapScale {
-    double end = 0.0;        // of the colours
-    std::size_t beyond = 0;  // pixels
-};
-
-// So that the details show and not only the largest: at the 99.9 percentile, rounded up.
-MapScale map_scale(std::span<const float> errors, const Comparison& channel) {
-    std::vector<double> sizes;
-    for (const float e : errors) {
-        if (std::isfinite(e)) sizes.push_back(std::abs(e));
-    }
-    double percentile = 0.0;
-    if (!sizes.empty()) {
-        const auto rank =
-            static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(sizes.size() - 1));
-        std::nth_element(sizes.begin(), sizes.begin() + rank, sizes.end());
-        percentile = sizes[static_cast<std::size_t>(rank)];
-    }
-    // Mostly equal images have no scale of their own.
-    if (percentile == 0.0) percentile = channel.bound > 0.0 ? channel.bound : channel.max_error;
-    if (percentile == 0.0) percentile = 1e-3;
-    const double end = round_up(percentile);
-    const auto beyond = std::ranges::count_if(sizes, [&](double size) { return size > end; });
-    return {.end = end, .beyond = static_cast<std::size_t>(beyond)};
-}
-
-std::string map_marks(const ValidationReport& report, const Comparison& channel) {
-    const double width = report.traced.width_px;
-    const double height = report.traced.height_px;
-    const double unit = width / 100.0;
-    std::string svg;
-    const auto notch = [&](double x1, double y1, double x2, double y2) {
-        svg +=
-            fmt::format(R"(<line x1="{:.2f}" y1="{:.2f}" x2="{:.2f}" y2="{:.2f}" class="notch"/>)",
-                        x1,
-                        y1,
-                        x2,
-                        y2);
-    };
-    const double row = profile_index(report, ProfileLine::Row) + 0.5;
-    const double column = profile_index(report, ProfileLine::Column) + 0.5;
-    notch(0.0, row, 2.0 * unit, row);
-    notch(width - 2.0 * unit, row, width, row);
-    notch(column, 0.0, column, 2.0 * unit);
-    notch(column, height - 2.0 * unit, column, height);
-    if (channel.max_error > 0.0) {
-        for (const std::string_view style : {"halo", "ring"}) {
-            svg += fmt::format(R"(<circle cx="{:.2f}" cy="{:.2f}" r="{:.2f}" class="{}"/>)",
-                               channel.column + 0.5,
-                               channel.row + 0.5,
-                               1.3 * unit,
-                               style);
-        }
-    }
-    return fmt::format(
-        R"(<svg xmlns="http://www.w3.org/2000/svg" class="marks" viewBox="0 0 {:.0f} {:.0f}">{}</svg>)",
-        width,
-        height,
-        svg);
-}
-
-std::string swatch(std::uint32_t colour, std::string_view words) {
-    return fmt::format(
-        "<span class=\"key\"><svg class=\"swatch\" viewBox=\"0 0 12 12\"><rect width=\"12\" "
-        "height=\"12\" fill=\"#{:06x}\"/></svg> {}</span>\n",
-        colour,
-        words);
-}
-
-std::string map_legend(const Comparison& channel) {
-    std::string legend = swatch(error_colour((kColourSteps - 1) / 2), "POV-Ray is brighter") +
-                         swatch(error_colour(-(kColourSteps - 1) / 2), "POV-Ray is darker") +
-                         swatch(kEdgeColour, "on edges: " + counted(channel.on_edges, "pixel"));
-    if (channel.not_finite > 0)
-        legend += swatch(kNotFiniteColour, "not finite: " + counted(channel.not_finite, "sample"));
-    if (channel.max_error > 0.0) {
-        legend += fmt::format("<span class=\"key\">◯ the largest, {} at column {}, row {}</span>\n",
-                              scientific(channel.max_error),
-                              channel.column,
-                              channel.row);
-    }
-    return "<p class=\"legend\">" + legend + "</p>\n";
-}
-
-std::string map_in_words(const ErrorMap& map, const MapScale& scale) {
-    std::string words = fmt::format("The colours run from −{0} to +{0}", scientific(scale.end));
-    words += scale.beyond == 0 ? "; no pixel is beyond."
-                               : fmt::format("; {} beyond, shown in the end’s colour.",
-                                             counted(scale.beyond, "pixel"));
-    if (map.side > 1) {
-        words += fmt::format(
-            " Each point of the map shows the largest |e| of {0} × {0} pixels, with its sign.",
-            map.side);
-    }
-    return html_paragraph(
-        words + " The notches at the sides mark the row and the column of the profiles below.");
-}
-
 std::string map_section(const ValidationReport& report) {
     const std::size_t c = report.worst_channel();
     const Comparison& channel = report.channels[c];
-    const auto errors = plane(report.channel_errors, c);
-    const MapScale scale = map_scale(errors, channel);
-    const ErrorMap map = error_map(errors,
-                                   plane(report.rendered.samples, c),
-                                   plane(report.traced.samples, c),
-                                   report.traced.width_px,
-                                   scale.end);
-    const std::string figure = fmt::format(
-        "<div class=\"map\"><div class=\"frame\"><img class=\"picture squares\" width=\"{}\" "
-        "height=\"{}\" alt=\"map of the relative error\" src=\"{}\"/>{}</div>\n{}</div>\n",
-        map.width_px,
-        map.height_px,
-        data_uri(map.png),
-        map_marks(report, channel),
-        colour_bar_svg(scale.end));
     return html_section(
         "error-map",
         fmt::format("Relative error of channel {}, the worst", escaped(channel.name)),
-        figure + map_legend(channel) + map_in_words(map, scale));
+        error_map_html({.comparison = &channel,
+                        .errors = plane(report.channel_errors, c),
+                        .image = plane(report.rendered.samples, c),
+                        .reference = plane(report.traced.samples, c),
+                        .width_px = report.traced.width_px,
+                        .image_name = "POV-Ray",
+                        .set_apart = "on edges: " + counted(channel.on_edges, "pixel"),
+                        .row = profile_index(report, ProfileLine::Row),
+                        .column = profile_index(report, ProfileLine::Column),
+                        .bar_id = "colour-bar"}));
 }
 
 std::string stroke_key(std::string_view style, std::string_view words) {
@@ -287,14 +184,9 @@ std::string errors_plot(const ValidationReport& report) {
 }
 
 std::string rule() {
-    return "<div class=\"rule\">\n<p class=\"formula\"><i>e<sub>i</sub></i> = "
-           "<span class=\"fraction\"><span><i>a<sub>i</sub></i> − "
-           "<i>b<sub>i</sub></i></span>"
-           "<span>max( |<i>b<sub>i</sub></i>|, <i>b</i><sub>0</sub> )</span></span></p>\n"
-           "<dl>\n<dt><i>a</i></dt><dd>POV-Ray’s sample</dd>\n"
-           "<dt><i>b</i></dt><dd>the reference’s sample</dd>\n"
-           "<dt><i>b</i><sub>0</sub></dt><dd>what counts as black: under it a difference is "
-           "measured against it</dd>\n</dl>\n</div>\n" +
+    return error_rule("POV-Ray’s sample",
+                      "the reference’s sample",
+                      "what counts as black: under it a difference is measured against it") +
            html_paragraph(
                "A comparison holds when the largest |<i>e</i>| off the edges is within its bound "
                "and "
@@ -381,7 +273,7 @@ std::string made_with(const ValidationReport& report) {
 void write_validation_html(const ValidationReport& report, const std::filesystem::path& file) {
     report.check();
     std::string page = header(report);
-    page += html_section("rig", "The rig", rig_in_words(report.rig));
+    page += html_section("rig", "The rig", rig_in_words(report.rig, report.scene_file));
     page += html_section("images", "Both images", images(report));
     page += map_section(report);
     page += html_section("profiles", "Profiles", profiles(report));

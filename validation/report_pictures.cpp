@@ -89,9 +89,13 @@ ErrorMap error_map(std::span<const float> errors,
                    std::span<const float> a,
                    std::span<const float> b,
                    int width_px,
-                   double scale) {
+                   double scale,
+                   int least_side) {
     const int height_px = static_cast<int>(errors.size()) / width_px;
-    ErrorMap map{.side = block_side(width_px, height_px), .width_px = 0, .height_px = 0, .png = {}};
+    ErrorMap map{.side = std::max(block_side(width_px, height_px), least_side),
+                 .width_px = 0,
+                 .height_px = 0,
+                 .png = {}};
     map.width_px = blocks(width_px, map.side);
     map.height_px = blocks(height_px, map.side);
 

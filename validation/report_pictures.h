@@ -41,12 +41,13 @@ struct ErrorMap {
 };
 
 // errors: one channel's, rows of width_px samples, NaN on edges and where samples are not finite;
-// `a` and `b`, which they came from, tell these two apart.
+// `a` and `b`, which they came from, tell these two apart. least_side: of the blocks.
 [[nodiscard]] ErrorMap error_map(std::span<const float> errors,
                                  std::span<const float> a,
                                  std::span<const float> b,
                                  int width_px,
-                                 double scale);
+                                 double scale,
+                                 int least_side = 1);
 
 // For src="..."
 [[nodiscard]] std::string data_uri(std::string_view png);

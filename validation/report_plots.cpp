@@ -360,7 +360,7 @@ std::string errors_svg(const ValidationReport& report) {
     return svg_drawing("errors", kWidth, panel.bottom() + 44.0, svg);
 }
 
-std::string colour_bar_svg(double scale) {
+std::string colour_bar_svg(double scale, std::string_view id) {
     constexpr double kTop = 26.0;
     constexpr double kBarWidth = 22.0;
     constexpr double kHeight = 400.0;
@@ -398,7 +398,7 @@ std::string colour_bar_svg(double scale) {
                     bar.width,
                     bar.height);
     svg += svg_text(bar.left, 14.0, SvgAnchor::Start, R"(class="axis")", over_unit("e", unit));
-    return svg_drawing("colour-bar", 84.0, kTop + kHeight + 12.0, svg);
+    return svg_drawing(id, 84.0, kTop + kHeight + 12.0, svg);
 }
 
 }  // namespace aphotic

@@ -6,6 +6,7 @@
 #include "validation/report.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
@@ -33,7 +34,7 @@ struct Profile {
 // bounds, on a logarithmic axis. What is 0 is not drawn.
 [[nodiscard]] std::string errors_svg(const ValidationReport& report);
 
-// The colours of an error map from -scale to +scale.
-[[nodiscard]] std::string colour_bar_svg(double scale);
+// The colours of an error map from -scale to +scale. id: of the drawing, on its page.
+[[nodiscard]] std::string colour_bar_svg(double scale, std::string_view id);
 
 }  // namespace aphotic

@@ -41,7 +41,7 @@ code { font: 13px ui-monospace, "DejaVu Sans Mono", "Liberation Mono", monospace
 .map .frame { position: relative; flex: 1 1 auto; align-self: flex-start;
   outline: 1px solid var(--rule); }
 .map .marks { position: absolute; inset: 0; width: 100%; height: 100%; }
-#colour-bar { flex: 0 0 84px; width: 84px; height: auto; align-self: flex-start; }
+.map > svg { flex: 0 0 84px; width: 84px; height: auto; align-self: flex-start; }
 .legend { display: flex; flex-wrap: wrap; gap: 2px 22px; font-size: 14px; color: var(--soft);
   max-width: none; }
 .key { display: inline-flex; align-items: center; gap: 6px; white-space: nowrap; }
@@ -103,7 +103,7 @@ tr.fails { background: #fdf4f4; }
 @media screen and (max-width: 760px) {
   main { padding: 24px 16px; }
   .pair { grid-template-columns: 1fr; }
-  #colour-bar { flex-basis: 56px; width: 56px; }
+  .map > svg { flex-basis: 56px; width: 56px; }
   dl.rig { grid-template-columns: 1fr; gap: 0; }
   dl.rig dd { margin-bottom: 10px; }
 }

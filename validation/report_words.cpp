@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <variant>
 #include <vector>
 
 namespace aphotic {
@@ -136,14 +137,63 @@ std::string water_in_words(const Rig& rig) {
     return words;
 }
 
-std::string floor_in_words(const Seafloor& floor) {
-    const std::string highlight = floor.phong == 0.0
+// Of a floor or an object.
+template <typename Surface>
+std::string material_in_words(const Surface& surface) {
+    const std::string highlight = surface.phong == 0.0
                                       ? "no highlight"
                                       : fmt::format("a Phong highlight of {} and size {}",
-                                                    plain(floor.phong),
-                                                    plain(floor.phong_size));
+                                                    plain(surface.phong),
+                                                    plain(surface.phong_size));
+    return fmt::format("the {} and {}", user_text(surface.reflectance.name()), highlight);
+}
+
+std::string floor_in_words(const Seafloor& floor) {
+    return fmt::format("A diffuse plane with {}.", material_in_words(floor));
+}
+
+// "1 m × 2 m × 0.5 m, its middle 2 m down from the entrance pupil"
+std::string extent_in_words(const Box& box) {
+    const Eigen::Vector3d size_m = box.most_m - box.least_m;
+    return fmt::format("{} m fore and aft, {} m athwartships and {} m high, its middle {}",
+                       plain(size_m.x()),
+                       plain(size_m.y()),
+                       plain(size_m.z()),
+                       place_in_words(0.5 * (box.least_m + box.most_m)));
+}
+
+std::string shape_in_words(const Sphere& sphere) {
+    return fmt::format("A sphere of {} m radius, its middle {}",
+                       plain(sphere.radius_m),
+                       place_in_words(sphere.centre_m));
+}
+
+std::string shape_in_words(const Box& box) {
+    return "A box " + extent_in_words(box);
+}
+
+std::string shape_in_words(const Mesh& mesh) {
+    Box bounds{.least_m = mesh.vertices_m.front(), .most_m = mesh.vertices_m.front()};
+    for (const Eigen::Vector3d& vertex_m : mesh.vertices_m) {
+        bounds.least_m = bounds.least_m.cwiseMin(vertex_m);
+        bounds.most_m = bounds.most_m.cwiseMax(vertex_m);
+    }
     return fmt::format(
-        "A diffuse plane with the {} and {}.", user_text(floor.reflectance.name()), highlight);
+        "A mesh of {}, {}", counted(mesh.triangles.size(), "triangle"), extent_in_words(bounds));
+}
+
+std::string object_in_words(const Object& object) {
+    const std::string shape =
+        std::visit([](const auto& form) { return shape_in_words(form); }, object.shape);
+    return fmt::format("{}, with {}.", shape, material_in_words(object));
+}
+
+std::string scene_in_words(const std::string& scene_file) {
+    return fmt::format(
+        "POV-Ray rendered <code>{}</code>, a scene of the user’s own, in place of the floor and "
+        "the "
+        "objects. The reference does not read it: it traced the floor and the objects told here.",
+        escaped(scene_file));
 }
 
 std::string strobe_in_words(const Strobe& strobe) {
@@ -230,13 +280,16 @@ std::string aim_in_words(const Eigen::Vector3d& axis) {
         "{} off the camera’s axis, towards {}", deg(std::atan2(across, axis.z())), towards);
 }
 
-std::string rig_in_words(const Rig& rig) {
+std::string rig_in_words(const Rig& rig, const std::string& scene_file) {
     std::string list = "<dl class=\"rig\">\n";
     list += item("Sled", sled_in_words(rig.sled));
     list += item("Camera", camera_in_words(rig));
     list += item("Port", port_in_words(rig.camera.port));
     list += item("Water", water_in_words(rig));
     list += item("Floor", floor_in_words(rig.seafloor));
+    for (const Object& object : rig.objects)
+        list += item("Object " + user_text(object.name), object_in_words(object));
+    if (!scene_file.empty()) list += item("Scene", scene_in_words(scene_file));
     for (const Strobe& strobe : rig.strobes)
         list += item("Strobe " + user_text(strobe.name), strobe_in_words(strobe));
     for (const Beam& beam : beams_of(rig))

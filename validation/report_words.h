@@ -11,7 +11,9 @@
 
 namespace aphotic {
 
-[[nodiscard]] std::string rig_in_words(const Rig& rig);
+// scene_file: a scene of the user's own that POV-Ray rendered, which the reference does not read;
+// empty: none.
+[[nodiscard]] std::string rig_in_words(const Rig& rig, const std::string& scene_file = "");
 
 // Where a point of the sled frame is, such as "0.5 m aft and 0.2 m up from the entrance pupil".
 [[nodiscard]] std::string place_in_words(const Eigen::Vector3d& position_m);

@@ -147,6 +147,73 @@ TEST_F(CommandCompare, RefusesAScaleThatIsNone) {
     EXPECT_EQ(compare({"--scale=twice"}).status, 2);
 }
 
+// Two images of three wavelengths each, of which one is in both.
+TEST_F(CommandCompare, SaysNoToChannelsWithoutAPartner) {
+    const std::string shared = "S0.550,000000nm";
+    write("a.exr", kReference, {"S0.470,000000nm", shared, "S0.620,000000nm"});
+    write("b.exr",
+          {kReference[2], kReference[1], kReference[0]},
+          {"S0.450,000000nm", shared, "S0.650,000000nm"});
+    const CommandResult result = compare({"--report", "page.html"});
+    EXPECT_EQ(result.status, 1);
+    for (const char* part : {"only in a.exr: S0.470,000000nm S0.620,000000nm\n",
+                             "only in b.exr: S0.450,000000nm S0.650,000000nm\n",
+                             "a.exr is within 0.0006 of b.exr\n",
+                             "but 4 channels WITHOUT a partner"})
+        EXPECT_TRUE(contains(result.out, part)) << part << " is not in " << result.out;
+    EXPECT_TRUE(contains(read_text_file(folder_.path() / "page.html"), "S0.470,000000nm"));
+
+    const nlohmann::json json = json_of({}, 1);
+    EXPECT_FALSE(json["holds"].get<bool>());
+    EXPECT_EQ(json["only_in_image"], nlohmann::json({"S0.470,000000nm", "S0.620,000000nm"}));
+    EXPECT_EQ(json["only_in_reference"], nlohmann::json({"S0.450,000000nm", "S0.650,000000nm"}));
+    ASSERT_EQ(json["channels"].size(), 1U);
+    EXPECT_TRUE(json["channels"][0]["holds"].get<bool>());
+}
+
+TEST_F(CommandCompare, ComparesTheChannelsThatAreNamed) {
+    const std::string shared = "S0.550,000000nm";
+    write("a.exr", {kReference[0], kReference[1], kReference[2]}, {"R", shared, "S0.470,000000nm"});
+    write("b.exr", {kReference[0], kReference[1]}, {"R", shared});
+    EXPECT_EQ(compare({}).status, 1);
+    const nlohmann::json json = json_of({"--channels", "R," + shared}, 0);
+    ASSERT_EQ(json["channels"].size(), 2U);
+    EXPECT_EQ(json["channels"][1]["name"], shared) << "a name that holds a comma";
+    EXPECT_EQ(json["only_in_image"].size(), 0U);
+    EXPECT_EQ(json_of({"--channels", "R"}, 0)["channels"].size(), 1U);
+    for (const char* names : {"S0.470,000000nm", "R,X", "", ","}) {
+        const CommandResult refused = compare({"--channels", names});
+        EXPECT_EQ(refused.status, 2) << names;
+    }
+    EXPECT_TRUE(contains(compare({"--channels", "R,X"}).err,
+                         "--channels: found X; allowed: those of both images, R, " + shared));
+}
+
+// A picture with opacity against one without.
+TEST_F(CommandCompare, LeavesOpacityAsideWithAWord) {
+    std::vector<Plane> with_opacity = kReference;
+    with_opacity.emplace_back(kPixels, 1.0F);
+    write("a.exr", with_opacity, {"R", "G", "B", "A"});
+    write("b.exr", kReference);
+    const CommandResult result = compare({});
+    EXPECT_EQ(result.status, 0) << result.out;
+    EXPECT_TRUE(contains(result.out, "left aside: A\n")) << result.out;
+    EXPECT_EQ(json_of({}, 0)["left_aside"], nlohmann::json({"A"}));
+    // In both it is a channel like any other.
+    with_opacity.back().front() = 0.5F;
+    write("b.exr", with_opacity, {"R", "G", "B", "A"});
+    EXPECT_EQ(compare({}).status, 1);
+}
+
+// One statistic, one name: that of validation.json.
+TEST_F(CommandCompare, NamesItsStatisticsAsAValidationDoes) {
+    write("a.exr", kReference);
+    write("b.exr", kReference);
+    const nlohmann::json channel = json_of({}, 0)["channels"][0];
+    for (const char* key : {"max_error", "percentile_999", "rms_error", "mean_error", "compared"})
+        EXPECT_TRUE(channel.contains(key)) << key;
+}
+
 TEST_F(CommandCompare, LeavesAPageOfBoth) {
     std::vector<Plane> observed = times(kReference, {3.0, 3.0, 3.0});
     observed[1][5] = kNaN;

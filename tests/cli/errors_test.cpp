@@ -172,6 +172,48 @@ TEST_F(CommandErrors, MissingPovRay) {
     EXPECT_FALSE(fs::exists(folder_.path() / "out"));
 }
 
+// The tracer makes the same images; and the command that is named does it.
+TEST_F(CommandErrors, MissingPovRayNamesWhatRunsWithoutIt) {
+    const std::map<std::string, std::string> none{{"APHOTIC_POVRAY", "/no/povray"}};
+    for (const char* command : {"render", "validate"}) {
+        const CommandResult run =
+            run_aphotic(folder_.path(), {command, "rig.toml", "-o", "out"}, none);
+        expect_one_message(run, kRunFailed, "install povray");
+        expect_one_message(
+            run, kRunFailed, "`aphotic trace rig.toml -o out` makes the same images");
+        EXPECT_FALSE(fs::exists(folder_.path() / "out")) << command;
+    }
+    EXPECT_EQ(run_aphotic(folder_.path(), {"trace", "rig.toml", "-o", "out"}, none).status, 0);
+}
+
+// Which the tracer cannot read.
+TEST_F(CommandErrors, MissingPovRayNamesNoTracerForASceneOfTheUsersOwn) {
+    write_file(folder_.path() / "own.pov", "#include \"aphotic.inc\"\n");
+    for (const char* command : {"render", "validate"}) {
+        const CommandResult run =
+            run_aphotic(folder_.path(),
+                        {command, "rig.toml", "-o", "out", "--scene", "own.pov"},
+                        {{"APHOTIC_POVRAY", "/no/povray"}});
+        expect_one_message(run, kRunFailed, "install povray");
+        EXPECT_EQ(run.err.find("aphotic trace"), std::string::npos) << run.err;
+        EXPECT_FALSE(fs::exists(folder_.path() / "out")) << command;
+    }
+}
+
+TEST_F(CommandErrors, AValidationThatIsRefusedLeavesNoFolder) {
+    const std::string rig = read_text_file(folder_.path() / "rig.toml");
+    ASSERT_EQ(run_aphotic(folder_.path(), {"generate", "rig.toml", "-o", "other", "--fitted", "3"})
+                  .status,
+              0);
+    write_file(folder_.path() / "wider.toml",
+               std::regex_replace(rig, std::regex(R"(resolution\s*=\s*\[\s*)"), "resolution = [1"));
+    expect_one_message(
+        run_aphotic(folder_.path(), {"validate", "wider.toml", "--rendered", "other", "-o", "out"}),
+        kBadInput,
+        "other: found images of ");
+    EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+}
+
 TEST_F(CommandErrors, PovRayKilledMidway) {
     write_script(folder_.path() / "povray",
                  "[ \"$1\" = --version ] && echo 'POV-Ray 3.7.0' && echo ' Supported image "

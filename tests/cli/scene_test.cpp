@@ -73,9 +73,23 @@ TEST_F(UserScenes, ValidateLikeAnyOther) {
     put_scene(kFloor);
     const CommandResult run = aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"});
     EXPECT_EQ(run.status, 0) << run.out << run.err;
+    const std::string page = read_text_file(home_ / "out" / "report.html");
+    EXPECT_NE(page.find("reef.pov</code>, a scene of the user’s own"), std::string::npos)
+        << "the page says what the reference did not read";
+    const auto json = nlohmann::json::parse(read_text_file(home_ / "out" / "validation.json"));
+    EXPECT_TRUE(json.at("rig").at("scene").get<std::string>().ends_with("reef.pov"));
     // A floor that is farther than the rig says must not pass.
     put_scene("Aphotic_Rig ()\nAphotic_Seafloor (2.05, 5, 0, \"sand\")\n");
     EXPECT_EQ(aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"}).status, 1);
+}
+
+// Whose colours have no spectrum.
+TEST_F(UserScenes, AValidationThatRefusesOneLeavesNoPage) {
+    put_scene(std::string(kFloor) + "light_source { <0, 0, 0> rgb 1 }\n");
+    const CommandResult run = aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"});
+    EXPECT_EQ(run.status, 2) << run.out << run.err;
+    EXPECT_NE(run.err.find("reef.pov"), std::string::npos) << run.err;
+    EXPECT_FALSE(fs::exists(home_ / "out"));
 }
 
 TEST_F(UserScenes, ARigMayNameItsScene) {

@@ -2,6 +2,7 @@
 #include "validation/comparison_page.h"
 
 #include "support/page.h"
+#include "validation/html.h"
 
 #include <gtest/gtest.h>
 
@@ -57,7 +58,55 @@ TEST(ComparisonPage, ShowsAMosaicByBlocksOfWhatWasObserved) {
     EXPECT_TRUE(contains(page, R"(width="2" height="1")"));
     EXPECT_FALSE(contains(page, "nan"));
     EXPECT_TRUE(contains(words_of(page), "is within"));
-    EXPECT_TRUE(contains(page, "for −1.00, white")) << "no difference: a scale of 1";
+    EXPECT_TRUE(contains(words_of(page), "not observed: 6 samples"));
+    EXPECT_TRUE(contains(page, R"(class="picture squares" width="2" height="1")"))
+        << "the map of errors, by the same blocks";
+}
+
+// The rule is e = (a - b) / max(|b|, black), not the difference over the brightest: 0.2 here.
+TEST(ComparisonPage, MapsTheErrorByTheRuleAndRingsTheWorstPixel) {
+    const std::vector<float> reference{100, 1, 100, 100};
+    const std::vector<float> image{100, 1.2F, 100, 100};
+    const std::vector<double> wanted(reference.begin(), reference.end());
+    const ComparedImages images{
+        .image = "a",
+        .reference = "b",
+        .width_px = 2,
+        .height_px = 2,
+        .black = 1e-3,
+        .channels = {{.comparison = compare_planes("G", image, wanted, 2, {}, 0.1, 0.5),
+                      .black = 0.1,
+                      .image = image,
+                      .reference = reference,
+                      .marks = {}}}};
+    const std::string page = comparison_html(images);
+    const std::string words = words_of(page);
+    EXPECT_EQ(first_unbalanced(page), "");
+    EXPECT_TRUE(contains(page, R"(<circle cx="1.50" cy="0.50")")) << "column 1, row 0";
+    EXPECT_TRUE(contains(words, "the largest, 0.200 at column 1, row 0")) << words;
+    EXPECT_TRUE(contains(page, "<td>1, 0</td>")) << "in the table";
+    EXPECT_TRUE(contains(page, "<td>0.100</td>")) << "what counts as black, in the table";
+    EXPECT_TRUE(contains(words, scientific(1e-3) + " of the reference’s largest sample")) << words;
+    EXPECT_TRUE(contains(page, "id=\"colour-bar-G\""));
+    // Of four errors the 99.9 percentile is the third: 0, so the scale is that of the bound.
+    EXPECT_TRUE(contains(words, "from −0.500 to +0.500")) << words;
+}
+
+TEST(ComparisonPage, ListsChannelsWithoutAPartner) {
+    ComparedImages images = mosaic_of_two();
+    EXPECT_FALSE(contains(comparison_html(images), "not-compared"));
+    images.only_in_image = {"S0.470,000000nm"};
+    images.only_in_reference = {"S0.450,000000nm", "<X>"};
+    images.left_aside = {"A"};
+    EXPECT_FALSE(images.holds());
+    const std::string page = comparison_html(images);
+    EXPECT_EQ(first_unbalanced(page), "");
+    EXPECT_TRUE(contains(page, "verdict fails"));
+    const std::string words = words_of(page);
+    EXPECT_TRUE(contains(words, "But 3 channels without a partner")) << words;
+    EXPECT_TRUE(contains(words, "S0.470,000000nm")) << words;
+    EXPECT_TRUE(contains(words, "S0.450,000000nm, &lt;X&gt;")) << words;
+    EXPECT_TRUE(contains(words, "Left asideA")) << words;
 }
 
 TEST(ComparisonPage, SaysNoWhenOneChannelIsOut) {

@@ -84,6 +84,46 @@ TEST(RigInWords, TellsPortEmitterHighlightAndAttitude) {
     EXPECT_NE(words.find("Beam"), words.rfind("Beam")) << "two beams of one name, both told";
 }
 
+// By hand, from scenes/objects.toml: corners at (0.02, 0.30, 1.76) and (0.26, 0.48, 2.2).
+TEST(RigInWords, TellsEveryObject) {
+    const std::string words =
+        rig_in_words(read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/objects.toml"));
+    EXPECT_SAYS(
+        words,
+        "<dt>Object <bdi>ball</bdi></dt><dd>A sphere of 0.12 m radius, its middle 0.2 m aft, "
+        "0.05 m to starboard and 1.86 m down from the entrance pupil, with the "
+        "<bdi>reflectance &#39;green-algae&#39;</bdi> and a Phong highlight of 0.05 and size "
+        "30.</dd>");
+    EXPECT_SAYS(
+        words,
+        "<dt>Object <bdi>block</bdi></dt><dd>A box 0.24 m fore and aft, 0.18 m athwartships "
+        "and 0.44 m high, its middle 0.14 m forward, 0.39 m to starboard and 1.98 m down "
+        "from the entrance pupil, with the ");
+    EXPECT_SAYS(words, "<dt>Object <bdi>rock</bdi></dt><dd>A mesh of ");
+    EXPECT_SAYS(words, " and no highlight.</dd>");
+    EXPECT_EQ(rig_in_words(habcam()).find("Object"), std::string::npos);
+}
+
+// A tetrahedron of four triangles between two corners.
+TEST(RigInWords, TellsAMeshByItsTrianglesAndItsExtent) {
+    Rig rig = habcam();
+    rig.objects = {{.name = "thing",
+                    .shape = Mesh{.vertices_m = {{0, 0, 1}, {0.5, 0, 1}, {0, 0.25, 1}, {0, 0, 2}},
+                                  .triangles = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}},
+                    .reflectance = rig.seafloor.reflectance}};
+    EXPECT_SAYS(
+        rig_in_words(rig),
+        "A mesh of 4 triangles, 0.5 m fore and aft, 0.25 m athwartships and 1 m high, its "
+        "middle 0.25 m forward, 0.125 m to starboard and 1.5 m down from the entrance pupil");
+}
+
+TEST(RigInWords, TellsWhichSceneTheReferenceDoesNotRead) {
+    EXPECT_EQ(rig_in_words(habcam()).find("Scene"), std::string::npos);
+    const std::string words = rig_in_words(habcam(), "my <reef>.pov");
+    EXPECT_SAYS(words, "POV-Ray rendered <code>my &lt;reef&gt;.pov</code>");
+    EXPECT_SAYS(words, "The reference does not read it");
+}
+
 TEST(RigInWords, SaysWhenTheWaterIsClear) {
     Rig rig = habcam();
     rig.water.multiple = 0.0;

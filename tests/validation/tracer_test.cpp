@@ -1551,17 +1551,25 @@ TEST(TracerObjects, PortIsStarboardMirrored) {
     }
 }
 
-// An object's own colour counts in the spectral grid: over a black floor, the signal of a grey ball
-// is that of a white one times its grey, whatever the spectra.
+// A plate, 1.5 m below pupil and lamp over a black floor, that reflects in 0.2 nm only, with an
+// area of 0.1 nm, between all knots of other tables: none but the plate's own finds it. Then its
+// highlight at all wavelengths, as in TracerSignal.KnowsTheKnotsOfTheFloor.
 TEST(TracerObjects, TheFullSpectrumServesTheirMaterials) {
-    Rig rig = habcam(9, 7);
+    constexpr double kDepth_m = 1.5;
+    const double axial = 1.0 / (kPi * kPi * kDepth_m * kDepth_m);
+    Rig rig = plain_rig();
     rig.seafloor.reflectance = flat(0.0);
-    rig.objects = {object_of(Sphere{.centre_m = {0.0, 0.0, 1.5}, .radius_m = 0.3}, 1.0)};
-    const auto white = image_of(rig, {.signals = true, .planes_nm = {}});
-    rig.objects[0].reflectance = Spectrum("steep", {300.0, 800.0}, {0.2, 0.2});
-    const auto grey = image_of(rig, {.signals = true, .planes_nm = {}});
-    for (std::size_t i = 0; i < white.size(); ++i)
-        EXPECT_NEAR(grey[i], 0.2 * white[i], 1e-7 * white[i]);
+    Object plate = object_of(Box{.least_m = {-0.5, -0.5, kDepth_m}, .most_m = {0.5, 0.5, 1.7}});
+    plate.reflectance =
+        Spectrum("peak", {300.0, 549.9, 550.0, 550.1, 800.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
+    rig.objects = {plate};
+    expect_ratio(image_of(rig, {})[0], 0.1 * axial, kSpectralError);
+
+    const Spectrum line("line", {400.0, 700.0}, {0.0, 1.0});
+    rig.strobes[0].spectrum = line;
+    rig.camera.sensor = Sensor({line, line, line}, ResponseKind::Energy);
+    rig.objects[0].phong = 0.5;
+    expect_ratio(image_of(rig, {})[0], (0.25 * 0.1 + 0.5 * 100.0) * axial, kSpectralError);
 }
 
 // A ball whose outline, tan 0.5 off the axis, runs through twelve pixel centres (as the cone of

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How many rows of an image with many planes are held at a time, so that memory does not grow with
+// their number: as many as a number of samples allows, all planes counted, and never more than
+// kMostRows, by which whatever can be shared among threads has been shared.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace aphotic {
+
+inline constexpr int kMostRows = 64;
+
+[[nodiscard]] inline int rows_holding(std::size_t samples, int width_px, std::size_t planes) {
+    const std::size_t row = static_cast<std::size_t>(width_px) * planes;
+    return static_cast<int>(std::min<std::size_t>(samples / row, kMostRows));
+}
+
+// Rows that OpenEXR compresses together: 16 by its ZIP, one by its ZIPS. Deflate looks back 32 KiB,
+// and OpenEXR parts the bytes of floats into two halves, each after the other. So beyond 64 KiB a
+// row has nothing of the row before in view: together they come out no smaller, and hold 16 times
+// the memory.
+inline constexpr int kRowsOfZip = 16;
+
+[[nodiscard]] inline int rows_compressed_together(int width_px, std::size_t channels) {
+    constexpr std::size_t kLongRow_bytes = std::size_t{64} << 10U;
+    const std::size_t row_bytes = static_cast<std::size_t>(width_px) * channels * sizeof(float);
+    return row_bytes > kLongRow_bytes ? 1 : kRowsOfZip;
+}
+
+// Rows that are traced at a time: radiance as doubles, as floats, and as floats on their way to the
+// file take 16 MiB together, or a row for each thread where those are more. As many for each
+// thread, so that all are busy to the end of the block.
+[[nodiscard]] inline int traced_rows(int width_px, std::size_t planes, int threads) {
+    constexpr std::size_t kTracedSamples = std::size_t{1} << 20U;
+    const int rows = rows_holding(kTracedSamples, width_px, planes);
+    return std::max(1, rows / threads) * threads;
+}
+
+}  // namespace aphotic

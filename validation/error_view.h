@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How a page shows relative errors (comparison.h): their rule as a formula, and the map of one
+// channel with its scale, the worst pixel ringed, and what its colours mean.
+#pragma once
+
+#include "validation/comparison.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace aphotic {
+
+// What a, b and b0 stand for, each as markup.
+[[nodiscard]] std::string error_rule(std::string_view a,
+                                     std::string_view b,
+                                     std::string_view black);
+
+struct MappedErrors {
+    const Comparison* comparison = nullptr;
+    // Rows of width_px samples; NaN where nothing was compared, or not finite in one of the images.
+    std::span<const float> errors{};
+    std::span<const float> image{};
+    std::span<const float> reference{};
+    int width_px = 0;
+    int least_side = 1;        // of the blocks of pixels that are shown as one
+    std::string image_name{};  // "POV-Ray", as markup
+    std::string set_apart{};   // what is grey: "on edges: 12 pixels"; empty: nothing is
+    int row = 0;               // which the notches mark, as the profiles' below
+    int column = 0;
+    std::string bar_id{};  // of the colour scale, on this page
+};
+
+// A whole figure with its legend and a paragraph. The colours run to the 99.9 percentile, rounded
+// up, so that the details show and not only the largest.
+[[nodiscard]] std::string error_map_html(const MappedErrors& mapped);
+
+}  // namespace aphotic
