@@ -59,6 +59,7 @@ Json settings_of(const Survey& survey, const Options& options) {
               {"black_level", options.camera.black_level},
               {"white_level", nullptr},
               {"gain", options.gain},
+              {"gain_images", nullptr},
               {"middle", wanted_middle(survey, options)},
               {"least_light", options.result.limit.share},
               {"most_noise", options.result.limit.relative},
@@ -67,6 +68,7 @@ Json settings_of(const Survey& survey, const Options& options) {
               {"edge_px", options.result.edge_px},
               {"mask", options.result.mask},
               {"format", options.result.format}};
+    if (options.gain.empty()) json["gain_images"] = options.gain_images;
     if (options.result.read_noise) json["read_noise"] = *options.result.read_noise;
     if (options.camera.white_level) json["white_level"] = *options.camera.white_level;
     return json;

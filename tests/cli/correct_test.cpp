@@ -427,6 +427,21 @@ TEST_F(CorrectCommand, ResultsOfAnEarlierRunAreNoRawImages) {
     EXPECT_EQ(Json::parse(run.out).at("corrected"), 1) << run.out;
 }
 
+// Taken from another number of images, the gain is another one.
+TEST_F(CorrectCommand, AnotherNumberOfGainImagesTakesTheGainAnew) {
+    take_survey();
+    const auto notes_of = [&](const std::string& images) {
+        const CommandResult run = correct({"--json", "--gain-images", images});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return Json::parse(run.out);
+    };
+    EXPECT_EQ(notes_of("1").at("gain_from").size(), 1U);
+    const Json again = notes_of("4");
+    EXPECT_EQ(again.at("gain_from").size(), 4U);
+    EXPECT_EQ(again.at("corrected"), 4);
+    EXPECT_EQ(notes_of("4").at("kept"), 4);
+}
+
 // A name that leads nowhere when its turn comes, be it a link or a file that went meanwhile, and a
 // pipe, which one would wait for without end: each is one bad image, whichever way it was named.
 TEST_F(CorrectCommand, WhatIsNoFileWhenItsTurnComesCostsNoOther) {
