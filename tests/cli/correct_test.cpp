@@ -476,9 +476,10 @@ TEST_F(CorrectCommand, AnImageThatVanishesMeanwhileIsOneThatIsSkipped) {
         note(name, {2.0, 0.0, 0.0});
     }
     const std::string last = fmt::format("raw/{:03}.tif", kMany - 1);
-    std::jthread thief([&] {
+    std::jthread thief([&](const std::stop_token& ended) {
         std::error_code none;
-        while (fs::file_size(path("out/corrected.jsonl"), none) + 1 < 2) {
+        const auto noted = [&] { return fs::file_size(path("out/corrected.jsonl"), none); };
+        while (!ended.stop_requested() && (noted() == 0 || none)) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
         fs::remove(path(last));
