@@ -30,6 +30,7 @@ namespace aphotic::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 struct Options {
     std::string name;
@@ -86,6 +87,10 @@ void learn_survey(BaselineCorrector& corrector, Survey& survey, const Options& o
         });
 }
 
+fs::path result_of(const SurveyFile& file, const Options& options) {
+    return fs::path(options.folder) / (file.name.string() + ".exr");
+}
+
 // A mosaic's other channels are filled in after the correction, never before.
 void write_image(const fs::path& file, const RawImage& image, const std::string& name) {
     make_folder(file.parent_path());
@@ -115,7 +120,7 @@ std::size_t correct_survey(const BaselineCorrector& corrector,
             // What could not be learned has its reason already.
             if (survey.skipped.contains(file.source)) return false;
             const RawImage image = read_finite(file, options);
-            write_image(fs::path(options.folder) / (file.name.string() + ".exr"),
+            write_image(result_of(file, options),
                         corrector.corrected(image, survey.altitude_m(file)),
                         options.name);
             return true;
@@ -131,30 +136,58 @@ std::size_t correct_survey(const BaselineCorrector& corrector,
     return corrected;
 }
 
+// Of all corrections, also what this one does not use.
+Json settings_of(const Options& options) {
+    const BaselineOptions& baseline = options.baseline;
+    return {{"aphotic", APHOTIC_VERSION},
+            {"bayer", mosaic_name(options.camera.mosaic)},
+            {"black_level", options.camera.black_level},
+            {"sigma", baseline.sigma},
+            {"low", baseline.low},
+            {"high", baseline.high},
+            {"tiles", baseline.tiles},
+            {"clip", baseline.clip},
+            {"order", baseline.order},
+            {"bin_m", baseline.bin_m}};
+}
+
+Survey survey_of(const Options& options) {
+    Survey survey{.files = survey_files(options.images, options.folder),
+                  .navigation = {},
+                  .skipped = {},
+                  .found_later = {}};
+    require_sources_stay(survey.files, [&](const SurveyFile& file) {
+        return std::vector<fs::path>{result_of(file, options)};
+    });
+    return survey;
+}
+
 ExitStatus correct(const Options& options) {
     BaselineCorrector corrector(baseline_named(options.name), options.baseline);
     if (corrector.needs_altitude() && options.navigation.empty())
         throw InputError(
             fmt::format("{}: needs --nav, for the altitude of each image", options.name));
-    Survey survey{.files = survey_files(options.images, options.folder),
-                  .navigation = {},
-                  .skipped = {},
-                  .found_later = {}};
+    Survey survey = survey_of(options);
     if (corrector.needs_altitude()) survey.navigation = read_navigation(options.navigation, Sled{});
     make_folder(options.folder);
+    // Before the first image: also what an interrupted run leaves is no survey.
+    const fs::path notes_file = fs::path(options.folder) / kBaselineNotes;
+    Json notes{
+        {"baseline", options.name}, {"settings", settings_of(options)}, {"folder", options.folder}};
+    write_text_file(notes_file, dumped(notes) + "\n");
     if (corrector.learns()) learn_survey(corrector, survey, options);
     const std::size_t corrected = correct_survey(corrector, survey, options);
     survey.skipped.merge(survey.found_later);
 
-    for (const auto& [image, why] : survey.skipped) print_skipped(image, why);
+    notes["corrected"] = corrected;
+    notes["skipped"] = Json::array();
+    for (const auto& [image, why] : survey.skipped) {
+        print_skipped(image, why);
+        notes["skipped"].push_back({{"image", image.string()}, {"why", why}});
+    }
+    write_text_file(notes_file, dumped(notes) + "\n");
     if (options.json) {
-        nlohmann::ordered_json json{{"baseline", options.name},
-                                    {"folder", options.folder},
-                                    {"corrected", corrected},
-                                    {"skipped", nlohmann::ordered_json::array()}};
-        for (const auto& [image, why] : survey.skipped)
-            json["skipped"].push_back({{"image", image.string()}, {"why", why}});
-        fmt::print("{}\n", dumped(json));
+        fmt::print("{}\n", dumped(notes));
     } else {
         fmt::print("{}: {} corrected by {}, {} skipped\n",
                    options.folder,
@@ -215,7 +248,7 @@ Action configure_baseline(CLI::App& app) {
     app.add_option("--jobs", options->jobs, "images at a time")
         ->check(in_range(1, 1024))
         ->capture_default_str();
-    app.add_flag("--json", options->json, "print what was done as JSON");
+    app.add_flag("--json", options->json, "print DIR/baseline.json");
     app.footer(
         "What users do without a model of the lamps, to hold it against. The polynomials learn "
         "from\n"

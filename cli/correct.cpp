@@ -22,7 +22,6 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <set>
 #include <system_error>
 
 namespace aphotic::cli {
@@ -60,6 +59,7 @@ Json settings_of(const Survey& survey, const Options& options) {
               {"black_level", options.camera.black_level},
               {"white_level", nullptr},
               {"gain", options.gain},
+              {"gain_images", nullptr},
               {"middle", wanted_middle(survey, options)},
               {"least_light", options.result.limit.share},
               {"most_noise", options.result.limit.relative},
@@ -68,13 +68,14 @@ Json settings_of(const Survey& survey, const Options& options) {
               {"edge_px", options.result.edge_px},
               {"mask", options.result.mask},
               {"format", options.result.format}};
+    if (options.gain.empty()) json["gain_images"] = options.gain_images;
     if (options.result.read_noise) json["read_noise"] = *options.result.read_noise;
     if (options.camera.white_level) json["white_level"] = *options.camera.white_level;
     return json;
 }
 
 fs::path notes_of(const Options& options) {
-    return options.result.folder / "correction.json";
+    return options.result.folder / kCorrectionNotes;
 }
 
 // A folder keeps its gain while its settings stay, so that images that come later fit the others.
@@ -167,19 +168,6 @@ void print_summary(const Json& summary, const Options& options) {
     }
 }
 
-void require_sources_stay(const Survey& survey, const Options& options) {
-    std::set<fs::path> sources;
-    for (const SurveyFile& file : survey.files) sources.insert(fs::weakly_canonical(file.source));
-    for (const SurveyFile& file : survey.files) {
-        const fs::path result = options.result.folder / result_of(file, options.result);
-        if (!sources.contains(fs::weakly_canonical(result))) continue;
-        throw InputError(
-            fmt::format("{}: would be overwritten by the result; allowed: another "
-                        "folder for -o",
-                        result.string()));
-    }
-}
-
 Survey survey_of(const Options& options) {
     if (options.rig.empty() == options.map.empty()) {
         throw InputError("--rig with --nav, or --map: one of them is needed");
@@ -198,7 +186,11 @@ Survey survey_of(const Options& options) {
     Survey survey;
     survey.camera = options.camera;
     survey.files = survey_files(options.images, options.result.folder);
-    require_sources_stay(survey, options);
+    require_sources_stay(survey.files, [&](const SurveyFile& file) {
+        std::vector<fs::path> results = results_of(file, options.result);
+        for (fs::path& result : results) result = options.result.folder / result;
+        return results;
+    });
     survey.light = options.map.empty()
                        ? light_of_rig(options.rig, options.nav, options.altitudes_m, survey.files)
                        : light_of_map(options.map);
@@ -297,9 +289,11 @@ void add_result_options(CLI::App& app, Options& options) {
     app.add_option("--gain-images", options.gain_images, "images that the gain is taken from")
         ->check(in_range(1, kMostImages))
         ->capture_default_str();
-    app.add_option("--least-light",
-                   options.result.limit.share,
-                   "the gain is held where the map is under this share of its brightest")
+    app.add_option(
+           "--least-light",
+           options.result.limit.share,
+           "a pixel's gain is held where the map is under this share of its brightest in one "
+           "channel")
         ->check(in_range(kLeastShare, 1.0))
         ->capture_default_str();
     app.add_option("--most-noise",

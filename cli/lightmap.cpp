@@ -53,6 +53,14 @@ Rig rig_of(const Options& options) {
     return rig;
 }
 
+std::vector<RigPart> parts_of(const Options& options, const Rig& rig) {
+    std::vector<RigPart> parts;
+    if (options.per_strobe) parts = parts_by_strobe(rig);
+    if (options.per_cone) std::ranges::move(parts_by_cone(rig), std::back_inserter(parts));
+    require_different_names(parts);
+    return parts;
+}
+
 // The planes of the file, one after another, and their names.
 struct Planes {
     std::vector<std::string> names;
@@ -86,6 +94,14 @@ void write(const Options& options, const Rig& rig, const Planes& planes) {
     writer.finish();
 }
 
+std::string words_of(const MapPromise& promise) {
+    return fmt::format("{} to {:.1e} of a signal off the cones' edges{}{}",
+                       promise.is_bounded ? "exact" : "near",
+                       promise.error,
+                       promise.is_bounded ? "" : ", as measured behind ports and not bounded",
+                       promise.is_of_lamp_grids ? ", emitters being grids of lamps" : "");
+}
+
 ExitStatus make_lightmap(const Options& options) {
     const auto seconds_since = [](auto start) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -98,6 +114,7 @@ ExitStatus make_lightmap(const Options& options) {
             throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
         }
     };
+    const std::vector<RigPart> parts = prefixed([&] { return parts_of(options, rig); });
     const auto start = std::chrono::steady_clock::now();
     const LightmapMaker maker =
         prefixed([&] { return LightmapMaker(rig, std::nullopt, options.map); });
@@ -110,9 +127,6 @@ ExitStatus make_lightmap(const Options& options) {
     if (options.normalised) divide_by(peaks, map);
     Planes planes;
     planes.take("", map);
-    std::vector<RigPart> parts;
-    if (options.per_strobe) parts = parts_by_strobe(rig);
-    if (options.per_cone) std::ranges::move(parts_by_cone(rig), std::back_inserter(parts));
     for (const RigPart& part : parts) {
         Lightmap share = LightmapMaker(part.rig, maker.paths(), options.map).map(rig.sled);
         if (options.normalised) divide_by(peaks, share);
@@ -127,6 +141,7 @@ ExitStatus make_lightmap(const Options& options) {
                       options.preview_file);
     }
 
+    const MapPromise promise = map_promise(rig, options.map);
     nlohmann::ordered_json outcome = {
         {"title", rig.title},
         {"rig_sha256", rig.digest},
@@ -140,6 +155,10 @@ ExitStatus make_lightmap(const Options& options) {
         {"peak", peaks},
         {"normalised", options.normalised},
         {"error", options.map.error},
+        {"promise",
+         {{"error", promise.error},
+          {"bounded", promise.is_bounded},
+          {"of_lamp_grids", promise.is_of_lamp_grids}}},
         {"paths_m", {maker.paths().shortest_m, maker.paths().longest_m}},
         {"grid", maker.grid_size()},
         {"table_steps", maker.table_steps()},
@@ -151,13 +170,14 @@ ExitStatus make_lightmap(const Options& options) {
         return kDone;
     }
     fmt::print(
-        "{}: {} x {} pixels, exact to {:.0e} of a signal off the cones' edges, in {:.0f} ms;\n"
+        "{}: {} x {} pixels in {:.0f} ms,\n"
+        "  {};\n"
         "  {:.0f} ms more for {} of the paths from {:.4g} to {:.4g} m, of {}\n",
         rig.title,
         map.width_px,
         map.height_px,
-        options.map.error,
         1e3 * map_s,
+        words_of(promise),
         1e3 * tables_s,
         counted(static_cast<std::size_t>(maker.table_steps()), "step"),
         maker.paths().shortest_m,
@@ -209,7 +229,8 @@ Action configure_lightmap(CLI::App& app) {
         "by what the whole is");
     app.add_option("--error",
                    options->map.error,
-                   "relative error that no signal off the cones' edges is to exceed")
+                   "relative error of the spectral integral and its table; the rounding of floats "
+                   "comes on top, and behind a port what is not bounded")
         ->check(in_range(kLeastError, kMostError))
         ->capture_default_str();
     app.add_option("--preview", options->preview_file, "a picture to look at, too")

@@ -12,17 +12,18 @@
 
 #include <algorithm>
 #include <mutex>
+#include <system_error>
 
 namespace aphotic::cli {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+namespace {
+
 fs::path result_of(const SurveyFile& file, const ResultOptions& options) {
     return file.name.string() + (options.format == "tiff" ? ".tif" : "." + options.format);
 }
-
-namespace {
 
 // Samples that the format cannot hold are marked; the writer clips them.
 void mark_clipped(CorrectedImage& result) {
@@ -74,22 +75,39 @@ Json correct_image(const SurveyFile& file,
     return doubts_in(result.doubts);
 }
 
+// Of the file as it is now. An InputError when it vanished since it was listed: one bad image.
+std::string state_of(const fs::path& image) {
+    require_file(image);
+    std::error_code size_error;
+    std::error_code time_error;
+    const auto size = fs::file_size(image, size_error);
+    const auto time = fs::last_write_time(image, time_error).time_since_epoch().count();
+    if (size_error) throw InputError(size_error.message());
+    if (time_error) throw InputError(time_error.message());
+    return fmt::format("{} {}", size, time);
+}
+
 // Of all that an image's result depends on.
 std::string digest_of(const SurveyFile& file,
                       const Sled& sled,
                       const std::string& settings_sha256,
                       const SurveyGain& gain) {
-    return sha256_of_text(fmt::format("{} {} {} {} {} {} {}",
+    return sha256_of_text(fmt::format("{} {} {} {} {} {}",
                                       settings_sha256,
                                       fmt::join(gain.gain, " "),
                                       sled.altitude_m,
                                       sled.pitch_rad,
                                       sled.roll_rad,
-                                      fs::file_size(file.source),
-                                      fs::last_write_time(file.source).time_since_epoch().count()));
+                                      state_of(file.source)));
 }
 
 }  // namespace
+
+std::vector<fs::path> results_of(const SurveyFile& file, const ResultOptions& options) {
+    std::vector<fs::path> files{result_of(file, options)};
+    if (options.mask) files.push_back(mask_of(file));
+    return files;
+}
 
 Outcome correct_survey(const Survey& survey,
                        const SurveyGain& gain,
@@ -114,9 +132,7 @@ Outcome correct_survey(const Survey& survey,
                 lock.unlock();
                 const Json doubts = correct_image(file, sled, survey, options, gain);
                 lock.lock();
-                std::vector<fs::path> files{result_of(file, options)};
-                if (options.mask) files.push_back(mask_of(file));
-                journal.note(name, digest, files, doubts);
+                journal.note(name, digest, results_of(file, options), doubts);
                 ++outcome.corrected;
             }
         } catch (const InputError& error) {

@@ -40,8 +40,9 @@ struct ResultOptions {
     std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
 };
 
-// Below the folder.
-[[nodiscard]] std::filesystem::path result_of(const SurveyFile& file, const ResultOptions& options);
+// The files that are made of an image, below the folder.
+[[nodiscard]] std::vector<std::filesystem::path> results_of(const SurveyFile& file,
+                                                            const ResultOptions& options);
 
 struct Skipped {
     std::string image;

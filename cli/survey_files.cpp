@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <system_error>
 
 namespace aphotic::cli {
 
@@ -17,6 +19,27 @@ namespace {
 
 fs::path without_extension(const fs::path& file) {
     return is_image_name(file) ? file.parent_path() / file.stem() : file;
+}
+
+bool is_within(const fs::path& path, const fs::path& folder) {
+    return std::ranges::mismatch(folder, path).in1 == folder.end();
+}
+
+// To a folder that it lies in, itself or by the links that led here: it has no end.
+bool leads_back(const fs::path& link, int folders_up) {
+    const fs::path target = fs::canonical(link);
+    fs::path folder = link.parent_path();
+    for (int up = 0; up <= folders_up; ++up, folder = folder.parent_path()) {
+        if (is_within(fs::canonical(folder), target)) return true;
+    }
+    return false;
+}
+
+// Results are no raw images: those of this run, nor those of an earlier one.
+bool holds_results(const fs::path& folder, const fs::path& output) {
+    std::error_code none;
+    return fs::equivalent(folder, output, none) || fs::exists(folder / kCorrectionNotes, none) ||
+           fs::exists(folder / kBaselineNotes, none);
 }
 
 void add_folder(const fs::path& folder, const fs::path& output, std::vector<SurveyFile>& files) {
@@ -31,14 +54,16 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Surv
     const auto options = fs::directory_options::follow_directory_symlink;
     for (fs::recursive_directory_iterator it(folder, options), end; it != end; ++it) {
         const fs::path& file = it->path();
-        // Results are no raw images: those of this run, nor those of an earlier one.
-        if (it->is_directory() &&
-            (fs::equivalent(file, output, none) || fs::exists(file / "correction.json"))) {
+        const bool is_folder = it->is_directory(none);
+        if (!is_folder || holds_results(file, output) ||
+            (it->is_symlink() && leads_back(file, it.depth()))) {
             it.disable_recursion_pending();
         }
         const bool is_hidden = file.filename().string().starts_with('.');
-        if (!is_image_name(file) || is_hidden || !it->is_regular_file()) continue;
-        files.push_back({.source = file, .name = without_extension(fs::relative(file, folder))});
+        if (is_folder || is_hidden || !is_image_name(file)) continue;
+        // By its own name here, and not by that of a file elsewhere that it may be a link to.
+        files.push_back(
+            {.source = file, .name = without_extension(file.lexically_relative(folder))});
     }
     if (std::ssize(files) == first) {
         throw InputError(fmt::format("{}: the folder holds no image", folder.string()));
@@ -52,10 +77,11 @@ std::vector<SurveyFile> survey_files(const std::vector<std::string>& arguments,
                                      const fs::path& output) {
     std::vector<SurveyFile> files;
     for (const std::string& argument : arguments) {
-        if (!fs::exists(argument)) {
+        std::error_code none;
+        if (!fs::exists(argument, none)) {
             throw InputError(fmt::format("{}: there is no such file or folder", argument));
         }
-        if (fs::is_directory(argument)) {
+        if (fs::is_directory(argument, none)) {
             add_folder(argument, output, files);
         } else {
             const fs::path file(argument);
@@ -72,6 +98,40 @@ std::vector<SurveyFile> survey_files(const std::vector<std::string>& arguments,
                                      (output / file.name).string()));
     }
     return files;
+}
+
+void require_file(const fs::path& image) {
+    std::error_code none;
+    const fs::file_status status = fs::status(image, none);
+    if (fs::is_regular_file(status)) return;
+    if (fs::exists(status)) throw InputError("found a pipe, device or folder; allowed: a file");
+    throw InputError(fs::is_symlink(fs::symlink_status(image, none))
+                         ? "found a link that leads nowhere; allowed: a file"
+                         : "there is no such file any more");
+}
+
+namespace {
+
+// The file itself, whatever links lead to it; of links that go in a circle, their own place.
+fs::path place_of(const fs::path& file) {
+    std::error_code circle;
+    fs::path place = fs::weakly_canonical(file, circle);
+    return circle ? fs::absolute(file).lexically_normal() : place;
+}
+
+}  // namespace
+
+void require_sources_stay(const std::vector<SurveyFile>& files, const Results& results) {
+    std::set<fs::path> sources;
+    for (const SurveyFile& file : files) sources.insert(place_of(file.source));
+    for (const SurveyFile& file : files) {
+        for (const fs::path& result : results(file)) {
+            if (!sources.contains(place_of(result))) continue;
+            throw InputError(
+                fmt::format("{}: would be overwritten by the result; allowed: another place for -o",
+                            result.string()));
+        }
+    }
 }
 
 }  // namespace aphotic::cli

@@ -2,6 +2,7 @@
 #include "cli/survey_image.h"
 
 #include "cli/any_image.h"
+#include "cli/survey_files.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
 
@@ -97,6 +98,7 @@ void add_camera_options(CLI::App& app, CameraNumbers& camera) {
 }
 
 SurveyImage read_survey_image(const fs::path& file, const CameraNumbers& camera) {
+    require_file(file);
     try {
         return survey_image_of(open_any_image(file), camera);
     } catch (const InputError& error) {

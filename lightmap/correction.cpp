@@ -80,6 +80,19 @@ float brightest(const Lightmap& map, int channel) {
     return std::ranges::max(plane_of(map, channel));
 }
 
+// h of a pixel. A channel whose map is 0 there tells nothing, as between an observed mosaic's
+// sites.
+float held_share(const std::array<std::span<const float>, kChannels>& lights,
+                 const std::array<float, kChannels>& least,
+                 std::size_t pixel) {
+    float share = 1.0F;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const float light = lights[c][pixel];
+        share = light > 0.0F ? std::min(share, light / least[c]) : share;
+    }
+    return share;
+}
+
 }  // namespace
 
 double least_signal(const NoiseLimit& limit) {
@@ -106,20 +119,23 @@ CorrectedImage corrected(const RawImage& raw, const Lightmap& map, const Correct
         // Where the map is all black, nothing can be told.
         gain[i] = is_lit ? static_cast<float>(correction.gain[i]) : 0.0F;
     }
+    const std::array<std::span<const float>, kChannels> lights{
+        plane_of(map, 0), plane_of(map, 1), plane_of(map, 2)};
     for_each_run(raw, [&](const Run& run) {
         const float black = correction.levels.black;
         const float white = correction.levels.white;
         const float floor = least[size_of(run.channel)];
         const float scale = gain[size_of(run.channel)];
-        const float* const light = plane_of(map, run.channel).data() + run.pixel;
+        const float* const light = lights[size_of(run.channel)].data() + run.pixel;
         const float* const from = raw.samples.data() + run.sample;
         float* const to = result.image.samples.data() + run.sample;
         std::uint8_t* const doubts = result.doubts.data() + run.pixel;
         for (std::size_t n = 0; n < run.count; ++n) {
             const std::size_t i = n * run.step;
-            to[i] = scale * ((from[i] - black) / std::max(light[i], floor));
-            const int doubt = (light[i] < floor ? kDark : 0) | (from[i] >= white ? kSaturated : 0) |
-                              (from[i] <= black ? kBlack : 0);
+            const float held = held_share(lights, least, run.pixel + i);
+            to[i] = scale * ((from[i] - black) * held / std::max(light[i], held * floor));
+            const int doubt = (held < 1.0F || light[i] < floor ? kDark : 0) |
+                              (from[i] >= white ? kSaturated : 0) | (from[i] <= black ? kBlack : 0);
             doubts[i] |= static_cast<std::uint8_t>(doubt);
         }
     });

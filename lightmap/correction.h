@@ -2,12 +2,16 @@
 //
 // A raw image divided by the map of its own light.
 //
-//   corrected_c = g_c (raw - black) / max(map_c, least_c)
+//   corrected_c = g_c (raw - black) h / max(map_c, h least_c),    h = min_k min(1, map_k / least_k)
 //
 // g      gain, one number a channel for the whole survey
 // map    the rig's signal at the pixel (lightmap.h), of the image's own altitude and attitude
-// least  where the map is darker, the gain is held: noise is not blown up there, and the pixel is
-//        marked as doubtful
+// least  where the map is darker in any channel, the gain of all channels is held by one share h:
+//        noise is not blown up there, the pixel keeps its colour, and is marked as doubtful
+//
+// Where the map is bright enough, h = 1 and the pixel is divided by its light. No sample exceeds
+// g_c (raw - black) / least_c. In h only those channels count whose map is over 0: a map of 0 tells
+// nothing, as between the sites of an observed mosaic.
 //
 // Of a floor like the rig's, raw - black = E_c map_c with the camera's exposure E_c, so that
 // corrected_c = g_c E_c at every pixel. Where a thing reflects twice the light of the rig's floor
@@ -47,7 +51,7 @@ inline constexpr std::uint8_t kClipped = 16;  // the corrected sample does not f
 
 struct NoiseLimit {
     double share = 0.01;              // of the map's brightest, in each channel
-    double relative = 0.1;            // L
+    double relative = 0.5;            // L
     double read_noise = 0.0;          // r, in the camera's numbers
     double electrons_per_number = 0;  // e; 0: shot noise is left aside
 };

@@ -222,6 +222,16 @@ PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds) {
     return all.longest_m > 0.0 ? all : PathRange{};
 }
 
+MapPromise map_promise(const Rig& rig, const LightmapOptions& options) {
+    constexpr double kRounding = 12.0 * 0x1p-24;
+    constexpr double kOverTheIndex = 1e-4;
+    const bool has_port = rig.camera.port.has_value();
+    return {.error = options.error + kRounding + (has_port ? kOverTheIndex : 0.0),
+            .is_bounded = !has_port,
+            .is_of_lamp_grids = std::ranges::any_of(
+                rig.strobes, [](const Strobe& strobe) { return strobe.emitter.has_value(); })};
+}
+
 LightmapMaker::LightmapMaker(const Rig& rig,
                              const std::optional<PathRange>& paths,
                              const LightmapOptions& options)

@@ -40,6 +40,20 @@ struct LightmapOptions {
     int threads = 1;  // changes no bit
 };
 
+// How far a signal of a map may be from the exact one of the same lamps, relative, off the cones'
+// edges.
+struct MapPromise {
+    double error = 0.0;
+    // Behind a port the interpolation over the index is measured and has no bound.
+    bool is_bounded = true;
+    // Emitters of a size are their grids of lamps, and penumbras have as many steps.
+    bool is_of_lamp_grids = false;
+};
+
+// The error that is asked for and the rounding of floats, that of a sum of a dozen; behind a port
+// besides 1e-4.
+[[nodiscard]] MapPromise map_promise(const Rig& rig, const LightmapOptions& options);
+
 // R, G, B planar: all rows of R, then of G, then of B.
 struct Lightmap {
     int width_px = 0;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/planes.h"
 
+#include "spectral/error.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <span>
 
 namespace aphotic {
@@ -41,6 +44,17 @@ std::vector<RigPart> parts_by_cone(const Rig& rig) {
         }
     }
     return parts;
+}
+
+void require_different_names(const std::vector<RigPart>& parts) {
+    std::set<std::string> names;
+    for (const RigPart& part : parts) {
+        if (names.insert(part.name).second) continue;
+        throw InputError(
+            fmt::format("strobes: found two parts of the light that would be named {}, of a strobe "
+                        "and of a cone, or of two cones; allowed: names that differ",
+                        part.name));
+    }
 }
 
 std::array<float, kChannels> peaks_of(const Lightmap& map) {

@@ -24,6 +24,10 @@ struct RigPart {
 // A cone that its beam gives no name, or one that another has, is numbered: fore.cone2.
 [[nodiscard]] std::vector<RigPart> parts_by_cone(const Rig& rig);
 
+// An InputError when two parts would have one name, as a strobe "fore.collimated" beside a cone
+// "collimated" of the strobe "fore".
+void require_different_names(const std::vector<RigPart>& parts);
+
 // The largest sample of each channel.
 [[nodiscard]] std::array<float, kChannels> peaks_of(const Lightmap& map);
 

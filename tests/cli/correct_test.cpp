@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -407,7 +408,6 @@ TEST_F(CorrectCommand, KilledAnywhereItGoesOnToTheSameImages) {
     EXPECT_TRUE(out == whole);
 }
 
-// One map for all: here the rig's own, so that the results are the same.
 TEST_F(CorrectCommand, ResultsOfAnEarlierRunAreNoRawImages) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
     ASSERT_EQ(correct({}).status, 0);
@@ -427,6 +427,101 @@ TEST_F(CorrectCommand, ResultsOfAnEarlierRunAreNoRawImages) {
     EXPECT_EQ(Json::parse(run.out).at("corrected"), 1) << run.out;
 }
 
+// Taken from another number of images, the gain is another one.
+TEST_F(CorrectCommand, AnotherNumberOfGainImagesTakesTheGainAnew) {
+    take_survey();
+    const auto notes_of = [&](const std::string& images) {
+        const CommandResult run = correct({"--json", "--gain-images", images});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return Json::parse(run.out);
+    };
+    EXPECT_EQ(notes_of("1").at("gain_from").size(), 1U);
+    const Json again = notes_of("4");
+    EXPECT_EQ(again.at("gain_from").size(), 4U);
+    EXPECT_EQ(again.at("corrected"), 4);
+    EXPECT_EQ(notes_of("4").at("kept"), 4);
+}
+
+// A name that leads nowhere when its turn comes, be it a link or a file that went meanwhile, and a
+// pipe, which one would wait for without end: each is one bad image, whichever way it was named.
+TEST_F(CorrectCommand, WhatIsNoFileWhenItsTurnComesCostsNoOther) {
+    take_survey();
+    fs::create_symlink("moved-away.tif", path("raw/gone.tif"));
+    fs::create_symlink("itself.tif", path("raw/itself.tif"));
+    ASSERT_EQ(::mkfifo(path("raw/pipe.tif").c_str(), 0600), 0);
+    ASSERT_EQ(::mkfifo(path("named.tif").c_str(), 0600), 0);
+    for (const char* name : {"gone.tif", "itself.tif", "pipe.tif", "named.tif"}) {
+        note(name, {2.0, 0.0, 0.0});
+    }
+    const CommandResult run = correct({"named.tif", "--json", "--gain", "1"});
+    EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
+    const Json summary = Json::parse(run.out);
+    EXPECT_EQ(summary["corrected"], 4);
+    std::map<std::string, std::string> why;
+    for (const Json& one : summary["skipped"]) why[one["image"]] = one["why"];
+    EXPECT_EQ(why.size(), 4U) << summary.dump(2);
+    EXPECT_EQ(why["raw/gone.tif"], "found a link that leads nowhere; allowed: a file");
+    EXPECT_EQ(why["raw/itself.tif"], "found a link that leads nowhere; allowed: a file");
+    EXPECT_EQ(why["raw/pipe.tif"], "found a pipe, device or folder; allowed: a file");
+    EXPECT_EQ(why["named.tif"], "found a pipe, device or folder; allowed: a file");
+}
+
+// Of many images the last is taken away when the first ones are done.
+TEST_F(CorrectCommand, AnImageThatVanishesMeanwhileIsOneThatIsSkipped) {
+    constexpr int kMany = 200;
+    take("000.tif", {2.0, 0.0, 0.0});
+    for (int i = 1; i < kMany; ++i) {
+        const std::string name = fmt::format("{:03}.tif", i);
+        fs::copy_file(path("raw/000.tif"), path("raw/" + name));
+        note(name, {2.0, 0.0, 0.0});
+    }
+    const std::string last = fmt::format("raw/{:03}.tif", kMany - 1);
+    std::jthread thief([&](const std::stop_token& ended) {
+        std::error_code none;
+        const auto noted = [&] { return fs::file_size(path("out/corrected.jsonl"), none); };
+        while (!ended.stop_requested() && (noted() == 0 || none)) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        fs::remove(path(last));
+    });
+    const CommandResult run = correct({"--json", "--gain", "1", "--jobs", "1"});
+    EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
+    const Json summary = Json::parse(run.out);
+    EXPECT_EQ(summary["corrected"], kMany - 1);
+    ASSERT_EQ(summary["skipped"].size(), 1U);
+    EXPECT_EQ(summary["skipped"][0]["image"], last);
+    EXPECT_EQ(summary["skipped"][0]["why"], "there is no such file any more");
+}
+
+// Links are followed, but for those that lead back; a linked image's result has the link's name.
+TEST_F(CorrectCommand, LinksOfFoldersAreFollowedAndEnd) {
+    const Sled sled{2.0, 5.0 * kDegree, 0.0};
+    take("a.tif", sled);
+    fs::create_directories(path("raw/dive"));
+    fs::create_directories(path("elsewhere/far"));
+    fs::copy_file(path("raw/a.tif"), path("elsewhere/far/b.tif"));
+    fs::copy_file(path("raw/a.tif"), path("elsewhere/original.tif"));
+    fs::create_directory_symlink("../../elsewhere/far", path("raw/dive/linked"));
+    fs::create_symlink("../elsewhere/original.tif", path("raw/c.tif"));
+    fs::create_directory_symlink("..", path("raw/dive/up"));
+    fs::create_directory_symlink("../raw/dive", path("raw/across"));
+    fs::create_directory_symlink("../../raw", path("elsewhere/far/back"));
+    fs::create_directory_symlink("itself", path("raw/itself"));
+    note("b.tif", sled);
+    note("c.tif", sled);
+    const CommandResult run = correct({"--json"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    std::vector<std::string> names;
+    for (const auto& [name, bytes] : files_in("out")) {
+        if (name.ends_with(".tif")) names.push_back(name);
+    }
+    EXPECT_EQ(
+        names,
+        (std::vector<std::string>{"a.tif", "across/linked/b.tif", "c.tif", "dive/linked/b.tif"}));
+    EXPECT_FALSE(fs::exists(path("elsewhere/original.tif.tif")));
+}
+
+// One map for all: here the rig's own, so that the results are the same.
 TEST_F(CorrectCommand, AMapTakesThePlaceOfRigAndNavigation) {
     const Sled sled{2.0, 5.0 * kDegree, 0.0};  // as the rig file has it
     take("a.tif", sled);
@@ -492,6 +587,10 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     refused(with({"raw", "-o", "out", "--gain", "1,2"}), "--gain: found 2 numbers");
     refused(with({"raw", "-o", "out", "--altitudes-m", "4,1"}), "--altitudes-m: found 4,1");
     refused(with({"raw/a.tif", "-o", "raw"}), "would be overwritten by the result");
+    write_file(path("raw/a.mask.png"), "an image of the user's");
+    refused(with({"raw/a.tif", "raw/a.mask.png", "-o", "raw", "--format", "exr", "--mask"}),
+            "raw/a.mask.png: would be overwritten by the result");
+    fs::remove(path("raw/a.mask.png"));
     refused(with({"raw", "-o", "raw"}), "found the folder to write to");
     refused({"raw", "-o", "out", "--map", "none.exr"}, "none.exr");
     fs::create_directories(path("dark"));

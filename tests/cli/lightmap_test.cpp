@@ -110,6 +110,45 @@ TEST_F(CommandLightmap, SaysWhatItDidInJson) {
     EXPECT_EQ(reader.attribute("aphotic:rig_sha256"), said["rig_sha256"]);
 }
 
+// What docs/lightmaps.md promises: the error that is asked for and what floats round; of ports what
+// was measured; of emitters the lamps that stand for them.
+TEST_F(CommandLightmap, PromisesWhatHolds) {
+    const auto expect_words = [&](const std::string& words, const CommandResult& run) {
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_NE(run.out.find(words + ";\n"), std::string::npos) << run.out;
+    };
+    const std::string off_edges = " of a signal off the cones' edges";
+    expect_words("exact to 1.1e-05" + off_edges, lightmap());
+    expect_words("exact to 8.2e-07" + off_edges, lightmap({"--error", "1e-7"}));
+    const std::string text = read_text_file(folder_.path() / "rig.toml");
+    write_file(folder_.path() / "rig.toml",
+               text +
+                   "\n[camera.port]\nshape = \"flat\"\ndistance_mm = 50.0\n"
+                   "thickness_mm = 12.0\nglass = \"bk7\"\n");
+    expect_words("near to 1.1e-04" + off_edges + ", as measured behind ports and not bounded",
+                 lightmap());
+    const auto port = nlohmann::json::parse(lightmap({"--json"}).out);
+    EXPECT_FALSE(port["promise"]["bounded"]);
+    write_file(
+        folder_.path() / "rig.toml",
+        std::regex_replace(text, std::regex("\nbeam "), "\nemitter_mm = [63.5, 30.2]\nbeam "));
+    expect_words("exact to 1.1e-05" + off_edges + ", emitters being grids of lamps", lightmap());
+}
+
+TEST_F(CommandLightmap, RefusesTwoPartsOfOneName) {
+    const std::string text = read_text_file(folder_.path() / "rig.toml");
+    write_file(folder_.path() / "rig.toml",
+               std::regex_replace(text, std::regex("\"aft\""), "\"fore.collimated\""));
+    const CommandResult run = lightmap({"--per-strobe", "--per-cone"});
+    EXPECT_EQ(run.status, kBadInput);
+    EXPECT_EQ(run.err,
+              "aphotic: rig.toml: strobes: found two parts of the light that would be named "
+              "fore.collimated, of a strobe and of a cone, or of two cones; allowed: names that "
+              "differ\n");
+    EXPECT_FALSE(fs::exists(folder_.path() / "map.exr"));
+    EXPECT_EQ(lightmap({"--per-strobe"}).status, 0);
+}
+
 TEST_F(CommandLightmap, RefusesARigWithObjects) {
     std::string text = read_text_file(folder_.path() / "rig.toml");
     write_file(folder_.path() / "rig.toml",

@@ -280,5 +280,48 @@ TEST_F(CommandBaseline, RefusesWhatItCannotDo) {
     EXPECT_FALSE(fs::exists(path("out")));
 }
 
+TEST_F(CommandBaseline, NoSourceIsOverwritten) {
+    write_survey();
+    const std::string before = read_text_file(path("raw/a.exr"));
+    const CommandResult result = run({"baseline", "homomorphic", "raw/a.exr", "-o", "raw"});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find("raw/a.exr: would be overwritten by the result"), std::string::npos)
+        << result.err;
+    EXPECT_FALSE(fs::exists(path("raw/baseline.json")));
+    EXPECT_EQ(read_text_file(path("raw/a.exr")), before);
+}
+
+TEST_F(CommandBaseline, LeavesWhatItDidAndWithWhatSettings) {
+    write_survey();
+    const CommandResult result =
+        run({"baseline", "homomorphic", "raw", "-o", "out", "--sigma", "0.2", "--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const nlohmann::json notes = nlohmann::json::parse(read_text_file(path("out/baseline.json")));
+    EXPECT_EQ(notes, nlohmann::json::parse(result.out));
+    EXPECT_EQ(notes["baseline"], "homomorphic");
+    EXPECT_EQ(notes["corrected"], 4);
+    EXPECT_EQ(notes["settings"]["sigma"], 0.2);
+    EXPECT_EQ(notes["settings"]["bayer"], "none");
+}
+
+// Nor are they lost when the folder is named itself.
+TEST_F(CommandBaseline, ItsResultsAreNoRawImages) {
+    write_survey();
+    ASSERT_EQ(run({"baseline", "homomorphic", "raw", "-o", "raw/flat"}).status, 0);
+    const auto images_of = [&](std::vector<std::string> arguments) {
+        arguments.emplace_back("--json");
+        const CommandResult result = run(arguments);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return nlohmann::json::parse(result.out);
+    };
+    EXPECT_EQ(images_of({"baseline", "log-polynomial", "raw", "-o", "again"})["corrected"], 4);
+    EXPECT_EQ(images_of({"baseline", "log-polynomial", "raw/flat", "-o", "twice"})["corrected"], 4);
+    EXPECT_EQ(
+        images_of(
+            {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "map.exr"})["images"],
+        3);
+    EXPECT_EQ(images_of({"correct", "raw", "--map", "map.exr", "-o", "done"})["corrected"], 4);
+}
+
 }  // namespace
 }  // namespace aphotic

@@ -140,6 +140,67 @@ TEST(Correction, TheGainIsHeldWhereTheMapIsDark) {
     }
 }
 
+// Green and blue everywhere alike; a red that fades as in water, from 1 to a thousandth.
+Lightmap light_through_water() {
+    Lightmap map{.width_px = kWidth, .height_px = kHeight, .samples = {}};
+    for (std::size_t i = 0; i < kPixels; ++i) {
+        map.samples.push_back(std::pow(10.0F, -3.0F * static_cast<float>(i) / kPixels));
+    }
+    map.samples.insert(map.samples.end(), kPixels, 1.0F / 2.0F);
+    map.samples.insert(map.samples.end(), kPixels, 1.0F / 3.0F);
+    return map;
+}
+
+// With one gain held and not the others, a grey floor would turn green in the dark.
+TEST(Correction, WhereOneChannelIsTooDarkAPixelKeepsItsColour) {
+    constexpr double kShare = 0.1;
+    const Lightmap map = light_through_water();
+    const std::vector<float> reflectance = random_reflectance(11);
+    Correction held = plain();
+    held.levels.black = 0.0F;
+    held.limit.share = kShare;
+    const PerChannel brightest{1.0, 1.0 / 2.0, 1.0 / 3.0};
+    RawImage raw = seen(map, reflectance, Mosaic::None);
+    for (float& sample : raw.samples) sample -= kBlackLevel;
+    const CorrectedImage result = corrected(raw, map, held);
+    std::size_t dark = 0;
+    for (std::size_t i = 0; i < kPixels; ++i) {
+        const double red_share = map.samples[i] / kShare;
+        EXPECT_EQ(result.doubts[i] == kDark, red_share < 1.0) << i;
+        if (red_share < 1.0) ++dark;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const std::size_t at = c * kPixels + i;
+            // The closed form of h where red is the darkest.
+            const double wanted = reflectance[at] * std::min(1.0, red_share);
+            // The raw sample lost what lay under a step of the black level that it was made with.
+            const double lost = 0x1p-23 * kBlackLevel / (kExposure * map.samples[at]);
+            EXPECT_NEAR(result.image.samples[at], wanted, 4 * kRounding * wanted + lost) << i;
+            const double most = raw.samples[at] / (kExposure * kShare * brightest[c]);
+            EXPECT_LE(result.image.samples[at], most * (1.0 + kRounding)) << i;
+        }
+    }
+    EXPECT_GT(dark, kPixels / 4);
+    EXPECT_LT(dark, 3 * kPixels / 4);
+}
+
+// An observed mosaic tells of each site its own channel alone, and 0 in the two others.
+TEST(Correction, ChannelsThatTheMapDoesNotTellHoldNothing) {
+    Lightmap map = light_of_a_lamp();
+    const std::vector<float> reflectance = random_reflectance(12);
+    const RawImage raw = seen(map, reflectance, Mosaic::Rggb);
+    const CorrectedImage whole = corrected(raw, map, plain());
+    for (std::size_t i = 0; i < map.samples.size(); ++i) {
+        const auto pixel = static_cast<int>(i % kPixels);
+        if (channel_at(Mosaic::Rggb, pixel % kWidth, pixel / kWidth) !=
+            static_cast<int>(i / kPixels)) {
+            map.samples[i] = 0.0F;
+        }
+    }
+    const CorrectedImage sites = corrected(raw, map, plain());
+    EXPECT_EQ(sites.image.samples, whole.image.samples);
+    EXPECT_EQ(sites.doubts, whole.doubts);
+}
+
 // Without shot noise the relative noise is r/s; without read noise it is 1/sqrt(e s).
 TEST(Correction, TheLeastSignalIsWhereNoiseReachesTheLimit) {
     NoiseLimit limit{.share = 0.0, .relative = 0.1, .read_noise = 3.0, .electrons_per_number = 0.0};

@@ -137,6 +137,17 @@ TEST(Lightmap, IsThatOfTheTracerForHabCam) {
     expect_equal(scene("habcam", 272, 205), kWithoutPort, "habcam");
 }
 
+// An error may be asked for that floats cannot hold: the promise counts their rounding.
+TEST(Lightmap, PromisesNoLessThanFloatsRound) {
+    const Rig rig = scene("habcam", 136, 102);
+    const LightmapOptions least{.error = 1e-7, .threads = 1};
+    const Difference difference =
+        against_tracer(rig, LightmapMaker(rig, std::nullopt, least).map(rig.sled));
+    EXPECT_LE(difference.worst, map_promise(rig, least).error + kSpectralError)
+        << testing::PrintToString(difference);
+    EXPECT_GT(difference.worst, least.error) << testing::PrintToString(difference);
+}
+
 TEST(Lightmap, IsThatOfTheTracerBehindAPort) {
     expect_equal(scene("port", 136, 102), kPromise, "port");
 }

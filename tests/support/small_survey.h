@@ -48,10 +48,11 @@ class SmallSurvey {
         return file;
     }
 
-    // Into folder()/out. Returns the exit status.
-    [[nodiscard]] int make(std::vector<std::string> arguments) const {
+    // Into folder()/output. Returns the exit status.
+    [[nodiscard]] int make(std::vector<std::string> arguments,
+                           const std::string& output = "out") const {
         constexpr double kTimeout_s = 280.0;
-        arguments.insert(arguments.begin(), {"-o", "out", "--rig", rig().string()});
+        arguments.insert(arguments.begin(), {"-o", output, "--rig", rig().string()});
         return run_process({.executable = APHOTIC_SURVEY,
                             .arguments = arguments,
                             .folder = folder(),
