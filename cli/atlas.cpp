@@ -170,26 +170,45 @@ void print(const nlohmann::ordered_json& outcome) {
     fmt::print("  {}/atlas.json\n", outcome["folder"].get<std::string>());
 }
 
+// A line that begins anew when the work does.
+std::function<void(double)> shown_as(const char* what, std::optional<ProgressLine>& line) {
+    return [what, &line, last = 1.0](double share) mutable {
+        if (share < last) line.emplace();
+        line->show(what, share);
+        last = share;
+    };
+}
+
+ChosenAxes choose(const Options& options, const Rig& rig, const MapAxes& finest) {
+    std::optional<ProgressLine> line;
+    const MeasureOptions measure{.threads = options.map.threads,
+                                 .progress = shown_as("measuring", line)};
+    if (options.tolerance > 0.0) return axes_for(rig, finest, options.tolerance, measure);
+    return {.axes = finest,
+            .interpolation = interpolation_error(rig, finest, kWholeLimit, measure)};
+}
+
 ExitStatus make_atlas(const Options& options) {
     const auto start = std::chrono::steady_clock::now();
     const Rig rig = read_rig(options.rig_file);
     const MapAxes finest = axes_of(options, rig);
-    AtlasRequest request{.axes = finest,
+    AtlasRequest request{.axes = {},
                          .interpolation = {},
                          .map = options.map,
                          .version = APHOTIC_VERSION,
                          .progress = {}};
     std::size_t computed = 0;
     nlohmann::ordered_json exports;
-    const FolderLock lock = claim_folder(options.folder);
-    remove_abandoned_files(fs::path(options.folder) / "bins");
     set_exr_threads(options.map.threads);
     try {
-        if (options.tolerance > 0.0) request.axes = axes_for(rig, finest, options.tolerance);
-        request.interpolation = interpolation_error(rig, request.axes);
+        const ChosenAxes chosen = choose(options, rig, finest);
+        request.axes = chosen.axes;
+        request.interpolation = chosen.interpolation;
+        const FolderLock lock = claim_folder(options.folder);
+        remove_abandoned_files(fs::path(options.folder) / "bins");
         {
-            ProgressLine line;
-            request.progress = [&](double share) { line.show("mapping", share); };
+            std::optional<ProgressLine> line;
+            request.progress = shown_as("mapping", line);
             computed = write_atlas(options.folder, rig, request);
         }
         exports = export_maps(options, rig, finest.altitude_m);

@@ -79,22 +79,6 @@ TEST(Atlas, IsAsFarFromTheTruthBetweenBinsAsItStates) {
     EXPECT_LE(worse, 2.0 * stated.crossed_share * static_cast<double>(truth.samples.size()));
 }
 
-TEST(Atlas, TakesAsFewBinsAsTheToleranceNeeds) {
-    const Rig rig = habcam();
-    MapAxes finest = few_bins();
-    finest.altitude_m.clear();
-    for (int i = 0; i <= 30; ++i) finest.altitude_m.push_back(1.0 + 0.1 * i);
-    std::size_t fewer = 31;
-    for (const double tolerance : {0.003, 0.03}) {
-        const MapAxes chosen = axes_for(rig, finest, tolerance);
-        EXPECT_LE(interpolation_error(rig, chosen).worst, tolerance);
-        EXPECT_LT(chosen.altitude_m.size(), fewer);
-        EXPECT_EQ(chosen.altitude_m.front(), 1.0);
-        EXPECT_EQ(chosen.altitude_m.back(), finest.altitude_m.back());
-        fewer = chosen.altitude_m.size();
-    }
-}
-
 TEST(Atlas, GoesOnWhereItStopped) {
     const TempFolder folder;
     write(folder.path(), few_bins());
