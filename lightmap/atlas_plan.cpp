@@ -132,6 +132,10 @@ class Cell {
     std::vector<Lightmap> maps_;
 };
 
+// By how much an axis' share of the tolerance shrinks at a time, and when it takes all its values.
+constexpr double kShrink = 0.75;
+constexpr double kLeastShare = 1e-3;
+
 using Axis = std::vector<double> MapAxes::*;
 constexpr std::array<Axis, 4> kAxes{
     &MapAxes::altitude_m, &MapAxes::pitch_rad, &MapAxes::roll_rad, &MapAxes::water_multiple};
@@ -167,50 +171,70 @@ void count_crossed(MapSource& sharp, const MapAxes& cell, const MapPoint& point,
     tally.pixels += static_cast<double>(cones.size());
 }
 
-struct CellTally {
-    Tally smooth;
-    Tally whole;
-};
-
-CellTally measure_cell(Probe& probe, const MapAxes& axes, std::size_t index, double whole_limit) {
-    const MapAxes ends = cell_of(axes, index);
-    CellTally found;
-    const Cell smooth(probe.smooth, ends);
-    for (const MapPoint& point : own_middles(axes, ends)) {
-        found.smooth.add(smooth.error_at(point, {}));
-    }
-    const MapPoint middle = middle_of(ends);
-    found.whole = Cell(probe.sharp, ends)
-                      .error_at(middle, {.against = Against::LargerOfBoth, .limit = whole_limit});
-    count_crossed(probe.sharp, ends, middle, found.whole);
-    return found;
+// Of all cells, one after another; threads take them as they come free.
+std::vector<Tally> tallies_of(std::size_t cells,
+                              const MeasureOptions& options,
+                              const std::function<Tally(std::size_t)>& measure) {
+    std::vector<Tally> tallies(cells);
+    const auto take = [&](std::size_t i, std::size_t thread) {
+        if (thread == 0 && options.progress) {
+            options.progress(static_cast<double>(i) / static_cast<double>(cells));
+        }
+        tallies[i] = measure(i);
+    };
+    parallel_for(cells, static_cast<std::size_t>(options.threads), take);
+    return tallies;
 }
 
-InterpolationError measured(Probe& probe,
-                            const MapAxes& axes,
-                            double whole_limit,
-                            const MeasureOptions& options) {
-    std::vector<CellTally> cells(cell_count(axes));
-    parallel_for(
-        cells.size(),
-        static_cast<std::size_t>(options.threads),
-        [&](std::size_t i, std::size_t thread) {
-            if (thread == 0 && options.progress) {
-                options.progress(static_cast<double>(i) / static_cast<double>(cells.size()));
-            }
-            cells[i] = measure_cell(probe, axes, i, whole_limit);
-        });
-    CellTally sum;
-    for (const CellTally& cell : cells) {
-        sum.smooth.add(cell.smooth);
-        sum.whole.add(cell.whole);
-    }
-    return {.worst = sum.smooth.worst,
-            .rms = rms_of(sum.smooth),
-            .crossed_share = sum.whole.crossed / sum.whole.pixels,
-            .whole_rms = rms_of(sum.whole),
-            .whole_limit = whole_limit,
-            .whole_over = sum.whole.over / std::max(1.0, sum.whole.samples)};
+Tally sum_of(const std::vector<Tally>& tallies) {
+    Tally sum;
+    for (const Tally& tally : tallies) sum.add(tally);
+    return sum;
+}
+
+std::vector<Tally> light_tallies(Probe& probe, const MapAxes& axes, const MeasureOptions& options) {
+    return tallies_of(cell_count(axes), options, [&](std::size_t i) {
+        const MapAxes ends = cell_of(axes, i);
+        const Cell cell(probe.smooth, ends);
+        Tally tally;
+        for (const MapPoint& point : own_middles(axes, ends)) tally.add(cell.error_at(point, {}));
+        return tally;
+    });
+}
+
+// From one cell that is looked at to the next: without a common factor with their number, so that
+// no axis is seen at the same few places alone.
+std::size_t whole_stride(std::size_t cells) {
+    std::size_t stride = (cells + kWholeCells - 1) / kWholeCells;
+    while (std::gcd(stride, cells) > 1) ++stride;
+    return stride;
+}
+
+std::vector<Tally> whole_tallies(Probe& probe,
+                                 const MapAxes& axes,
+                                 double limit,
+                                 const MeasureOptions& options) {
+    const std::size_t cells = cell_count(axes);
+    const std::size_t stride = whole_stride(cells);
+    return tallies_of((cells + stride - 1) / stride, options, [&](std::size_t i) {
+        const MapAxes ends = cell_of(axes, i * stride);
+        const MapPoint middle = middle_of(ends);
+        Tally tally = Cell(probe.sharp, ends)
+                          .error_at(middle, {.against = Against::LargerOfBoth, .limit = limit});
+        count_crossed(probe.sharp, ends, middle, tally);
+        return tally;
+    });
+}
+
+InterpolationError stated(const Tally& light, const std::vector<Tally>& whole, double limit) {
+    const Tally sum = sum_of(whole);
+    return {.worst = light.worst,
+            .rms = rms_of(light),
+            .whole_cells = whole.size(),
+            .crossed_share = sum.crossed / sum.pixels,
+            .whole_rms = rms_of(sum),
+            .whole_limit = limit,
+            .whole_over = sum.over / std::max(1.0, sum.samples)};
 }
 
 std::vector<double> ends_of(const std::vector<double>& values) {
@@ -266,21 +290,37 @@ double error_of_step(
     return *std::ranges::max_element(errors);
 }
 
-MapAxes chosen_for(Probe& probe,
-                   const MapAxes& finest,
-                   double share,
-                   const MeasureOptions& options) {
-    MapAxes chosen = finest;
-    for (const Axis axis : kAxes) {
-        const std::vector<double>& values = finest.*axis;
-        chosen.*axis = sparse(values, share, [&](double from, double to) {
-            if (options.progress) {
-                options.progress((from - values.front()) / (values.back() - values.front()));
-            }
-            return error_of_step(probe, finest, axis, {from, to}, options.threads);
-        });
+std::vector<double> chosen_values(
+    Probe& probe, const MapAxes& finest, Axis axis, double share, const MeasureOptions& options) {
+    const std::vector<double>& values = finest.*axis;
+    return sparse(values, share, [&](double from, double to) {
+        if (options.progress) {
+            options.progress((from - values.front()) / (values.back() - values.front()));
+        }
+        return error_of_step(probe, finest, axis, {from, to}, options.threads);
+    });
+}
+
+// Of those that may yet take finer steps, the axis along which the light in this cell is furthest
+// off.
+std::size_t most_to_blame(Probe& probe,
+                          const MapAxes& finest,
+                          const MapAxes& chosen,
+                          const MapAxes& cell) {
+    std::size_t most = kAxes.size();
+    double error = -1.0;
+    for (std::size_t a = 0; a < kAxes.size(); ++a) {
+        const Axis axis = kAxes[a];
+        if ((chosen.*axis).size() == (finest.*axis).size()) continue;
+        const double found = error_of_step(probe, cell, axis, cell.*axis, 1);
+        if (found > error) most = a, error = found;
     }
-    return chosen;
+    return most;
+}
+
+std::size_t worst_of(const std::vector<Tally>& tallies) {
+    const auto is_better = [](const Tally& a, const Tally& b) { return a.worst < b.worst; };
+    return static_cast<std::size_t>(std::ranges::max_element(tallies, is_better) - tallies.begin());
 }
 
 }  // namespace
@@ -324,7 +364,8 @@ InterpolationError interpolation_error(const Rig& rig,
                                        double whole_limit,
                                        const MeasureOptions& options) {
     Probe probe(rig, axes);
-    return measured(probe, axes, whole_limit, options);
+    const Tally light = sum_of(light_tallies(probe, axes, options));
+    return stated(light, whole_tallies(probe, axes, whole_limit, options), whole_limit);
 }
 
 ChosenAxes axes_for(const Rig& rig,
@@ -334,20 +375,27 @@ ChosenAxes axes_for(const Rig& rig,
     Probe probe(rig, finest);
     const auto moving =
         std::ranges::count_if(kAxes, [&](Axis axis) { return (finest.*axis).size() > 1; });
-    double share = tolerance / static_cast<double>(std::max<std::ptrdiff_t>(1, moving));
-    // What a choice is over the tolerance its shares are to shrink by, but neither by so little
-    // that nothing changes nor by so much that far more bins than needed are taken.
-    constexpr double kLeastShrink = 0.9;
-    constexpr double kMostShrink = 0.5;
-    constexpr int kMostChoices = 16;
-    for (int i = 0; i < kMostChoices; ++i) {
-        const MapAxes axes = chosen_for(probe, finest, share, options);
-        if (bin_count(axes) == bin_count(finest)) break;
-        const InterpolationError found = measured(probe, axes, tolerance, options);
-        if (found.worst <= tolerance) return {.axes = axes, .interpolation = found};
-        share *= std::clamp(tolerance / found.worst, kMostShrink, kLeastShrink);
+    std::array<double, kAxes.size()> shares{};
+    shares.fill(tolerance / static_cast<double>(std::max<std::ptrdiff_t>(1, moving)));
+    MapAxes chosen;
+    for (std::size_t a = 0; a < kAxes.size(); ++a) {
+        chosen.*kAxes[a] = chosen_values(probe, finest, kAxes[a], shares[a], options);
     }
-    return {.axes = finest, .interpolation = measured(probe, finest, tolerance, options)};
+    while (true) {
+        const std::vector<Tally> light = light_tallies(probe, chosen, options);
+        const std::size_t worst = worst_of(light);
+        if (light[worst].worst <= tolerance || bin_count(chosen) == bin_count(finest)) {
+            return {
+                .axes = chosen,
+                .interpolation = stated(
+                    sum_of(light), whole_tallies(probe, chosen, tolerance, options), tolerance)};
+        }
+        const std::size_t a = most_to_blame(probe, finest, chosen, cell_of(chosen, worst));
+        shares[a] *= kShrink;
+        chosen.*kAxes[a] = shares[a] < kLeastShare * tolerance
+                               ? finest.*kAxes[a]
+                               : chosen_values(probe, finest, kAxes[a], shares[a], options);
+    }
 }
 
 }  // namespace aphotic

@@ -12,7 +12,7 @@
 // It is that of the light without the cones' edges, each cone going on to 90 degrees. What an edge
 // crosses on its way through the cell is no better than the step there, however fine the bins: a
 // tolerance says nothing of it. How much that is of the whole maps is measured apart, in the
-// middles of the cells.
+// middles of cells, kWholeCells of them at most, spread evenly.
 #pragma once
 
 #include "lightmap/map_axes.h"
@@ -52,8 +52,9 @@ class MapSource {
 struct InterpolationError {
     double worst = 0.0;  // relative, of the light without edges
     double rms = 0.0;    // of the same
-    // In the cells' middles, of the maps with their edges. Errors are relative to the larger of
-    // both samples, so that light which only one of them has counts 1.
+    // Of the maps with their edges, in the middles of so many cells. Errors are relative to the
+    // larger of both samples, so that light which only one of them has counts 1.
+    std::size_t whole_cells = 0;
     double crossed_share = 0.0;  // of all pixels, by edges on the way from a bin
     double whole_rms = 0.0;
     double whole_limit = 0.0;  // the tolerance, or kWholeLimit where none is given,
@@ -61,6 +62,7 @@ struct InterpolationError {
 };
 
 inline constexpr double kWholeLimit = 0.01;
+inline constexpr std::size_t kWholeCells = 512;
 
 // How to measure. No result depends on it.
 struct MeasureOptions {
@@ -79,9 +81,9 @@ struct ChosenAxes {
 };
 
 // Of the axes' values as few as are found to keep the tolerance, always with both ends: along each
-// axis, steps as wide as hold its share of it, where the other axes end; shares that shrink until
-// the choice as a whole is measured within the tolerance. When no choice is, all values are kept:
-// then these do not hold it either.
+// axis, steps as wide as hold its share of it, where the other axes end. While the choice as a
+// whole is measured over the tolerance, the axis that is most to blame takes finer steps. When no
+// choice holds, all values are kept: then these do not hold it either.
 [[nodiscard]] ChosenAxes axes_for(const Rig& rig,
                                   const MapAxes& finest,
                                   double tolerance,
