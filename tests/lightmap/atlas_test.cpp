@@ -140,13 +140,12 @@ TEST(AtlasExport, ExponentialGivesBackTheLight) {
     Rig rig = habcam();
     std::vector<double> altitude_m;
     for (int i = 0; i <= 12; ++i) altitude_m.push_back(1.5 + 0.1 * i);
-    const fs::path file = folder.path() / "fit.exr";
-    const FitResiduals stated = export_exponential(file,
-                                                   rig,
-                                                   {.altitude_m = altitude_m,
-                                                    .map = {.error = 1e-5, .threads = 2},
-                                                    .progress = [](double) {}});
-    ExrReader reader(file);
+    const ExportedFit stated = export_exponential(folder.path(),
+                                                  rig,
+                                                  {.altitude_m = altitude_m,
+                                                   .map = {.error = 1e-5, .threads = 2},
+                                                   .progress = [](double) {}});
+    ExrReader reader(folder.path() / stated.file);
     const std::size_t plane = std::size_t{68} * 51;
     std::vector<float> fit(4 * plane);
     const std::vector<std::string> channels{"a.G", "b.G", "c.G", "residual.G"};
