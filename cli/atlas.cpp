@@ -11,6 +11,7 @@
 #include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/words.h"
+#include "lightmap/altitude_fit.h"
 #include "lightmap/atlas_export.h"
 #include "scene_gen/rig_reader.h"
 #include "spectral/atomic_file.h"
@@ -172,6 +173,8 @@ struct MadeAtlas {
 };
 
 MadeAtlas make(const Options& options, const Rig& rig, const MapAxes& finest) {
+    if (is_exported(options, "exponential"))
+        AltitudeFitter{finest.altitude_m};  // or it says why not
     MadeAtlas made{.chosen = choose(options, rig, finest), .exports = {}};
     announce(options, made.chosen.axes, work_of(options, rig, finest));
     set_exr_threads(options.map.threads);
