@@ -5,6 +5,7 @@
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
+#include "spectral/printable.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -171,7 +172,9 @@ AtlasManifest manifest_of(const Json& json) {
         require_axis(*axis);
     }
     for (const Json& bin : json.at("bins")) manifest.checksums.push_back(bin.at("sha256"));
-    if (manifest.checksums.size() != points_of(manifest.axes).size()) {
+    if (manifest.axes.altitude_m.front() <= 0.0) throw InputError("an altitude is not over 0");
+    if (manifest.width_px < 1 || manifest.height_px < 1) throw InputError("its maps have no size");
+    if (manifest.checksums.size() != bin_count(manifest.axes)) {
         throw InputError("its bins are not those of its axes");
     }
     return manifest;
@@ -179,14 +182,7 @@ AtlasManifest manifest_of(const Json& json) {
 
 AtlasManifest read_manifest(const fs::path& folder) {
     const fs::path file = manifest_path(folder);
-    const std::string text = read_text_file(file);
-    try {
-        return manifest_of(Json::parse(text));
-    } catch (const Json::exception& error) {
-        throw InputError(fmt::format("{}: is no atlas: {}", file.string(), error.what()));
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", file.string(), error.what()));
-    }
+    return parse_atlas(read_text_file(file), file.string());
 }
 
 std::vector<std::string> channel_names() {
@@ -290,6 +286,16 @@ std::string bin_name(const MapPoint& point) {
                        as_written(point.sled.pitch_rad / kRadiansPerDegree),
                        as_written(point.sled.roll_rad / kRadiansPerDegree),
                        as_written(point.water_multiple));
+}
+
+AtlasManifest parse_atlas(std::string_view text, const std::string& name) {
+    try {
+        return manifest_of(Json::parse(text));
+    } catch (const Json::exception& error) {
+        throw InputError(fmt::format("{}: is no atlas: {}", name, printable(error.what())));
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", name, error.what()));
+    }
 }
 
 std::size_t bins_missing(const fs::path& folder, const MapAxes& axes) {

@@ -22,6 +22,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
@@ -62,6 +63,9 @@ struct AtlasRequest {
 std::size_t write_atlas(const std::filesystem::path& folder,
                         const Rig& rig,
                         const AtlasRequest& request);
+
+// name stands in messages. Throws InputError when the text is no atlas.json.
+[[nodiscard]] AtlasManifest parse_atlas(std::string_view text, const std::string& name);
 
 // Writes them into the manifest of an atlas that is there.
 void note_exports(const std::filesystem::path& folder, const AtlasExports& exports);

@@ -65,7 +65,8 @@ TEST(AltitudeFit, OfCloseAltitudesIsFinite) {
     std::vector<double> signal;
     for (const double h : altitude_m) signal.push_back(std::pow(h, -3));
     const AltitudeFit fit = AltitudeFitter(altitude_m).fit(signal);
-    constexpr double kBend = 1e-5;  // what of it no exponential follows, over 1 % of altitude
+    // The slowest rate bends twice as much as this light.
+    constexpr double kBend = 2e-4;
     EXPECT_LT(fit.residual, kBend);
     EXPECT_TRUE(std::isfinite(static_cast<float>(fit.a)));
     EXPECT_GT(static_cast<float>(std::exp(fit.b_per_m * 1.0)), 0.0F);
