@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic lightmap RIG -o FILE.exr: the camera's signal on the rig's bare flat floor, at once.
+// aphotic lightmap RIG -o FILE.exr: the camera's signal on the rig's bare flat floor, at once; or
+// of an atlas, from its bins (atlas_map.h).
 #include "lightmap/lightmap.h"
 
+#include "cli/atlas_map.h"
 #include "cli/command.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
@@ -18,6 +20,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -34,6 +37,7 @@ struct Options {
     std::optional<double> altitude_m;
     std::optional<double> pitch_deg;
     std::optional<double> roll_deg;
+    std::optional<double> water_multiple;
     LightmapOptions map{
         .error = 1e-5,
         .threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
@@ -50,6 +54,7 @@ Rig rig_of(const Options& options) {
     if (options.altitude_m) rig.sled.altitude_m = *options.altitude_m;
     if (options.pitch_deg) rig.sled.pitch_rad = *options.pitch_deg * kRadiansPerDegree;
     if (options.roll_deg) rig.sled.roll_rad = *options.roll_deg * kRadiansPerDegree;
+    if (options.water_multiple) rig.water.multiple = *options.water_multiple;
     return rig;
 }
 
@@ -192,6 +197,30 @@ ExitStatus make_lightmap(const Options& options) {
     return kDone;
 }
 
+void refuse_what_needs_a_rig(const CLI::App& app, const Options& options) {
+    for (const char* option : {"--per-strobe", "--per-cone", "--error"}) {
+        if (app.count(option) == 0) continue;
+        throw InputError(fmt::format(
+            "{}: found with the atlas {}; allowed: with a rig", option, options.rig_file));
+    }
+}
+
+ExitStatus make_map(const CLI::App& app, const Options& options) {
+    if (!std::filesystem::is_directory(options.rig_file)) return make_lightmap(options);
+    refuse_what_needs_a_rig(app, options);
+    set_exr_threads(options.map.threads);
+    return write_atlas_map({.folder = options.rig_file,
+                            .file = options.file,
+                            .altitude_m = options.altitude_m,
+                            .pitch_deg = options.pitch_deg,
+                            .roll_deg = options.roll_deg,
+                            .water_multiple = options.water_multiple,
+                            .normalised = options.normalised,
+                            .preview_file = options.preview_file,
+                            .preview = options.preview,
+                            .json = options.json});
+}
+
 void add_sled_options(CLI::App& app, Options& options) {
     constexpr double kLeastAltitude_m = 0.001;
     constexpr double kMostAltitude_m = 10000.0;
@@ -202,6 +231,10 @@ void add_sled_options(CLI::App& app, Options& options) {
         ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
     app.add_option("--roll-deg", options.roll_deg, "instead of the rig's roll, starboard down")
         ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
+    app.add_option("--water-multiple",
+                   options.water_multiple,
+                   "instead of the rig's multiple of the water's absorption")
+        ->check(not_negative());
 }
 
 }  // namespace
@@ -211,7 +244,8 @@ Action configure_lightmap(CLI::App& app) {
     constexpr double kLeastError = 1e-7;
     constexpr double kMostError = 0.1;
     const auto options = std::make_shared<Options>();
-    app.add_option("RIG", options->rig_file, "the rig file (TOML)")->required();
+    app.add_option("RIG", options->rig_file, "the rig file (TOML), or the folder of an atlas")
+        ->required();
     app.add_option("-o,--output", options->file, "the OpenEXR file to write")
         ->required()
         ->type_name("FILE.exr");
@@ -242,8 +276,9 @@ Action configure_lightmap(CLI::App& app) {
     app.add_flag("--json", options->json, "say what was made as JSON");
     app.footer(
         "Of the bare flat floor; POV-Ray is not needed. The file holds what image.exr of a render\n"
-        "does: R, G, B, linear, 32-bit floats.");
-    return [options] { return make_lightmap(*options); };
+        "does: R, G, B, linear, 32-bit floats. Of an atlas it is blended from the bins about that\n"
+        "altitude, attitude and water.");
+    return [&app, options] { return make_map(app, *options); };
 }
 
 }  // namespace aphotic::cli

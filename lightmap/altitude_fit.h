@@ -8,8 +8,10 @@
 //
 // by least squares. For a given b, a and c are those of a straight line over exp(b h), so only b is
 // searched: first over kRates rates of either sign, even in ratio from kSlowest to kFastest over
-// the span of altitudes, then by golden section between the neighbours of the best. Of the two
-// signs and all rates that is the least, unless the residual has several minima between two rates.
+// the span of altitudes, but no faster than kMostExponent over the last altitude, from where on a
+// and exp(b h) would not be floats any more; then by golden section between the neighbours of the
+// best. Of the two signs and all rates that is the least, unless the residual has several minima
+// between two rates.
 //
 // residual  root of the mean square of what the fit leaves, over the mean of S
 #pragma once
@@ -29,7 +31,8 @@ struct AltitudeFit {
 
 class AltitudeFitter {
   public:
-    // At least four altitudes, increasing.
+    // At least four altitudes, increasing, over a share of kSlowest / kMostExponent of the last at
+    // least.
     explicit AltitudeFitter(std::vector<double> altitude_m);
 
     [[nodiscard]] AltitudeFit fit(std::span<const double> signal) const;
@@ -37,6 +40,7 @@ class AltitudeFitter {
     static constexpr int kRates = 24;
     static constexpr double kSlowest = 0.1;
     static constexpr double kFastest = 30.0;
+    static constexpr double kMostExponent = 80.0;
 
   private:
     // exp(b h), less its mean and of length 1: all that b's residual needs.

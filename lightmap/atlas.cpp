@@ -5,6 +5,7 @@
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
+#include "spectral/printable.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -52,6 +53,57 @@ fs::path bin_path(const fs::path& folder, const MapPoint& point) {
     return folder / "bins" / bin_name(point);
 }
 
+Json json_of(const InterpolationError& error) {
+    return {{"worst", error.worst},
+            {"rms", error.rms},
+            {"crossed_by_edges", error.crossed_share},
+            {"whole_maps",
+             {{"cells", error.whole_cells},
+              {"rms", error.whole_rms},
+              {"limit", error.whole_limit},
+              {"share_over_limit", error.whole_over}}}};
+}
+
+InterpolationError interpolation_of(const Json& json) {
+    const Json& whole = json.at("whole_maps");
+    return {.worst = json.at("worst"),
+            .rms = json.at("rms"),
+            .whole_cells = whole.at("cells"),
+            .crossed_share = json.at("crossed_by_edges"),
+            .whole_rms = whole.at("rms"),
+            .whole_limit = whole.at("limit"),
+            .whole_over = whole.at("share_over_limit")};
+}
+
+Json json_of(const AtlasExports& exports) {
+    Json json = Json::object();
+    for (const ExportedMosaic& mosaic : exports.bayer) {
+        json["bayer"].push_back({{"file", mosaic.file}, {"altitude_m", mosaic.altitude_m}});
+    }
+    if (exports.exponential) {
+        json["exponential"] = {{"file", exports.exponential->file},
+                               {"rms", exports.exponential->rms},
+                               {"worst", exports.exponential->worst}};
+    }
+    return json;
+}
+
+AtlasExports exports_of(const Json& json) {
+    AtlasExports exports;
+    if (json.contains("bayer")) {
+        for (const Json& mosaic : json["bayer"]) {
+            exports.bayer.push_back(
+                {.file = mosaic.at("file"), .altitude_m = mosaic.at("altitude_m")});
+        }
+    }
+    if (json.contains("exponential")) {
+        const Json& fit = json["exponential"];
+        exports.exponential = {
+            .file = fit.at("file"), .rms = fit.at("rms"), .worst = fit.at("worst")};
+    }
+    return exports;
+}
+
 Json json_of(const AtlasManifest& manifest) {
     Json bins = Json::array();
     const std::vector<MapPoint> points = points_of(manifest.axes);
@@ -75,10 +127,8 @@ Json json_of(const AtlasManifest& manifest) {
               {"pitch_deg", in_degrees(manifest.axes.pitch_rad)},
               {"roll_deg", in_degrees(manifest.axes.roll_rad)},
               {"water_multiple", manifest.axes.water_multiple}}},
-            {"interpolation",
-             {{"worst", manifest.interpolation.worst},
-              {"rms", manifest.interpolation.rms},
-              {"crossed_by_edges", manifest.interpolation.crossed_share}}},
+            {"interpolation", json_of(manifest.interpolation)},
+            {"exports", json_of(manifest.exports)},
             {"bins", bins}};
 }
 
@@ -100,7 +150,6 @@ AtlasManifest manifest_of(const Json& json) {
     if (json.at("format") != kFormat)
         throw InputError(fmt::format("its format is not {}", kFormat));
     const Json& axes = json.at("axes");
-    const Json& interpolation = json.at("interpolation");
     using Values = std::vector<double>;
     AtlasManifest manifest{
         .version = json.at("version"),
@@ -113,10 +162,9 @@ AtlasManifest manifest_of(const Json& json) {
                  .pitch_rad = scaled(axes.at("pitch_deg").get<Values>(), kRadiansPerDegree),
                  .roll_rad = scaled(axes.at("roll_deg").get<Values>(), kRadiansPerDegree),
                  .water_multiple = axes.at("water_multiple").get<Values>()},
-        .interpolation = {.worst = interpolation.at("worst"),
-                          .rms = interpolation.at("rms"),
-                          .crossed_share = interpolation.at("crossed_by_edges")},
-        .checksums = {}};
+        .interpolation = interpolation_of(json.at("interpolation")),
+        .checksums = {},
+        .exports = exports_of(json.at("exports"))};
     for (const auto* axis : {&manifest.axes.altitude_m,
                              &manifest.axes.pitch_rad,
                              &manifest.axes.roll_rad,
@@ -124,7 +172,9 @@ AtlasManifest manifest_of(const Json& json) {
         require_axis(*axis);
     }
     for (const Json& bin : json.at("bins")) manifest.checksums.push_back(bin.at("sha256"));
-    if (manifest.checksums.size() != points_of(manifest.axes).size()) {
+    if (manifest.axes.altitude_m.front() <= 0.0) throw InputError("an altitude is not over 0");
+    if (manifest.width_px < 1 || manifest.height_px < 1) throw InputError("its maps have no size");
+    if (manifest.checksums.size() != bin_count(manifest.axes)) {
         throw InputError("its bins are not those of its axes");
     }
     return manifest;
@@ -132,42 +182,70 @@ AtlasManifest manifest_of(const Json& json) {
 
 AtlasManifest read_manifest(const fs::path& folder) {
     const fs::path file = manifest_path(folder);
-    const std::string text = read_text_file(file);
-    try {
-        return manifest_of(Json::parse(text));
-    } catch (const Json::exception& error) {
-        throw InputError(fmt::format("{}: is no atlas: {}", file.string(), error.what()));
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", file.string(), error.what()));
-    }
+    return parse_atlas(read_text_file(file), file.string());
 }
 
 std::vector<std::string> channel_names() {
     return {kChannelNames.begin(), kChannelNames.end()};
 }
 
-void write_bin(const fs::path& file, const Rig& rig, const MapPoint& point, const Lightmap& map) {
-    ExrWriter writer(file,
-                     map.width_px,
-                     map.height_px,
-                     channel_names(),
-                     {{"aphotic:rig_title", rig.title},
-                      {"aphotic:rig_sha256", rig.digest},
-                      {"aphotic:renderer", "lightmap"},
-                      {"aphotic:altitude_m", fmt::format("{}", point.sled.altitude_m)},
-                      {"aphotic:pitch_deg",
-                       fmt::format("{}", as_written(point.sled.pitch_rad / kRadiansPerDegree))},
-                      {"aphotic:roll_deg",
-                       fmt::format("{}", as_written(point.sled.roll_rad / kRadiansPerDegree))},
-                      {"aphotic:water_multiple", fmt::format("{}", point.water_multiple)}});
+// All that a bin depends on.
+ExrAttributes attributes_of(const AtlasManifest& manifest, const MapPoint& point) {
+    const auto degrees = [](double rad) {
+        return fmt::format("{}", as_written(rad / kRadiansPerDegree));
+    };
+    return {{"aphotic:version", manifest.version},
+            {"aphotic:rig_title", manifest.title},
+            {"aphotic:rig_sha256", manifest.rig_digest},
+            {"aphotic:renderer", "lightmap"},
+            {"aphotic:error", fmt::format("{}", manifest.error)},
+            {"aphotic:altitude_m", fmt::format("{}", point.sled.altitude_m)},
+            {"aphotic:pitch_deg", degrees(point.sled.pitch_rad)},
+            {"aphotic:roll_deg", degrees(point.sled.roll_rad)},
+            {"aphotic:water_multiple", fmt::format("{}", point.water_multiple)}};
+}
+
+void write_bin(const fs::path& file, const ExrAttributes& attributes, const Lightmap& map) {
+    ExrWriter writer(file, map.width_px, map.height_px, channel_names(), attributes);
     writer.write_rows(map.height_px, map.samples);
     writer.finish();
+}
+
+Lightmap read_bin(const fs::path& file, const AtlasManifest& manifest) {
+    ExrReader reader(file);
+    if (reader.width_px() != manifest.width_px || reader.height_px() != manifest.height_px) {
+        throw RunError(fmt::format("{}: is {} x {} pixels; the atlas is of {} x {}",
+                                   file.string(),
+                                   reader.width_px(),
+                                   reader.height_px(),
+                                   manifest.width_px,
+                                   manifest.height_px));
+    }
+    Lightmap map{.width_px = manifest.width_px, .height_px = manifest.height_px, .samples = {}};
+    map.samples.resize(kChannels * static_cast<std::size_t>(map.width_px) *
+                       static_cast<std::size_t>(map.height_px));
+    reader.read_rows(0, map.height_px, channel_names(), map.samples);
+    return map;
+}
+
+// Whole, and of all the same.
+bool is_bin_of(const fs::path& file, const AtlasManifest& manifest, const MapPoint& point) {
+    try {
+        const ExrReader reader(file);
+        for (const auto& [name, value] : attributes_of(manifest, point)) {
+            if (reader.attribute(name) != value) return false;
+        }
+        static_cast<void>(read_bin(file, manifest));
+    } catch (const RunError&) {
+        return false;
+    }
+    return true;
 }
 
 // The bins of the folder that may stay: file names and checksums.
 std::map<std::string, std::string> bins_there(const fs::path& folder, const AtlasManifest& wanted) {
     std::map<std::string, std::string> there;
-    if (!fs::exists(manifest_path(folder))) return there;
+    if (!is_atlas(folder)) return there;
     const AtlasManifest old = read_manifest(folder);
     if (old.version != wanted.version || old.rig_digest != wanted.rig_digest ||
         old.error != wanted.error) {
@@ -176,8 +254,12 @@ std::map<std::string, std::string> bins_there(const fs::path& folder, const Atla
     const std::vector<MapPoint> points = points_of(old.axes);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const fs::path file = bin_path(folder, points[i]);
-        if (old.checksums[i].empty() || !fs::exists(file)) continue;
-        if (sha256_of_file(file) == old.checksums[i]) there[bin_name(points[i])] = old.checksums[i];
+        if (!fs::exists(file)) continue;
+        // The manifest is written now and then: what was interrupted may have bins beyond it.
+        if (old.checksums[i].empty() && !is_bin_of(file, wanted, points[i])) continue;
+        const std::string checksum = sha256_of_file(file);
+        if (!old.checksums[i].empty() && checksum != old.checksums[i]) continue;
+        there[bin_name(points[i])] = checksum;
     }
     return there;
 }
@@ -206,6 +288,22 @@ std::string bin_name(const MapPoint& point) {
                        as_written(point.water_multiple));
 }
 
+AtlasManifest parse_atlas(std::string_view text, const std::string& name) {
+    try {
+        return manifest_of(Json::parse(text));
+    } catch (const Json::exception& error) {
+        throw InputError(fmt::format("{}: is no atlas: {}", name, printable(error.what())));
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", name, error.what()));
+    }
+}
+
+std::size_t bins_missing(const fs::path& folder, const MapAxes& axes) {
+    const std::vector<MapPoint> points = points_of(axes);
+    return static_cast<std::size_t>(std::ranges::count_if(
+        points, [&](const MapPoint& point) { return !fs::exists(bin_path(folder, point)); }));
+}
+
 std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasRequest& request) {
     const std::vector<MapPoint> points = points_of(request.axes);
     AtlasManifest manifest{.version = request.version,
@@ -216,7 +314,8 @@ std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasReque
                            .error = request.map.error,
                            .axes = request.axes,
                            .interpolation = request.interpolation,
-                           .checksums = std::vector<std::string>(points.size())};
+                           .checksums = std::vector<std::string>(points.size()),
+                           .exports = {}};
     const std::map<std::string, std::string> there = bins_there(folder, manifest);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto known = there.find(bin_name(points[i]));
@@ -226,8 +325,9 @@ std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasReque
     make_folder(folder / "bins");
     write_manifest(folder, manifest);
     remove_others(folder, points);
+    remove_exports(folder);
 
-    // So much work is done again at most when it is interrupted.
+    // What is not noted is found again by its header, which takes longer.
     constexpr std::chrono::seconds kNoteEvery{2};
     auto noted = std::chrono::steady_clock::now();
     std::size_t computed = 0;
@@ -237,7 +337,7 @@ std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasReque
         }
         if (!manifest.checksums[i].empty()) continue;
         const fs::path file = bin_path(folder, points[i]);
-        write_bin(file, rig, points[i], source.map(points[i]));
+        write_bin(file, attributes_of(manifest, points[i]), source.map(points[i]));
         manifest.checksums[i] = sha256_of_file(file);
         ++computed;
         if (std::chrono::steady_clock::now() - noted < kNoteEvery) continue;
@@ -246,6 +346,16 @@ std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasReque
     }
     write_manifest(folder, manifest);
     return computed;
+}
+
+void note_exports(const fs::path& folder, const AtlasExports& exports) {
+    AtlasManifest manifest = read_manifest(folder);
+    manifest.exports = exports;
+    write_manifest(folder, manifest);
+}
+
+bool is_atlas(const fs::path& folder) {
+    return fs::exists(manifest_path(folder));
 }
 
 Atlas::Atlas(const fs::path& folder)
@@ -276,23 +386,8 @@ Lightmap Atlas::map(const MapPoint& point) {
 }
 
 void Atlas::load(std::size_t index) {
-    const auto [entry, is_new] = read_.try_emplace(index);
-    Lightmap& map = entry->second;
-    if (!is_new) return;
-    ExrReader reader(bin_path(folder_, points_[index]));
-    if (reader.width_px() != manifest_.width_px || reader.height_px() != manifest_.height_px) {
-        throw RunError(fmt::format("{}: is {} x {} pixels; the atlas is of {} x {}",
-                                   bin_path(folder_, points_[index]).string(),
-                                   reader.width_px(),
-                                   reader.height_px(),
-                                   manifest_.width_px,
-                                   manifest_.height_px));
-    }
-    map.width_px = manifest_.width_px;
-    map.height_px = manifest_.height_px;
-    map.samples.resize(kChannels * static_cast<std::size_t>(map.width_px) *
-                       static_cast<std::size_t>(map.height_px));
-    reader.read_rows(0, map.height_px, channel_names(), map.samples);
+    if (read_.contains(index)) return;
+    read_[index] = read_bin(bin_path(folder_, points_[index]), manifest_);
 }
 
 }  // namespace aphotic

@@ -2,26 +2,35 @@
 //
 // An atlas: a folder of a rig's maps over altitude, pitch, roll and water.
 //
-//   ATLAS/atlas.json                       what it is of, its axes, and the bins with their
-//   checksums ATLAS/bins/a2.1_p-5_r0_w1.exr          R, G, B at 2.1 m, pitch -5, roll 0 degrees,
-//   the water once
+//   ATLAS/atlas.json                   what it is of, its axes, the bins with their checksums, and
+//                                      what was exported beside them (atlas_export.h)
+//   ATLAS/bins/a2.1_p-5_r0_w1.exr      R, G, B at 2.1 m, pitch -5, roll 0 degrees, the water once
 //
 // Maps between the bins are interpolated (map_axes.h), and atlas.json says with what error. Bins
 // are written one by one and noted as they are: an atlas that was interrupted goes on where it
 // stopped, and bins of the same rig, version and error are kept when its axes change. A bin is kept
-// while its file is the one noted.
+// while its file is the one noted; one that was written but not noted any more, while its header
+// says that it is of all the same.
 #pragma once
 
+#include "lightmap/atlas_export.h"
 #include "lightmap/atlas_plan.h"
 #include "lightmap/map_axes.h"
 
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
+
+struct AtlasExports {
+    std::vector<ExportedMosaic> bayer;
+    std::optional<ExportedFit> exponential;
+};
 
 struct AtlasManifest {
     std::string version;  // of the program that made it
@@ -33,10 +42,14 @@ struct AtlasManifest {
     MapAxes axes;
     InterpolationError interpolation;
     std::vector<std::string> checksums;  // by bin; empty: not yet there
+    AtlasExports exports;
 };
 
 // As "a2.1_p-5_r0_w1.exr".
 [[nodiscard]] std::string bin_name(const MapPoint& point);
+
+// Bins of these axes whose files are not there, whatever is in the others.
+[[nodiscard]] std::size_t bins_missing(const std::filesystem::path& folder, const MapAxes& axes);
 
 struct AtlasRequest {
     MapAxes axes;
@@ -46,10 +59,18 @@ struct AtlasRequest {
     std::function<void(double)> progress;  // share of the bins
 };
 
-// Returns how many bins it computed; the others were there.
+// Returns how many bins it computed; the others were there. Exports of an earlier run go.
 std::size_t write_atlas(const std::filesystem::path& folder,
                         const Rig& rig,
                         const AtlasRequest& request);
+
+// name stands in messages. Throws InputError when the text is no atlas.json.
+[[nodiscard]] AtlasManifest parse_atlas(std::string_view text, const std::string& name);
+
+// Writes them into the manifest of an atlas that is there.
+void note_exports(const std::filesystem::path& folder, const AtlasExports& exports);
+
+[[nodiscard]] bool is_atlas(const std::filesystem::path& folder);
 
 // An atlas that is there. Throws InputError when the folder holds none, or one that is not whole.
 class Atlas {

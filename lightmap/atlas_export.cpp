@@ -33,6 +33,22 @@ MapAxes axes_of(const Rig& rig, const std::vector<double>& altitude_m) {
             .water_multiple = {rig.water.multiple}};
 }
 
+constexpr const char* kMosaics = "bayer";
+constexpr const char* kFits = "exponential.exr";
+
+// After the point, so that no altitude is rounded.
+int digits_of(const std::vector<double>& altitude_m) {
+    constexpr int kLeast = 2;
+    constexpr int kMost = 9;  // as finely as axes are read
+    int digits = kLeast;
+    for (const double h_m : altitude_m) {
+        while (digits < kMost && std::stod(fmt::format("{:.{}f}", h_m, digits)) != h_m) {
+            ++digits;
+        }
+    }
+    return digits;
+}
+
 constexpr std::array<const char*, 4> kFitted{"a", "b", "c", "residual"};
 
 std::vector<std::string> fitted_channels() {
@@ -85,29 +101,49 @@ std::vector<float> mosaic_rggb(const Lightmap& map) {
     return mosaic;
 }
 
-void export_bayer(const fs::path& folder, const Rig& rig, const AltitudeExport& request) {
+std::vector<ExportedMosaic> export_bayer(const fs::path& folder,
+                                         const Rig& rig,
+                                         const AltitudeExport& request) {
     const MapAxes axes = axes_of(rig, request.altitude_m);
+    const int digits = digits_of(request.altitude_m);
     MapSource source(rig, axes, request.map);
-    make_folder(folder);
-    double done = 0.0;
+    make_folder(folder / kMosaics);
+    std::vector<ExportedMosaic> made;
     for (const MapPoint& point : points_of(axes)) {
-        request.progress(done++ / static_cast<double>(request.altitude_m.size()));
+        request.progress(static_cast<double>(made.size()) /
+                         static_cast<double>(request.altitude_m.size()));
+        const double altitude_m = point.sled.altitude_m;
+        const std::string file =
+            fmt::format("{}/altitude_{:.{}f}m.exr", kMosaics, altitude_m, digits);
         ExrAttributes attributes = attributes_of(rig);
-        attributes.emplace_back("aphotic:altitude_m", fmt::format("{}", point.sled.altitude_m));
+        attributes.emplace_back("aphotic:altitude_m", fmt::format("{}", altitude_m));
         attributes.emplace_back("aphotic:mosaic", "RGGB");
-        ExrWriter writer(folder / fmt::format("altitude_{:.2f}m.exr", point.sled.altitude_m),
-                         rig.camera.width_px,
-                         rig.camera.height_px,
-                         {"Y"},
-                         attributes);
+        ExrWriter writer(
+            folder / file, rig.camera.width_px, rig.camera.height_px, {"Y"}, attributes);
         writer.write_rows(rig.camera.height_px, mosaic_rggb(source.map(point)));
         writer.finish();
+        made.push_back({.file = file, .altitude_m = altitude_m});
     }
+    return made;
 }
 
-FitResiduals export_exponential(const fs::path& file,
-                                const Rig& rig,
-                                const AltitudeExport& request) {
+void remove_exports(const fs::path& folder) {
+    fs::remove(folder / kFits);
+    if (!fs::is_directory(folder / kMosaics)) return;
+    remove_abandoned_files(folder / kMosaics);
+    std::vector<fs::path> mosaics;
+    for (const auto& entry : fs::directory_iterator(folder / kMosaics)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("altitude_") && name.ends_with("m.exr"))
+            mosaics.push_back(entry.path());
+    }
+    for (const fs::path& file : mosaics) fs::remove(file);
+    if (fs::is_empty(folder / kMosaics)) fs::remove(folder / kMosaics);
+}
+
+ExportedFit export_exponential(const fs::path& folder,
+                               const Rig& rig,
+                               const AltitudeExport& request) {
     constexpr int kRows = 32;  // of all altitudes at once
     const MapAxes axes = axes_of(rig, request.altitude_m);
     const AltitudeFitter fitter(request.altitude_m);
@@ -115,8 +151,8 @@ FitResiduals export_exponential(const fs::path& file,
     ExrAttributes attributes = attributes_of(rig);
     attributes.emplace_back("aphotic:fit", "a exp(b h) + c, h the altitude in metres");
     ExrWriter writer(
-        file, rig.camera.width_px, rig.camera.height_px, fitted_channels(), attributes);
-    FitResiduals residuals;
+        folder / kFits, rig.camera.width_px, rig.camera.height_px, fitted_channels(), attributes);
+    ExportedFit residuals{.file = kFits};
     double squares = 0.0;
     for (int row = 0; row < rig.camera.height_px; row += kRows) {
         request.progress(static_cast<double>(row) / rig.camera.height_px);

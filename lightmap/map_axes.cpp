@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace aphotic {
 namespace {
@@ -29,6 +30,10 @@ std::array<NamedAxis, 4> named(const MapAxes& axes) {
              {"pitch_deg", &axes.pitch_rad, kDegreesPerRadian, false},
              {"roll_deg", &axes.roll_rad, kDegreesPerRadian, false},
              {"water multiple", &axes.water_multiple, 1.0, false}}};
+}
+
+std::array<std::vector<double>*, 4> values_of(MapAxes& axes) {
+    return {&axes.altitude_m, &axes.pitch_rad, &axes.roll_rad, &axes.water_multiple};
 }
 
 std::array<double, 4> coordinates_of(const MapPoint& point) {
@@ -73,6 +78,11 @@ void add_logarithm(const Lightmap& map, float weight, std::vector<float>& sum) {
 
 }  // namespace
 
+std::size_t bin_count(const MapAxes& axes) {
+    return axes.altitude_m.size() * axes.pitch_rad.size() * axes.roll_rad.size() *
+           axes.water_multiple.size();
+}
+
 std::vector<MapPoint> points_of(const MapAxes& axes) {
     std::vector<MapPoint> points;
     for (const double altitude_m : axes.altitude_m) {
@@ -108,21 +118,44 @@ std::vector<Neighbour> neighbours_of(const MapAxes& axes, const MapPoint& point)
     return neighbours;
 }
 
-std::vector<MapPoint> middles_of(const MapAxes& axes) {
-    MapAxes middles;
-    const std::array targets{
-        &middles.altitude_m, &middles.pitch_rad, &middles.roll_rad, &middles.water_multiple};
+std::size_t cell_count(const MapAxes& axes) {
+    std::size_t count = 1;
+    for (const NamedAxis& axis : named(axes)) {
+        count *= std::max<std::size_t>(1, axis.values->size() - 1);
+    }
+    return count;
+}
+
+MapAxes cell_of(const MapAxes& axes, std::size_t cell) {
+    MapAxes ends;
+    const std::array<std::vector<double>*, 4> targets = values_of(ends);
+    const std::array<NamedAxis, 4> all = named(axes);
+    for (std::size_t a = all.size(); a-- > 0;) {  // the fastest first
+        const std::vector<double>& values = *all[a].values;
+        const std::size_t steps = std::max<std::size_t>(1, values.size() - 1);
+        const std::size_t step = cell % steps;
+        cell /= steps;
+        *targets[a] = {values[step]};
+        if (values.size() > 1) targets[a]->push_back(values[step + 1]);
+    }
+    return ends;
+}
+
+MapAxes with_middles(const MapAxes& axes) {
+    MapAxes finer;
+    const std::array<std::vector<double>*, 4> targets = values_of(finer);
     std::size_t a = 0;
     for (const NamedAxis& axis : named(axes)) {
         const std::vector<double>& values = *axis.values;
         std::vector<double>& target = *targets[a++];
-        if (values.size() == 1) target = values;
         for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+            target.push_back(values[i]);
             target.push_back(axis.is_ratio ? std::sqrt(values[i] * values[i + 1])
-                                           : 0.5 * (values[i] + values[i + 1]));
+                                           : std::midpoint(values[i], values[i + 1]));
         }
+        target.push_back(values.back());
     }
-    return points_of(middles);
+    return finer;
 }
 
 Lightmap blended(std::span<const Lightmap* const> maps, std::span<const Neighbour> neighbours) {

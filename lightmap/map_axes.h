@@ -35,6 +35,8 @@ struct MapAxes {
     std::vector<double> water_multiple;
 };
 
+[[nodiscard]] std::size_t bin_count(const MapAxes& axes);
+
 // In the order of bins: altitude slowest, water fastest.
 [[nodiscard]] std::vector<MapPoint> points_of(const MapAxes& axes);
 
@@ -47,8 +49,13 @@ struct Neighbour {
 // covers that alone.
 [[nodiscard]] std::vector<Neighbour> neighbours_of(const MapAxes& axes, const MapPoint& point);
 
-// The middles of all cells between bins, in the axes' own measures.
-[[nodiscard]] std::vector<MapPoint> middles_of(const MapAxes& axes);
+// The cells between bins, in the bins' own order. A cell has the two ends of its step on each axis,
+// or the one value of an axis of one.
+[[nodiscard]] std::size_t cell_count(const MapAxes& axes);
+[[nodiscard]] MapAxes cell_of(const MapAxes& axes, std::size_t cell);
+
+// The same axes with the middle of each step, in the axes' own measures.
+[[nodiscard]] MapAxes with_middles(const MapAxes& axes);
 
 [[nodiscard]] Lightmap blended(std::span<const Lightmap* const> maps,
                                std::span<const Neighbour> neighbours);

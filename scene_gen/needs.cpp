@@ -33,6 +33,10 @@ constexpr std::uint64_t kValidationPlanes = 6;                // held at a time 
 constexpr std::uint64_t kImageLibrary_bytes = 128ULL << 20U;  // OpenImageIO and what it brings
 constexpr std::uint64_t kStudy_bytes = 64;
 constexpr std::uint64_t kStudyReference_bytes = 13;  // its signals, and what lies on edges
+constexpr std::uint64_t kAtlas_bytes = 16;           // a map of floats, and its mosaic
+constexpr std::uint64_t kBinNote_bytes = 1024;       // in atlas.json, and while it is written
+constexpr std::uint64_t kFittedRows = 32;            // at a time (lightmap/atlas_export.cpp)
+constexpr std::uint64_t kFittedChannels = 12;        // a, b, c and residual of three
 
 std::uint64_t pixels_of(const ImageSize& size) {
     return static_cast<std::uint64_t>(size.width_px) * static_cast<std::uint64_t>(size.height_px);
@@ -172,6 +176,25 @@ Needs study_needs(const ImageSize& size, std::size_t frames, int jobs) {
     needs.memory_bytes =
         std::max(needs.memory_bytes + kImageLibrary_bytes + kStudyReference_bytes * pixels_of(size),
                  study_memory_bytes(size, jobs));
+    return needs;
+}
+
+Needs atlas_needs(const AtlasWork& work) {
+    const ImageSize image{.width_px = work.size.width_px, .height_px = work.size.height_px};
+    Needs needs{.folder_bytes = work.bins * (kBinNote_bytes + largest_files(image).image_bytes),
+                .temporary_bytes = 0,
+                .memory_bytes = kProgram_bytes + kBinNote_bytes * work.bins +
+                                kAtlas_bytes * pixels_of(image) +
+                                compression_bytes(image, work.threads)};
+    if (work.has_mosaics) {
+        needs.folder_bytes += work.altitudes * exr_bytes(image, 1, kFloat_bytes);
+    }
+    if (work.has_fits) {
+        const std::uint64_t block_px = kFittedRows * static_cast<std::uint64_t>(work.size.width_px);
+        needs.folder_bytes += exr_bytes(image, kFittedChannels, kFloat_bytes);
+        needs.memory_bytes +=
+            block_px * kFloat_bytes * (kChannels * work.altitudes + 2 * kFittedChannels);
+    }
     return needs;
 }
 

@@ -25,6 +25,8 @@
 //   validation    whole planes: 70 P, and 12 P for each wavelength of up to six at a time
 //   study         64 P, and 128 MiB of OpenImageIO: the reference, a setting's image, and what
 //                 compares them
+//   atlas         16 P of a map and its mosaic, and OpenEXR's rows; of a fit over altitude, 32 rows
+//                 of all altitudes
 //
 // What a user's own scene adds to POV-Ray's memory is not known, and not in it.
 #pragma once
@@ -91,6 +93,17 @@ struct RenderWork {
 [[nodiscard]] Needs validation_needs(const ImageSize& size, int threads);
 // frames: of the setting that has most.
 [[nodiscard]] Needs study_needs(const ImageSize& size, std::size_t frames, int jobs);
+
+// An atlas of lightmaps (lightmap/atlas.h), and what is exported beside it.
+struct AtlasWork {
+    ImageSize size;
+    std::size_t bins = 0;  // that are to be written; those that are kept take no more room
+    std::size_t altitudes = 0;
+    bool has_mosaics = false;  // one an altitude
+    bool has_fits = false;     // over all of them
+    int threads = 1;
+};
+[[nodiscard]] Needs atlas_needs(const AtlasWork& work);
 
 // Where the work is to be done.
 struct FreeRoom {

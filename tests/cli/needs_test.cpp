@@ -176,6 +176,38 @@ TEST(MemoryOfTrace, DoesNotGrowWithTheWavelengths) {
                            kThreads));
 }
 
+// Of bins, mosaics and a fit over altitude.
+TEST(NeedsOfAtlas, AreForetold) {
+    if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
+    constexpr int kSmaller_px = 640;
+    const TempFolder folder;
+    rig_of(folder.path(), kSmaller_px, kSmaller_px);
+    const Measured found = measured(folder.path(),
+                                    {"atlas",
+                                     "rig.toml",
+                                     "-o",
+                                     "out",
+                                     "--altitude",
+                                     "1:4:1",
+                                     "--export",
+                                     "bayer,exponential",
+                                     "--threads",
+                                     std::to_string(kThreads),
+                                     "--json"});
+    const Needs needs = atlas_needs({.size = {.width_px = kSmaller_px, .height_px = kSmaller_px},
+                                     .bins = 4,
+                                     .altitudes = 4,
+                                     .has_mosaics = true,
+                                     .has_fits = true,
+                                     .threads = kThreads});
+    expect_foretold(found, needs.memory_bytes);
+    std::uint64_t written = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "out")) {
+        if (entry.is_regular_file()) written += entry.file_size();
+    }
+    EXPECT_LE(written, needs.folder_bytes);
+}
+
 // A folder with a disk of its own that holds so much, for one command: its status and what it said.
 struct OnSmallDisk {
     bool is_possible = false;
@@ -211,6 +243,7 @@ TEST(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
     for (const char* command : {"trace rig.toml -o disk/out",
                                 "generate rig.toml --bands 600 -o disk/out",
                                 "render rig.toml -o disk/out",
+                                "atlas rig.toml --altitude 1:4:0.1 -o disk/out",
                                 "validate rig.toml -o disk/out",
                                 "study rig.toml -o disk/out"}) {
         const OnSmallDisk run = on_small_disk(folder.path(), "64k", command);

@@ -59,6 +59,25 @@ TEST(AltitudeFit, IsNothingOfNothing) {
     EXPECT_EQ(fit.residual, 0.0);
 }
 
+// However close they are, a and exp(b h) are numbers that a float holds.
+TEST(AltitudeFit, OfCloseAltitudesIsFinite) {
+    const std::vector<double> altitude_m{1.0, 1.004, 1.008, 1.012};
+    std::vector<double> signal;
+    for (const double h : altitude_m) signal.push_back(std::pow(h, -3));
+    const AltitudeFit fit = AltitudeFitter(altitude_m).fit(signal);
+    // The slowest rate bends twice as much as this light.
+    constexpr double kBend = 2e-4;
+    EXPECT_LT(fit.residual, kBend);
+    EXPECT_TRUE(std::isfinite(static_cast<float>(fit.a)));
+    EXPECT_GT(static_cast<float>(std::exp(fit.b_per_m * 1.0)), 0.0F);
+    // And where most light is in one of them, no b is fast enough: it is told in the residual.
+    const AltitudeFit step =
+        AltitudeFitter(altitude_m).fit(std::vector<double>{1.0, 0.0, 0.0, 0.0});
+    EXPECT_TRUE(std::isfinite(step.residual));
+    EXPECT_TRUE(std::isfinite(static_cast<float>(step.a)));
+    EXPECT_THROW(AltitudeFitter({1.0, 1.0001, 1.0002, 1.0003}), InputError);
+}
+
 TEST(AltitudeFit, TakesFourAltitudesAtLeast) {
     EXPECT_THROW(AltitudeFitter({1.0, 2.0, 3.0}), InputError);
 }

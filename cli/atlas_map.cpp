@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/atlas_map.h"
+
+#include "cli/outcome.h"
+#include "cli/words.h"
+#include "lightmap/atlas.h"
+#include "lightmap/planes.h"
+#include "spectral/error.h"
+#include "spectral/exr.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace aphotic::cli {
+namespace {
+
+constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+
+double value_on(const char* option,
+                const std::optional<double>& given,
+                const std::vector<double>& values,
+                double unit) {
+    if (given) return *given * unit;
+    if (values.size() == 1) return values.front();
+    throw InputError(
+        fmt::format("{}: found none; allowed: from {:.6g} to {:.6g}, which the atlas covers",
+                    option,
+                    values.front() / unit,
+                    values.back() / unit));
+}
+
+MapPoint point_of(const AtlasMapRequest& request, const MapAxes& axes) {
+    return {
+        .sled = {.altitude_m = value_on("--altitude-m", request.altitude_m, axes.altitude_m, 1.0),
+                 .pitch_rad =
+                     value_on("--pitch-deg", request.pitch_deg, axes.pitch_rad, kRadiansPerDegree),
+                 .roll_rad =
+                     value_on("--roll-deg", request.roll_deg, axes.roll_rad, kRadiansPerDegree)},
+        .water_multiple =
+            value_on("--water-multiple", request.water_multiple, axes.water_multiple, 1.0)};
+}
+
+MapPoint point_of(const AtlasMapRequest& request, const Atlas& atlas) {
+    try {
+        return point_of(request, atlas.manifest().axes);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", request.folder, error.what()));
+    }
+}
+
+Lightmap map_of(const AtlasMapRequest& request, Atlas& atlas, const MapPoint& point) {
+    try {
+        return atlas.map(point);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", request.folder, error.what()));
+    }
+}
+
+void write(const AtlasMapRequest& request,
+           const AtlasManifest& manifest,
+           const MapPoint& point,
+           const Lightmap& map) {
+    const auto text = [](double value) { return fmt::format("{:.9g}", value); };
+    ExrWriter writer(request.file,
+                     map.width_px,
+                     map.height_px,
+                     {kChannelNames.begin(), kChannelNames.end()},
+                     {{"aphotic:version", APHOTIC_VERSION},
+                      {"aphotic:rig_title", manifest.title},
+                      {"aphotic:rig_sha256", manifest.rig_digest},
+                      {"aphotic:renderer", "atlas"},
+                      {"aphotic:altitude_m", text(point.sled.altitude_m)},
+                      {"aphotic:pitch_deg", text(point.sled.pitch_rad / kRadiansPerDegree)},
+                      {"aphotic:roll_deg", text(point.sled.roll_rad / kRadiansPerDegree)},
+                      {"aphotic:water_multiple", text(point.water_multiple)},
+                      {"aphotic:normalised", request.normalised ? "yes" : "no"},
+                      {"aphotic:interpolation_error", text(manifest.interpolation.worst)}});
+    writer.write_rows(map.height_px, map.samples);
+    writer.finish();
+}
+
+void write_picture(const AtlasMapRequest& request, const Lightmap& map) {
+    if (request.preview_file.empty()) return;
+    if (request.preview.white == PreviewWhite::Lamp) {
+        throw InputError(
+            "--preview-white: found lamp, which an atlas does not know; allowed: image, none");
+    }
+    write_preview({map.width_px, map.height_px, map.samples},
+                  {1.0, 1.0, 1.0},
+                  request.preview,
+                  request.preview_file);
+}
+
+void print(const nlohmann::ordered_json& outcome) {
+    const std::size_t bins = outcome["bins"];
+    fmt::print(
+        "{}: {} x {} pixels, {}\n",
+        outcome["title"].get<std::string>(),
+        outcome["width_px"].get<int>(),
+        outcome["height_px"].get<int>(),
+        bins == 1 ? "a bin of the atlas" : fmt::format("blended from {}", counted(bins, "bin")));
+    if (bins > 1) {
+        fmt::print(
+            "  between bins the light without the cones' edges is off by {:.2g} at most, whole "
+            "maps by {:.2g} rms,\n  as measured over the atlas\n",
+            outcome["interpolation"]["worst"].get<double>(),
+            outcome["interpolation"]["whole_rms"].get<double>());
+    }
+    fmt::print("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
+               outcome["peak"][0].get<double>(),
+               outcome["peak"][1].get<double>(),
+               outcome["peak"][2].get<double>(),
+               outcome["normalised"].get<bool>() ? ", by which each channel is divided" : "");
+    fmt::print("  {}\n", outcome["file"].get<std::string>());
+}
+
+}  // namespace
+
+ExitStatus write_atlas_map(const AtlasMapRequest& request) {
+    Atlas atlas(request.folder);
+    const AtlasManifest& manifest = atlas.manifest();
+    const MapPoint point = point_of(request, atlas);
+    Lightmap map = map_of(request, atlas, point);
+    const std::array<float, kChannels> peaks = peaks_of(map);
+    if (request.normalised) divide_by(peaks, map);
+    write_picture(request, map);
+    write(request, manifest, point, map);
+    const nlohmann::ordered_json outcome = {{"title", manifest.title},
+                                            {"rig_sha256", manifest.rig_digest},
+                                            {"file", request.file},
+                                            {"width_px", map.width_px},
+                                            {"height_px", map.height_px},
+                                            {"altitude_m", point.sled.altitude_m},
+                                            {"pitch_deg", point.sled.pitch_rad / kRadiansPerDegree},
+                                            {"roll_deg", point.sled.roll_rad / kRadiansPerDegree},
+                                            {"water_multiple", point.water_multiple},
+                                            {"peak", peaks},
+                                            {"normalised", request.normalised},
+                                            {"bins", neighbours_of(manifest.axes, point).size()},
+                                            {"interpolation",
+                                             {{"worst", manifest.interpolation.worst},
+                                              {"whole_rms", manifest.interpolation.whole_rms}}}};
+    if (request.json) {
+        fmt::print("{}\n", dumped(outcome));
+    } else {
+        print(outcome);
+    }
+    return kDone;
+}
+
+}  // namespace aphotic::cli
