@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/rendered_images.h"
 
+#include "scene_gen/reintegration.h"
 #include "spectral/exr.h"
 #include "spectral/integrator.h"
 
@@ -26,6 +27,7 @@ std::vector<float> radiance_planes(const fs::path& file, const std::vector<std::
 }  // namespace
 
 RenderedImages images_in(const fs::path& folder,
+                         const Rig& rig,
                          const Manifest& manifest,
                          const LightFamily& family) {
     RenderedImages images{.lambda_nm = {},
@@ -35,7 +37,11 @@ RenderedImages images_in(const fs::path& folder,
                           .promise = {},
                           .black = {},
                           .radiance = {},
-                          .signals = read_signals(folder / "image.exr")};
+                          .signals = read_signals(folder / "image.exr"),
+                          .lamps = {}};
+    for (const LampGrid& grid : rendered_lamps(rig, manifest)) {
+        images.lamps.push_back({.across = grid.across, .along = grid.along});
+    }
     std::vector<std::string> channels;
     for (const ManifestWavelength& w : manifest.wavelengths) {
         images.lambda_nm.push_back(w.lambda_nm);

@@ -42,6 +42,14 @@ std::string rig_behind_a_port() {
                     "glass = \"bk7\"\n\n[water]");
 }
 
+std::string rig_with_emitters() {
+    return replaced(
+        honest_rig(), "beam       = \"fresnel\"", "beam = \"fresnel\"\nemitter_mm = [63.5, 30.2]");
+}
+
+// Of the edges that an emitter softens: many times any bound.
+constexpr double kFarOut = 0.01;
+
 class Sabotage : public testing::Test {
   protected:
     void expect_no(const CommandResult& run) {
@@ -52,6 +60,12 @@ class Sabotage : public testing::Test {
         const auto json =
             nlohmann::json::parse(read_text_file(folder_.path() / "out" / "validation.json"));
         EXPECT_FALSE(json.at("holds").get<bool>());
+    }
+
+    double worst_error() {
+        const auto json =
+            nlohmann::json::parse(read_text_file(folder_.path() / "out" / "validation.json"));
+        return json.at("worst").at("max_error").get<double>();
     }
 
     CommandResult validate(const std::vector<std::string>& more,
@@ -171,11 +185,15 @@ TEST_F(Sabotage, OneStrobeMissing) {
 }
 
 TEST_F(Sabotage, HalfTheEmitter) {
-    // Close to the floor, where the size of an emitter is more than a rounding.
-    std::string honest = replaced(honest_rig(), "altitude_m = 2.0", "altitude_m = 1.0");
-    honest = replaced(
-        honest, "beam       = \"fresnel\"", "beam = \"fresnel\"\nemitter_mm = [63.5, 30.2]");
+    const std::string honest = rig_with_emitters();
     expect_no_when_rendered_from(replaced(honest, "[63.5, 30.2]", "[31.75, 30.2]"), honest);
+    EXPECT_GT(worst_error(), kFarOut);
+}
+
+TEST_F(Sabotage, EmitterTurnedBy90Degrees) {
+    const std::string honest = rig_with_emitters();
+    expect_no_when_rendered_from(replaced(honest, "[63.5, 30.2]", "[30.2, 63.5]"), honest);
+    EXPECT_GT(worst_error(), kFarOut);
 }
 
 // The tables are the built-in ones, given as the user's own.

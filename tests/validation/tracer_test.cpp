@@ -1454,6 +1454,55 @@ TEST(TracerConeEdges, TakeInWhereverAnEmitterIsPartlyWithin) {
     EXPECT_LT(marked, 2 * partly);
 }
 
+// Two lamps two pixels to each side of the pupil: each has a circle of its own, which twelve
+// pixels' centres lie on, and the emitter between them has no penumbra.
+TEST(TracerConeEdges, AreOfEachLampByItselfWhereLampsAreGiven) {
+    Rig rig = plain_rig(31, 17, 0.1);
+    rig.strobes[0].beam = cone_of(std::atan(0.5), 1.0);
+    rig.strobes[0].emitter = Emitter{.across_m = 1.6, .along_m = 0.0};
+    TraceOptions options{.signals = false, .planes_nm = {kLambda_nm}};
+    options.rendered_lamps = {{.across = 2, .along = 1}};
+    const Tracer tracer(rig, options);
+    const auto marks = tracer.on_edges({450.0, 650.0});
+    const auto is_five_from = [](int column, int row, int middle) {
+        return (row - 8) * (row - 8) + (column - middle) * (column - middle) == 25;
+    };
+    for (int row = 0; row < 17; ++row) {
+        for (int column = 0; column < 31; ++column) {
+            const bool is_marked = is_five_from(column, row, 13) || is_five_from(column, row, 17);
+            EXPECT_EQ(marks[static_cast<std::size_t>(row * 31 + column)], is_marked ? 1 : 0)
+                << "column " << column << ", row " << row;
+        }
+    }
+    // The same lamps as two strobes of half the power.
+    Rig apart = rig;
+    apart.strobes = {lamp_at({0.0, -0.4, 0.0}, cone_of(std::atan(0.5), 1.0)),
+                     lamp_at({0.0, 0.4, 0.0}, cone_of(std::atan(0.5), 1.0))};
+    for (Strobe& strobe : apart.strobes) strobe.power = 0.5;
+    const auto plane = tracer.rows(0, 17);
+    const auto expected = plane_of(apart);
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        EXPECT_NEAR(plane[i], expected[i], kRounding * expected[i]);
+    }
+}
+
+TEST(Tracer, PixelsAreThoseOfItsRowsAndEdges) {
+    const Rig rig = habcam(13, 11, "habcam-emitters");
+    const Tracer tracer(rig, {.signals = true, .planes_nm = {450.0}, .threads = 2});
+    const auto whole = tracer.rows(0, 11);
+    const auto marks = tracer.on_edges(rig.camera.range);
+    const std::vector<std::size_t> which{142, 0, 17, 60};
+    const auto some = tracer.pixels(which);
+    const auto some_marks = tracer.on_edges_of(which, rig.camera.range);
+    ASSERT_EQ(some.size(), 4 * which.size());
+    for (std::size_t n = 0; n < which.size(); ++n) {
+        EXPECT_EQ(some_marks[n], marks[which[n]]);
+        for (std::size_t plane = 0; plane < 4; ++plane) {
+            EXPECT_EQ(some[plane * which.size() + n], whole[plane * 143 + which[n]]);
+        }
+    }
+}
+
 // --- Objects ---------------------------------------------------------------------------------
 
 Object object_of(const Shape& shape, double reflectance = 1.0) {
