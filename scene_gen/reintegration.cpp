@@ -208,7 +208,8 @@ std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOption
                                vector_text(strobe.axis),
                                beam_text(strobe.beam));
         if (!strobe.emitter) continue;
-        const LampGrid grid = options.emitter_lamps.value_or(lamp_grid(rig, strobe));
+        const LampGrid grid =
+            options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_K_per_m));
         all[key + " emitter"] =
             fmt::format("{} x {} m", strobe.emitter->across_m, strobe.emitter->along_m);
         all[key + " lamps"] = fmt::format("{} x {}", grid.across, grid.along);
@@ -220,11 +221,14 @@ std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOption
 }
 
 std::vector<LampGrid> rendered_lamps(const Rig& rig, const Manifest& manifest) {
+    std::vector<double> lambda_nm;
+    for (const ManifestWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
+    const double K_per_m = most_attenuation_per_m(rig, lambda_nm);
     std::vector<LampGrid> lamps;
     for (const Strobe& strobe : rig.strobes) {
         const std::string key = fmt::format("strobe '{}' lamps", strobe.name);
         const auto noted = manifest.geometry.find(key);
-        lamps.push_back(noted == manifest.geometry.end() ? lamp_grid(rig, strobe)
+        lamps.push_back(noted == manifest.geometry.end() ? lamp_grid(rig, strobe, K_per_m)
                                                          : grid_in(key, noted->second));
     }
     return lamps;

@@ -40,15 +40,28 @@ double light_left(double depth) {
     return depth < kBlackDepth ? std::exp(-depth) : 0.0;
 }
 
-// Lamps along one side of an emitter, so that the midpoint rule holds kEmitterError: with h their
-// spacing it errs by h^2/24 of the second derivative, which for light on a plane at distance d is
-// at most 20/d^2 of the value, shared between the two sides. A highlight, cos^n of an angle that
-// turns by h/d, adds n/d^2.
-int lamps_for(double side_m, double distance_m, double phong_size) {
-    const double curvature = 20.0 + phong_size;
-    const double spacing_m = distance_m * std::sqrt(0.5 * kEmitterError * 24.0 / curvature);
-    return std::max(1, static_cast<int>(std::ceil(side_m / spacing_m)));
+// The second derivative of a lamp's light by its place in the emitter's plane, as a share of the
+// light and in units of 1/d^2. With e the direction in which it moves, c = e.v the cosine to the
+// ray v and s = e.n the rise over the surface, cos(theta) d does not change, cos(i) d grows by s,
+// and
+//
+//   f''/f = (c^2 (k^2 + 9 k + 24) - (k + 4)) / d^2 + 2 s c (k + 4) / (d h),   k = K d
+//
+// On a floor, of which the lamp is h over every point, that is at most (k^2 + 6 k + 12) / h^2 with
+// k = K h, where a vertical emitter is straight above; on anything that is d away, at most
+// k^2 + 8 k + 20 with s = 0. Both sides of an emitter together have no more than one, for their c^2
+// add up to no more than 1. A highlight, cos^n of an angle that turns by 1/d, bends by n at its top
+// to both sides, and on its flank it slopes by (n/e)^(1/2) at most, which counts twice with the
+// light's own slope k + 4.
+double bend_of_light(double k, bool is_floor, double phong_size) {
+    const double diffuse = is_floor ? (k + 6.0) * k + 12.0 : (k + 8.0) * k + 20.0;
+    const double flank = std::sqrt(phong_size / std::numbers::e);
+    return diffuse + 2.0 * phong_size + 2.0 * flank * (k + 4.0);
 }
+
+// Of an emitter, in shares of its sides from its middle.
+constexpr std::array<std::array<double, 2>, 5> kCornersAndMiddle{
+    {{0.0, 0.0}, {-0.5, -0.5}, {-0.5, 0.5}, {0.5, -0.5}, {0.5, 0.5}}};
 
 // In shares of its sides from its middle. The emitter's own frame: its normal is the axis; forward,
 // as it lies in its plane.
@@ -88,17 +101,13 @@ Tracer::Tracer(const Rig& rig, const TraceOptions& options)
                              .phong_size = object.phong_size});
         shapes_.emplace_back(object.shape);
     }
-    place_lamps();
     tabulate_spectra();
+    place_lamps();
 }
 
 void Tracer::place_lamps() {
-    double phong_size = 0.0;
-    for (const Surface& surface : surfaces_) {
-        if (surface.phong > 0.0) phong_size = std::max(phong_size, surface.phong_size);
-    }
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-        const EmitterLamps lamps = lamps_of(s, phong_size);
+        const EmitterLamps lamps = lamps_of(s);
         for (int j = 0; j < lamps.along; ++j) {
             for (int i = 0; i < lamps.across; ++i) {
                 lamps_.push_back({.strobe = s,
@@ -108,33 +117,73 @@ void Tracer::place_lamps() {
                                       (2 * j + 1 - lamps.along) / (2.0 * lamps.along))});
             }
         }
+        grids_.push_back(lamps);
         lamps_of_strobe_.push_back(static_cast<double>(lamps.across) * lamps.along);
     }
     place_edges();
 }
 
-EmitterLamps Tracer::lamps_of(std::size_t s, double phong_size) const {
+// So that the midpoint rule, which errs by h^2/24 of the second derivative, holds kEmitterError on
+// what is d away: at every plane, and in the signals by the share that each wavelength has in them.
+// That of the shortest way counts: on longer ones what is attenuated more has less of a share.
+double Tracer::spacing_m(std::size_t s, double d_m, bool is_floor) const {
+    double phong_size = 0.0;
+    for (const Surface& surface : surfaces_) {
+        if (surface.phong > 0.0) phong_size = std::max(phong_size, surface.phong_size);
+    }
+    const ArrayXd depth = attenuation_per_m_ * d_m;
+    const ArrayXd bend =
+        depth.unaryExpr([&](double k) { return bend_of_light(k, is_floor, phong_size); });
+    const auto grid = static_cast<Eigen::Index>(signal_nodes_);
+    // Lamps 3.5 mm apart for each metre: the steps of a cone's edge are as fine as the lamps.
+    constexpr double kLeastBend = 40.0;
+    double most = std::max(kLeastBend, bend_of_light(0.0, is_floor, phong_size));
+    if (bend.size() > grid) most = std::max(most, bend.tail(bend.size() - grid).maxCoeff());
+    const auto take_in = [&](const ArrayXd& light) {
+        const ArrayXd left = light.head(grid) * light_left(depth.head(grid));
+        for (Eigen::Index c = 0; c < weights_.cols() && grid > 0; ++c) {
+            const ArrayXd share = weights_.col(c).abs() * left;
+            const double all = share.sum();
+            if (all > 0.0) most = std::max(most, (share * bend.head(grid)).sum() / all);
+        }
+    };
+    for (const ArrayXd& light : diffuse_[s]) take_in(light);
+    take_in(specular_[s]);
+    return d_m * std::sqrt(24.0 * kEmitterError / most);
+}
+
+EmitterLamps Tracer::lamps_of(std::size_t s) const {
     const Strobe& strobe = rig_.strobes[s];
     if (!strobe.emitter) return {};
-    double throw_m = height_m(strobe.position_m);
-    for (const TracedShape& shape : shapes_) {
-        throw_m = std::min(throw_m, shape.least_distance_m(strobe.position_m));
+    if (!options_.rendered_lamps.empty()) return options_.rendered_lamps.at(s);
+    double height_m = std::numeric_limits<double>::infinity();
+    double object_m = std::numeric_limits<double>::infinity();
+    for (const auto& [x, y] : kCornersAndMiddle) {
+        const Vector3d place_m = place_on_emitter(strobe, x, y);
+        height_m = std::min(height_m, this->height_m(place_m));
+        for (const TracedShape& shape : shapes_) {
+            object_m = std::min(object_m, shape.least_distance_m(place_m));
+        }
     }
-    EmitterLamps lamps{.across = options_.lamps_across, .along = options_.lamps_along};
-    if (!options_.rendered_lamps.empty()) lamps = options_.rendered_lamps.at(s);
-    if (lamps.across == 0) {
-        lamps.across = lamps_for(strobe.emitter->across_m, throw_m, phong_size);
-    }
-    if (lamps.along == 0) lamps.along = lamps_for(strobe.emitter->along_m, throw_m, phong_size);
+    double apart_m = height_m > 0.0 ? spacing_m(s, height_m, true) : 0.0;
+    if (std::isfinite(object_m)) apart_m = std::min(apart_m, spacing_m(s, object_m, false));
     constexpr double kMostLamps = 1e5;
+    const auto along_side = [&](int asked, double side_m) {
+        if (asked > 0) return asked;
+        if (side_m == 0.0) return 1;
+        return static_cast<int>(std::clamp(std::ceil(side_m / apart_m), 1.0, kMostLamps + 1.0));
+    };
+    const EmitterLamps lamps{.across = along_side(options_.lamps_across, strobe.emitter->across_m),
+                             .along = along_side(options_.lamps_along, strobe.emitter->along_m)};
     if (static_cast<double>(lamps.across) * lamps.along > kMostLamps) {
-        throw InputError(fmt::format(
-            "strobe '{}': its emitter takes {} x {} lamps to trace; "
-            "allowed: {:.0f}. It is large for its distance to the floor or to an object",
-            strobe.name,
-            lamps.across,
-            lamps.along,
-            kMostLamps));
+        throw InputError(
+            fmt::format("strobe '{}': its emitter takes {} x {} lamps to trace; "
+                        "allowed: {:.0f}. It is large for its distance to the floor or to an "
+                        "object, or for its water",
+                        strobe.name,
+                        lamps.across,
+                        lamps.along,
+                        kMostLamps));
     }
     return lamps;
 }
@@ -198,11 +247,17 @@ std::vector<WeightedWavelength> Tracer::full_spectrum() const {
             .glass = rig_.camera.port->glass.index(middle_nm),
             .water = seawater_index(middle_nm, rig_.water.salinity_psu, rig_.water.temperature_c)};
     }
+    std::vector<Vector3d> places_m;  // that lamps may have
+    for (const Strobe& strobe : rig_.strobes) {
+        for (const auto& [x, y] : kCornersAndMiddle) {
+            if (x == 0.0 || strobe.emitter) places_m.push_back(place_on_emitter(strobe, x, y));
+        }
+    }
     const auto take_in = [&](double column, double row) {
         View view;
         if (!look(column, row, index, view)) return false;
-        for (const Lamp& lamp : lamps_) {
-            const double path_m = view.distance_m + (view.point_m - lamp.position_m).norm();
+        for (const Vector3d& place_m : places_m) {
+            const double path_m = view.distance_m + (view.point_m - place_m).norm();
             family.shortest_path_m = std::min(family.shortest_path_m, path_m / kRoom);
             family.longest_path_m = std::max(family.longest_path_m, path_m * kRoom);
         }

@@ -20,9 +20,9 @@
 // differences at the extremes: these are taken in long double. Light of which the water leaves less
 // than e^-kBlackDepth is black: doubles end soon after. The spectral grid is exact to
 // kSpectralError of a channel's signal (spectral/light_family.h). An emitter of a size is as many
-// equal lamps as hold the smooth part of its light to kEmitterError; a cone's edge is a staircase
-// with as many steps. Every term of a sum has the same sign, so a sum of n terms is right to
-// n 1.1e-16.
+// equal lamps as hold the smooth part of its light to kEmitterError of the value, at every plane's
+// wavelength and in every signal; a cone's edge is a staircase with as many steps. Every term of a
+// sum has the same sign, so a sum of n terms is right to n 1.1e-16.
 #pragma once
 
 #include "scene_gen/rig.h"
@@ -93,6 +93,9 @@ class Tracer {
     // The same of these pixels alone, numbered row by row: the planes one after another.
     [[nodiscard]] std::vector<double> pixels(std::span<const std::size_t> which) const;
 
+    // Lamps that stand for the strobe's emitter.
+    [[nodiscard]] EmitterLamps lamps(std::size_t strobe) const { return grids_[strobe]; }
+
     [[nodiscard]] std::size_t planes() const;
 
     // 1 for every pixel, row by row, whose value is a matter of rounding, or steps, somewhere in
@@ -158,7 +161,8 @@ class Tracer {
     [[nodiscard]] Index index_at(double lambda_nm) const;
     void place_lamps();
     void place_edges();
-    [[nodiscard]] EmitterLamps lamps_of(std::size_t strobe, double phong_size) const;
+    [[nodiscard]] EmitterLamps lamps_of(std::size_t strobe) const;
+    [[nodiscard]] double spacing_m(std::size_t strobe, double d_m, bool is_floor) const;
     void tabulate_spectra();
     [[nodiscard]] std::vector<WeightedWavelength> full_spectrum() const;
     // Over the floor.
@@ -209,6 +213,7 @@ class Tracer {
     std::vector<Lamp> lamps_;
     std::vector<Lamp> rim_lamps_;  // an emitter's corners, or its points
     std::vector<Apex> apexes_;
+    std::vector<EmitterLamps> grids_;  // by strobe
     std::vector<double> lamps_of_strobe_;
     std::vector<std::vector<double>> axial_intensity_;  // by strobe and cone
     std::vector<std::vector<double>> cos_edge_;

@@ -85,6 +85,10 @@ Rig plain_rig(int width_px = 1, int height_px = 1, double slope = 0.1) {
             .digest = ""};
 }
 
+Object object_of(const Shape& shape, double reflectance = 1.0) {
+    return {.name = "thing", .shape = shape, .reflectance = flat(reflectance)};
+}
+
 Rig with_loss(Rig rig, double K_per_m) {
     rig.water.uniform_loss_per_m = K_per_m;
     return rig;
@@ -559,6 +563,59 @@ TEST(TracerEmitter, HoldsItsStatedErrorAgainstAFineGrid) {
                 plane[i], fine[i], kEmitterError, "phong_size " + std::to_string(phong_size));
         }
     }
+}
+
+// Against four times as fine a grid, whose error is a sixteenth. One HabCam emitter, its 90 degree
+// cone, 2 m over the floor, up to K d = 20; and 0.5 m over a box. The grid is no finer than it must
+// be: a quarter of the error is reached.
+TEST(TracerEmitter, HoldsItsStatedErrorInWaterOfAnyAttenuation) {
+    constexpr double kFinerGrid = 1.0 / 16.0;
+    for (const bool has_object : {false, true}) {
+        for (const double K_per_m : {0.0, 2.0, 5.0, 10.0}) {
+            Rig rig = with_loss(habcam(7, 5, "habcam-emitters"), K_per_m);
+            rig.water.multiple = 0.0;
+            rig.strobes = {rig.strobes[3]};
+            rig.strobes[0].beam = lambertian();
+            if (has_object) {
+                rig.objects = {
+                    object_of(Box{.least_m = {-0.2, -0.2, 0.9}, .most_m = {0.2, 0.4, 1.1}}, 0.5)};
+            }
+            const TraceOptions options{.signals = true, .planes_nm = {kLambda_nm}, .threads = 2};
+            const Tracer tracer(rig, options);
+            const auto found = tracer.rows(0, rig.camera.height_px);
+            const auto marks = tracer.on_edges(rig.camera.range);
+            const EmitterLamps lamps = tracer.lamps(0);
+            TraceOptions finer = options;
+            finer.lamps_across = 4 * lamps.across;
+            finer.lamps_along = 4 * lamps.along;
+            const auto fine = image_of(rig, finer);
+            double worst = 0.0;
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                if (has_object && marks[i % marks.size()] != 0) continue;
+                if (fine[i] == 0.0 && found[i] == 0.0) continue;  // in the box's shadow
+                const double error = std::abs(found[i] / fine[i] - 1.0);
+                EXPECT_LT(error, kEmitterError * (1.0 - kFinerGrid))
+                    << "K " << K_per_m << "/m, sample " << i << (has_object ? ", object" : "");
+                worst = std::max(worst, error);
+            }
+            EXPECT_GT(worst, 0.1 * kEmitterError) << "K " << K_per_m << "/m";
+        }
+    }
+}
+
+// The signals are over all wavelengths to 720 nm, where water leaves little to be seen: these ask
+// for no more lamps than what is seen.
+TEST(TracerEmitter, CountsAWavelengthByItsShareOfTheSignal) {
+    const auto lamps_for = [](bool signals, std::vector<double> planes_nm) {
+        Rig rig = habcam(3, 3, "habcam-emitters");
+        rig.water.multiple = 20.0;
+        const EmitterLamps lamps =
+            Tracer(rig, {.signals = signals, .planes_nm = std::move(planes_nm)}).lamps(0);
+        return lamps.across * lamps.along;
+    };
+    EXPECT_LT(lamps_for(true, {}), lamps_for(false, {650.0}));
+    EXPECT_LT(lamps_for(false, {450.0}), lamps_for(false, {650.0}));
+    EXPECT_EQ(lamps_for(true, {720.0}), lamps_for(false, {450.0, 720.0}));
 }
 
 // 10 m x 10 m, a millimetre above the floor: millions of lamps each way.
@@ -1504,10 +1561,6 @@ TEST(Tracer, PixelsAreThoseOfItsRowsAndEdges) {
 }
 
 // --- Objects ---------------------------------------------------------------------------------
-
-Object object_of(const Shape& shape, double reflectance = 1.0) {
-    return {.name = "thing", .shape = shape, .reflectance = flat(reflectance)};
-}
 
 // A white ball of radius R, c below pupil and lamp. Seen at an angle a off the axis it is
 // t = c cos a - sqrt(R^2 - c^2 sin^2 a) away, where light falls at i with
