@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/rendered_images.h"
 
+#include "scene_gen/reintegration.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
 #include "spectral/integrator.h"
@@ -41,6 +42,7 @@ void require_rendered(const fs::path& folder) {
 }
 
 RenderedImages images_in(const fs::path& folder,
+                         const Rig& rig,
                          const Manifest& manifest,
                          const LightFamily& family) {
     RenderedImages images{.lambda_nm = {},
@@ -50,7 +52,11 @@ RenderedImages images_in(const fs::path& folder,
                           .promise = {},
                           .black = {},
                           .radiance = {},
-                          .signals = read_signals(folder / "image.exr")};
+                          .signals = read_signals(folder / "image.exr"),
+                          .lamps = {}};
+    for (const LampGrid& grid : rendered_lamps(rig, manifest)) {
+        images.lamps.push_back({.across = grid.across, .along = grid.along});
+    }
     std::vector<std::string> channels;
     for (const ManifestWavelength& w : manifest.wavelengths) {
         images.lambda_nm.push_back(w.lambda_nm);

@@ -16,6 +16,7 @@ void require_rendered(const std::filesystem::path& folder);
 
 // family: of the plan that was rendered, for what frames shared behind a port may shift.
 [[nodiscard]] RenderedImages images_in(const std::filesystem::path& folder,
+                                       const Rig& rig,
                                        const Manifest& manifest,
                                        const LightFamily& family);
 

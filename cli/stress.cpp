@@ -52,7 +52,7 @@ RenderedImages render_case(const PovRay& povray,
     const RenderResult result = render(
         povray, folder, make_scene_set(rig, plan), {.jobs = 1, .report = {}, .stall_s = stall_s});
     integrate(folder, result.manifest);
-    return images_in(folder, result.manifest, plan.family);
+    return images_in(folder, rig, result.manifest, plan.family);
 }
 
 // A case mostly waits for POV-Ray, which starts by sleeping: so there are more at a time than

@@ -8,6 +8,7 @@
 #include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/progress.h"
+#include "cli/words.h"
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
 #include "spectral/manifest.h"
@@ -42,6 +43,44 @@ void require_no_render(const std::filesystem::path& folder) {
         fmt::format("{}: found the manifest of a render; allowed: a folder without one, for the "
                     "traced images would take the place of the rendered ones",
                     manifest_path(folder).string()));
+}
+
+// What the images are exact to, and how many pixels lie where that does not hold.
+void note_errors(const Tracer& tracer, nlohmann::ordered_json& outcome) {
+    outcome["spectral_error"] = kSpectralError;
+    nlohmann::ordered_json emitters = nlohmann::ordered_json::array();
+    for (std::size_t s = 0; s < tracer.rig().strobes.size(); ++s) {
+        const Strobe& strobe = tracer.rig().strobes[s];
+        if (!strobe.emitter) continue;
+        emitters.push_back({{"strobe", strobe.name},
+                            {"lamps_across", tracer.lamps(s).across},
+                            {"lamps_along", tracer.lamps(s).along}});
+    }
+    if (!emitters.empty()) {
+        outcome["emitter_error"] = kEmitterError;
+        outcome["emitters"] = emitters;
+    }
+    const std::vector<unsigned char> marks = tracer.on_edges(tracer.rig().camera.range);
+    outcome["on_edges"] = marks.size() - static_cast<std::size_t>(std::ranges::count(marks, 0));
+}
+
+void print_errors(const nlohmann::ordered_json& outcome) {
+    if (outcome.contains("emitters")) {
+        for (const auto& emitter : outcome["emitters"]) {
+            fmt::print("  strobe '{}' has a size: {} x {} lamps, exact to {:.0e} of its light\n",
+                       emitter["strobe"].get<std::string>(),
+                       emitter["lamps_across"].get<int>(),
+                       emitter["lamps_along"].get<int>(),
+                       outcome["emitter_error"].get<double>());
+        }
+    }
+    const auto on_edges = outcome["on_edges"].get<std::size_t>();
+    if (on_edges > 0) {
+        fmt::print(
+            "  {} on edges, where that does not hold: of cones, shadows or things, by "
+            "rounding, by a port's dispersion or in an emitter's penumbra\n",
+            counted(on_edges, "pixel"));
+    }
 }
 
 ExitStatus trace_rig(const Options& options) {
@@ -99,7 +138,7 @@ ExitStatus trace_rig(const Options& options) {
     outcome["rig_sha256"] = planned.rig.digest;
     outcome["wavelengths"] = request.planes_nm.size();
     outcome["grid"] = tracer.grid_size();
-    outcome["spectral_error"] = kSpectralError;
+    note_errors(tracer, outcome);
     outcome["threads"] = options.threads;
     outcome["trace_s"] = elapsed.count();
     write_text_file(std::filesystem::path(options.folder) / "trace.json", dumped(outcome) + "\n");
@@ -108,13 +147,15 @@ ExitStatus trace_rig(const Options& options) {
         return kDone;
     }
     fmt::print(
-        "{}: {} x {} pixels traced over {} wavelengths, exact to {:.0e} of a signal, in {:.1f} s\n",
+        "{}: {} x {} pixels traced over {} wavelengths, exact to {:.0e} of a signal off "
+        "the edges, in {:.1f} s\n",
         planned.rig.title,
         image.width_px,
         image.height_px,
         tracer.grid_size(),
         kSpectralError,
         elapsed.count());
+    print_errors(outcome);
     print_signals(outcome);
     return kDone;
 }

@@ -72,12 +72,35 @@ Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
                                  rig.camera.height_px));
 }
 
+// Of the largest share of pixels that one comparison leaves to its edges, and the largest error
+// there of any.
+std::string edges_in_words(const ValidationReport& report) {
+    constexpr double kPercent = 100.0;
+    const EdgeSummary edges = report.edges();
+    std::string words = edges.share == 0.0
+                            ? "no pixel is on an edge"
+                            : fmt::format(
+                                  "{:.2g} % of the pixels are on edges and have no bound, "
+                                  "largest |e| there {:.2g}",
+                                  kPercent * edges.share,
+                                  edges.max_error);
+    if (edges.share_in_penumbrae > 0.0) {
+        words += fmt::format(
+            "\n  {:.2g} % of the pixels are in penumbrae, compared with the render's own "
+            "lamps; from an emitter of more lamps they differ by up to {:.2g}",
+            kPercent * edges.share_in_penumbrae,
+            edges.max_error_of_penumbrae);
+    }
+    return words;
+}
+
 void print_verdict(const ValidationReport& report, const std::string& folder) {
     const Comparison& worst = report.worst();
-    fmt::print("{}: {}\n",
+    fmt::print("{}: {}; {}\n",
                report.rig.title,
                report.holds() ? "POV-Ray and the reference agree within their bounds"
-                              : "POV-Ray and the reference DISAGREE");
+                              : "POV-Ray and the reference DISAGREE",
+               edges_in_words(report));
     fmt::print("  {:>10}  {:>9}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n",
                "",
                "max |e|",
@@ -157,7 +180,7 @@ ExitStatus validate_rig(const Options& options) {
     ValidationReport report = [&] {
         ProgressLine line;
         return validate(planned.rig,
-                        images_in(images, rendering.manifest, planned.plan.family),
+                        images_in(images, planned.rig, rendering.manifest, planned.plan.family),
                         options.jobs,
                         [&](double share) { line.show("tracing", share); });
     }();

@@ -121,7 +121,9 @@ std::vector<LampTerms> lamps_of(const Rig& rig, const Strobe& strobe, const Plan
                     .cone_intensity = {},
                     .phong = rig.seafloor.phong,
                     .phong_size = rig.seafloor.phong_size};
-    const auto positions_m = lamp_positions_m(strobe, lamp_grid(rig, strobe));
+    // As in clear water: of what a signal counts, little is attenuated so much that it asks for
+    // more.
+    const auto positions_m = lamp_positions_m(strobe, lamp_grid(rig, strobe, 0.0));
     const double share =
         strobe.power / (std::numbers::pi * static_cast<double>(positions_m.size()));
     for (const Cone& cone : strobe.beam.cones) {

@@ -78,9 +78,29 @@ std::vector<std::optional<FloorSample>> floor_samples(const Rig& rig, std::size_
     return samples;
 }
 
-LampGrid lamp_grid(const Rig& rig, const Strobe& strobe) {
+double most_attenuation_per_m(const Rig& rig, std::span<const double> lambda_nm) {
+    double most_per_m = 0.0;
+    for (const double nm : lambda_nm) {
+        most_per_m = std::max(most_per_m, rig.water.attenuation_per_m(nm));
+    }
+    return most_per_m;
+}
+
+LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m) {
     if (!strobe.emitter) return {};
-    const double spacing_m = kLampSpacing * least_throw_m(rig, strobe, strobe.position_m);
+    const double height_m = height_above(floor_plane(rig.sled), strobe.position_m);
+    const double throw_m = least_throw_m(rig, strobe, strobe.position_m);
+    constexpr double kSecondOrder = 24.0;
+    const auto spacing_for = [](double d_m, double bend) {
+        return d_m * std::sqrt(kSecondOrder * kGridError / bend);
+    };
+    const double k = K_per_m * height_m;
+    double spacing_m =
+        std::min(kLampSpacing * throw_m, spacing_for(height_m, (k + 6.0) * k + 12.0));
+    if (throw_m < height_m) {
+        const double near_k = K_per_m * throw_m;
+        spacing_m = std::min(spacing_m, spacing_for(throw_m, (near_k + 8.0) * near_k + 20.0));
+    }
     constexpr double kMostLamps = 1e6;  // far more than any scene can hold: it will be refused
     const auto lamps = [&](double size_m) {
         return static_cast<int>(std::clamp(std::ceil(size_m / spacing_m), 1.0, kMostLamps));

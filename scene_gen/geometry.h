@@ -19,6 +19,7 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace aphotic {
@@ -65,13 +66,24 @@ struct LampGrid {
     int along = 1;
 };
 
-// The coarsest grid whose lamps are closer together than kLampSpacing times the distance from
-// the emitter to the floor below it, or to an object that is nearer. A midpoint rule of spacing h
-// errs on a smooth integrand by h^2 f''/24, and f''/f of the light on a plane is at most about
-// 20/d^2, so this spacing keeps the error under 1e-4; shadows and cone edges turn from one step
-// into as many as lamps.
-[[nodiscard]] LampGrid lamp_grid(const Rig& rig, const Strobe& strobe);
+// The coarsest grid that keeps the smooth light right to kGridError where water attenuates by K,
+// and whose lamps are closer together than kLampSpacing times the distance d from the emitter to
+// the floor below it, or to an object that is nearer. A midpoint rule of spacing h errs by h^2
+// f''/24. For f = cos(theta) cos(i) exp(-K d) / d^2, the lamp moving in the emitter's plane, and k
+// = K d,
+//
+//   on the floor, by its height d over it          f''/f <= (k^2 + 6 k + 12) / d^2
+//   on what faces the lamp, by its distance d      f''/f <= (k^2 + 8 k + 20) / d^2
+//
+// so that h^2 = 24 kGridError f/f''. The first is reached straight below a vertical emitter, the
+// second towards the rim of what an emitter lights. In clear water over a floor kLampSpacing is
+// the narrower, up to k = 1.1. Shadows and cone edges turn from one step into as many as lamps;
+// what a highlight bends is not counted.
+[[nodiscard]] LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m);
+inline constexpr double kGridError = 1e-4;
 inline constexpr double kLampSpacing = 0.011;
+// K at the most attenuated of the wavelengths.
+[[nodiscard]] double most_attenuation_per_m(const Rig& rig, std::span<const double> lambda_nm);
 
 // Centres of the grid's cells [m]. `along` is the sled's forward direction as the emitter's
 // plane sees it (down, for a strobe that shines fore or aft), `across` completes it.

@@ -78,9 +78,10 @@ Channels exposure_of(const Rig& rig) {
 }
 
 std::vector<StrobeInScene> strobes_of(const Rig& rig) {
+    const double K_per_m = most_attenuation_per_m(rig, kQuickLambda_nm);
     std::vector<StrobeInScene> strobes;
     for (const Strobe& strobe : rig.strobes) {
-        strobes.push_back({.cones = strobe.beam.cones, .lamps = lamp_grid(rig, strobe)});
+        strobes.push_back({.cones = strobe.beam.cones, .lamps = lamp_grid(rig, strobe, K_per_m)});
     }
     return strobes;
 }

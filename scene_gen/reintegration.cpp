@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace aphotic {
 
@@ -57,6 +58,28 @@ std::string object_text(const Object& object) {
         text += fmt::format(", phong {}, phong_size {}", object.phong, object.phong_size);
     }
     return text;
+}
+
+// Of geometry_of's text.
+LampGrid grid_in(const std::string& key, const std::string& text) {
+    constexpr int kMostLamps = 100'000;  // of a scene (scene_gen/pov_scene.cpp)
+    LampGrid grid{.across = 0, .along = 0};
+    const char* const end = text.data() + text.size();
+    const auto [cross, fault] = std::from_chars(text.data(), end, grid.across);
+    constexpr std::string_view kBy = " x ";
+    const char* rest = cross;
+    if (fault == std::errc() && std::string_view(cross, end).starts_with(kBy)) {
+        rest = std::from_chars(cross + kBy.size(), end, grid.along).ptr;
+    }
+    const auto is_few = [](int lamps) { return lamps >= 1 && lamps <= kMostLamps; };
+    if (rest != end || !is_few(grid.across) || !is_few(grid.along)) {
+        throw InputError(
+            fmt::format("{}: found '{}'; allowed: ACROSS x ALONG, from 1 x 1 to {} each",
+                        key,
+                        text,
+                        kMostLamps));
+    }
+    return grid;
 }
 
 void require_same_geometry(const Rig& changed, const Manifest& manifest) {
@@ -185,7 +208,8 @@ std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOption
                                vector_text(strobe.axis),
                                beam_text(strobe.beam));
         if (!strobe.emitter) continue;
-        const LampGrid grid = options.emitter_lamps.value_or(lamp_grid(rig, strobe));
+        const LampGrid grid =
+            options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_K_per_m));
         all[key + " emitter"] =
             fmt::format("{} x {} m", strobe.emitter->across_m, strobe.emitter->along_m);
         all[key + " lamps"] = fmt::format("{} x {}", grid.across, grid.along);
@@ -194,6 +218,20 @@ std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOption
         all[fmt::format("object '{}'", object.name)] = object_text(object);
     }
     return all;
+}
+
+std::vector<LampGrid> rendered_lamps(const Rig& rig, const Manifest& manifest) {
+    std::vector<double> lambda_nm;
+    for (const ManifestWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
+    const double K_per_m = most_attenuation_per_m(rig, lambda_nm);
+    std::vector<LampGrid> lamps;
+    for (const Strobe& strobe : rig.strobes) {
+        const std::string key = fmt::format("strobe '{}' lamps", strobe.name);
+        const auto noted = manifest.geometry.find(key);
+        lamps.push_back(noted == manifest.geometry.end() ? lamp_grid(rig, strobe, K_per_m)
+                                                         : grid_in(key, noted->second));
+    }
+    return lamps;
 }
 
 Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolerance) {

@@ -16,12 +16,17 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace aphotic {
 
 // All that must be equal for frames to serve, as words and numbers by key.
 [[nodiscard]] std::map<std::string, std::string> geometry_of(const Rig& rig,
                                                              const SceneOptions& options);
+
+// By strobe of the rig, the lamps that stand for its emitter in the manifest's frames; where these
+// do not tell, as many as lamp_grid() chooses.
+[[nodiscard]] std::vector<LampGrid> rendered_lamps(const Rig& rig, const Manifest& manifest);
 
 // For frames of a user's scene `changed` is what rig_of_scene makes of the changed rig.
 //

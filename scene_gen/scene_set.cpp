@@ -94,7 +94,9 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.rig_sha256 = rig.digest;
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
-    manifest.geometry = geometry_of(lit, plan.scene);
+    SceneOptions options = plan.scene;
+    options.most_K_per_m = most_attenuation_per_m(rig, lambda_nm);
+    manifest.geometry = geometry_of(lit, options);
     if (own != nullptr) manifest.scene = noted(*own, plan.family);
     manifest.method = method_name(plan.method);
     manifest.tolerance = plan.tolerance;

@@ -21,7 +21,7 @@ Comparison compare_planes(std::string name,
                           std::span<const unsigned char> marks,
                           double floor,
                           double bound) {
-    Comparison found{.name = std::move(name), .bound = bound};
+    Comparison found{.name = std::move(name), .bound = bound, .floor = floor};
     std::vector<double> errors;
     errors.reserve(a.size());
     double sum = 0.0;
@@ -46,6 +46,7 @@ Comparison compare_planes(std::string name,
                 found.column = static_cast<int>(i % static_cast<std::size_t>(width_px));
                 found.row = static_cast<int>(i / static_cast<std::size_t>(width_px));
             }
+            if (std::abs(b[i]) < floor) ++found.under_floor;
             sum += e;
             sum_of_squares += e * e;
             errors.push_back(size);

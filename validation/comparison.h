@@ -12,9 +12,11 @@
 // mean square; and the mean of e, with its sign. No factor is fitted here; scaling.h does that.
 //
 // Samples on edges, where a pixel's centre falls on either side by rounding, are counted and
-// measured on their own. A comparison holds when the largest |e| off the edges is within the
-// bound, every sample, on edges too, is finite, and there is at least one off the edges. What was
-// never observed, as in an average of images, is counted and no more.
+// measured on their own. Of those in penumbrae (validation.h) it is also told how many they are and
+// how far a is from the emitters themselves, which no bound holds. A comparison holds when the
+// largest |e| off the edges is within the bound, every sample, on edges too, is finite, and there
+// is at least one off the edges. What was never observed, as in an average of images, is counted
+// and no more.
 #pragma once
 
 #include <cstddef>
@@ -34,9 +36,13 @@ struct Comparison {
     std::size_t compared = 0;
     std::size_t on_edges = 0;
     double max_error_on_edges = 0.0;
+    std::size_t in_penumbrae = 0;  // among those compared
+    double max_error_of_penumbrae = 0.0;
     std::size_t unobserved = 0;
     std::size_t not_finite = 0;  // samples of a or b that are NaN or inf, edges included
     double bound = 0.0;
+    double floor = 0.0;
+    std::size_t under_floor = 0;  // samples compared of which |b| is under it
 
     [[nodiscard]] bool holds() const {
         return compared > 0 && not_finite == 0 && max_error <= bound;

@@ -33,6 +33,10 @@ Json json_of(const Comparison& comparison) {
             {"compared", comparison.compared},
             {"on_edges", comparison.on_edges},
             {"max_error_on_edges", comparison.max_error_on_edges},
+            {"in_penumbrae", comparison.in_penumbrae},
+            {"max_error_of_penumbrae", comparison.max_error_of_penumbrae},
+            {"floor", comparison.floor},
+            {"under_floor", comparison.under_floor},
             {"not_finite", comparison.not_finite}};
 }
 
@@ -87,6 +91,22 @@ std::size_t ValidationReport::worst_channel() const {
                                     channels.begin());
 }
 
+EdgeSummary ValidationReport::edges() const {
+    EdgeSummary all;
+    const double pixels = static_cast<double>(traced.width_px) * traced.height_px;
+    const auto take_in = [&](const Comparison& one) {
+        all.share = std::max(all.share, static_cast<double>(one.on_edges) / pixels);
+        all.max_error = std::max(all.max_error, one.max_error_on_edges);
+        all.share_in_penumbrae =
+            std::max(all.share_in_penumbrae, static_cast<double>(one.in_penumbrae) / pixels);
+        all.max_error_of_penumbrae =
+            std::max(all.max_error_of_penumbrae, one.max_error_of_penumbrae);
+    };
+    std::ranges::for_each(wavelengths, take_in);
+    std::ranges::for_each(channels, take_in);
+    return all;
+}
+
 void ValidationReport::check() const {
     const auto require = [](bool holds, const char* what) {
         if (!holds) throw std::logic_error(std::string("ValidationReport: ") + what);
@@ -117,7 +137,7 @@ void write_validation_json(const ValidationReport& report, const std::filesystem
           {"not_finite", worst.not_finite}}},
         {"rule",
          "e = (a - b) / max(|b|, floor), a: POV-Ray's image, b: the reference; holds: max |e| off "
-         "the edges <= bound and every sample finite"},
+         "the edges <= bound and every sample finite; in penumbrae b is of the render's own lamps"},
         {"rig", rig_of(report)},
         {"image",
          {{"width_px", report.rendered.width_px}, {"height_px", report.rendered.height_px}}},

@@ -15,6 +15,14 @@
 
 namespace aphotic {
 
+// Over all comparisons, the largest of each.
+struct EdgeSummary {
+    double share = 0.0;  // of the pixels: on edges, without a bound
+    double max_error = 0.0;
+    double share_in_penumbrae = 0.0;  // of the pixels: compared with the render's own lamps
+    double max_error_of_penumbrae = 0.0;
+};
+
 struct ValidationReport {
     Rig rig;
     std::string scene_file{};  // of the user's own, which POV-Ray rendered and the reference not
@@ -41,6 +49,7 @@ struct ValidationReport {
     // The one that is worst against its bound; the first of equals, wavelengths before channels.
     [[nodiscard]] const Comparison& worst() const;
     [[nodiscard]] std::size_t worst_channel() const;
+    [[nodiscard]] EdgeSummary edges() const;
     // Throws std::logic_error, our own mistake, when the parts do not fit together: what is
     // written below would be read out of bounds.
     void check() const;

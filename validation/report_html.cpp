@@ -64,6 +64,27 @@ std::size_t failures(const ValidationReport& report) {
                                     std::ranges::count_if(report.channels, fails));
 }
 
+std::string edges_in_words(const ValidationReport& report) {
+    constexpr double kPercent = 100.0;
+    const EdgeSummary edges = report.edges();
+    std::string words =
+        edges.share == 0.0
+            ? "No pixel is on an edge."
+            : fmt::format(
+                  "On edges, which have no bound, are up to {} % of the pixels; the largest "
+                  "relative error there is <strong>{}</strong>.",
+                  scientific(kPercent * edges.share),
+                  scientific(edges.max_error));
+    if (edges.share_in_penumbrae > 0.0) {
+        words += fmt::format(
+            " In the penumbrae of emitters are {} %: these are compared with the render’s own "
+            "lamps. From an emitter of more lamps they differ by up to {}.",
+            scientific(kPercent * edges.share_in_penumbrae),
+            scientific(edges.max_error_of_penumbrae));
+    }
+    return words;
+}
+
 std::string verdict(const ValidationReport& report) {
     const std::size_t all = report.wavelengths.size() + report.channels.size();
     const std::string summary =
@@ -74,11 +95,12 @@ std::string verdict(const ValidationReport& report) {
                                      counted(all, "comparison"));
     return fmt::format(
         "<div class=\"verdict {}\" id=\"verdict\">\n<p class=\"word\">{}</p>\n<p>{} "
-        "{}</p>\n</div>\n",
+        "{}</p>\n<p>{}</p>\n</div>\n",
         report.holds() ? "holds" : "fails",
         report.holds() ? "✓ Holds" : "✗ Does not hold",
         summary,
-        worst_in_words(report));
+        worst_in_words(report),
+        edges_in_words(report));
 }
 
 std::string header(const ValidationReport& report) {
@@ -192,9 +214,11 @@ std::string rule() {
                "and "
                "every sample, on edges too, is finite. No factor is fitted: the absolute scale is "
                "part of it. On the edge of a cone, of a shadow or of an object’s face, where "
-               "rounding, "
-               "dispersion or the size of an emitter puts a pixel on both sides, samples are "
-               "counted and measured on their own. The 99.9 percentile and the root mean square "
+               "rounding or dispersion puts a pixel on both sides, samples are counted and "
+               "measured "
+               "on their own. In the penumbra of an emitter with a size, <i>b</i> is traced with "
+               "the "
+               "render’s own lamps. The 99.9 percentile and the root mean square "
                "are of |<i>e</i>|, the mean is "
                "of <i>e</i> with its sign.");
 }

@@ -40,14 +40,39 @@ double light_left(double depth) {
     return depth < kBlackDepth ? std::exp(-depth) : 0.0;
 }
 
-// Lamps along one side of an emitter, so that the midpoint rule holds kEmitterError: with h their
-// spacing it errs by h^2/24 of the second derivative, which for light on a plane at distance d is
-// at most 20/d^2 of the value, shared between the two sides. A highlight, cos^n of an angle that
-// turns by h/d, adds n/d^2.
-int lamps_for(double side_m, double distance_m, double phong_size) {
-    const double curvature = 20.0 + phong_size;
-    const double spacing_m = distance_m * std::sqrt(0.5 * kEmitterError * 24.0 / curvature);
-    return std::max(1, static_cast<int>(std::ceil(side_m / spacing_m)));
+// The second derivative of a lamp's light by its place in the emitter's plane, as a share of the
+// light and in units of 1/d^2. With e the direction in which it moves, c = e.v the cosine to the
+// ray v and s = e.n the rise over the surface, cos(theta) d does not change, cos(i) d grows by s,
+// and
+//
+//   f''/f = (c^2 (k^2 + 9 k + 24) - (k + 4)) / d^2 + 2 s c (k + 4) / (d h),   k = K d
+//
+// On a floor, of which the lamp is h over every point, that is at most (k^2 + 6 k + 12) / h^2 with
+// k = K h, where a vertical emitter is straight above; on anything that is d away, at most
+// k^2 + 8 k + 20 with s = 0. Both sides of an emitter together have no more than one, for their c^2
+// add up to no more than 1. A highlight, cos^n of an angle that turns by 1/d, bends by n at its top
+// to both sides, and on its flank it slopes by (n/e)^(1/2) at most, which counts twice with the
+// light's own slope k + 4.
+double bend_of_light(double k, bool is_floor, double phong_size) {
+    const double diffuse = is_floor ? (k + 6.0) * k + 12.0 : (k + 8.0) * k + 20.0;
+    const double flank = std::sqrt(phong_size / std::numbers::e);
+    return diffuse + 2.0 * phong_size + 2.0 * flank * (k + 4.0);
+}
+
+// Of an emitter, in shares of its sides from its middle.
+constexpr std::array<std::array<double, 2>, 5> kCornersAndMiddle{
+    {{0.0, 0.0}, {-0.5, -0.5}, {-0.5, 0.5}, {0.5, -0.5}, {0.5, 0.5}}};
+
+// In shares of its sides from its middle. The emitter's own frame: its normal is the axis; forward,
+// as it lies in its plane.
+Vector3d place_on_emitter(const Strobe& strobe, double x, double y) {
+    if (!strobe.emitter) return strobe.position_m;
+    Vector3d starboard_side = strobe.axis.cross(Vector3d::UnitX());
+    if (starboard_side.norm() < 1e-6) starboard_side = strobe.axis.cross(Vector3d::UnitZ());
+    starboard_side.normalize();
+    const Vector3d forward_side = starboard_side.cross(strobe.axis);
+    return strobe.position_m + x * strobe.emitter->across_m * starboard_side +
+           y * strobe.emitter->along_m * forward_side;
 }
 
 }  // namespace
@@ -76,66 +101,119 @@ Tracer::Tracer(const Rig& rig, const TraceOptions& options)
                              .phong_size = object.phong_size});
         shapes_.emplace_back(object.shape);
     }
-    place_lamps();
     tabulate_spectra();
+    place_lamps();
 }
 
 void Tracer::place_lamps() {
+    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+        const EmitterLamps lamps = lamps_of(s);
+        for (int j = 0; j < lamps.along; ++j) {
+            for (int i = 0; i < lamps.across; ++i) {
+                lamps_.push_back({.strobe = s,
+                                  .position_m = place_on_emitter(
+                                      rig_.strobes[s],
+                                      (2 * i + 1 - lamps.across) / (2.0 * lamps.across),
+                                      (2 * j + 1 - lamps.along) / (2.0 * lamps.along))});
+            }
+        }
+        grids_.push_back(lamps);
+        lamps_of_strobe_.push_back(static_cast<double>(lamps.across) * lamps.along);
+    }
+    place_edges();
+}
+
+// So that the midpoint rule, which errs by h^2/24 of the second derivative, holds kEmitterError on
+// what is d away: at every plane, and in the signals by the share that each wavelength has in them.
+// That of the shortest way counts: on longer ones what is attenuated more has less of a share.
+double Tracer::spacing_m(std::size_t s, double d_m, bool is_floor) const {
     double phong_size = 0.0;
     for (const Surface& surface : surfaces_) {
         if (surface.phong > 0.0) phong_size = std::max(phong_size, surface.phong_size);
     }
+    const ArrayXd depth = attenuation_per_m_ * d_m;
+    const ArrayXd bend =
+        depth.unaryExpr([&](double k) { return bend_of_light(k, is_floor, phong_size); });
+    const auto grid = static_cast<Eigen::Index>(signal_nodes_);
+    // Lamps 3.5 mm apart for each metre: the steps of a cone's edge are as fine as the lamps.
+    constexpr double kLeastBend = 40.0;
+    double most = std::max(kLeastBend, bend_of_light(0.0, is_floor, phong_size));
+    if (bend.size() > grid) most = std::max(most, bend.tail(bend.size() - grid).maxCoeff());
+    const auto take_in = [&](const ArrayXd& light) {
+        const ArrayXd left = light.head(grid) * light_left(depth.head(grid));
+        for (Eigen::Index c = 0; c < weights_.cols() && grid > 0; ++c) {
+            const ArrayXd share = weights_.col(c).abs() * left;
+            const double all = share.sum();
+            if (all > 0.0) most = std::max(most, (share * bend.head(grid)).sum() / all);
+        }
+    };
+    for (const ArrayXd& light : diffuse_[s]) take_in(light);
+    take_in(specular_[s]);
+    return d_m * std::sqrt(24.0 * kEmitterError / most);
+}
+
+EmitterLamps Tracer::lamps_of(std::size_t s) const {
+    const Strobe& strobe = rig_.strobes[s];
+    if (!strobe.emitter) return {};
+    if (!options_.rendered_lamps.empty()) return options_.rendered_lamps.at(s);
+    double height_m = std::numeric_limits<double>::infinity();
+    double object_m = std::numeric_limits<double>::infinity();
+    for (const auto& [x, y] : kCornersAndMiddle) {
+        const Vector3d place_m = place_on_emitter(strobe, x, y);
+        height_m = std::min(height_m, this->height_m(place_m));
+        for (const TracedShape& shape : shapes_) {
+            object_m = std::min(object_m, shape.least_distance_m(place_m));
+        }
+    }
+    double apart_m = height_m > 0.0 ? spacing_m(s, height_m, true) : 0.0;
+    if (std::isfinite(object_m)) apart_m = std::min(apart_m, spacing_m(s, object_m, false));
+    constexpr double kMostLamps = 1e5;
+    const auto along_side = [&](int asked, double side_m) {
+        if (asked > 0) return asked;
+        if (side_m == 0.0) return 1;
+        return static_cast<int>(std::clamp(std::ceil(side_m / apart_m), 1.0, kMostLamps + 1.0));
+    };
+    const EmitterLamps lamps{.across = along_side(options_.lamps_across, strobe.emitter->across_m),
+                             .along = along_side(options_.lamps_along, strobe.emitter->along_m)};
+    if (static_cast<double>(lamps.across) * lamps.along > kMostLamps) {
+        throw InputError(
+            fmt::format("strobe '{}': its emitter takes {} x {} lamps to trace; "
+                        "allowed: {:.0f}. It is large for its distance to the floor or to an "
+                        "object, or for its water",
+                        strobe.name,
+                        lamps.across,
+                        lamps.along,
+                        kMostLamps));
+    }
+    return lamps;
+}
+
+// Given lamps are points, each with its own edges and shadows; else it is the whole emitter, of
+// which the lamps are but a sample.
+void Tracer::place_edges() {
+    if (!options_.rendered_lamps.empty()) {
+        rim_lamps_ = lamps_;
+        for (const Lamp& lamp : lamps_) {
+            apexes_.push_back(
+                {.strobe = lamp.strobe, .position_m = lamp.position_m, .reach_m = 0.0});
+        }
+        return;
+    }
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
         const Strobe& strobe = rig_.strobes[s];
-        if (!strobe.emitter) {
-            lamps_.push_back({.strobe = s, .position_m = strobe.position_m});
-            rim_lamps_.push_back(lamps_.back());
-            lamps_of_strobe_.push_back(1.0);
-            continue;
-        }
-        double throw_m = height_m(strobe.position_m);
-        for (const TracedShape& shape : shapes_) {
-            throw_m = std::min(throw_m, shape.least_distance_m(strobe.position_m));
-        }
-        const int across = options_.lamps_across > 0
-                               ? options_.lamps_across
-                               : lamps_for(strobe.emitter->across_m, throw_m, phong_size);
-        const int along = options_.lamps_along > 0
-                              ? options_.lamps_along
-                              : lamps_for(strobe.emitter->along_m, throw_m, phong_size);
-        constexpr double kMostLamps = 1e5;
-        if (static_cast<double>(across) * along > kMostLamps) {
-            throw InputError(fmt::format(
-                "strobe '{}': its emitter takes {} x {} lamps to trace; "
-                "allowed: {:.0f}. It is large for its distance to the floor or to an object",
-                strobe.name,
-                across,
-                along,
-                kMostLamps));
-        }
-        // The emitter's own frame: its normal is the axis; forward, as it lies in its plane.
-        Vector3d starboard_side = strobe.axis.cross(Vector3d::UnitX());
-        if (starboard_side.norm() < 1e-6) starboard_side = strobe.axis.cross(Vector3d::UnitZ());
-        starboard_side.normalize();
-        const Vector3d forward_side = starboard_side.cross(strobe.axis);
-        for (const double x : {-0.5, 0.5}) {
-            for (const double y : {-0.5, 0.5}) {
-                rim_lamps_.push_back({.strobe = s,
-                                      .position_m = strobe.position_m +
-                                                    x * strobe.emitter->across_m * starboard_side +
-                                                    y * strobe.emitter->along_m * forward_side});
+        double reach_m = 0.0;
+        if (strobe.emitter) {
+            reach_m = 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
+            for (const double x : {-0.5, 0.5}) {
+                for (const double y : {-0.5, 0.5}) {
+                    rim_lamps_.push_back(
+                        {.strobe = s, .position_m = place_on_emitter(strobe, x, y)});
+                }
             }
+        } else {
+            rim_lamps_.push_back({.strobe = s, .position_m = strobe.position_m});
         }
-        for (int j = 0; j < along; ++j) {
-            for (int i = 0; i < across; ++i) {
-                const double x = strobe.emitter->across_m * (2 * i + 1 - across) / (2.0 * across);
-                const double y = strobe.emitter->along_m * (2 * j + 1 - along) / (2.0 * along);
-                lamps_.push_back(
-                    {.strobe = s,
-                     .position_m = strobe.position_m + x * starboard_side + y * forward_side});
-            }
-        }
-        lamps_of_strobe_.push_back(static_cast<double>(across) * along);
+        apexes_.push_back({.strobe = s, .position_m = strobe.position_m, .reach_m = reach_m});
     }
 }
 
@@ -169,11 +247,17 @@ std::vector<WeightedWavelength> Tracer::full_spectrum() const {
             .glass = rig_.camera.port->glass.index(middle_nm),
             .water = seawater_index(middle_nm, rig_.water.salinity_psu, rig_.water.temperature_c)};
     }
+    std::vector<Vector3d> places_m;  // that lamps may have
+    for (const Strobe& strobe : rig_.strobes) {
+        for (const auto& [x, y] : kCornersAndMiddle) {
+            if (x == 0.0 || strobe.emitter) places_m.push_back(place_on_emitter(strobe, x, y));
+        }
+    }
     const auto take_in = [&](double column, double row) {
         View view;
         if (!look(column, row, index, view)) return false;
-        for (const Lamp& lamp : lamps_) {
-            const double path_m = view.distance_m + (view.point_m - lamp.position_m).norm();
+        for (const Vector3d& place_m : places_m) {
+            const double path_m = view.distance_m + (view.point_m - place_m).norm();
             family.shortest_path_m = std::min(family.shortest_path_m, path_m / kRoom);
             family.longest_path_m = std::max(family.longest_path_m, path_m * kRoom);
         }
@@ -379,33 +463,32 @@ bool Tracer::is_on_cone_edge(double column,
     }
     const double rounding_rad = rig_.camera.port ? kEdgeBehindPortRad : kEdgeRad;
     // The signed angle from a cone's edge, and how far a strobe's lamps spread about it.
-    const auto is_on_edge = [&](const Strobe& strobe, const Cone& cone) {
+    const auto is_on_edge_of = [&](const Apex& apex, const Cone& cone) {
         std::array<double, 2> beyond_rad{};
         // A pixel covers more of a floor that is seen aslant.
         constexpr double kAslant = 1.5;
         const double pixel_rad = rig_.camera.pixel_pitch_m / rig_.camera.focal_length_m;
+        const Vector3d& axis = rig_.strobes[apex.strobe].axis;
         double spread_rad = rounding_rad;
         for (std::size_t e = 0; e < ends.size(); ++e) {
-            const Vector3d path = views[e].point_m - strobe.position_m;
-            beyond_rad[e] = std::atan2(path.cross(strobe.axis).norm(), path.dot(strobe.axis)) -
-                            cone.half_angle_rad;
+            const Vector3d path = views[e].point_m - apex.position_m;
+            beyond_rad[e] =
+                std::atan2(path.cross(axis).norm(), path.dot(axis)) - cone.half_angle_rad;
             spread_rad = std::max(
                 spread_rad, kAslant * within_px * pixel_rad * views[e].distance_m / path.norm());
-            if (!strobe.emitter) continue;
-            const double reach_m =
-                0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
-            spread_rad = std::max(spread_rad, std::asin(std::min(1.0, reach_m / path.norm())));
+            spread_rad = std::max(spread_rad, std::asin(std::min(1.0, apex.reach_m / path.norm())));
         }
         return std::abs(beyond_rad[0]) <= spread_rad || std::abs(beyond_rad[1]) <= spread_rad ||
                (beyond_rad[0] > 0.0) != (beyond_rad[1] > 0.0);
     };
-    for (const Strobe& strobe : rig_.strobes) {
+    for (const Apex& apex : apexes_) {
+        const Strobe& strobe = rig_.strobes[apex.strobe];
         for (const Cone& cone : strobe.beam.cones) {
             // A cone of 90 degrees ends where its cosine does: there is no step. Nor is there one
             // where there is no light.
             const bool has_step = cone.half_angle_rad < 0.5 * std::numbers::pi - rounding_rad &&
                                   cone.weight * strobe.power > 0.0;
-            if (has_step && is_on_edge(strobe, cone)) return true;
+            if (has_step && is_on_edge_of(apex, cone)) return true;
         }
     }
     return false;
@@ -430,6 +513,7 @@ bool Tracer::is_uncertain(const View& view) const {
     const bool is_of_mesh = view.surface > 0 && shapes_[view.surface - 1].is_mesh();
     std::vector<int> lit(rig_.strobes.size(), 0);
     std::vector<int> dark(rig_.strobes.size(), 0);
+    const bool has_penumbra = options_.rendered_lamps.empty();
     const auto looks_uncertain = [&](const Lamp& lamp) {
         const Vector3d to_lamp = lamp.position_m - view.point_m;
         const double d = to_lamp.norm();
@@ -441,7 +525,7 @@ bool Tracer::is_uncertain(const View& view) const {
                (is_hidden && is_blocked(lamp, view, {0.0, kNoShadowWithin_m})) ||
                (is_hidden && is_blocked(lamp, view) &&
                 !is_blocked(lamp, view, {kNoShadowWithin_m, d - kNoShadowWithin_m})) ||
-               (lit[lamp.strobe] > 0 && dark[lamp.strobe] > 0);
+               (has_penumbra && lit[lamp.strobe] > 0 && dark[lamp.strobe] > 0);
     };
     return std::ranges::any_of(lamps_, looks_uncertain) ||
            std::ranges::any_of(rim_lamps_, looks_uncertain);
@@ -565,20 +649,36 @@ bool Tracer::is_on_object_edge(double column,
     return false;
 }
 
+bool Tracer::is_on_edge(std::size_t pixel,
+                        WavelengthRange range,
+                        const std::array<Index, 2>& ends,
+                        double within_px) const {
+    const auto width = static_cast<std::size_t>(rig_.camera.width_px);
+    const double column = static_cast<double>(pixel % width) + 0.5;
+    const double row = static_cast<double>(pixel / width) + 0.5;
+    return is_on_cone_edge(column, row, ends, within_px) ||
+           (!shapes_.empty() && is_on_object_edge(column, row, range, within_px));
+}
+
 std::vector<unsigned char> Tracer::on_edges(WavelengthRange range, double within_px) const {
     const std::array<Index, 2> ends{index_at(range.first_nm), index_at(range.last_nm)};
-    const int width_px = rig_.camera.width_px;
-    std::vector<unsigned char> marks(static_cast<std::size_t>(width_px) *
-                                     static_cast<std::size_t>(rig_.camera.height_px));
-    for_each_row(rig_.camera.height_px, [&](int row) {
-        for (int column = 0; column < width_px; ++column) {
-            const bool is_marked =
-                is_on_cone_edge(column + 0.5, row + 0.5, ends, within_px) ||
-                (!shapes_.empty() && is_on_object_edge(column + 0.5, row + 0.5, range, within_px));
-            marks[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px) +
-                  static_cast<std::size_t>(column)] = is_marked ? 1 : 0;
+    const auto width = static_cast<std::size_t>(rig_.camera.width_px);
+    const auto height = static_cast<std::size_t>(rig_.camera.height_px);
+    std::vector<unsigned char> marks(width * height);
+    for_each(height, [&](std::size_t row) {
+        for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
+            marks[i] = is_on_edge(i, range, ends, within_px) ? 1 : 0;
         }
     });
+    return marks;
+}
+
+std::vector<unsigned char> Tracer::on_edges_of(std::span<const std::size_t> which,
+                                               WavelengthRange range) const {
+    const std::array<Index, 2> ends{index_at(range.first_nm), index_at(range.last_nm)};
+    std::vector<unsigned char> marks(which.size());
+    for_each(which.size(),
+             [&](std::size_t i) { marks[i] = is_on_edge(which[i], range, ends, 0.0) ? 1 : 0; });
     return marks;
 }
 
@@ -586,29 +686,42 @@ std::size_t Tracer::planes() const {
     return (options_.signals ? kChannels : 0U) + options_.planes_nm.size();
 }
 
-void Tracer::for_each_row(int count, const std::function<void(int)>& work) const {
-    parallel_for(static_cast<std::size_t>(count),
+void Tracer::for_each(std::size_t count, const std::function<void(std::size_t)>& work) const {
+    parallel_for(count,
                  static_cast<std::size_t>(options_.threads),
-                 [&](std::size_t row, std::size_t) { work(static_cast<int>(row)); });
+                 [&](std::size_t i, std::size_t) { work(i); });
+}
+
+void Tracer::write_planes(const ArrayXd& radiance, double* sample, std::size_t stride) const {
+    const auto grid = static_cast<Eigen::Index>(signal_nodes_);
+    for (int c = 0; options_.signals && c < kChannels; ++c, sample += stride) {
+        *sample = (weights_.col(c) * radiance.head(grid)).sum();
+    }
+    for (Eigen::Index j = grid; j < radiance.size(); ++j, sample += stride) *sample = radiance(j);
 }
 
 std::vector<double> Tracer::rows(int first_row, int count) const {
     const auto width = static_cast<std::size_t>(rig_.camera.width_px);
     const std::size_t plane = width * static_cast<std::size_t>(count);
     std::vector<double> samples(planes() * plane);
-    const auto grid = static_cast<Eigen::Index>(signal_nodes_);
-    for_each_row(count, [&](int row) {
+    for_each(static_cast<std::size_t>(count), [&](std::size_t row) {
         ArrayXd radiance(static_cast<Eigen::Index>(lambda_nm_.size()));
         for (std::size_t column = 0; column < width; ++column) {
-            trace_pixel(static_cast<int>(column), first_row + row, radiance);
-            std::size_t at = static_cast<std::size_t>(row) * width + column;
-            for (int c = 0; options_.signals && c < kChannels; ++c, at += plane) {
-                samples[at] = (weights_.col(c) * radiance.head(grid)).sum();
-            }
-            for (Eigen::Index j = grid; j < radiance.size(); ++j, at += plane) {
-                samples[at] = radiance(j);
-            }
+            trace_pixel(static_cast<int>(column), first_row + static_cast<int>(row), radiance);
+            write_planes(radiance, samples.data() + row * width + column, plane);
         }
+    });
+    return samples;
+}
+
+std::vector<double> Tracer::pixels(std::span<const std::size_t> which) const {
+    const auto width = static_cast<std::size_t>(rig_.camera.width_px);
+    std::vector<double> samples(planes() * which.size());
+    for_each(which.size(), [&](std::size_t i) {
+        ArrayXd radiance(static_cast<Eigen::Index>(lambda_nm_.size()));
+        trace_pixel(
+            static_cast<int>(which[i] % width), static_cast<int>(which[i] / width), radiance);
+        write_planes(radiance, samples.data() + i, which.size());
     });
     return samples;
 }

@@ -20,9 +20,9 @@
 // differences at the extremes: these are taken in long double. Light of which the water leaves less
 // than e^-kBlackDepth is black: doubles end soon after. The spectral grid is exact to
 // kSpectralError of a channel's signal (spectral/light_family.h). An emitter of a size is as many
-// equal lamps as hold the smooth part of its light to kEmitterError; a cone's edge is a staircase
-// with as many steps. Every term of a sum has the same sign, so a sum of n terms is right to
-// n 1.1e-16.
+// equal lamps as hold the smooth part of its light to kEmitterError of the value, at every plane's
+// wavelength and in every signal; a cone's edge is a staircase with as many steps. Every term of a
+// sum has the same sign, so a sum of n terms is right to n 1.1e-16.
 #pragma once
 
 #include "scene_gen/rig.h"
@@ -62,6 +62,12 @@ inline constexpr double kRoundingChange = 5e-5;
 // no more, which is what a plan allows for (kObjectTilt of scene_gen/light_paths.h).
 inline constexpr double kSteepest = 0.05;
 
+// Equal lamps that stand for an emitter, in even rows.
+struct EmitterLamps {
+    int across = 1;
+    int along = 1;
+};
+
 struct TraceOptions {
     bool signals = true;            // R, G, B over the full spectrum
     std::vector<double> planes_nm;  // and the radiance at these wavelengths
@@ -69,6 +75,9 @@ struct TraceOptions {
     // Lamps across and along every emitter that has a size; 0: as kEmitterError asks.
     int lamps_across = 0;
     int lamps_along = 0;
+    // By strobe, those of another renderer, to trace its very image: then edges are those of each
+    // lamp by itself, and no emitter has a penumbra. Empty: as above.
+    std::vector<EmitterLamps> rendered_lamps{};
 };
 
 using WideVector = Eigen::Matrix<long double, 3, 1>;
@@ -80,6 +89,12 @@ class Tracer {
     // The planes of these rows, one after another: R, G, B if asked for, then one a wavelength.
     // Memory is these planes and one spectrum a thread, whatever the grid.
     [[nodiscard]] std::vector<double> rows(int first_row, int count) const;
+
+    // The same of these pixels alone, numbered row by row: the planes one after another.
+    [[nodiscard]] std::vector<double> pixels(std::span<const std::size_t> which) const;
+
+    // Lamps that stand for the strobe's emitter.
+    [[nodiscard]] EmitterLamps lamps(std::size_t strobe) const { return grids_[strobe]; }
 
     [[nodiscard]] std::size_t planes() const;
 
@@ -95,6 +110,9 @@ class Tracer {
     // within_px: also pixels about so many from an edge, for images that blur it.
     [[nodiscard]] std::vector<unsigned char> on_edges(WavelengthRange range,
                                                       double within_px = 0.0) const;
+    // The same of these pixels alone.
+    [[nodiscard]] std::vector<unsigned char> on_edges_of(std::span<const std::size_t> which,
+                                                         WavelengthRange range) const;
 
     // Of the full spectrum; 0 without signals.
     [[nodiscard]] std::size_t grid_size() const { return signal_nodes_; }
@@ -106,6 +124,12 @@ class Tracer {
     struct Lamp {
         std::size_t strobe;
         Eigen::Vector3d position_m;
+    };
+    // Where a strobe's cones have their edges from, and how far its lamps lie about it.
+    struct Apex {
+        std::size_t strobe;
+        Eigen::Vector3d position_m;
+        double reach_m;
     };
     // What all things in view have: the floor, then the objects in the rig's order.
     struct Surface {
@@ -136,6 +160,9 @@ class Tracer {
 
     [[nodiscard]] Index index_at(double lambda_nm) const;
     void place_lamps();
+    void place_edges();
+    [[nodiscard]] EmitterLamps lamps_of(std::size_t strobe) const;
+    [[nodiscard]] double spacing_m(std::size_t strobe, double d_m, bool is_floor) const;
     void tabulate_spectra();
     [[nodiscard]] std::vector<WeightedWavelength> full_spectrum() const;
     // Over the floor.
@@ -143,7 +170,13 @@ class Tracer {
     [[nodiscard]] bool look(double column, double row, const Index& index, View& view) const;
     [[nodiscard]] Contribution light(const Lamp& lamp, const View& view) const;
     void trace_pixel(int column, int row, Eigen::ArrayXd& radiance) const;
-    void for_each_row(int count, const std::function<void(int)>& work) const;
+    void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
+    // Of every plane, `stride` apart.
+    void write_planes(const Eigen::ArrayXd& radiance, double* sample, std::size_t stride) const;
+    [[nodiscard]] bool is_on_edge(std::size_t pixel,
+                                  WavelengthRange range,
+                                  const std::array<Index, 2>& ends,
+                                  double within_px) const;
 
     [[nodiscard]] bool is_blocked(const Lamp& lamp,
                                   const View& view,
@@ -178,7 +211,9 @@ class Tracer {
     std::vector<Surface> surfaces_;
     std::vector<TracedShape> shapes_;  // of the objects
     std::vector<Lamp> lamps_;
-    std::vector<Lamp> rim_lamps_;  // an emitter's corners, or its point
+    std::vector<Lamp> rim_lamps_;  // an emitter's corners, or its points
+    std::vector<Apex> apexes_;
+    std::vector<EmitterLamps> grids_;  // by strobe
     std::vector<double> lamps_of_strobe_;
     std::vector<std::vector<double>> axial_intensity_;  // by strobe and cone
     std::vector<std::vector<double>> cos_edge_;

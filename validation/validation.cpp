@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace aphotic {
 namespace {
@@ -29,6 +30,57 @@ std::string wavelength_name(double lambda_nm) {
     return fmt::format("{:.6g} nm", lambda_nm);
 }
 
+// Nothing where no emitter has a size, or its lamps are not known.
+std::optional<Tracer> tracer_of_lamps(const Rig& rig,
+                                      const RenderedImages& rendered,
+                                      TraceOptions options) {
+    const bool has_emitter = std::ranges::any_of(
+        rig.strobes, [](const Strobe& strobe) { return strobe.emitter.has_value(); });
+    if (!has_emitter || rendered.lamps.empty()) return std::nullopt;
+    options.rendered_lamps = rendered.lamps;
+    return Tracer(rig, options);
+}
+
+struct Edges {
+    std::vector<unsigned char> marks;       // of every pixel: not compared
+    std::vector<std::size_t> in_penumbrae;  // compared with what the render's own lamps give
+};
+
+Edges edges_of(const Tracer& reference,
+               const std::optional<Tracer>& of_lamps,
+               WavelengthRange range) {
+    Edges edges{.marks = reference.on_edges(range), .in_penumbrae = {}};
+    if (!of_lamps) return edges;
+    std::vector<std::size_t> marked;
+    for (std::size_t i = 0; i < edges.marks.size(); ++i) {
+        if (edges.marks[i] != 0) marked.push_back(i);
+    }
+    const std::vector<unsigned char> stays = of_lamps->on_edges_of(marked, range);
+    for (std::size_t n = 0; n < marked.size(); ++n) {
+        if (stays[n] != 0) continue;
+        edges.marks[marked[n]] = 0;
+        edges.in_penumbrae.push_back(marked[n]);
+    }
+    return edges;
+}
+
+// Puts in penumbrae the samples of the render's own lamps in the reference's place, and tells how
+// far the render is from what stood there.
+double replace_penumbrae(std::span<const float> rendered,
+                         std::span<double> traced,
+                         std::span<const std::size_t> in_penumbrae,
+                         std::span<const double> of_lamps,
+                         double black) {
+    double max_error = 0.0;
+    for (std::size_t n = 0; n < in_penumbrae.size(); ++n) {
+        const std::size_t i = in_penumbrae[n];
+        const double e = std::abs(relative_error(rendered[i], traced[i], black));
+        max_error = std::max(max_error, std::isnan(e) ? 0.0 : e);
+        traced[i] = of_lamps[n];
+    }
+    return max_error;
+}
+
 void compare_radiance(const Rig& rig,
                       const RenderedImages& rendered,
                       int threads,
@@ -37,7 +89,7 @@ void compare_radiance(const Rig& rig,
     const std::size_t pixels = pixels_of(rig);
     const std::size_t count = rendered.lambda_nm.size();
     // Nothing is bent without a port, and all wavelengths have the same edges.
-    std::vector<unsigned char> on_edge;
+    std::optional<Edges> edges;
     for (std::size_t first = 0; first < count; first += kPlanesAtATime) {
         const std::size_t part = std::min(kPlanesAtATime, count - first);
         TraceOptions options{.signals = false, .planes_nm = {}, .threads = threads};
@@ -45,23 +97,36 @@ void compare_radiance(const Rig& rig,
             options.planes_nm.push_back(rendered.lambda_nm[j]);
         }
         const Tracer tracer(rig, options);
-        const std::vector<double> traced = tracer.rows(0, rig.camera.height_px);
+        std::vector<double> traced = tracer.rows(0, rig.camera.height_px);
         const std::vector<float> found = rendered.radiance(first, part);
         for (std::size_t k = 0; k < part; ++k) {
             const double lambda_nm = rendered.lambda_nm[first + k];
             const double index_nm = rendered.index_nm[first + k];
-            if (on_edge.empty() || rig.camera.port) {
-                on_edge = tracer.on_edges({.first_nm = std::min(lambda_nm, index_nm),
-                                           .last_nm = std::max(lambda_nm, index_nm)});
+            options.planes_nm = {lambda_nm};
+            const std::optional<Tracer> of_lamps = tracer_of_lamps(rig, rendered, options);
+            if (!edges || rig.camera.port) {
+                edges = edges_of(tracer,
+                                 of_lamps,
+                                 {.first_nm = std::min(lambda_nm, index_nm),
+                                  .last_nm = std::max(lambda_nm, index_nm)});
             }
-            report.wavelengths.push_back(compare_planes(
-                wavelength_name(lambda_nm),
-                std::span(found).subspan(k * pixels, pixels),
-                std::span(traced).subspan(k * pixels, pixels),
-                rig.camera.width_px,
-                on_edge,
-                std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[first + k]),
-                kHalfFloatBound + rendered.shift_error[first + k]));
+            const auto a = std::span(found).subspan(k * pixels, pixels);
+            const auto b = std::span(traced).subspan(k * pixels, pixels);
+            const double black =
+                std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[first + k]);
+            std::vector<double> again;
+            if (of_lamps) again = of_lamps->pixels(edges->in_penumbrae);
+            const double of_penumbrae = replace_penumbrae(a, b, edges->in_penumbrae, again, black);
+            report.wavelengths.push_back(
+                compare_planes(wavelength_name(lambda_nm),
+                               a,
+                               b,
+                               rig.camera.width_px,
+                               edges->marks,
+                               black,
+                               kHalfFloatBound + rendered.shift_error[first + k]));
+            report.wavelengths.back().in_penumbrae = edges->in_penumbrae.size();
+            report.wavelengths.back().max_error_of_penumbrae = of_penumbrae;
         }
         if (progress) {
             progress(kShareOfSignals + (1.0 - kShareOfSignals) * static_cast<double>(first + part) /
@@ -98,27 +163,36 @@ void compare_signals(const Rig& rig,
                      const std::function<void(double)>& progress,
                      ValidationReport& report) {
     const std::size_t pixels = pixels_of(rig);
-    const Tracer tracer(rig, {.signals = true, .planes_nm = {}, .threads = threads});
+    const TraceOptions options{.signals = true, .planes_nm = {}, .threads = threads};
+    const Tracer tracer(rig, options);
     report.grid_size = tracer.grid_size();
-    const std::vector<double> traced = trace_signals(tracer, progress);
-    const std::vector<unsigned char> on_edge = tracer.on_edges(rig.camera.range);
+    std::vector<double> traced = trace_signals(tracer, progress);
     report.traced = {.width_px = rig.camera.width_px,
                      .height_px = rig.camera.height_px,
                      .samples = {traced.begin(), traced.end()}};
+    const std::optional<Tracer> of_lamps = tracer_of_lamps(rig, rendered, options);
+    const Edges edges = edges_of(tracer, of_lamps, rig.camera.range);
+    const std::size_t count = edges.in_penumbrae.size();
+    std::vector<double> again;
+    if (of_lamps) again = of_lamps->pixels(edges.in_penumbrae);
     for (std::size_t c = 0; c < kChannels; ++c) {
         const auto a = std::span<const float>(rendered.signals.samples).subspan(c * pixels, pixels);
         const auto b = std::span(traced).subspan(c * pixels, pixels);
         const double black = std::max(kBlackShare * std::ranges::max(b), rendered.black[c]);
+        const auto own = std::span(again).subspan(c * count, count);
+        const double of_penumbrae = replace_penumbrae(a, b, edges.in_penumbrae, own, black);
         report.channels.push_back(compare_planes(std::string(kChannelNames[c]),
                                                  a,
                                                  b,
                                                  rig.camera.width_px,
-                                                 on_edge,
+                                                 edges.marks,
                                                  black,
                                                  rendered.promise[c]));
+        report.channels.back().in_penumbrae = count;
+        report.channels.back().max_error_of_penumbrae = of_penumbrae;
         for (std::size_t i = 0; i < pixels; ++i) {
-            const double e = on_edge[i] != 0 ? std::numeric_limits<double>::quiet_NaN()
-                                             : relative_error(a[i], b[i], black);
+            const double e = edges.marks[i] != 0 ? std::numeric_limits<double>::quiet_NaN()
+                                                 : relative_error(a[i], b[i], black);
             report.channel_errors.push_back(static_cast<float>(e));
         }
     }

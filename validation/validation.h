@@ -10,12 +10,19 @@
 //              a port, what a frame shared with other wavelengths may shift comes to it
 //   signals    what the plan promised, the frames' rounding included
 //
+// In the penumbrae of emitters with a size, where some of its lamps are within a cone or unhidden
+// and some are not, the light is a staircase with as many steps as there are lamps, and the
+// reference has more of them. Such pixels are traced again with the render's own lamps, each a
+// point with edges of its own, and held to the same bounds; only those within rounding of one
+// lamp's edge are left on edges.
+//
 // Black, under which a difference is measured against it: for radiance the smallest normal half
 // float of the frame's exposure, for signals kBlackShare of the brightest, or where the frames'
 // half floats end (Manifest::black), whichever is more.
 #pragma once
 
 #include "validation/report.h"
+#include "validation/tracer.h"
 
 #include <functional>
 #include <span>
@@ -38,6 +45,8 @@ struct RenderedImages {
     // The planes of radiance of wavelengths [first, first + count), one after another.
     std::function<std::vector<float>(std::size_t first, std::size_t count)> radiance;
     CameraImage signals;
+    // By strobe, what stands for its emitter; empty when it is not known: then penumbrae are edges.
+    std::vector<EmitterLamps> lamps{};
 };
 
 // Traces, compares, and fills the report's comparisons, images, errors and trace_s; what is known

@@ -37,6 +37,33 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
+// Wavelengths that share a frame behind a port may be shifted, and their bound is the wider for it.
+// Each in a frame of its own has none of that.
+TEST(Validate, APortWithoutSharedFramesIsHeldToTheHalfFloatsAlone) {
+    constexpr double kHalfFloatBound = 6e-4;
+    const TempFolder folder;
+    write_file(folder.path() / "rig.toml",
+               small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/port.toml"));
+    const CommandResult run = run_aphotic(folder.path(),
+                                          {"validate",
+                                           "rig.toml",
+                                           "-o",
+                                           "out",
+                                           "--per-frame",
+                                           "1",
+                                           "--wavelengths",
+                                           "410,470,550,620,700",
+                                           "--json"});
+    ASSERT_EQ(run.status, 0) << run.out << run.err;
+    const auto json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json.at("frames"), 5);
+    ASSERT_EQ(json.at("wavelengths").size(), 5U);
+    for (const auto& wavelength : json.at("wavelengths")) {
+        EXPECT_EQ(wavelength.at("bound").get<double>(), kHalfFloatBound) << wavelength.dump();
+        EXPECT_LE(wavelength.at("max_error").get<double>(), kHalfFloatBound) << wavelength.dump();
+    }
+}
+
 // Equal bands: their error is most of the promise, and nearly reached.
 TEST(Validate, PromiseOfBandsHoldsAndIsNoMoreThanFiveTimesTheErrorFound) {
     const TempFolder folder;
@@ -69,6 +96,33 @@ TEST(Trace, LeavesImagesWithoutPovRayAndThreadsChangeNoBit) {
         EXPECT_EQ(read_text_file(folder.path() / "1" / file),
                   read_text_file(folder.path() / "3" / file))
             << file;
+    }
+}
+
+// What it is exact to, and where not: 40 % of HabCam's pixels are in penumbrae; a port takes edges
+// across some.
+TEST(Trace, SaysWhereItsErrorsDoNotHold) {
+    for (const std::string scene : {"habcam", "habcam-emitters", "port"}) {
+        const TempFolder folder;
+        write_file(folder.path() / "rig.toml",
+                   small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene + ".toml"));
+        const CommandResult run = run_aphotic(folder.path(), {"trace", "rig.toml", "-o", "out"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        EXPECT_NE(run.out.find("of a signal off the edges"), std::string::npos) << run.out;
+        const auto json =
+            nlohmann::json::parse(read_text_file(folder.path() / "out" / "trace.json"));
+        const bool has_emitters = scene == "habcam-emitters";
+        EXPECT_EQ(run.out.find("pixels on edges") != std::string::npos, scene != "habcam")
+            << run.out;
+        EXPECT_EQ(json.at("on_edges").get<int>() > 0, scene != "habcam") << scene;
+        EXPECT_EQ(json.contains("emitters"), has_emitters) << scene;
+        if (!has_emitters) continue;
+        EXPECT_GT(json.at("on_edges").get<int>(), 34 * 25 / 3);
+        EXPECT_EQ(json.at("emitter_error").get<double>(), 2e-5);
+        ASSERT_EQ(json.at("emitters").size(), 4U);
+        EXPECT_EQ(json.at("emitters")[0].at("strobe"), "fore");
+        EXPECT_GT(json.at("emitters")[0].at("lamps_across").get<int>(), 1);
+        EXPECT_NE(run.out.find("strobe 'fore' has a size"), std::string::npos) << run.out;
     }
 }
 

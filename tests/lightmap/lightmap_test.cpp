@@ -58,7 +58,7 @@ Difference against_tracer(const Rig& rig, const Lightmap& map) {
     TraceOptions options;
     for (const Strobe& strobe : rig.strobes) {
         if (!strobe.emitter) continue;
-        const LampGrid grid = lamp_grid(rig, strobe);
+        const LampGrid grid = lamp_grid(rig, strobe, 0.0);
         options.lamps_across = grid.across;
         options.lamps_along = grid.along;
     }

@@ -588,6 +588,23 @@ TEST(Reintegrate, NamesTheEmitterThatDiffers) {
               "rendered");
 }
 
+TEST(RenderedLamps, AreThoseThatTheManifestNotes) {
+    Rig shown = habcam();
+    shown.strobes[1].emitter = Emitter{.across_m = 0.0635, .along_m = 0.0302};
+    PlanRequest request;
+    request.scene.emitter_lamps = LampGrid{.across = 5, .along = 3};
+    Manifest manifest = manifest_of(shown, request);
+    const auto lamps = [&] { return rendered_lamps(shown, manifest); };
+    ASSERT_EQ(lamps().size(), shown.strobes.size());
+    EXPECT_EQ(lamps()[0].across, 1);
+    EXPECT_EQ(lamps()[1].across, 5);
+    EXPECT_EQ(lamps()[1].along, 3);
+    for (const char* text : {"", "5", "5 x", "0 x 3", "5 x 3 x 2", "-1 x 3", "5 x 99999999999"}) {
+        manifest.geometry["strobe 'aft' lamps"] = text;
+        EXPECT_THROW(static_cast<void>(lamps()), InputError) << text;
+    }
+}
+
 TEST(GeometryOf, KnowsOnlyWhatMovesLight) {
     const auto before = geometry_of(habcam(), {});
     EXPECT_EQ(geometry_of(habcam(), {}), before);

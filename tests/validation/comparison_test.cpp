@@ -127,6 +127,13 @@ TEST(ComparePlanes, AppliesTheFloorToEverySample) {
     EXPECT_NEAR(found.mean_error, 0.125, kRounding);
 }
 
+TEST(ComparePlanes, TellsTheFloorAndHowManySamplesAreUnderIt) {
+    const Comparison found =
+        compared({1.0F, 1.0F, 1.0F, 1.0F}, {0.5, -0.5, 1.0, 0.5}, {0, 0, 0, kOnEdge}, 1.0);
+    EXPECT_EQ(found.floor, 1.0);
+    EXPECT_EQ(found.under_floor, 2U) << "neither what is at the floor nor what is on edges";
+}
+
 TEST(ComparePlanes, HoldsUpToTheBoundAndNotBeyond) {
     const Reference one{1.0};
     EXPECT_TRUE(compared({1.25F}, one, {}, kNoFloor, 0.25).holds());

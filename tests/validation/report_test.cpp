@@ -102,7 +102,14 @@ TEST(Report, WhosePartsDoNotFitIsOurMistake) {
 // validation.json
 
 TEST(ValidationJson, HoldsEveryNumberOfAComparison) {
-    const Json json = json_of(small_report());
+    ValidationReport report = small_report();
+    report.wavelengths[1].in_penumbrae = 300;
+    report.wavelengths[1].max_error_of_penumbrae = 0.5;
+    report.wavelengths[1].floor = 1e-7;
+    report.wavelengths[1].under_floor = 4;
+    report.channels[2].floor = 1e-9;
+    report.channels[2].under_floor = 5;
+    const Json json = json_of(report);
     ASSERT_EQ(json["wavelengths"].size(), 3U);
     ASSERT_EQ(json["channels"].size(), 3U);
     const Json& entry = json["wavelengths"][1];
@@ -119,6 +126,12 @@ TEST(ValidationJson, HoldsEveryNumberOfAComparison) {
     EXPECT_EQ(entry["compared"], 1190);
     EXPECT_EQ(entry["on_edges"], 10);
     EXPECT_EQ(entry["max_error_on_edges"], 0.25);
+    EXPECT_EQ(entry["in_penumbrae"], 300);
+    EXPECT_EQ(entry["max_error_of_penumbrae"], 0.5);
+    EXPECT_EQ(entry["floor"], 1e-7);
+    EXPECT_EQ(entry["under_floor"], 4);
+    EXPECT_EQ(json["channels"][2]["floor"], 1e-9);
+    EXPECT_EQ(json["channels"][2]["under_floor"], 5);
     EXPECT_EQ(entry["not_finite"], 0);
     EXPECT_EQ(json["channels"][0]["name"], "R");
     EXPECT_EQ(json["channels"][0]["max_error"], 5e-4);
@@ -225,6 +238,24 @@ TEST(ReportPage, SaysThatItDoesNotHoldAndWhere) {
         << words;
     report.wavelengths[2].not_finite = 12;
     EXPECT_TRUE(contains(words_of(page_of(report)), "Worst is 622 nm: 12 samples are not finite."));
+}
+
+// 10 of 1200 pixels, and 300.
+TEST(ReportPage, SaysHowManyPixelsHaveNoBoundAndHowFarTheyAreOff) {
+    ValidationReport report = small_report();
+    report.channels[1].in_penumbrae = 300;
+    report.channels[1].max_error_of_penumbrae = 0.5;
+    const std::string words = words_of(page_of(report));
+    EXPECT_TRUE(contains(words,
+                         "On edges, which have no bound, are up to 0.833 % of the pixels; the "
+                         "largest relative error there is 0.250."))
+        << words;
+    EXPECT_TRUE(contains(words, "In the penumbrae of emitters are 25.0 %")) << words;
+    EXPECT_TRUE(contains(words, "they differ by up to 0.500.")) << words;
+    for (std::vector<Comparison>* comparisons : {&report.wavelengths, &report.channels}) {
+        for (Comparison& one : *comparisons) one.on_edges = 0;
+    }
+    EXPECT_TRUE(contains(words_of(page_of(report)), "No pixel is on an edge."));
 }
 
 TEST(ReportPage, NeedsNeitherScriptNorOtherFilesNorNetwork) {

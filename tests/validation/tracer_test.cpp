@@ -85,6 +85,10 @@ Rig plain_rig(int width_px = 1, int height_px = 1, double slope = 0.1) {
             .digest = ""};
 }
 
+Object object_of(const Shape& shape, double reflectance = 1.0) {
+    return {.name = "thing", .shape = shape, .reflectance = flat(reflectance)};
+}
+
 Rig with_loss(Rig rig, double K_per_m) {
     rig.water.uniform_loss_per_m = K_per_m;
     return rig;
@@ -559,6 +563,59 @@ TEST(TracerEmitter, HoldsItsStatedErrorAgainstAFineGrid) {
                 plane[i], fine[i], kEmitterError, "phong_size " + std::to_string(phong_size));
         }
     }
+}
+
+// Against four times as fine a grid, whose error is a sixteenth. One HabCam emitter, its 90 degree
+// cone, 2 m over the floor, up to K d = 20; and 0.5 m over a box. The grid is no finer than it must
+// be: a quarter of the error is reached.
+TEST(TracerEmitter, HoldsItsStatedErrorInWaterOfAnyAttenuation) {
+    constexpr double kFinerGrid = 1.0 / 16.0;
+    for (const bool has_object : {false, true}) {
+        for (const double K_per_m : {0.0, 2.0, 5.0, 10.0}) {
+            Rig rig = with_loss(habcam(7, 5, "habcam-emitters"), K_per_m);
+            rig.water.multiple = 0.0;
+            rig.strobes = {rig.strobes[3]};
+            rig.strobes[0].beam = lambertian();
+            if (has_object) {
+                rig.objects = {
+                    object_of(Box{.least_m = {-0.2, -0.2, 0.9}, .most_m = {0.2, 0.4, 1.1}}, 0.5)};
+            }
+            const TraceOptions options{.signals = true, .planes_nm = {kLambda_nm}, .threads = 2};
+            const Tracer tracer(rig, options);
+            const auto found = tracer.rows(0, rig.camera.height_px);
+            const auto marks = tracer.on_edges(rig.camera.range);
+            const EmitterLamps lamps = tracer.lamps(0);
+            TraceOptions finer = options;
+            finer.lamps_across = 4 * lamps.across;
+            finer.lamps_along = 4 * lamps.along;
+            const auto fine = image_of(rig, finer);
+            double worst = 0.0;
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                if (has_object && marks[i % marks.size()] != 0) continue;
+                if (fine[i] == 0.0 && found[i] == 0.0) continue;  // in the box's shadow
+                const double error = std::abs(found[i] / fine[i] - 1.0);
+                EXPECT_LT(error, kEmitterError * (1.0 - kFinerGrid))
+                    << "K " << K_per_m << "/m, sample " << i << (has_object ? ", object" : "");
+                worst = std::max(worst, error);
+            }
+            EXPECT_GT(worst, 0.1 * kEmitterError) << "K " << K_per_m << "/m";
+        }
+    }
+}
+
+// The signals are over all wavelengths to 720 nm, where water leaves little to be seen: these ask
+// for no more lamps than what is seen.
+TEST(TracerEmitter, CountsAWavelengthByItsShareOfTheSignal) {
+    const auto lamps_for = [](bool signals, std::vector<double> planes_nm) {
+        Rig rig = habcam(3, 3, "habcam-emitters");
+        rig.water.multiple = 20.0;
+        const EmitterLamps lamps =
+            Tracer(rig, {.signals = signals, .planes_nm = std::move(planes_nm)}).lamps(0);
+        return lamps.across * lamps.along;
+    };
+    EXPECT_LT(lamps_for(true, {}), lamps_for(false, {650.0}));
+    EXPECT_LT(lamps_for(false, {450.0}), lamps_for(false, {650.0}));
+    EXPECT_EQ(lamps_for(true, {720.0}), lamps_for(false, {450.0, 720.0}));
 }
 
 // 10 m x 10 m, a millimetre above the floor: millions of lamps each way.
@@ -1454,11 +1511,56 @@ TEST(TracerConeEdges, TakeInWhereverAnEmitterIsPartlyWithin) {
     EXPECT_LT(marked, 2 * partly);
 }
 
-// --- Objects ---------------------------------------------------------------------------------
-
-Object object_of(const Shape& shape, double reflectance = 1.0) {
-    return {.name = "thing", .shape = shape, .reflectance = flat(reflectance)};
+// Two lamps two pixels to each side of the pupil: each has a circle of its own, which twelve
+// pixels' centres lie on, and the emitter between them has no penumbra.
+TEST(TracerConeEdges, AreOfEachLampByItselfWhereLampsAreGiven) {
+    Rig rig = plain_rig(31, 17, 0.1);
+    rig.strobes[0].beam = cone_of(std::atan(0.5), 1.0);
+    rig.strobes[0].emitter = Emitter{.across_m = 1.6, .along_m = 0.0};
+    TraceOptions options{.signals = false, .planes_nm = {kLambda_nm}};
+    options.rendered_lamps = {{.across = 2, .along = 1}};
+    const Tracer tracer(rig, options);
+    const auto marks = tracer.on_edges({450.0, 650.0});
+    const auto is_five_from = [](int column, int row, int middle) {
+        return (row - 8) * (row - 8) + (column - middle) * (column - middle) == 25;
+    };
+    for (int row = 0; row < 17; ++row) {
+        for (int column = 0; column < 31; ++column) {
+            const bool is_marked = is_five_from(column, row, 13) || is_five_from(column, row, 17);
+            EXPECT_EQ(marks[static_cast<std::size_t>(row * 31 + column)], is_marked ? 1 : 0)
+                << "column " << column << ", row " << row;
+        }
+    }
+    // The same lamps as two strobes of half the power.
+    Rig apart = rig;
+    apart.strobes = {lamp_at({0.0, -0.4, 0.0}, cone_of(std::atan(0.5), 1.0)),
+                     lamp_at({0.0, 0.4, 0.0}, cone_of(std::atan(0.5), 1.0))};
+    for (Strobe& strobe : apart.strobes) strobe.power = 0.5;
+    const auto plane = tracer.rows(0, 17);
+    const auto expected = plane_of(apart);
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+        EXPECT_NEAR(plane[i], expected[i], kRounding * expected[i]);
+    }
 }
+
+TEST(Tracer, PixelsAreThoseOfItsRowsAndEdges) {
+    const Rig rig = habcam(13, 11, "habcam-emitters");
+    const Tracer tracer(rig, {.signals = true, .planes_nm = {450.0}, .threads = 2});
+    const auto whole = tracer.rows(0, 11);
+    const auto marks = tracer.on_edges(rig.camera.range);
+    const std::vector<std::size_t> which{142, 0, 17, 60};
+    const auto some = tracer.pixels(which);
+    const auto some_marks = tracer.on_edges_of(which, rig.camera.range);
+    ASSERT_EQ(some.size(), 4 * which.size());
+    for (std::size_t n = 0; n < which.size(); ++n) {
+        EXPECT_EQ(some_marks[n], marks[which[n]]);
+        for (std::size_t plane = 0; plane < 4; ++plane) {
+            EXPECT_EQ(some[plane * which.size() + n], whole[plane * 143 + which[n]]);
+        }
+    }
+}
+
+// --- Objects ---------------------------------------------------------------------------------
 
 // A white ball of radius R, c below pupil and lamp. Seen at an angle a off the axis it is
 // t = c cos a - sqrt(R^2 - c^2 sin^2 a) away, where light falls at i with
