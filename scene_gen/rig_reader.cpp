@@ -2,6 +2,7 @@
 #include "scene_gen/rig_reader.h"
 
 #include "scene_gen/geometry.h"
+#include "scene_gen/key_depth.h"
 #include "scene_gen/mesh_reader.h"
 #include "scene_gen/solid.h"
 #include "spectral/atomic_file.h"
@@ -699,6 +700,7 @@ Rig RigReader::read(Section top) {
 }  // namespace
 
 Rig parse_rig(std::string_view toml, const std::string& file_name, const fs::path& folder) {
+    require_shallow_keys(toml, file_name);
     toml::table table;
     try {
         table = toml::parse(toml, file_name);

@@ -804,6 +804,16 @@ TEST(RigReader, SyntaxErrorsNameTheLine) {
         << "a key that stands twice: " << error_of(with(7, "pixel_pitch_um = 1"));
 }
 
+// As keys or as a header, such a rig once ran the program out of stack.
+TEST(RigReader, RefusesTablesWithinTablesWithoutEnd) {
+    std::string key = "a";
+    for (int i = 1; i < 50'000; ++i) key += ".a";
+    const std::string refusal =
+        ": found a key of more than 16 parts with dots between them; allowed: up to 16";
+    EXPECT_EQ(error_of("\n" + key + " = 1\n"), "rig.toml:2" + refusal);
+    EXPECT_EQ(error_of("[" + key + "]\n"), "rig.toml:1" + refusal);
+}
+
 TEST(RigReader, AnUnreadableRigIsNamed) {
     const TempFolder folder;
     const fs::path missing = folder.path() / "rig.toml";
