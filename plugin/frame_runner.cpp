@@ -17,7 +17,6 @@
 #include <list>
 #include <memory>
 #include <optional>
-#include <regex>
 #include <sstream>
 #include <system_error>
 #include <thread>
@@ -110,13 +109,7 @@ double reported_share(const fs::path& log) {
     if (size <= 0) return 0.0;
     in.seekg(std::max<std::streamoff>(0, size - kTail));
     const std::string tail{std::istreambuf_iterator<char>(in), {}};
-    static const std::regex kPercent(R"(pixels \((\d+)%\))");
-    double share = 0.0;
-    for (std::sregex_iterator match(tail.begin(), tail.end(), kPercent), end; match != end;
-         ++match) {
-        share = std::stoi((*match)[1]) / 100.0;
-    }
-    return share;
+    return share_in_log(tail);
 }
 
 // POV-Ray 3.7 ends well all the same when it cannot write its image.

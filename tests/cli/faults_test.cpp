@@ -455,6 +455,49 @@ TEST_F(BadPovRay, ThatFloodsItsIntroduction) {
     EXPECT_FALSE(fs::exists(file("out")));
 }
 
+TEST_F(BadPovRay, ThatLiesAboutItself) {
+    const std::string much = "head -c 3000000 /dev/zero | tr '\\0' ";
+    struct Lie {
+        std::string body;
+        std::string part;
+    };
+    const std::string no_povray = ": it does not introduce itself as POV-Ray";
+    for (const Lie& lie :
+         {Lie{"printf 'POV-Ray 3.7'\n" + much + "7\n", no_povray},
+          Lie{"printf 'POV-Ray '\n" + much + "7\n", no_povray},
+          Lie{"echo 'POV-Ray 99999999999999.7'\n", no_povray},
+          Lie{"echo 'POV-Ray 3.7.0'; printf ' Supported image formats: '\n" + much + "x\n",
+              ": it was built without OpenEXR"}}) {
+        write_script(file("povray"), lie.body);
+        expect_message(render({{"APHOTIC_POVRAY", file("povray").string()}}), kRunFailed, lie.part);
+        EXPECT_FALSE(fs::exists(file("out")));
+    }
+}
+
+// The share of the pixels is looked for where progress is shown: on a terminal, which `script`
+// gives the command.
+TEST_F(BadPovRay, ThatLiesAboutItsProgress) {
+    if (!fs::exists("/usr/bin/script")) GTEST_SKIP() << "no program that makes a terminal";
+    write_script(file("povray"),
+                 "if [ \"$1\" != --version ]; then\n"
+                 "  echo 'Rendered 1 of 1 pixels (99999999999%)'; sleep 1\n"
+                 "fi\n"
+                 "exec povray \"$@\"\n");
+    const ProcessEnd end = run_process(
+        {.executable = "/usr/bin/script",
+         .arguments = {"-qec",
+                       std::string(APHOTIC_COMMAND) + " render rig.toml -o out --bands 3",
+                       "/dev/null"},
+         .folder = folder_.path(),
+         .environment = {{"APHOTIC_POVRAY", file("povray").string()}},
+         .log = file("said")},
+        kScriptTimeoutS);
+    const std::string said = read_text_file(file("said"));
+    EXPECT_TRUE(end.succeeded()) << end.words() << said;
+    EXPECT_NE(said.find("rendering"), std::string::npos) << "no progress: " << said;
+    EXPECT_TRUE(fs::exists(file("out") / "image.exr"));
+}
+
 // --- A scene of the user's own ------------------------------------------------------------------
 
 class OwnScene : public BadPovRay {
