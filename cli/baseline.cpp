@@ -7,6 +7,7 @@
 #include "cli/in_order.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
+#include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/survey_files.h"
 #include "cli/survey_image.h"
@@ -141,7 +142,7 @@ ExitStatus correct(const Options& options) {
                   .skipped = {},
                   .found_later = {}};
     if (corrector.needs_altitude()) survey.navigation = read_navigation(options.navigation, Sled{});
-    make_folder(options.folder);
+    const FolderLock lock = claim_folder(options.folder);
     if (corrector.learns()) learn_survey(corrector, survey, options);
     const std::size_t corrected = correct_survey(corrector, survey, options);
     survey.skipped.merge(survey.found_later);
