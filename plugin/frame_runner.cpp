@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/frame_runner.h"
 
+#include "plugin/full_disk.h"
 #include "plugin/interruption.h"
 #include "plugin/library_paths.h"
 #include "plugin/povray_log.h"
@@ -110,18 +111,6 @@ double reported_share(const fs::path& log) {
     in.seekg(std::max<std::streamoff>(0, size - kTail));
     const std::string tail{std::istreambuf_iterator<char>(in), {}};
     return share_in_log(tail);
-}
-
-// POV-Ray 3.7 ends well all the same when it cannot write its image.
-std::string words_of_full_disk(const fs::path& folder) {
-    constexpr std::uintmax_t kLittle = std::uintmax_t{64} << 10U;
-    std::error_code error;
-    const std::uintmax_t left = fs::space(folder, error).available;
-    if (error || left > kLittle) return "";
-    return fmt::format("\n{}: {}: {} KiB are left",
-                       folder.string(),
-                       std::make_error_code(std::errc::no_space_on_device).message(),
-                       left >> 10U);
 }
 
 void require_success(const Running& run, const ProcessEnd& end) {

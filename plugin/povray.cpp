@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray.h"
 
+#include "plugin/full_disk.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
 #include "plugin/scratch_folder.h"
@@ -146,7 +147,10 @@ PovRay find_povray(const std::string& named) {
         if (!end.succeeded()) throw RunError("--version ended with " + end.words());
         return {.executable = executable, .version = version_from(read_log(log))};
     } catch (const RunError& error) {
-        throw RunError(fmt::format("POV-Ray: {}: {}", executable.string(), error.what()));
+        throw RunError(fmt::format("POV-Ray: {}: {}{}",
+                                   executable.string(),
+                                   error.what(),
+                                   words_of_full_disk(scratch.path())));
     }
 }
 

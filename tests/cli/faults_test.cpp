@@ -108,6 +108,9 @@ class Faults : public testing::Test {
 
 TEST_F(Faults, ASecondRunInAFolderIsRefused) {
     ASSERT_EQ(render().status, 0);
+    fs::create_directory(file("raw"));
+    ASSERT_EQ(run_aphotic(folder_.path(), {"lightmap", "rig.toml", "-o", "raw/a.exr"}).status, 0);
+    write_file(file("nav.csv"), "image,altitude_m\na.exr,2\n");
     const auto before = contents(file("out"));
     {
         const FolderLock held(file("out"), FolderUse::Write);
@@ -119,7 +122,11 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
                  {"trace", "rig.toml", "-o", "out"},
                  {"validate", "rig.toml", "-o", "out"},
                  {"validate", "rig.toml", "--rendered", "out", "-o", "elsewhere"},
-                 {"study", "rig.toml", "--quick", "-o", "out"}}) {
+                 {"study", "rig.toml", "--quick", "-o", "out"},
+                 {"stress", "--only", "altitude", "-o", "out"},
+                 {"atlas", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
+                 {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.csv", "-o", "out"},
+                 {"baseline", "homomorphic", "raw", "-o", "out"}}) {
             expect_message(run_aphotic(folder_.path(), command),
                            kRunFailed,
                            "out: another aphotic is at work in this folder");
@@ -191,7 +198,7 @@ TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
         "  try again $kib out render rig.toml --ignore-needs -o disk/out " +
         words +
         "\n"
-        "  try integrate $kib out integrate disk/out\n"
+        "  try integrate $kib out integrate --ignore-needs disk/out\n"
         "  umount disk\n"
         "done\n";
     int failed = 0;
@@ -210,6 +217,30 @@ TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
     }
     // Those with no room at all, and more.
     EXPECT_GE(failed, 10);
+}
+
+// POV-Ray's introduction is read from a file there: one that cannot be written is not its fault.
+TEST_F(Faults, AFullFolderForTemporaryFilesIsSaid) {
+    if (!may_mount()) GTEST_SKIP() << "this system lets users make no namespaces";
+    const std::vector<std::string> lines = in_a_namespace(
+        "mkdir tmp\n"
+        "mount -t tmpfs -o size=64k none tmp\n"
+        "dd if=/dev/zero of=tmp/fill bs=1k 2>/dev/null\n"
+        "TMPDIR=$PWD/tmp $APHOTIC render rig.toml -o out >/dev/null 2>err\n"
+        "echo \"$? $(tr '\\n' ' ' <err)\"\n");
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_TRUE(lines[0].starts_with("3 aphotic: POV-Ray: ")) << lines[0];
+    EXPECT_NE(lines[0].find((file("tmp") / "aphotic-").string()), std::string::npos) << lines[0];
+    EXPECT_NE(lines[0].find(": No space left on device: 0 KiB are left"), std::string::npos)
+        << lines[0];
+    EXPECT_FALSE(fs::exists(file("out")));
+}
+
+TEST_F(Faults, AMissingFolderForTemporaryFilesIsSaid) {
+    expect_message(render({{"TMPDIR", "/no/such/folder"}}),
+                   kRunFailed,
+                   "TMPDIR: found /no/such/folder; allowed: a folder that is there");
+    EXPECT_FALSE(fs::exists(file("out")));
 }
 
 // Where no namespaces are to be had, a limit on the size of files stands for the disk.
