@@ -4,6 +4,7 @@
 // it from there.
 #include "cli/command.h"
 #include "cli/needs_check.h"
+#include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/words.h"
@@ -75,7 +76,7 @@ ExitStatus generate_scenes(const Options& options) {
         for (const ManifestFrame& frame : manifest.frames) {
             json["scenes"].push_back(scene_path(options.folder, frame).string());
         }
-        fmt::print("{}\n", json.dump(2));
+        fmt::print("{}\n", dumped(json));
         return kDone;
     }
     if (!scenes.scene_file.empty()) {

@@ -3,6 +3,7 @@
 // aphotic integrate DIR: the frames of a folder to images, wherever they were rendered; with --rig,
 // to those of a rig of other water, lamps, materials or sensor.
 #include "cli/command.h"
+#include "cli/needs_check.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -13,8 +14,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <thread>
 #include <vector>
 
 namespace aphotic::cli {
@@ -29,6 +32,7 @@ struct Options {
     std::string images_folder;
     double tolerance = 1e-3;
     PreviewOptions preview;
+    bool ignore_needs = false;
     bool json = false;
 };
 
@@ -70,9 +74,19 @@ Json account_of(const Options& options, const Manifest& manifest) {
     return account;
 }
 
+Needs needs_of_images(const Manifest& manifest) {
+    const ImageSize size = image_size(manifest);
+    const FileSizes files = largest_files(size);
+    const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    return {.folder_bytes = files.image_bytes + files.spectral_bytes + files.preview_bytes,
+            .temporary_bytes = 0,
+            .memory_bytes = integration_memory_bytes(size, threads)};
+}
+
 ExitStatus integrate_frames(const Options& options) {
     const fs::path images = images_folder(options);
-    static_cast<void>(manifest_of(options));  // frames that cannot serve leave no folder behind
+    // Frames that cannot serve, and images that have no room, leave no folder behind.
+    require_room(needs_of_images(manifest_of(options)), images, options.ignore_needs);
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
     const Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
     Json outcome = integrate_folder(options.folder, manifest, options.preview, images);
@@ -105,6 +119,7 @@ Action configure_integrate(CLI::App& app) {
                    "the folder for the images; by default DIR, with --rig DIR/as-RIG")
         ->type_name("DIR");
     add_preview_options(app, options->preview);
+    add_needs_option(app, options->ignore_needs);
     app.add_flag("--json", options->json, "say what was made as JSON");
     return [options] { return integrate_frames(*options); };
 }

@@ -3,11 +3,13 @@
 
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
+#include "spectral/json_text.h"
 
 #include <fmt/format.h>
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <sstream>
 
 namespace aphotic::cli {
@@ -27,16 +29,26 @@ bool is_entry(const Json& entry) {
            entry.contains("what");
 }
 
+// A line that was cut short, or that is not ours, tells of nothing.
+std::optional<Json> entry_of(const std::string& line) {
+    try {
+        Json entry = parse_json(line, "journal");
+        return is_entry(entry) ? std::optional(std::move(entry)) : std::nullopt;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
 }  // namespace
 
 Journal::Journal(fs::path file) : file_(std::move(file)) {
     if (fs::exists(file_)) {
         std::istringstream lines(read_text_file(file_));
         for (std::string line; std::getline(lines, line);) {
-            Json entry = Json::parse(line, nullptr, false);
-            if (!is_entry(entry)) continue;
-            const auto name = entry["name"].get<std::string>();
-            entries_.insert_or_assign(name, std::move(entry));
+            if (std::optional<Json> entry = entry_of(line)) {
+                const auto name = entry->at("name").get<std::string>();
+                entries_.insert_or_assign(name, std::move(*entry));
+            }
         }
     }
     std::string text;

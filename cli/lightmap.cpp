@@ -6,6 +6,7 @@
 
 #include "cli/atlas_map.h"
 #include "cli/command.h"
+#include "cli/needs_check.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/words.h"
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <numbers>
@@ -46,6 +48,7 @@ struct Options {
     bool normalised = false;
     std::string preview_file;
     PreviewOptions preview;
+    bool ignore_needs = false;
     bool json = false;
 };
 
@@ -107,6 +110,25 @@ std::string words_of(const MapPromise& promise) {
                        promise.is_of_lamp_grids ? ", emitters being grids of lamps" : "");
 }
 
+// What an integration to as many channels holds, and beside it the planes of the file, a part's map
+// before it is one of them, and the preview's own copy.
+Needs needs_of_map(const Options& options, const Camera& camera, std::size_t parts) {
+    const ImageSize size{.width_px = camera.width_px,
+                         .height_px = camera.height_px,
+                         .wavelengths = kChannels * parts};
+    const bool has_preview = !options.preview_file.empty();
+    const std::uint64_t maps = 1 + parts + (parts > 0 ? 1 : 0) + (has_preview ? 1 : 0);
+    const std::uint64_t map_bytes = kChannels * sizeof(float) *
+                                    static_cast<std::uint64_t>(size.width_px) *
+                                    static_cast<std::uint64_t>(size.height_px);
+    const FileSizes files = largest_files(size);
+    ImageSize held = size;
+    held.wavelengths = std::max<std::size_t>(1, size.wavelengths);  // none is no integration
+    return {.folder_bytes = files.spectral_bytes + (has_preview ? files.preview_bytes : 0),
+            .temporary_bytes = 0,
+            .memory_bytes = integration_memory_bytes(held, options.map.threads) + maps * map_bytes};
+}
+
 ExitStatus make_lightmap(const Options& options) {
     const auto seconds_since = [](auto start) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -120,6 +142,9 @@ ExitStatus make_lightmap(const Options& options) {
         }
     };
     const std::vector<RigPart> parts = prefixed([&] { return parts_of(options, rig); });
+    require_room(needs_of_map(options, rig.camera, parts.size()),
+                 std::filesystem::absolute(options.file).parent_path(),
+                 options.ignore_needs);
     const auto start = std::chrono::steady_clock::now();
     const LightmapMaker maker =
         prefixed([&] { return LightmapMaker(rig, std::nullopt, options.map); });
@@ -131,6 +156,7 @@ ExitStatus make_lightmap(const Options& options) {
     const std::array<float, kChannels> peaks = peaks_of(map);
     if (options.normalised) divide_by(peaks, map);
     Planes planes;
+    planes.samples.reserve((1 + parts.size()) * map.samples.size());
     planes.take("", map);
     for (const RigPart& part : parts) {
         Lightmap share = LightmapMaker(part.rig, maker.paths(), options.map).map(rig.sled);
@@ -273,6 +299,7 @@ Action configure_lightmap(CLI::App& app) {
     app.add_option("--threads", options->map.threads, "threads to map with; by default the cores")
         ->check(in_range(1, kMostThreads))
         ->capture_default_str();
+    add_needs_option(app, options->ignore_needs);
     app.add_flag("--json", options->json, "say what was made as JSON");
     app.footer(
         "Of the bare flat floor; POV-Ray is not needed. The file holds what image.exr of a render\n"

@@ -75,6 +75,16 @@ void require_extension(CLI::Option& option, const std::string& extension) {
         "");
 }
 
+// "" is what a script passes for a variable that it never set: no folder of that name can be meant,
+// least of all the one that the command runs in.
+void refuse_no_name(CLI::Option& option) {
+    option.check(
+        [](const std::string& text) {
+            return text.empty() ? "found an empty text; allowed: a name" : "";
+        },
+        "");
+}
+
 }  // namespace
 
 CLI::Validator in_range(double least, double most) {
@@ -96,6 +106,7 @@ void add_common_checks(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
         const std::string type = option->get_type_name();
         if (type.find("FLOAT") != std::string::npos) refuse_nan(*option);
+        if (is_written(*option) || option->get_positional()) refuse_no_name(*option);
         if (is_written(*option) && type.ends_with(".exr")) require_extension(*option, ".exr");
     }
 }

@@ -14,8 +14,9 @@ namespace aphotic::cli {
 [[nodiscard]] CLI::Validator positive();
 [[nodiscard]] CLI::Validator not_negative();
 
-// Every option of the command that takes a number refuses NaN, which no range does; one that writes
-// a file of one format, whose type name is such as FILE.exr, refuses other extensions.
+// Every option of the command that takes a number refuses NaN, which no range does; one that names
+// what is read or written refuses the empty name; and one that writes a file of one format, whose
+// type name is such as FILE.exr, refuses other extensions.
 void add_common_checks(CLI::App& command);
 
 // Once parsed: throws InputError when a file to be written is one that another option names, or

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/frame_runner.h"
 
+#include "plugin/full_disk.h"
 #include "plugin/interruption.h"
 #include "plugin/library_paths.h"
 #include "plugin/povray_log.h"
@@ -17,7 +18,6 @@
 #include <list>
 #include <memory>
 #include <optional>
-#include <regex>
 #include <sstream>
 #include <system_error>
 #include <thread>
@@ -110,25 +110,7 @@ double reported_share(const fs::path& log) {
     if (size <= 0) return 0.0;
     in.seekg(std::max<std::streamoff>(0, size - kTail));
     const std::string tail{std::istreambuf_iterator<char>(in), {}};
-    static const std::regex kPercent(R"(pixels \((\d+)%\))");
-    double share = 0.0;
-    for (std::sregex_iterator match(tail.begin(), tail.end(), kPercent), end; match != end;
-         ++match) {
-        share = std::stoi((*match)[1]) / 100.0;
-    }
-    return share;
-}
-
-// POV-Ray 3.7 ends well all the same when it cannot write its image.
-std::string words_of_full_disk(const fs::path& folder) {
-    constexpr std::uintmax_t kLittle = std::uintmax_t{64} << 10U;
-    std::error_code error;
-    const std::uintmax_t left = fs::space(folder, error).available;
-    if (error || left > kLittle) return "";
-    return fmt::format("\n{}: {}: {} KiB are left",
-                       folder.string(),
-                       std::make_error_code(std::errc::no_space_on_device).message(),
-                       left >> 10U);
+    return share_in_log(tail);
 }
 
 void require_success(const Running& run, const ProcessEnd& end) {

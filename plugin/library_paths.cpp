@@ -25,10 +25,13 @@ std::optional<std::string> variable(const char* name) {
 std::vector<std::string> library_paths_in(const std::string& ini) {
     static const std::regex kLine(R"re(\s*Library_Path\s*=\s*(?:"([^"]*)"|([^;]*?))\s*(;.*)?)re",
                                   std::regex::icase);
+    // No path is longer; and to match a line takes stack for each of its letters.
+    constexpr std::size_t kMostLetters = 8192;
     std::vector<std::string> paths;
     std::istringstream lines(ini);
     for (std::string line; std::getline(lines, line);) {
         std::smatch match;
+        if (line.size() > kMostLetters) continue;
         if (!std::regex_match(line, match, kLine)) continue;
         const std::string path = match[1].matched ? match[1] : match[2];
         if (!path.empty()) paths.push_back(path);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray.h"
 
+#include "plugin/full_disk.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
 #include "plugin/scratch_folder.h"
@@ -11,9 +12,14 @@
 #include <boost/process/search_path.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
-#include <regex>
+#include <iterator>
+#include <optional>
+#include <sstream>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace aphotic {
 
@@ -48,26 +54,71 @@ fs::path find_executable(const std::string& named) {
     return located("povray", "looked for on PATH");
 }
 
+struct Version {
+    std::pair<int, int> number;
+    std::string words;  // such as 3.7.0.10.unofficial
+};
+
+// "3.7" and what follows it up to a blank.
+std::optional<Version> version_at_start(std::string_view text) {
+    constexpr std::size_t kMostLetters = 100;
+    text = text.substr(0, text.find_first_of(" \t\r\n"));
+    if (text.empty() || text.front() == '-' || text.size() > kMostLetters) return std::nullopt;
+    Version version{.number = {}, .words = std::string(text)};
+    const char* end = text.data() + text.size();
+    const auto major = std::from_chars(text.data(), end, version.number.first);
+    if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.') return std::nullopt;
+    const char* behind_dot = major.ptr + 1;
+    if (behind_dot == end || *behind_dot == '-') return std::nullopt;
+    if (std::from_chars(behind_dot, end, version.number.second).ec != std::errc()) {
+        return std::nullopt;
+    }
+    return version;
+}
+
+// "POV-Ray 3.7.0", wherever it stands: complaints about its settings may come before it.
+std::optional<Version> introduced_version(std::string_view printed) {
+    constexpr std::string_view kName = "POV-Ray ";
+    for (auto at = printed.find(kName); at != std::string_view::npos;
+         at = printed.find(kName, at + 1)) {
+        if (auto version = version_at_start(printed.substr(at + kName.size()))) return version;
+    }
+    return std::nullopt;
+}
+
+// A line "Supported image formats: ... openexr ...".
+bool writes_openexr(std::string_view printed) {
+    std::istringstream lines{std::string(printed)};
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::vector<std::string> all{std::istream_iterator<std::string>(words), {}};
+        if (all.size() < 3 || all[0] != "Supported" || all[1] != "image" || all[2] != "formats:") {
+            continue;
+        }
+        if (std::ranges::find(all, "openexr") != all.end()) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::string version_from(std::string_view printed) {
-    const std::string text(printed);
-    std::smatch version;
-    if (!std::regex_search(text, version, std::regex(R"(POV-Ray (\d+)\.(\d+)(\S*))"))) {
-        throw RunError("it does not introduce itself as POV-Ray");
-    }
-    const std::pair found{std::stoi(version[1]), std::stoi(version[2])};
-    if (found < kLeastVersion) {
+    // It introduces itself first, after a complaint or two; and what prints without end is not it.
+    constexpr std::size_t kIntroduction_bytes = 16384;
+    printed = printed.substr(0, kIntroduction_bytes);
+    const std::optional<Version> version = introduced_version(printed);
+    if (!version) throw RunError("it does not introduce itself as POV-Ray");
+    if (version->number < kLeastVersion) {
         throw RunError(fmt::format("found version {}.{}; allowed: {}.{} or later",
-                                   found.first,
-                                   found.second,
+                                   version->number.first,
+                                   version->number.second,
                                    kLeastVersion.first,
                                    kLeastVersion.second));
     }
-    if (!std::regex_search(text, std::regex(R"(\n *Supported image formats:[^\n]*\bopenexr\b)"))) {
+    if (!writes_openexr(printed)) {
         throw RunError("it was built without OpenEXR, in which frames are written");
     }
-    return version[1].str() + "." + version[2].str() + version[3].str();
+    return version->words;
 }
 
 std::string path_option(std::string_view option, const fs::path& path) {
@@ -96,7 +147,10 @@ PovRay find_povray(const std::string& named) {
         if (!end.succeeded()) throw RunError("--version ended with " + end.words());
         return {.executable = executable, .version = version_from(read_log(log))};
     } catch (const RunError& error) {
-        throw RunError(fmt::format("POV-Ray: {}: {}", executable.string(), error.what()));
+        throw RunError(fmt::format("POV-Ray: {}: {}{}",
+                                   executable.string(),
+                                   error.what(),
+                                   words_of_full_disk(scratch.path())));
     }
 }
 

@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 namespace aphotic {
 
@@ -50,6 +52,23 @@ std::string error_in_log(const std::string& log) {
         if (said.size() > kMostLetters) return said.substr(0, kMostLetters) + " ...";
     }
     return said;
+}
+
+double share_in_log(std::string_view log) {
+    constexpr std::string_view kBefore = "pixels (";
+    constexpr std::string_view kBehind = "%)";
+    constexpr int kWhole = 100;
+    double share = 0.0;
+    for (auto at = log.find(kBefore); at != std::string_view::npos; at = log.find(kBefore, at)) {
+        at += kBefore.size();
+        int percent = 0;
+        const auto [end, error] =
+            std::from_chars(log.data() + at, log.data() + log.size(), percent);
+        const auto digits = static_cast<std::size_t>(end - (log.data() + at));
+        if (error != std::errc() || !log.substr(at + digits).starts_with(kBehind)) continue;
+        if (percent >= 0 && percent <= kWhole) share = static_cast<double>(percent) / kWhole;
+    }
+    return share;
 }
 
 }  // namespace aphotic

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
@@ -19,5 +20,9 @@ namespace aphotic {
 // What it says went wrong: the error with its file and line. The first few errors, when there are
 // more than one reads.
 [[nodiscard]] std::string error_in_log(const std::string& log);
+
+// The last share of the pixels, from 0 to 1, that it says are rendered: "(27%)". 0 when it says
+// none, or one that cannot be.
+[[nodiscard]] double share_in_log(std::string_view log);
 
 }  // namespace aphotic

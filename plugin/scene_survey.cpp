@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/scene_survey.h"
 
+#include "plugin/full_disk.h"
 #include "plugin/interruption.h"
 #include "plugin/library_paths.h"
 #include "plugin/povray_log.h"
@@ -210,7 +211,7 @@ void Survey::require_success(const Task& task, const ProcessEnd& end) const {
                                             said);
     // The scene's fault when the parser says so, POV-Ray's otherwise.
     if (said.find("Parse Error") != std::string::npos) throw InputError(message);
-    throw RunError(message);
+    throw RunError(message + words_of_full_disk(folder_.path()));
 }
 
 std::optional<ProcessEnd> Survey::poll(Running& running) const {

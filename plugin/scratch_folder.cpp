@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 #include <stdlib.h>  // mkdtemp
 
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <string>
 #include <system_error>
 
@@ -13,10 +16,25 @@ namespace aphotic {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+fs::path temporary_folder() {
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    if (!error) return folder;
+    const char* variable = std::getenv("TMPDIR");
+    throw RunError(
+        fmt::format("TMPDIR: found {}; allowed: a folder that is there, or nothing, for /tmp",
+                    variable == nullptr ? "nothing, and no folder /tmp" : variable));
+}
+
+}  // namespace
+
 ScratchFolder::ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "aphotic-XXXXXX").string();
+    std::string pattern = (temporary_folder() / "aphotic-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) {
-        throw RunError(fmt::format("{}: no temporary folder can be made", pattern));
+        throw RunError(
+            fmt::format("{}: no temporary folder can be made: {}", pattern, std::strerror(errno)));
     }
     path_ = pattern;
 }

@@ -35,6 +35,14 @@ std::vector<std::string_view> words_of(std::string_view line) {
     }
 }
 
+// As much of a line as one reads.
+std::string shown(const std::vector<std::string_view>& words) {
+    constexpr std::size_t kMostLetters = 200;
+    const std::string line = fmt::format("{}", fmt::join(words, " "));
+    return line.size() <= kMostLetters ? printable(line)
+                                       : printable(line.substr(0, kMostLetters)) + " ...";
+}
+
 bool is_finite_number(std::string_view word) {
     double value = 0.0;
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -56,41 +64,46 @@ bool is_vertex_before(std::string_view corner, long vertices) {
            std::abs(index) <= vertices;
 }
 
+struct SoundLines {
+    std::string text;
+    std::size_t triangles = 0;  // into which their polygons are to be cut
+};
+
 // The lines that count, and of their words those that do. The library takes what it cannot read for
 // 0, and leaves out what does not fit, without a word: so it gets these alone, each looked at
 // first.
-std::string sound_lines(const std::string& text, const std::string& file_name) {
+SoundLines sound_lines(const std::string& text, const std::string& file_name) {
     std::istringstream lines(text);
     std::string line;
-    std::string sound;
+    SoundLines sound;
     long vertices = 0;
     for (int number = 1; std::getline(lines, line); ++number) {
         const std::vector<std::string_view> words = words_of(line);
         if (words.empty()) continue;
         const auto require = [&](bool is_sound, std::string_view allowed) {
             if (is_sound) return;
-            throw InputError(fmt::format("{}:{}: found {}; allowed: {}",
-                                         file_name,
-                                         number,
-                                         printable(fmt::format("{}", fmt::join(words, " "))),
-                                         allowed));
+            throw InputError(fmt::format(
+                "{}:{}: found {}; allowed: {}", file_name, number, shown(words), allowed));
         };
         const std::span values = std::span(words).subspan(1);
         if (words[0] == "v") {
             require(values.size() >= 3 && std::ranges::all_of(values, is_finite_number),
                     "v and three finite numbers");
-            sound += fmt::format("v {} {} {}\n", values[0], values[1], values[2]);
+            sound.text += fmt::format("v {} {} {}\n", values[0], values[1], values[2]);
             ++vertices;
         } else if (words[0] == "f") {
             const auto is_there = [&](std::string_view corner) {
                 return is_vertex_before(corner, vertices);
             };
-            require(values.size() >= 3 && std::ranges::all_of(values, is_there),
-                    fmt::format("f and three or more of the {} vertices above it", vertices));
-            sound += 'f';
+            require(values.size() >= 3 && values.size() <= kMostCorners &&
+                        std::ranges::all_of(values, is_there),
+                    fmt::format(
+                        "f and from 3 to {} of the {} vertices above it", kMostCorners, vertices));
+            sound.text += 'f';
             for (const std::string_view corner : values)
-                sound += fmt::format(" {}", vertex_of(corner));
-            sound += '\n';
+                sound.text += fmt::format(" {}", vertex_of(corner));
+            sound.text += '\n';
+            sound.triangles += values.size() - 2;
         }
     }
     return sound;
@@ -103,15 +116,29 @@ double to_single(double value) {
     return rounded;
 }
 
-void require_room(const std::vector<tinyobj::shape_t>& shapes, const std::string& file_name) {
-    std::size_t triangles = 0;
-    for (const tinyobj::shape_t& shape : shapes) triangles += shape.mesh.indices.size() / 3;
+// Before any polygon is cut: that takes the longer the more there are.
+void require_room(std::size_t triangles, const std::string& file_name) {
     if (triangles > 0 && triangles <= kMostTriangles) return;
     throw InputError(
         fmt::format("{}: found {}; allowed: 1 to {} triangles",
                     file_name,
                     triangles == 0 ? "no faces" : fmt::format("{} triangles", triangles),
                     kMostTriangles));
+}
+
+// Of a polygon that it cannot cut, the library leaves out the rest without a word.
+void require_whole(const std::vector<tinyobj::shape_t>& shapes,
+                   std::size_t triangles,
+                   const std::string& file_name) {
+    std::size_t made = 0;
+    for (const tinyobj::shape_t& shape : shapes) made += shape.mesh.indices.size() / 3;
+    if (made == triangles) return;
+    throw InputError(
+        fmt::format("{}: found polygons of which {} of {} triangles could be made; allowed: "
+                    "triangles in place of those that are not convex",
+                    file_name,
+                    made,
+                    triangles));
 }
 
 void require_area(const Mesh& mesh,
@@ -136,7 +163,9 @@ void require_area(const Mesh& mesh,
 }  // namespace
 
 Mesh parse_mesh(const std::string& file_name, const std::string& obj, const Vector3d& position_m) {
-    std::istringstream in(sound_lines(obj, file_name));
+    const SoundLines lines = sound_lines(obj, file_name);
+    require_room(lines.triangles, file_name);
+    std::istringstream in(lines.text);
     tinyobj::attrib_t attributes;
     std::vector<tinyobj::shape_t> shapes;
     std::vector<tinyobj::material_t> materials;
@@ -145,7 +174,7 @@ Mesh parse_mesh(const std::string& file_name, const std::string& obj, const Vect
     if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &in)) {
         throw InputError(fmt::format("{}: cannot be read: {}", file_name, errors));
     }
-    require_room(shapes, file_name);
+    require_whole(shapes, lines.triangles, file_name);
 
     Mesh mesh;
     const std::vector<double>& xyz = attributes.vertices;

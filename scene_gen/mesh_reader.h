@@ -20,6 +20,9 @@ namespace aphotic {
 
 inline constexpr std::size_t kMostTriangles = 1'000'000;
 
+// Of a polygon: to cut it takes the square of their number, at least.
+inline constexpr std::size_t kMostCorners = 256;
+
 // A triangle whose height is under this share of its longest side has no plane that single
 // precision would tell.
 inline constexpr double kLeastTriangleHeight = 1e-6;

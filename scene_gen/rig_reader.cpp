@@ -2,6 +2,7 @@
 #include "scene_gen/rig_reader.h"
 
 #include "scene_gen/geometry.h"
+#include "scene_gen/key_depth.h"
 #include "scene_gen/mesh_reader.h"
 #include "scene_gen/solid.h"
 #include "spectral/atomic_file.h"
@@ -22,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <sstream>
 
 namespace aphotic {
@@ -35,6 +37,13 @@ constexpr double kMetresPerMicrometre = 1e-6;
 
 // A thousand strobes, each written out, are a fiftieth of it.
 constexpr std::size_t kMostRigBytes = 8 * kMebibyte;
+
+// Strobes, beams, cones of a beam, materials, objects: of each. What is done for one is done beside
+// all the others.
+constexpr std::size_t kMostOfAKind = 1024;
+
+// Of all strobes together: what POV-Ray takes where the water is clear (pov_scene.cpp).
+constexpr std::size_t kMostCones = 100'000;
 
 // Any title or file name; and POV-Ray reads a comment of it.
 constexpr std::size_t kMostTextBytes = 1000;
@@ -161,12 +170,19 @@ class Section {
     [[nodiscard]] std::vector<std::string> texts(std::string_view key, const std::string& allowed) {
         const toml::array* array = required(key, allowed).as_array();
         if (array == nullptr) found_but(key, allowed);
+        require_few(key, array->size());
         std::vector<std::string> all;
         for (const toml::node& node : *array) {
             if (!node.is_string()) found_but(key, allowed);
             all.push_back(one_line(node, key));
         }
         return all;
+    }
+
+    void require_few(std::string_view key, std::size_t count) const {
+        if (count <= kMostOfAKind) return;
+        fail(
+            *table_.get(key), key, fmt::format("found {}; allowed: up to {}", count, kMostOfAKind));
     }
 
     // One of a few words.
@@ -187,6 +203,7 @@ class Section {
     [[nodiscard]] std::vector<Section> sections(std::string_view key, const std::string& allowed) {
         const toml::array* array = required(key, allowed).as_array();
         if (array == nullptr || array->empty()) found_but(key, allowed);
+        require_few(key, array->size());
         std::vector<Section> all;
         for (std::size_t i = 0; i < array->size(); ++i) {
             const toml::table* table = (*array)[i].as_table();
@@ -291,6 +308,7 @@ class RigReader {
     static Sled read_sled(Section section);
     static Emitter read_emitter(Section& strobe);
     static Beam read_beam(Section section, std::string name);
+    static std::vector<Beam> read_beams(Section& top);
     static Eigen::Vector3d read_axis(Section& strobe, const Eigen::Vector3d& position_m);
     static Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m);
     static FlatPort read_port(Section section);
@@ -302,6 +320,9 @@ class RigReader {
     Water read_water(Section section);
     Seafloor read_seafloor(Section section);
     Strobe read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled);
+    std::vector<Strobe> read_strobes(Section& top,
+                                     const std::vector<Beam>& beams,
+                                     const Sled& sled);
     Object read_object(Section section, const std::vector<Strobe>& strobes);
     Shape read_shape(Section& object, std::string_view key);
     Mesh read_mesh_of(Section& object);
@@ -610,13 +631,12 @@ Object RigReader::read_object(Section section, const std::vector<Strobe>& strobe
 
 std::vector<Object> RigReader::read_objects(Section& top, const std::vector<Strobe>& strobes) {
     std::vector<Object> objects;
+    std::set<std::string> names;
     if (!top.has("object")) return objects;
     for (Section& section : top.sections("object", "one or more tables [[object]]")) {
         objects.push_back(read_object(section, strobes));
-        for (std::size_t i = 0; i + 1 < objects.size(); ++i) {
-            if (objects[i].name == objects.back().name)
-                section.found_but("name", "a name that no other object has");
-        }
+        if (!names.insert(objects.back().name).second)
+            section.found_but("name", "a name that no other object has");
     }
     return objects;
 }
@@ -646,6 +666,37 @@ void require_tables_to_cover_the_range(const Rig& rig) {
     require_cover(curves, rig.camera.range);
 }
 
+std::vector<Beam> RigReader::read_beams(Section& top) {
+    Section sections = top.section("beam", "a table [beam.NAME]");
+    const std::vector<std::string> names = sections.keys();
+    if (names.empty()) top.found_but("beam", "at least one table [beam.NAME]");
+    top.require_few("beam", names.size());
+    std::vector<Beam> beams;
+    for (const std::string& name : names) {
+        sections.require_one_line(sections.required(name, ""), name, name);
+        beams.push_back(read_beam(sections.section(name, "a table"), name));
+    }
+    return beams;
+}
+
+std::vector<Strobe> RigReader::read_strobes(Section& top,
+                                            const std::vector<Beam>& beams,
+                                            const Sled& sled) {
+    std::vector<Strobe> strobes;
+    std::set<std::string> names;
+    std::size_t cones = 0;
+    for (Section& section : top.sections("strobe", "one or more tables [[strobe]]")) {
+        strobes.push_back(read_strobe(section, beams, sled));
+        if (!names.insert(strobes.back().name).second)
+            section.found_but("name", "a name that no other strobe has");
+        cones += strobes.back().beam.cones.size();
+        if (cones <= kMostCones) continue;
+        section.found_but("beam",
+                          fmt::format("up to {} cones of all strobes together", kMostCones));
+    }
+    return strobes;
+}
+
 Rig RigReader::read(Section top) {
     std::string title = top.text_or("title", "a text in quotes", "");
     const Sled sled = read_sled(top.section("sled", "a table [sled]"));
@@ -653,22 +704,8 @@ Rig RigReader::read(Section top) {
     Water water = read_water(top.section("water", "a table [water]"));
     Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"));
 
-    Section beam_sections = top.section("beam", "a table [beam.NAME]");
-    std::vector<Beam> beams;
-    for (const std::string& name : beam_sections.keys()) {
-        beam_sections.require_one_line(beam_sections.required(name, ""), name, name);
-        beams.push_back(read_beam(beam_sections.section(name, "a table"), name));
-    }
-    if (beams.empty()) top.found_but("beam", "at least one table [beam.NAME]");
-
-    std::vector<Strobe> strobes;
-    for (Section& section : top.sections("strobe", "one or more tables [[strobe]]")) {
-        strobes.push_back(read_strobe(section, beams, sled));
-        for (std::size_t i = 0; i + 1 < strobes.size(); ++i) {
-            if (strobes[i].name == strobes.back().name)
-                section.found_but("name", "a name that no other strobe has");
-        }
-    }
+    const std::vector<Beam> beams = read_beams(top);
+    std::vector<Strobe> strobes = read_strobes(top, beams, sled);
     std::vector<Spectrum> materials = read_materials(top);
     std::vector<Object> objects = read_objects(top, strobes);
     fs::path scene;
@@ -699,6 +736,7 @@ Rig RigReader::read(Section top) {
 }  // namespace
 
 Rig parse_rig(std::string_view toml, const std::string& file_name, const fs::path& folder) {
+    require_shallow_keys(toml, file_name);
     toml::table table;
     try {
         table = toml::parse(toml, file_name);

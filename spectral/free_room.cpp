@@ -3,6 +3,7 @@
 
 #include "spectral/error.h"
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <fmt/format.h>
@@ -52,6 +53,19 @@ std::uint64_t control_group_limit_bytes() {
     return least;
 }
 
+// `ulimit -v` and `ulimit -d`.
+std::uint64_t process_limit_bytes() {
+    std::uint64_t least = kNoLimit;
+    for (const auto resource : {RLIMIT_AS, RLIMIT_DATA}) {
+        rlimit limit{};
+        if (::getrlimit(resource, &limit) != 0) continue;
+        if (limit.rlim_cur != RLIM_INFINITY) {
+            least = std::min(least, std::uint64_t{limit.rlim_cur});
+        }
+    }
+    return least;
+}
+
 }  // namespace
 
 std::uint64_t free_disk_bytes(const fs::path& folder) {
@@ -72,7 +86,9 @@ bool on_one_disk(const fs::path& a, const fs::path& b) {
 }
 
 std::uint64_t free_memory_bytes() {
-    return std::min(available_bytes(kernel_text("/proc/meminfo")), control_group_limit_bytes());
+    return std::min({available_bytes(kernel_text("/proc/meminfo")),
+                     control_group_limit_bytes(),
+                     process_limit_bytes()});
 }
 
 std::uint64_t available_bytes(std::string_view meminfo) {

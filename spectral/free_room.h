@@ -3,8 +3,9 @@
 // What the machine has left: of disk where a folder is or will be made, and of memory.
 //
 // Memory is what Linux says it can give without swapping, MemAvailable of /proc/meminfo, or the
-// whole limit of the control group that we run in, whichever is less. (Of a group's limit the
-// caches count as used, so what is left of it says too little.) A machine that tells neither is
+// whole limit of the control group that we run in, or that of a process (ulimit -v, ulimit -d),
+// whichever is least. (Of a group's limit the caches count as used, so what is left of it says too
+// little.) A machine that tells neither is
 // taken to have any amount.
 #pragma once
 

@@ -4,17 +4,22 @@
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
+#include "spectral/json_text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace aphotic {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;  // as a reader of the file would like it
 
 namespace {
 
@@ -26,12 +31,13 @@ constexpr int kLargestImagePx = 16384;
 constexpr const char* kChecksum = "sha256";
 
 // Titles are the user's: bytes that are no UTF-8 are replaced, not refused.
-std::string text_of(const Json& json) {
+template <class AnyJson>
+std::string text_of(const AnyJson& json) {
     constexpr int kIndent = 2;
-    return json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
+    return json.dump(kIndent, ' ', false, AnyJson::error_handler_t::replace);
 }
 
-// Of all that the manifest holds beside it.
+// Of all that the manifest holds beside it, in whatever order.
 std::string checksum_of(Json json) {
     json.erase(kChecksum);
     return sha256_of_text(text_of(json));
@@ -176,11 +182,15 @@ ManifestScene scene_of(const Reader& reader) {
     return scene;
 }
 
-ManifestWavelength wavelength_of(const Reader& reader, const Manifest& manifest) {
+// The frames by their names, and whose channels are taken: a manifest may name thousands.
+struct FrameBook {
+    std::map<std::string, std::size_t> index;
+    std::set<std::pair<std::size_t, std::string>> taken;
+};
+
+ManifestWavelength wavelength_of(const Reader& reader, double previous_nm, FrameBook& frames) {
     ManifestWavelength w;
     w.lambda_nm = reader.number("lambda_nm");
-    const double previous_nm =
-        manifest.wavelengths.empty() ? 0.0 : manifest.wavelengths.back().lambda_nm;
     if (!(w.lambda_nm > previous_nm)) reader.fail("lambda_nm", "increasing wavelengths over 0");
     w.weight = reader.channels("weight");
     w.exposure_log2 = reader.integer("exposure_log2", -kMostExposureLog2, kMostExposureLog2);
@@ -192,16 +202,11 @@ ManifestWavelength wavelength_of(const Reader& reader, const Manifest& manifest)
     w.attenuation_per_m = reader.number("attenuation_per_m");
     w.flux = reader.numbers("flux");
     w.reflectance = reader.numbers("reflectance");
-    const std::string frame = reader.text("frame");
-    const auto found = std::find_if(manifest.frames.begin(),
-                                    manifest.frames.end(),
-                                    [&](const auto& f) { return f.name == frame; });
-    if (found == manifest.frames.end()) reader.fail("frame", "the name of one of the frames");
-    w.frame = static_cast<std::size_t>(found - manifest.frames.begin());
-    for (const ManifestWavelength& other : manifest.wavelengths) {
-        if (other.frame == w.frame && other.channel == w.channel) {
-            reader.fail("channel", "a channel of the frame that no other wavelength has");
-        }
+    const auto found = frames.index.find(reader.text("frame"));
+    if (found == frames.index.end()) reader.fail("frame", "the name of one of the frames");
+    w.frame = found->second;
+    if (!frames.taken.emplace(w.frame, w.channel).second) {
+        reader.fail("channel", "a channel of the frame that no other wavelength has");
     }
     return w;
 }
@@ -235,7 +240,7 @@ fs::path image_path(const fs::path& folder, const ManifestFrame& frame) {
 }
 
 void write_manifest(const fs::path& folder, const Manifest& manifest) {
-    Json json;
+    OrderedJson json;
     json["format"] = kFormat;
     json["aphotic_version"] = manifest.aphotic_version;
     json["povray_version"] = manifest.povray_version;
@@ -247,8 +252,8 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
     json["method"] = manifest.method;
     json["tolerance"] = manifest.tolerance;
     json["frame_error"] = manifest.frame_error;
-    json["error"] = Json::array();
-    json["amplification"] = Json::array();
+    json["error"] = OrderedJson::array();
+    json["amplification"] = OrderedJson::array();
     for (std::size_t c = 0; c < kChannels; ++c) {
         json["error"].push_back(manifest.quality[c].error);
         json["amplification"].push_back(manifest.quality[c].amplification);
@@ -261,14 +266,14 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
                          {"shortest_path_m", manifest.scene->shortest_path_m},
                          {"longest_path_m", manifest.scene->longest_path_m}};
     }
-    json["frames"] = Json::array();
+    json["frames"] = OrderedJson::array();
     for (const ManifestFrame& frame : manifest.frames) {
         json["frames"].push_back({{"name", frame.name},
                                   {"state", frame.done() ? "done" : "pending"},
                                   {"scene_sha256", frame.scene_sha256},
                                   {"image_sha256", frame.image_sha256}});
     }
-    json["wavelengths"] = Json::array();
+    json["wavelengths"] = OrderedJson::array();
     for (const ManifestWavelength& w : manifest.wavelengths) {
         json["wavelengths"].push_back({{"lambda_nm", w.lambda_nm},
                                        {"weight", w.weight},
@@ -280,7 +285,7 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
                                        {"flux", w.flux},
                                        {"reflectance", w.reflectance}});
     }
-    json[kChecksum] = checksum_of(json);
+    json[kChecksum] = checksum_of(Json::parse(text_of(json)));
     write_text_file(manifest_path(folder), text_of(json) + "\n");
 }
 
@@ -288,7 +293,7 @@ Manifest read_manifest(const fs::path& folder) {
     const fs::path file = manifest_path(folder);
     const std::string text = read_text_file(file, kMostManifestBytes);
     Manifest manifest = parse_manifest(file.string(), text);
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text, file.string());
     if (Reader(json, file.string()).text(kChecksum) != checksum_of(json)) {
         throw InputError(fmt::format(
             "{}: {}: is not that of the rest, which was changed since it was written; allowed: a "
@@ -300,8 +305,7 @@ Manifest read_manifest(const fs::path& folder) {
 }
 
 Manifest parse_manifest(const std::string& file_name, std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
-    if (json.is_discarded()) throw InputError(file_name + ": is not JSON");
+    const Json json = parse_json(text, file_name);
     const Reader reader(json, file_name);
     if (reader.text("format") != kFormat) reader.fail("format", fmt::format("\"{}\"", kFormat));
 
@@ -323,16 +327,17 @@ Manifest parse_manifest(const std::string& file_name, std::string_view text) {
     }
     manifest.geometry = reader.texts("geometry");
     if (reader.has("scene")) manifest.scene = scene_of(reader.object("scene"));
+    FrameBook frames;
     for (const Reader& frame : reader.objects("frames")) {
         manifest.frames.push_back(frame_of(frame));
-        for (std::size_t i = 0; i + 1 < manifest.frames.size(); ++i) {
-            if (manifest.frames[i].name == manifest.frames.back().name) {
-                frame.fail("name", "a name that no other frame has");
-            }
+        if (!frames.index.emplace(manifest.frames.back().name, frames.index.size()).second) {
+            frame.fail("name", "a name that no other frame has");
         }
     }
+    double previous_nm = 0.0;
     for (const Reader& w : reader.objects("wavelengths")) {
-        manifest.wavelengths.push_back(wavelength_of(w, manifest));
+        manifest.wavelengths.push_back(wavelength_of(w, previous_nm, frames));
+        previous_nm = manifest.wavelengths.back().lambda_nm;
     }
     if (manifest.wavelengths.empty()) reader.fail("wavelengths", "at least one");
     return manifest;

@@ -2,6 +2,8 @@
 #include "validation/study.h"
 
 #include "spectral/atomic_file.h"
+#include "spectral/error.h"
+#include "spectral/json_text.h"
 #include "spectral/sensor.h"
 #include "validation/study_page.h"
 #include "validation/validation.h"
@@ -516,12 +518,13 @@ std::optional<StudyMeasure> saved_measure(const StudySetting& setting,
                                           const std::string& key,
                                           const std::filesystem::path& file) {
     if (!std::filesystem::exists(file)) return std::nullopt;
-    const Json json = Json::parse(read_text_file(file), nullptr, false);
     try {
-        // A text that is no JSON has no members either.
+        const Json json = parse_json(read_text_file(file), file.string());
         if (json.at("key").get<std::string>() != key) return std::nullopt;
         return measure_from(json, setting);
     } catch (const Json::exception&) {
+        return std::nullopt;
+    } catch (const InputError&) {
         return std::nullopt;
     }
 }

@@ -128,6 +128,21 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
     EXPECT_FALSE(fs::exists(folder_.path() / "map.png"));
 }
 
+// What a script passes for a variable that it never set: the folder that it runs in is not meant.
+TEST_F(CommandErrors, AnEmptyNameIsNone) {
+    for (const char* command : {"render", "generate", "trace", "validate", "study", "lightmap"}) {
+        const CommandResult run = run_aphotic(folder_.path(), {command, "rig.toml", "-o", ""});
+        EXPECT_EQ(run.status, kBadInput) << command;
+        EXPECT_NE(run.err.find("--output: found an empty text; allowed: a name"), std::string::npos)
+            << run.err;
+    }
+    const CommandResult run = run_aphotic(folder_.path(), {"integrate", ""});
+    EXPECT_EQ(run.status, kBadInput);
+    EXPECT_NE(run.err.find("DIR: found an empty text; allowed: a name"), std::string::npos)
+        << run.err;
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "the rig alone";
+}
+
 TEST_F(CommandErrors, NoResultTakesThePlaceOfWhatItIsMadeFrom) {
     const std::string rig = read_text_file(folder_.path() / "rig.toml");
     expect_one_message(run_aphotic(folder_.path(), {"plan", "rig.toml", "--plot", "rig.toml"}),

@@ -110,6 +110,9 @@ class Faults : public testing::Test {
 
 TEST_F(Faults, ASecondRunInAFolderIsRefused) {
     ASSERT_EQ(render().status, 0);
+    fs::create_directory(file("raw"));
+    ASSERT_EQ(run_aphotic(folder_.path(), {"lightmap", "rig.toml", "-o", "raw/a.exr"}).status, 0);
+    write_file(file("nav.csv"), "image,altitude_m\na.exr,2\n");
     const auto before = contents(file("out"));
     {
         const FolderLock held(file("out"), FolderUse::Write);
@@ -121,7 +124,11 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
                  {"trace", "rig.toml", "-o", "out"},
                  {"validate", "rig.toml", "-o", "out"},
                  {"validate", "rig.toml", "--rendered", "out", "-o", "elsewhere"},
-                 {"study", "rig.toml", "--quick", "-o", "out"}}) {
+                 {"study", "rig.toml", "--quick", "-o", "out"},
+                 {"stress", "--only", "altitude", "-o", "out"},
+                 {"atlas", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
+                 {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.csv", "-o", "out"},
+                 {"baseline", "homomorphic", "raw", "-o", "out"}}) {
             expect_message(run_aphotic(folder_.path(), command),
                            kRunFailed,
                            "out: another aphotic is at work in this folder");
@@ -193,7 +200,7 @@ TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
         "  try again $kib out render rig.toml --ignore-needs -o disk/out " +
         words +
         "\n"
-        "  try integrate $kib out integrate disk/out\n"
+        "  try integrate $kib out integrate --ignore-needs disk/out\n"
         "  umount disk\n"
         "done\n";
     int failed = 0;
@@ -212,6 +219,30 @@ TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
     }
     // Those with no room at all, and more.
     EXPECT_GE(failed, 10);
+}
+
+// POV-Ray's introduction is read from a file there: one that cannot be written is not its fault.
+TEST_F(Faults, AFullFolderForTemporaryFilesIsSaid) {
+    if (!may_mount()) GTEST_SKIP() << "this system lets users make no namespaces";
+    const std::vector<std::string> lines = in_a_namespace(
+        "mkdir tmp\n"
+        "mount -t tmpfs -o size=64k none tmp\n"
+        "dd if=/dev/zero of=tmp/fill bs=1k 2>/dev/null\n"
+        "TMPDIR=$PWD/tmp $APHOTIC render rig.toml -o out >/dev/null 2>err\n"
+        "echo \"$? $(tr '\\n' ' ' <err)\"\n");
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_TRUE(lines[0].starts_with("3 aphotic: POV-Ray: ")) << lines[0];
+    EXPECT_NE(lines[0].find((file("tmp") / "aphotic-").string()), std::string::npos) << lines[0];
+    EXPECT_NE(lines[0].find(": No space left on device: 0 KiB are left"), std::string::npos)
+        << lines[0];
+    EXPECT_FALSE(fs::exists(file("out")));
+}
+
+TEST_F(Faults, AMissingFolderForTemporaryFilesIsSaid) {
+    expect_message(render({{"TMPDIR", "/no/such/folder"}}),
+                   kRunFailed,
+                   "TMPDIR: found /no/such/folder; allowed: a folder that is there");
+    EXPECT_FALSE(fs::exists(file("out")));
 }
 
 // Where no namespaces are to be had, a limit on the size of files stands for the disk.
@@ -512,6 +543,49 @@ TEST_F(BadPovRay, ThatFloodsItsIntroduction) {
                    kRunFailed,
                    "was stopped: it printed more than 64 MiB");
     EXPECT_FALSE(fs::exists(file("out")));
+}
+
+TEST_F(BadPovRay, ThatLiesAboutItself) {
+    const std::string much = "head -c 3000000 /dev/zero | tr '\\0' ";
+    struct Lie {
+        std::string body;
+        std::string part;
+    };
+    const std::string no_povray = ": it does not introduce itself as POV-Ray";
+    for (const Lie& lie :
+         {Lie{"printf 'POV-Ray 3.7'\n" + much + "7\n", no_povray},
+          Lie{"printf 'POV-Ray '\n" + much + "7\n", no_povray},
+          Lie{"echo 'POV-Ray 99999999999999.7'\n", no_povray},
+          Lie{"echo 'POV-Ray 3.7.0'; printf ' Supported image formats: '\n" + much + "x\n",
+              ": it was built without OpenEXR"}}) {
+        write_script(file("povray"), lie.body);
+        expect_message(render({{"APHOTIC_POVRAY", file("povray").string()}}), kRunFailed, lie.part);
+        EXPECT_FALSE(fs::exists(file("out")));
+    }
+}
+
+// The share of the pixels is looked for where progress is shown: on a terminal, which `script`
+// gives the command.
+TEST_F(BadPovRay, ThatLiesAboutItsProgress) {
+    if (!fs::exists("/usr/bin/script")) GTEST_SKIP() << "no program that makes a terminal";
+    write_script(file("povray"),
+                 "if [ \"$1\" != --version ]; then\n"
+                 "  echo 'Rendered 1 of 1 pixels (99999999999%)'; sleep 1\n"
+                 "fi\n"
+                 "exec povray \"$@\"\n");
+    const ProcessEnd end = run_process(
+        {.executable = "/usr/bin/script",
+         .arguments = {"-qec",
+                       std::string(APHOTIC_COMMAND) + " render rig.toml -o out --bands 3",
+                       "/dev/null"},
+         .folder = folder_.path(),
+         .environment = {{"APHOTIC_POVRAY", file("povray").string()}},
+         .log = file("said")},
+        kScriptTimeoutS);
+    const std::string said = read_text_file(file("said"));
+    EXPECT_TRUE(end.succeeded()) << end.words() << said;
+    EXPECT_NE(said.find("rendering"), std::string::npos) << "no progress: " << said;
+    EXPECT_TRUE(fs::exists(file("out") / "image.exr"));
 }
 
 // --- A scene of the user's own ------------------------------------------------------------------

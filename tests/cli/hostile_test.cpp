@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <nlohmann/json.hpp>
 
 #include <regex>
 
@@ -235,6 +236,18 @@ TEST(Hostile, FoldersOfAnyNameHoldRigsAndRenders) {
 }
 
 // POV-Ray reads "a[b]" as the section b of the settings a.
+// JSON must be UTF-8, names of folders need not.
+TEST(Hostile, FoldersOfAnyNameAreToldInJson) {
+    const TempFolder folder;
+    write_file(folder.path() / "rig.toml",
+               read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/one-lamp.toml"));
+    const CommandResult run =
+        run_aphotic(folder.path(),
+                    {"generate", "rig.toml", "-o", "\xff\xfe", "--wavelengths", "550", "--json"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(nlohmann::json::parse(run.out).at("folder"), "\uFFFD\uFFFD");
+}
+
 TEST(Hostile, FolderThatPovRayCannotReadIsRefusedBeforeAnythingIsWritten) {
     const TempFolder folder;
     put_rig(folder.path(), kInnocent);

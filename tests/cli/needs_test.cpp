@@ -208,6 +208,32 @@ TEST(NeedsOfAtlas, AreForetold) {
     EXPECT_LE(written, needs.folder_bytes);
 }
 
+TEST(MemoryOfLightmap, IsForetold) {
+    if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
+    const TempFolder folder;
+    rig_of(folder.path(), 2 * kSide_px, kSide_px);
+    constexpr std::uint64_t kMap_bytes = std::uint64_t{12} * 2 * kSide_px * kSide_px;
+    const auto size = [](std::size_t wavelengths) {
+        return ImageSize{
+            .width_px = 2 * kSide_px, .height_px = kSide_px, .wavelengths = wavelengths};
+    };
+    const std::string threads = std::to_string(kThreads);
+    expect_foretold(
+        measured(folder.path(), {"lightmap", "rig.toml", "-o", "a.exr", "--threads", threads}),
+        integration_memory_bytes(size(1), kThreads) + kMap_bytes);
+    expect_foretold(measured(folder.path(),
+                             {"lightmap",
+                              "rig.toml",
+                              "-o",
+                              "b.exr",
+                              "--per-strobe",
+                              "--preview",
+                              "b.png",
+                              "--threads",
+                              threads}),
+                    integration_memory_bytes(size(3), kThreads) + 4 * kMap_bytes);
+}
+
 // A folder with a disk of its own that holds so much, for one command: its status and what it said.
 struct OnSmallDisk {
     bool is_possible = false;
@@ -276,6 +302,36 @@ TEST(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
     const OnSmallDisk ignored =
         on_small_disk(folder.path(), fmt::format("{}k", size_kib / 2), command + " --ignore-needs");
     EXPECT_EQ(ignored.status, 0) << ignored.said;
+}
+
+// What a shell or a scheduler allows is less than what the machine has.
+TEST(Needs, AreHeldAgainstTheLimitsOfTheProcess) {
+    if (kIsSanitized) GTEST_SKIP() << "sanitizers take more addresses than any limit";
+    const TempFolder folder;
+    rig_of(folder.path(), 4096, 4096);
+    ASSERT_EQ(
+        run_aphotic(folder.path(), {"generate", "rig.toml", "--fitted", "3", "-o", "out"}).status,
+        0);
+    for (const std::string command :
+         {"ulimit -v 300000; exec {} integrate out -o images",
+          "ulimit -d 300000; exec {} integrate out -o images",
+          "ulimit -v 300000; exec {} lightmap rig.toml -o images.exr"}) {
+        const ProcessEnd end =
+            run_process({.executable = "/bin/sh",
+                         .arguments = {"-c", fmt::format(fmt::runtime(command), APHOTIC_COMMAND)},
+                         .folder = folder.path(),
+                         .environment = {},
+                         .log = folder.path() / "said"},
+                        280.0);
+        EXPECT_EQ(end.exit_code, 3) << command;
+        const std::string said = read_text_file(folder.path() / "said");
+        EXPECT_TRUE(std::regex_search(
+            said,
+            std::regex(R"(needs up to [0-9.]+ MB of memory, 307 MB are free\. Nothing was begun)")))
+            << said;
+        EXPECT_FALSE(fs::exists(folder.path() / "images"));
+        EXPECT_FALSE(fs::exists(folder.path() / "images.exr"));
+    }
 }
 
 // 12 bands take 7.8 MB at most, of which the images are 5.9 MB; 13 bands take 8.5 MB; 7.2 MB are

@@ -18,6 +18,13 @@ TEST(LibraryPaths, AreThoseOfAnIniFilesLines) {
     EXPECT_EQ(library_paths_in(""), Paths{});
 }
 
+// A stranger's scene may bring its own file along.
+TEST(LibraryPaths, AreNoneOfALineWithoutEnd) {
+    EXPECT_EQ(library_paths_in("Library_Path=/a\nLibrary_Path=/" + std::string(3'000'000, 'b') +
+                               "\nLibrary_Path=/c\n"),
+              (Paths{"/a", "/c"}));
+}
+
 // Only the first file found counts: what POVINI names, then the folder's own.
 TEST(LibraryPaths, AreOfTheFileThatPovrayWouldRead) {
     const TempFolder scene;

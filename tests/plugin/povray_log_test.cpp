@@ -5,6 +5,7 @@
 #include "spectral/error.h"
 #include "tests/support/temp_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace aphotic {
@@ -39,6 +40,15 @@ TEST(PovRayLog, IsReadUpToTheSizeAtWhichPovRayIsStopped) {
     std::filesystem::resize_file(folder.path() / "long.log", 3 * kMostLogBytes);  // takes no room
     EXPECT_EQ(read_log(folder.path() / "long.log").size(), kMostLogBytes);
     EXPECT_THROW(static_cast<void>(read_log(folder.path() / "none.log")), RunError);
+}
+
+TEST(PovRayLog, TellsTheLastShareThatCanBe) {
+    EXPECT_EQ(share_in_log(""), 0.0);
+    EXPECT_EQ(share_in_log("Rendered 1 of 4 pixels (25%)\rRendered 3 of 4 pixels (75%)\r"), 0.75);
+    EXPECT_EQ(share_in_log("Rendered 1 of 4 pixels (25%)\rRendered 3 of 4 pixels (7"), 0.25);
+    for (const char* lie : {"99999999999", "101", "-1", "", "x", "1e1", " 50"}) {
+        EXPECT_EQ(share_in_log(fmt::format("pixels (25%)\rpixels ({}%)\r", lie)), 0.25) << lie;
+    }
 }
 
 TEST(PovRayLog, QuotesNoMoreThanOneReads) {

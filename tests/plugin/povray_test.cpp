@@ -74,6 +74,39 @@ TEST(PovRay, OtherProgramIsRefused) {
     EXPECT_NE(message.find("does not introduce itself"), std::string::npos) << message;
 }
 
+// Of what cannot be, however much of it there is, nothing is made.
+TEST(PovRay, LiesAboutTheVersionAreRefused) {
+    const std::string digits(3'000'000, '1');
+    for (const std::string& version : {digits,
+                                       "3.7" + digits,
+                                       "3." + digits,
+                                       std::string("99999999999999.7"),
+                                       std::string("3.99999999999999"),
+                                       std::string("-3.8"),
+                                       std::string("3.-8"),
+                                       std::string("3"),
+                                       std::string("3."),
+                                       std::string("")}) {
+        EXPECT_EQ(message_of([&] {
+                      (void)version_from(replaced(kPrinted, "3.7.0.10.unofficial", version));
+                  }),
+                  "it does not introduce itself as POV-Ray")
+            << version.substr(0, 40);
+    }
+    EXPECT_EQ(message_of([&] {
+                  (void)version_from(replaced(kPrinted, " openexr", std::string(3'000'000, ' ')));
+              }),
+              "it was built without OpenEXR, in which frames are written");
+    EXPECT_EQ(message_of([&] { (void)version_from(std::string(3'000'000, 'x') + kPrinted); }),
+              "it does not introduce itself as POV-Ray");
+}
+
+TEST(PovRay, ComplaintsBeforeItsNameArePassedOver) {
+    EXPECT_EQ(
+        version_from("povray: POV-Ray cannot open POV-Ray 3.x settings\n" + std::string(kPrinted)),
+        "3.7.0.10.unofficial");
+}
+
 TEST(PovRay, TheOneOnPathServes) {
     const PovRay povray = find_povray("");
     EXPECT_TRUE(povray.executable.is_absolute());

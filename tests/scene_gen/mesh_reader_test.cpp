@@ -3,15 +3,20 @@
 
 #include "spectral/error.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 namespace aphotic {
 namespace {
 
 using Eigen::Vector3d;
+
+constexpr double kPi = std::numbers::pi;
 
 constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
@@ -77,7 +82,7 @@ TEST(MeshReader, NamesTheLineOfWhatItCannotRead) {
     EXPECT_EQ(error_of("v 0 0\n"), "rock.obj:1: found v 0 0; allowed: v and three finite numbers");
     EXPECT_EQ(error_of("v 0 0 1,5\n"),
               "rock.obj:1: found v 0 0 1,5; allowed: v and three finite numbers");
-    const std::string allowed = "; allowed: f and three or more of the 3 vertices above it";
+    const std::string allowed = "; allowed: f and from 3 to 256 of the 3 vertices above it";
     for (const std::string face : {"f 1 2", "f 1 2 4", "f 0 1 2", "f 1 2 -4", "f 1 2 x", "f"}) {
         EXPECT_EQ(error_of(triangle_and(face + "\n")), "rock.obj:4: found " + face + allowed);
     }
@@ -97,6 +102,46 @@ TEST(MeshReader, RefusesMoreTrianglesThanItsLimit) {
     std::string obj(kTriangle);
     for (std::size_t i = 0; i <= kMostTriangles; ++i) obj += "f 1 2 3\n";
     EXPECT_EQ(error_of(obj), "rock.obj: found 1000001 triangles; allowed: 1 to 1000000 triangles");
+}
+
+// Corners on a circle.
+std::string polygon(std::size_t corners) {
+    std::string vertices;
+    std::string face = "f";
+    for (std::size_t i = 0; i < corners; ++i) {
+        const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(corners);
+        vertices += fmt::format("v {:.6f} {:.6f} 1\n", std::cos(angle), std::sin(angle));
+        face += fmt::format(" {}", i + 1);
+    }
+    return vertices + face + "\n";
+}
+
+TEST(MeshReader, RefusesPolygonsOfMoreCornersThanItsLimit) {
+    EXPECT_EQ(parse_mesh("rock.obj", polygon(kMostCorners), {0.0, 0.0, 0.0}).triangles.size(),
+              kMostCorners - 2);
+    EXPECT_TRUE(error_of(polygon(kMostCorners + 1)).starts_with("rock.obj:258: found f 1 2 3 4 "));
+    EXPECT_TRUE(error_of(polygon(kMostCorners + 1))
+                    .ends_with(" ...; allowed: f and from 3 to 256 of the 257 vertices above it"));
+}
+
+// Sides that cross: the library that cuts polygons gives up, and says nothing.
+TEST(MeshReader, LeavesNoHoleWhereAPolygonCannotBeCut) {
+    EXPECT_EQ(
+        error_of("v 0.926498 0.144645 1\nv 0.698354 0.237795 1\nv 0.024322 0.038550 1\n"
+                 "v 0.324720 0.330341 1\nv 0.057062 0.690567 1\nf 1 2 3 4 5\n"),
+        "rock.obj: found polygons of which 1 of 3 triangles could be made; allowed: triangles "
+        "in place of those that are not convex");
+}
+
+// Cut before they are counted, these would take minutes.
+TEST(MeshReader, CountsTheTrianglesOfPolygonsBeforeItCutsThem) {
+    std::string obj = polygon(kMostCorners);
+    const std::string face = obj.substr(obj.find('f'));
+    constexpr std::size_t kFaces = 20'000;
+    for (std::size_t i = 1; i < kFaces; ++i) obj += face;
+    EXPECT_EQ(error_of(obj),
+              fmt::format("rock.obj: found {} triangles; allowed: 1 to 1000000 triangles",
+                          kFaces * (kMostCorners - 2)));
 }
 
 }  // namespace

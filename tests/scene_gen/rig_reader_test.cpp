@@ -5,6 +5,7 @@
 #include "spectral/printable.h"
 #include "tests/support/temp_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -802,6 +803,64 @@ TEST(RigReader, SyntaxErrorsNameTheLine) {
         << error_of(with(4, "resolution = [1 2]"));
     EXPECT_TRUE(error_of(with(7, "pixel_pitch_um = 1")).starts_with("rig.toml:7: "))
         << "a key that stands twice: " << error_of(with(7, "pixel_pitch_um = 1"));
+}
+
+// Counted before anything is made of them: one by one, each held against all others, these would
+// take minutes.
+TEST(RigReader, RefusesMoreOfAKindThanItsLimit) {
+    const auto many = [](const char* form) {
+        std::string text;
+        for (int i = 0; i < 60'000; ++i) text += fmt::format(fmt::runtime(form), i);
+        return text;
+    };
+    EXPECT_EQ(error_of(minimal_and(many("[beam.b{}]\n"))),
+              "rig.toml:11: beam: found 60001; allowed: up to 1024");
+    EXPECT_EQ(error_of(minimal_and(many("[[strobe]]\nname = \"{}\"\n"))),
+              "rig.toml:13: strobe: found 60001; allowed: up to 1024");
+    EXPECT_EQ(error_of(minimal_and(many("[[object]]\nname = \"{}\"\n"))),
+              "rig.toml:18: object: found 60000; allowed: up to 1024");
+    EXPECT_EQ(error_of("materials = [" + many("\"m{}\",") + "]\n" + std::string(kMinimal)),
+              "rig.toml:1: materials: found 60000; allowed: up to 1024");
+    EXPECT_EQ(error_of(with(12, "cones = [" + many("{{ part = \"{}\" }},") + "]")),
+              "rig.toml:12: beam.wide.cones: found 60000; allowed: up to 1024");
+}
+
+TEST(RigReader, RefusesMoreConesOfAllStrobesThanItsLimit) {
+    std::string cones;
+    for (int i = 0; i < 1000; ++i) cones += "{ part = \"a\", half_angle_deg = 9, weight = 1 }, ";
+    std::string strobes;
+    for (int i = 0; i < 100; ++i) {
+        strobes += fmt::format(
+            "[[strobe]]\nname = \"{}\"\nposition_m = [0.5, 0, 0]\ndirection = [0, 0, 1]\n"
+            "beam = \"wide\"\n",
+            i);
+    }
+    // With the rig's own strobe, the 101st.
+    EXPECT_EQ(error_of(with(12, "cones = [" + cones + "]") + strobes),
+              "rig.toml:517: strobe[100].beam: found 'wide'; allowed: up to 100000 cones of all "
+              "strobes together");
+}
+
+TEST(RigReader, TakesAsManyOfAKindAsItsLimit) {
+    std::string text;
+    for (int i = 1; i < 1024; ++i) {
+        text += fmt::format(
+            "[beam.b{0}]\ncones = [{{ part = \"a\", half_angle_deg = 9, weight = 1 }}]\n"
+            "[[strobe]]\nname = \"{0}\"\nposition_m = [0.5, 0, 0]\n"
+            "direction = [0, 0, 1]\nbeam = \"b{0}\"\n",
+            i);
+    }
+    EXPECT_EQ(parse(minimal_and(text)).strobes.size(), 1024U);
+}
+
+// As keys or as a header, such a rig once ran the program out of stack.
+TEST(RigReader, RefusesTablesWithinTablesWithoutEnd) {
+    std::string key = "a";
+    for (int i = 1; i < 50'000; ++i) key += ".a";
+    const std::string refusal =
+        ": found a key of more than 16 parts with dots between them; allowed: up to 16";
+    EXPECT_EQ(error_of("\n" + key + " = 1\n"), "rig.toml:2" + refusal);
+    EXPECT_EQ(error_of("[" + key + "]\n"), "rig.toml:1" + refusal);
 }
 
 TEST(RigReader, AnUnreadableRigIsNamed) {

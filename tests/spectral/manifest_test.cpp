@@ -5,6 +5,7 @@
 #include "spectral/error.h"
 #include "tests/support/temp_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -335,6 +336,56 @@ TEST(Manifest, WantsWavelengthsInAKnownFrameAndChannel) {
               "wavelengths[1]: channel: found \"A\"; allowed: \"R\", \"G\" or \"B\"");
     EXPECT_EQ(wavelength_error("frame", "other"),
               "wavelengths[1]: frame: found \"other\"; allowed: the name of one of the frames");
+}
+
+TEST(Manifest, WantsEachFrameAndEachOfItsChannelsOnce) {
+    EXPECT_EQ(frame_error("name", "band_450_550nm"),
+              "frames[1]: name: found \"band_450_550nm\"; allowed: a name that no other frame has");
+    EXPECT_EQ(wavelength_error("channel", "R"),
+              "wavelengths[1]: channel: found \"R\"; allowed: a channel of the frame that no other "
+              "wavelength has");
+}
+
+// Where each was held against all before it, this would take minutes.
+TEST(Manifest, MayHaveManyFramesAndWavelengths) {
+    constexpr std::size_t kFrames = 200'000;
+    Json json = some_json();
+    Json frame = json["frames"][1];
+    Json wavelength = json["wavelengths"][2];
+    std::string frames;
+    std::string wavelengths;
+    for (std::size_t f = 0; f < kFrames; ++f) {
+        frame["name"] = fmt::format("band_{}", f);
+        wavelength["frame"] = fmt::format("band_{}", kFrames - 1 - f);
+        wavelength["lambda_nm"] = f + 1;
+        frames += frame.dump() + ',';
+        wavelengths += wavelength.dump() + ',';
+    }
+    frames.pop_back();
+    wavelengths.pop_back();
+    json.erase("frames");
+    json.erase("wavelengths");
+    std::string text = json.dump();
+    text.pop_back();
+    const Manifest read = parse_manifest(
+        "m",
+        fmt::format(R"({}, "frames": [{}], "wavelengths": [{}]}})", text, frames, wavelengths));
+    ASSERT_EQ(read.wavelengths.size(), kFrames);
+    EXPECT_EQ(read.frames.back().name, "band_199999");
+    EXPECT_EQ(read.wavelengths.back().frame, 0U);
+}
+
+TEST(Manifest, RefusesValuesWithinValuesWithoutEnd) {
+    constexpr std::size_t kDepth = 1'000'000;
+    const std::string text =
+        "{\"format\": " + std::string(kDepth, '[') + std::string(kDepth, ']') + "}";
+    try {
+        static_cast<void>(parse_manifest("manifest.json", text));
+        FAIL() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "manifest.json: found values nested in 1000001 levels; allowed: up to 64");
+    }
 }
 
 TEST(Manifest, WantsExposuresThatADoubleCanHold) {
