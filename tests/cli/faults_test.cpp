@@ -620,10 +620,13 @@ TEST_F(OwnScene, IsLookedAtUnderTheSameGuards) {
 }
 
 // POV-Ray's first argument is the scene: band_* are frames, strobe_* the survey's. The edit comes
-// before the second frame.
+// in the second frame, when the first has been noted.
 TEST_F(OwnScene, EditedWhileItRendersIsNotMixed) {
     const auto editing = povray_that(
-        "case \"$1\" in *band_600nm*) echo '// edited' >> reef.pov ;; esac\n"
+        "case \"$1\" in *band_600nm*)\n"
+        "  until grep -q '\"done\"' out/manifest.json; do sleep 0.1; done\n"
+        "  echo '// edited' >> reef.pov ;;\n"
+        "esac\n"
         "exec povray \"$@\"\n");
     expect_message(render_reef(editing),
                    kRunFailed,

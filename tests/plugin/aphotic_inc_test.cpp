@@ -300,8 +300,8 @@ TEST_F(AphoticInc, TellsOfItselfWhenAsked) {
     const PovRayRun result =
         run("#version 3.7;\n#declare View_POV_Include_Stack = true;\n"
             "#include \"aphotic.inc\"\ncamera { location 0 } sphere { 9, 1 }\n");
-    EXPECT_NE(result.said().find("including aphotic.inc"), std::string::npos);
-    EXPECT_NE(result.said().find("including aphotic_quick.inc"), std::string::npos);
+    EXPECT_NE(result.log.find("including aphotic.inc"), std::string::npos) << result.log;
+    EXPECT_NE(result.log.find("including aphotic_quick.inc"), std::string::npos) << result.log;
 }
 
 // --- The quick look -----------------------------------------------------------------------------
