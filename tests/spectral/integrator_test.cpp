@@ -339,8 +339,7 @@ TEST(Integrator, RefusesWhatNoFloatHolds) {
     Render radiance(1, 1);
     radiance.add_frame("f", [](int, int, int) { return 1.0F; });
     radiance.add_wavelength(450.0, {0x1p-10, 0x1p-10, 0x1p-10}, 0, "R", -130);
-    EXPECT_NE(radiance.error().find(": R comes out as inf at column 0, row 0"),
-              std::string::npos);
+    EXPECT_NE(radiance.error().find(": R comes out as inf at column 0, row 0"), std::string::npos);
 }
 
 TEST(Integrator, RefusesAFrameOfAnotherSize) {
