@@ -14,6 +14,7 @@
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
+#include "spectral/json_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -81,16 +82,17 @@ fs::path notes_of(const Options& options) {
 // A folder keeps its gain while its settings stay, so that images that come later fit the others.
 std::optional<SurveyGain> noted_gain(const Options& options, const std::string& settings_sha256) {
     if (!fs::exists(notes_of(options))) return std::nullopt;
-    const Json notes = Json::parse(read_text_file(notes_of(options)), nullptr, false);
-    if (!notes.is_object() || notes.value("settings_sha256", "") != settings_sha256) {
-        return std::nullopt;
-    }
+    const std::string text = read_text_file(notes_of(options));
     try {
+        const nlohmann::json notes = parse_json(text, notes_of(options).string());
+        if (notes.at("settings_sha256") != settings_sha256) return std::nullopt;
         return SurveyGain{.gain = notes.at("gain").get<PerChannel>(),
                           .middle = notes.at("settings").at("middle").get<PerChannel>(),
                           .images = notes.at("gain_from").get<std::vector<std::string>>()};
-    } catch (const Json::exception&) {
+    } catch (const nlohmann::json::exception&) {
         return std::nullopt;  // not as we wrote it: taken again
+    } catch (const InputError&) {
+        return std::nullopt;
     }
 }
 

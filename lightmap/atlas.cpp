@@ -5,6 +5,7 @@
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
+#include "spectral/json_text.h"
 #include "spectral/printable.h"
 
 #include <fmt/format.h>
@@ -289,8 +290,9 @@ std::string bin_name(const MapPoint& point) {
 }
 
 AtlasManifest parse_atlas(std::string_view text, const std::string& name) {
+    const Json json = parse_json(text, name);
     try {
-        return manifest_of(Json::parse(text));
+        return manifest_of(json);
     } catch (const Json::exception& error) {
         throw InputError(fmt::format("{}: is no atlas: {}", name, printable(error.what())));
     } catch (const InputError& error) {

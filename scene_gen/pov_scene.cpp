@@ -83,7 +83,7 @@ Housing housing(const Camera& camera) {
 
 LampGrid lamps_of(const Rig& rig, const Strobe& strobe, const SceneOptions& options) {
     if (options.soft_edges) return {};
-    return options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_K_per_m));
+    return options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_attenuation_per_m));
 }
 
 // Half the angle that an emitter spans, seen from the floor below it.
@@ -351,7 +351,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
                                     std::span<const double> lambda_nm,
                                     const SceneOptions& asked) {
     SceneOptions options = asked;
-    options.most_K_per_m = most_attenuation_per_m(rig, lambda_nm);
+    options.most_attenuation_per_m = most_attenuation_per_m(rig, lambda_nm);
     require_few_enough_lights(rig, options);
     require_place_for_objects(rig);
     for (const Strobe& strobe : rig.strobes) {

@@ -51,7 +51,7 @@ struct SceneOptions {
     int wavelengths_per_frame = 3;          // 1 to 3
     double pixel_shift = kPixelShift;       // how far a shared frame may shift one behind a port
     std::optional<LampGrid> emitter_lamps;  // none: lamp_grid() chooses per strobe, for
-    double most_K_per_m = 0.0;              // of the wavelengths; make_scenes() finds it itself
+    double most_attenuation_per_m = 0.0;    // of the wavelengths; make_scenes() finds it itself
     bool omit = true;                       // false: what changes nothing is written all the same
     int peak_log2 = kTargetLog2;            // where a frame's brightest pixel goes, or a bit under
     // One lamp for every emitter: each cone's edge falls from one end of what the emitter spans,

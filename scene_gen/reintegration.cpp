@@ -209,7 +209,7 @@ std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOption
                                beam_text(strobe.beam));
         if (!strobe.emitter) continue;
         const LampGrid grid =
-            options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_K_per_m));
+            options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_attenuation_per_m));
         all[key + " emitter"] =
             fmt::format("{} x {} m", strobe.emitter->across_m, strobe.emitter->along_m);
         all[key + " lamps"] = fmt::format("{} x {}", grid.across, grid.along);

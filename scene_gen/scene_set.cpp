@@ -95,7 +95,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
     SceneOptions options = plan.scene;
-    options.most_K_per_m = most_attenuation_per_m(rig, lambda_nm);
+    options.most_attenuation_per_m = most_attenuation_per_m(rig, lambda_nm);
     manifest.geometry = geometry_of(lit, options);
     if (own != nullptr) manifest.scene = noted(*own, plan.family);
     manifest.method = method_name(plan.method);
