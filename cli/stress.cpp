@@ -60,7 +60,7 @@ RenderedImages render_case(const PovRay& povray,
 std::vector<StressFound> measured(const std::vector<StressCase>& cases,
                                   const Options& options,
                                   const PovRay& povray) {
-    constexpr int kWaiting = 2;
+    constexpr std::size_t kWaiting = 2;
     std::vector<StressFound> found(cases.size());
     const StressRender render = [&](const Rig& rig, const StressCase& asked, const fs::path& to) {
         return render_case(povray, options.stall_timeout_s, rig, asked, to);
@@ -68,7 +68,7 @@ std::vector<StressFound> measured(const std::vector<StressCase>& cases,
     std::mutex mutex;  // of what follows
     std::size_t done = 0;
     ProgressLine line;
-    const auto threads = static_cast<std::size_t>(kWaiting * options.jobs);
+    const std::size_t threads = kWaiting * static_cast<std::size_t>(options.jobs);
     parallel_for(cases.size(), threads, [&](std::size_t i, std::size_t) {
         found[i] = measure_stress(cases[i], fs::path(options.folder) / cases[i].name, render);
         const std::scoped_lock lock(mutex);

@@ -20,7 +20,7 @@ namespace {
 
 fs::path temporary_folder() {
     std::error_code error;
-    const fs::path folder = fs::temp_directory_path(error);
+    fs::path folder = fs::temp_directory_path(error);
     if (!error) return folder;
     const char* variable = std::getenv("TMPDIR");
     throw RunError(
