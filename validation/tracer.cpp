@@ -655,7 +655,8 @@ bool Tracer::is_on_edge(std::size_t pixel,
                         double within_px) const {
     const auto width = static_cast<std::size_t>(rig_.camera.width_px);
     const double column = static_cast<double>(pixel % width) + 0.5;
-    const double row = static_cast<double>(pixel / width) + 0.5;
+    const std::size_t rows_above = pixel / width;
+    const double row = static_cast<double>(rows_above) + 0.5;
     return is_on_cone_edge(column, row, ends, within_px) ||
            (!shapes_.empty() && is_on_object_edge(column, row, range, within_px));
 }
