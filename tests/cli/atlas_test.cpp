@@ -108,8 +108,9 @@ TEST_F(CommandAtlas, RollAndWaterAreAxesToo) {
     const CommandResult run = atlas(
         {"--altitude", "2", "--roll", "-4:8:12", "--water-multiple", "0.5:1.5:0.5", "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
-    ASSERT_EQ(manifest()["bins"].size(), 6U);
-    for (const auto& bin : manifest()["bins"]) {
+    const auto written = manifest();
+    ASSERT_EQ(written["bins"].size(), 6U);
+    for (const auto& bin : written["bins"]) {
         change("roll_deg", bin["roll_deg"].dump());
         change("multiple", bin["water_multiple"].dump());
         expect_near(samples("atlas/" + bin["file"].get<std::string>(), {"R", "G", "B"}),
