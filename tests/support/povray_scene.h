@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
@@ -26,18 +27,21 @@ struct PovRayRun {
     int width_px = 0;
     std::vector<float> samples;  // planes R, G, B; empty when it failed
 
-    // What it said while it parsed, less its own headings.
+    // What it said behind its banner, less its own headings. Not sorted by stage: about one in a
+    // hundred messages overtakes the heading of its stage when the machine is busy.
     [[nodiscard]] std::string said() const {
         std::string all;
-        bool is_parsing = false;
+        bool is_banner = true;
         for (const std::string& statement : statements_in_log(log)) {
-            if (statement.starts_with("==== [")) {
-                is_parsing = statement.starts_with("==== [Parsing");
-                continue;
-            }
-            if (is_parsing && !statement.empty()) all += statement + "\n";
+            if (statement.starts_with("Support libraries used by POV-Ray")) is_banner = false;
+            if (is_banner || statement.empty() || is_heading(statement)) continue;
+            all += statement + "\n";
         }
         return all;
+    }
+    static bool is_heading(std::string_view statement) {
+        return statement.starts_with("Support libraries") || statement.starts_with("  ") ||
+               statement.starts_with("==== [") || statement == "POV-Ray finished";
     }
     [[nodiscard]] double at(std::size_t channel, int column, int row) const {
         const auto pixels = samples.size() / 3;
