@@ -4,6 +4,7 @@
 // own altitude and attitude.
 #include "cli/command.h"
 #include "cli/journal.h"
+#include "cli/kept_gain.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -14,7 +15,6 @@
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
-#include "spectral/json_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -79,21 +79,9 @@ fs::path notes_of(const Options& options) {
     return options.result.folder / kCorrectionNotes;
 }
 
-// A folder keeps its gain while its settings stay, so that images that come later fit the others.
 std::optional<SurveyGain> noted_gain(const Options& options, const std::string& settings_sha256) {
     if (!fs::exists(notes_of(options))) return std::nullopt;
-    const std::string text = read_text_file(notes_of(options));
-    try {
-        const nlohmann::json notes = parse_json(text, notes_of(options).string());
-        if (notes.at("settings_sha256") != settings_sha256) return std::nullopt;
-        return SurveyGain{.gain = notes.at("gain").get<PerChannel>(),
-                          .middle = notes.at("settings").at("middle").get<PerChannel>(),
-                          .images = notes.at("gain_from").get<std::vector<std::string>>()};
-    } catch (const nlohmann::json::exception&) {
-        return std::nullopt;  // not as we wrote it: taken again
-    } catch (const InputError&) {
-        return std::nullopt;
-    }
+    return kept_gain(read_text_file(notes_of(options)), settings_sha256);
 }
 
 SurveyGain gain_of(const Survey& survey,
@@ -129,7 +117,9 @@ Json doubtful_shares(const Outcome& outcome, const Survey& survey, const Journal
     for (const auto& [name, bit] : kDoubts) {
         double count = 0.0;
         for (const std::string& image : outcome.done) {
-            count += journal.noted(image).value(std::string(name), 0.0);
+            const Counts counts = journal.counts(image);
+            const auto found = counts.find(std::string(name));
+            if (found != counts.end()) count += found->second;
         }
         shares[std::string(name)] = pixels > 0.0 ? count / pixels : 0.0;
     }

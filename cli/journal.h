@@ -3,21 +3,33 @@
 // What is done, noted as it is done, so that an interrupted run goes on where it stopped: one line
 // of JSON for each piece of work, appended once its files are in their places.
 //
-// A line that an interruption cut short is passed over when the journal is read again; of several
-// lines of one name the last counts. A piece of work counts as done while its digest, which stands
-// for all that its result depends on, is the same, and its files are there in the size that was
-// noted.
+// A line that an interruption cut short, or that is not ours, is passed over when the journal is
+// read again; of several lines of one name the last counts. A piece of work counts as done while
+// its digest, which stands for all that its result depends on, is the same, and its files are there
+// in the size that was noted.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic::cli {
+
+// What was counted in a piece of work, such as its doubtful pixels.
+using Counts = std::map<std::string, double>;
+
+struct JournalEntry {
+    std::string digest;
+    std::map<std::string, std::uintmax_t> file_bytes;
+    Counts counts;
+};
+
+// By the name of the piece of work.
+[[nodiscard]] std::map<std::string, JournalEntry> parse_journal(std::string_view text);
 
 class Journal {
   public:
@@ -25,20 +37,22 @@ class Journal {
     explicit Journal(std::filesystem::path file);
 
     // Files are beside the journal or below.
-    [[nodiscard]] bool is_done(const std::string& name, const std::string& digest) const;
+    [[nodiscard]] bool is_done(const std::string& name,
+                               const std::string& digest,
+                               const std::vector<std::filesystem::path>& files) const;
 
-    // What was noted with it; null when there is nothing of that name.
-    [[nodiscard]] nlohmann::json noted(const std::string& name) const;
+    // None when there is nothing of that name.
+    [[nodiscard]] Counts counts(const std::string& name) const;
 
     // Not for several threads at once. A RunError when it cannot be written.
     void note(const std::string& name,
               const std::string& digest,
               const std::vector<std::filesystem::path>& files,
-              const nlohmann::json& what);
+              const Counts& counts);
 
   private:
     std::filesystem::path file_;
-    std::map<std::string, nlohmann::json> entries_;
+    std::map<std::string, JournalEntry> entries_;
     std::ofstream out_;
 };
 

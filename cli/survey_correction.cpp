@@ -17,7 +17,6 @@
 namespace aphotic::cli {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -39,21 +38,21 @@ fs::path mask_of(const SurveyFile& file) {
 }
 
 // By pixels, for each kind.
-Json doubts_in(const std::vector<std::uint8_t>& doubts) {
-    Json counts;
+Counts doubts_in(const std::vector<std::uint8_t>& doubts) {
+    Counts counts;
     for (const auto& [name, bit] : kDoubts) {
-        counts[std::string(name)] =
-            std::ranges::count_if(doubts, [bit = bit](std::uint8_t d) { return (d & bit) != 0; });
+        counts[std::string(name)] = static_cast<double>(
+            std::ranges::count_if(doubts, [bit = bit](std::uint8_t d) { return (d & bit) != 0; }));
     }
     return counts;
 }
 
 // The whole work on an image; what is noted of it.
-Json correct_image(const SurveyFile& file,
-                   const Sled& sled,
-                   const Survey& survey,
-                   const ResultOptions& options,
-                   const SurveyGain& gain) {
+Counts correct_image(const SurveyFile& file,
+                     const Sled& sled,
+                     const Survey& survey,
+                     const ResultOptions& options,
+                     const SurveyGain& gain) {
     const SurveyImage taken = read_survey_image(file.source, survey.camera);
     const PlaneSize size = survey.light.size;
     require_size(taken.raw, size.width_px, size.height_px, "as the map has");
@@ -125,14 +124,15 @@ Outcome correct_survey(const Survey& survey,
         try {
             const Sled sled = survey.light.pose(file.source);
             const std::string digest = digest_of(file, sled, settings_sha256, gain);
+            const std::vector<fs::path> results = results_of(file, options);
             std::unique_lock lock(mutex);
-            if (journal.is_done(name, digest)) {
+            if (journal.is_done(name, digest, results)) {
                 ++outcome.kept;
             } else {
                 lock.unlock();
-                const Json doubts = correct_image(file, sled, survey, options, gain);
+                const Counts doubts = correct_image(file, sled, survey, options, gain);
                 lock.lock();
-                journal.note(name, digest, results_of(file, options), doubts);
+                journal.note(name, digest, results, doubts);
                 ++outcome.corrected;
             }
         } catch (const InputError& error) {

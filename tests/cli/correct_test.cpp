@@ -347,6 +347,39 @@ TEST_F(CorrectCommand, GivenAgainItDoesWhatIsNewAlone) {
     EXPECT_EQ(counts(correct({"--json", "--least-light", "0.02"})), std::pair(1, 4));
 }
 
+// What was noted is believed only as far as it makes sense: the rest is done again.
+TEST_F(CorrectCommand, NotesEditedByHandSpoilNothing) {
+    take_survey();
+    ASSERT_EQ(correct({}).status, 0);
+    const std::string journal = read_text_file(path("out/corrected.jsonl"));
+    const std::string notes = read_text_file(path("out/correction.json"));
+    const auto after = [&](const std::string& edited_journal, const std::string& edited_notes) {
+        write_file(path("out/corrected.jsonl"), edited_journal);
+        write_file(path("out/correction.json"), edited_notes);
+        const CommandResult run = correct({"--json"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        const Json summary = Json::parse(run.out);
+        EXPECT_EQ(summary["gain"], Json::parse(notes)["gain"]);
+        EXPECT_EQ(summary["doubtful"], Json::parse(notes)["doubtful"]);
+        return summary["corrected"].get<int>();
+    };
+    const auto first = [](const std::string& text, const char* what, const char* by) {
+        return std::regex_replace(
+            text, std::regex(what), by, std::regex_constants::format_first_only);
+    };
+    EXPECT_EQ(after(first(journal, R"("counts":\{[^}]*\})", R"("counts":"many")"), notes), 1);
+    EXPECT_EQ(after(first(journal, R"("counts":\{[^}]*\})", R"("counts":{"dark":"few"})"), notes),
+              1);
+    EXPECT_EQ(after(first(journal, R"("files":\{[^}]*\})", R"("files":{})"), notes), 1);
+    EXPECT_EQ(after(first(journal, R"("name":"[^"]*")", R"("name":7)"), notes), 1);
+    EXPECT_EQ(after("[]\n7\n" + journal, notes), 0);
+    for (const char* gain : {"-", "0.0,", "null,", "1e999,"}) {
+        EXPECT_EQ(
+            after(journal, first(notes, R"("gain": \[\s*)", ("$&" + std::string(gain)).c_str())), 0)
+            << gain;
+    }
+}
+
 TEST_F(CorrectCommand, KilledAnywhereItGoesOnToTheSameImages) {
     take_survey();
     const std::string image = read_text_file(path("raw/1.tif"));
