@@ -170,7 +170,7 @@ ExitStatus correct(const Options& options) {
             fmt::format("{}: needs --nav, for the altitude of each image", options.name));
     Survey survey = survey_of(options);
     if (corrector.needs_altitude()) survey.navigation = read_navigation(options.navigation, Sled{});
-    const FolderLock lock = claim_folder(options.folder);
+    const FolderLock lock = claim_tree(options.folder);
     // Before the first image: also what an interrupted run leaves is no survey.
     const fs::path notes_file = fs::path(options.folder) / kBaselineNotes;
     Json notes{

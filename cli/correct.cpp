@@ -192,10 +192,7 @@ Survey survey_of(const Options& options) {
 ExitStatus correct(const Options& options) {
     const auto start = std::chrono::steady_clock::now();
     const Survey survey = survey_of(options);
-    const FolderLock lock = claim_folder(options.result.folder);
-    for (const auto& entry : fs::recursive_directory_iterator(options.result.folder)) {
-        if (entry.is_directory()) remove_abandoned_files(entry.path());
-    }
+    const FolderLock lock = claim_tree(options.result.folder);
     set_exr_threads(0);  // the images themselves are spread over the threads
     const Json settings = settings_of(survey, options);
     const std::string settings_sha256 = sha256_of_text(settings.dump());

@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/option_checks.h"
 #include "plugin/interruption.h"
+#include "spectral/atomic_file.h"
 #include "spectral/error.h"
 #include "spectral/printable.h"
 
@@ -117,6 +118,9 @@ int main(int argc, char** argv) {
         sub->callback([&chosen, action, sub] {
             chosen = [action, sub] {
                 aphotic::cli::require_separate_files(*sub);
+                for (const auto& place : aphotic::cli::written_places(*sub)) {
+                    aphotic::remove_abandoned_of(place);
+                }
                 return action();
             };
         });

@@ -111,6 +111,16 @@ void add_common_checks(CLI::App& command) {
     }
 }
 
+std::vector<fs::path> written_places(const CLI::App& command) {
+    std::vector<fs::path> places;
+    for (const CLI::Option* option : command.get_options()) {
+        if (is_written(*option) && option->count() > 0) {
+            places.emplace_back(option->results().front());
+        }
+    }
+    return places;
+}
+
 void require_separate_files(const CLI::App& command) {
     for (const CLI::Option* written : command.get_options()) {
         if (!is_written(*written) || written->count() == 0) continue;

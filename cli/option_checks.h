@@ -7,6 +7,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
+#include <vector>
+
 namespace aphotic::cli {
 
 // A number from least to most; over 0; from 0 up. The last two are finite.
@@ -18,6 +21,9 @@ namespace aphotic::cli {
 // what is read or written refuses the empty name; and one that writes a file of one format, whose
 // type name is such as FILE.exr, refuses other extensions.
 void add_common_checks(CLI::App& command);
+
+// Once parsed: the files and folders that the options name to be written.
+[[nodiscard]] std::vector<std::filesystem::path> written_places(const CLI::App& command);
 
 // Once parsed: throws InputError when a file to be written is one that another option names, or
 // one that stands in a folder that another option names.

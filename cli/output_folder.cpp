@@ -12,8 +12,17 @@ namespace fs = std::filesystem;
 FolderLock claim_folder(const fs::path& folder) {
     make_folder(folder);
     FolderLock lock(folder, FolderUse::Write);
-    for (const char* part : {"", "povray", "povray/frames", "povray/logs", "reference"}) {
+    for (const char* part :
+         {"", "povray", "povray/frames", "povray/logs", "reference", "settings"}) {
         remove_abandoned_files(folder / part);
+    }
+    return lock;
+}
+
+FolderLock claim_tree(const fs::path& folder) {
+    FolderLock lock = claim_folder(folder);
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_directory()) remove_abandoned_files(entry.path());
     }
     return lock;
 }

@@ -106,7 +106,7 @@ ExitStatus stress(const Options& options) {
         throw InputError(
             fmt::format("--only: found '{}'; allowed: part of a case's name", options.only));
     }
-    const FolderLock lock = claim_folder(options.folder);
+    const FolderLock lock = claim_tree(options.folder);
     const std::vector<StressFound> found = measured(cases, options, povray);
     write_stress(found, options.folder);
     if (options.json) {

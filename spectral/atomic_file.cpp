@@ -19,6 +19,28 @@ namespace aphotic {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+bool is_gone(pid_t process) {
+    return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+// Temporaries whose name, less that of their process, is allowed.
+template <typename IsAllowed>
+void remove_abandoned(const fs::path& folder, IsAllowed is_allowed) {
+    static const std::regex kTemporary(R"(\.(.*)\.(\d{1,9})\.part(\..*)?)");
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        std::smatch found;
+        if (!std::regex_match(name, found, kTemporary)) continue;
+        if (!is_allowed(found.str(1) + found.str(3)) || !is_gone(std::stoi(found[2]))) continue;
+        fs::remove(entry.path(), ignored);
+    }
+}
+
+}  // namespace
+
 AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path)) {
     // The extension stays last: some writers choose their format by it.
     temporary_ = final_path_;
@@ -44,15 +66,12 @@ void AtomicFile::commit() {
 }
 
 void remove_abandoned_files(const fs::path& folder) {
-    static const std::regex kTemporary(R"(\..*\.(\d{1,9})\.part(\..*)?)");
-    std::error_code ignored;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-        const std::string name = entry.path().filename().string();
-        std::smatch found;
-        if (!std::regex_match(name, found, kTemporary)) continue;
-        const bool is_gone = ::kill(std::stoi(found[1]), 0) != 0 && errno == ESRCH;
-        if (is_gone) fs::remove(entry.path(), ignored);
-    }
+    remove_abandoned(folder, [](const std::string&) { return true; });
+}
+
+void remove_abandoned_of(const fs::path& file) {
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    remove_abandoned(folder, [&](const std::string& name) { return name == file.filename(); });
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {

@@ -36,8 +36,10 @@ class AtomicFile {
 };
 
 // Takes away what AtomicFiles of processes that are no more left in this folder: killed ones, for
-// all others tidy up themselves.
+// all others tidy up themselves. The second takes those of one file alone, in a folder that is not
+// ours.
 void remove_abandoned_files(const std::filesystem::path& folder);
+void remove_abandoned_of(const std::filesystem::path& file);
 
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 

@@ -8,21 +8,16 @@
 #include "spectral/digest.h"
 #include "spectral/exr.h"
 #include "spectral/manifest.h"
+#include "support/command_under_way.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
-#include <functional>
 #include <map>
 #include <optional>
 #include <random>
@@ -37,9 +32,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kInterruptions = 200;
 constexpr int kLanes = 4;
-constexpr auto kPoll = std::chrono::milliseconds(5);
-// Far more than a kernel takes to end a killed process, and a machine to start one.
-constexpr auto kPatience = std::chrono::seconds(60);
 
 enum class Target { Command, PovRay };
 struct Blow {
@@ -53,20 +45,6 @@ std::string rig_text() {
 }
 
 const std::vector<std::string> kWavelengths{"--wavelengths", "430,470,520,560,600,640,700"};
-
-// The processes that work in a folder or below it.
-std::vector<pid_t> processes_in(const fs::path& folder) {
-    std::vector<pid_t> pids;
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator("/proc", ignored)) {
-        const std::string name = entry.path().filename().string();
-        if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-        const std::string works_in = fs::read_symlink(entry.path() / "cwd", ignored).string();
-        if (!ignored && (works_in + "/").starts_with(folder.string() + "/"))
-            pids.push_back(std::stoi(name));
-    }
-    return pids;
-}
 
 // By frame, the inode of those that are there, noted or not: a frame that is rendered again is
 // another file.
@@ -105,64 +83,6 @@ void expect_same_render(const fs::path& found, const fs::path& expected) {
                   samples_of(image_path(expected, there.frames[f])));
     }
 }
-
-// Nothing half written: at all, or by the process of that number.
-void expect_no_leftovers(const fs::path& folder, const std::string& by = "") {
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        const std::string name = entry.path().filename().string();
-        EXPECT_EQ(name.find(by + ".part"), std::string::npos) << entry.path();
-    }
-}
-
-// A command under way, its streams in files beside its folder.
-class Command {
-  public:
-    Command(const fs::path& lane,
-            const std::vector<std::string>& arguments,
-            const std::map<std::string, std::string>& environment) {
-        std::vector<std::string> words{"/usr/bin/env", "--chdir=" + lane.string()};
-        for (const auto& [name, value] : environment) words.push_back(name + "=" + value);
-        words.emplace_back(APHOTIC_COMMAND);
-        words.insert(words.end(), arguments.begin(), arguments.end());
-        std::vector<char*> argv;
-        for (std::string& word : words) argv.push_back(word.data());
-        argv.push_back(nullptr);
-        posix_spawn_file_actions_t files;
-        posix_spawn_file_actions_init(&files);
-        constexpr int kMode = 0600;
-        const auto to = [&](int descriptor, const char* name) {
-            posix_spawn_file_actions_addopen(
-                &files, descriptor, (lane / name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
-        };
-        to(STDOUT_FILENO, "stdout");
-        to(STDERR_FILENO, "stderr");
-        if (::posix_spawn(&pid_, argv[0], &files, nullptr, argv.data(), environ) != 0)
-            throw std::runtime_error("the command does not start");
-        posix_spawn_file_actions_destroy(&files);
-    }
-
-    [[nodiscard]] pid_t pid() const { return pid_; }
-    [[nodiscard]] bool has_ended() {
-        if (!status_) {
-            int status = 0;
-            if (::waitpid(pid_, &status, WNOHANG) == pid_) status_ = status;
-        }
-        return status_.has_value();
-    }
-    // As a shell tells it.
-    int wait() {
-        const auto deadline = Clock::now() + kPatience;
-        while (!has_ended()) {
-            if (Clock::now() > deadline) throw std::runtime_error("the command does not end");
-            std::this_thread::sleep_for(kPoll);
-        }
-        return WIFSIGNALED(*status_) ? 128 + WTERMSIG(*status_) : WEXITSTATUS(*status_);
-    }
-
-  private:
-    pid_t pid_ = -1;
-    std::optional<int> status_;
-};
 
 struct Counts {
     int interruptions = 0;
@@ -225,7 +145,7 @@ class Lane {
         } else {
             EXPECT_EQ(status, 0) << said;
         }
-        expect_no_process();
+        expect_no_process_in(folder_);
         expect_tidy(status, command.pid());
         const auto after = done_frames(out());
         for (const auto& [name, inode] : before) {
@@ -288,17 +208,6 @@ class Lane {
         fs::create_directory(folder_ / "tmp");
     }
 
-    void expect_no_process() const {
-        const auto deadline = Clock::now() + kPatience;
-        std::vector<pid_t> left = processes_in(folder_);
-        while (!left.empty() && Clock::now() < deadline) {
-            std::this_thread::sleep_for(kPoll);
-            left = processes_in(folder_);
-        }
-        EXPECT_TRUE(left.empty()) << left.size() << " processes outlive the command";
-        for (const pid_t pid : left) ::kill(pid, SIGKILL);
-    }
-
     fs::path folder_;
     std::mt19937 random_;
     std::string povray_;
@@ -306,11 +215,6 @@ class Lane {
     double longest_s_;
     std::vector<Blow> blows_;
 };
-
-unsigned seed_of_this_run() {
-    const char* given = std::getenv("APHOTIC_TEST_SEED");
-    return given != nullptr ? static_cast<unsigned>(std::stoul(given)) : 20260101U;
-}
 
 TEST(Interrupted, RendersEndInTheSameImageAfterTwoHundredBlows) {
     const unsigned seed = seed_of_this_run();
@@ -371,15 +275,6 @@ TEST(Interrupted, RendersEndInTheSameImageAfterTwoHundredBlows) {
     EXPECT_GT(sum.finished, 0);
     EXPECT_GT(sum.kept, 0);
     EXPECT_GT(sum.lines, 0);
-}
-
-bool comes_true(const std::function<bool()>& condition) {
-    const auto deadline = Clock::now() + kPatience;
-    while (!condition()) {
-        if (Clock::now() > deadline) return false;
-        std::this_thread::sleep_for(kPoll);
-    }
-    return true;
 }
 
 // A scene of the user's own is looked at in a scratch folder, by a POV-Ray that heeds no signal.

@@ -142,7 +142,8 @@ TEST(Compare, SaysYesAndNo) {
     const CommandResult no = run_aphotic(
         folder.path(), {"compare", "b/image.exr", "a/image.exr", "--bound", "1e-4", "--json"});
     EXPECT_EQ(no.status, 1) << no.err;
-    for (const auto& channel : nlohmann::json::parse(no.out).at("channels")) {
+    const auto told = nlohmann::json::parse(no.out);
+    for (const auto& channel : told.at("channels")) {
         EXPECT_LE(channel.at("max_error").get<double>(), 1e-3 * (1.0 + 1e-3));
         EXPECT_GT(channel.at("max_error").get<double>(), 5e-4);
         EXPECT_GT(channel.at("mean_error").get<double>(), 0.0) << "the sign of e";

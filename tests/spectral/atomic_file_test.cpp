@@ -129,6 +129,23 @@ TEST(AtomicFile, OfAKilledProcessIsTakenAwayAndNoOther) {
     EXPECT_NO_THROW(remove_abandoned_files(folder.path() / "missing"));
 }
 
+TEST(AtomicFile, OfAKilledProcessIsTakenAwayByTheNameOfItsFile) {
+    const TempFolder folder;
+    const pid_t killed = ::fork();
+    if (killed == 0) {
+        const AtomicFile map(folder.path() / "map.exr");
+        const AtomicFile other(folder.path() / "map.png");
+        write_file(map.temporary(), "half");
+        write_file(other.temporary(), "half");
+        ::_exit(0);
+    }
+    ::waitpid(killed, nullptr, 0);
+    remove_abandoned_of(folder.path() / "map.exr");
+    const auto left = names_in(folder.path());
+    ASSERT_EQ(left.size(), 1U);
+    EXPECT_TRUE(left.front().ends_with(".png")) << left.front();
+}
+
 TEST(TextFile, ComesBackByteForByte) {
     const TempFolder folder;
     const fs::path file = folder.path() / "text";
