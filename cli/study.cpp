@@ -27,7 +27,11 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <thread>
+#include <tuple>
+#include <utility>
 
 namespace aphotic::cli {
 namespace {
@@ -61,18 +65,30 @@ struct Reference {
 };
 
 // The time of a trace is kept in its image: a study that goes on later does not trace again.
+// Nothing when the image is of something else, or not as we wrote it.
+std::optional<std::pair<CameraImage, double>> kept_trace(const fs::path& file,
+                                                         const std::string& key) {
+    if (!fs::exists(file)) return std::nullopt;
+    try {
+        const ExrReader traced(file);
+        if (traced.attribute("aphotic:key") != key) return std::nullopt;
+        const std::string trace_s = traced.attribute("aphotic:trace_s");
+        return std::pair(read_signals(file), std::stod(trace_s));
+    } catch (const RunError&) {
+        return std::nullopt;
+    } catch (const std::logic_error&) {  // of stod
+        return std::nullopt;
+    }
+}
+
 Reference reference_of(const Rig& rig, const fs::path& folder, const std::string& key, int cores) {
     const Tracer tracer(rig, {.signals = true, .planes_nm = {}, .threads = cores});
     Reference reference{
         .image = {}, .on_edge = tracer.on_edges(rig.camera.range), .grid_size = tracer.grid_size()};
     const fs::path file = folder / "image.exr";
-    if (fs::exists(file)) {
-        const ExrReader traced(file);
-        if (traced.attribute("aphotic:key") == key) {
-            reference.trace_s = std::stod(traced.attribute("aphotic:trace_s"));
-            reference.image = read_signals(file);
-            return reference;
-        }
+    if (auto kept = kept_trace(file, key)) {
+        std::tie(reference.image, reference.trace_s) = std::move(*kept);
+        return reference;
     }
     make_folder(folder);
     const auto start = Clock::now();

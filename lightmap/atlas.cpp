@@ -5,6 +5,7 @@
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
+#include "spectral/image_size.h"
 #include "spectral/json_text.h"
 #include "spectral/printable.h"
 
@@ -21,7 +22,8 @@
 namespace aphotic {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;  // as a reader of the file would like it
 
 namespace {
 
@@ -54,7 +56,7 @@ fs::path bin_path(const fs::path& folder, const MapPoint& point) {
     return folder / "bins" / bin_name(point);
 }
 
-Json json_of(const InterpolationError& error) {
+OrderedJson json_of(const InterpolationError& error) {
     return {{"worst", error.worst},
             {"rms", error.rms},
             {"crossed_by_edges", error.crossed_share},
@@ -69,15 +71,15 @@ InterpolationError interpolation_of(const Json& json) {
     const Json& whole = json.at("whole_maps");
     return {.worst = json.at("worst"),
             .rms = json.at("rms"),
-            .whole_cells = whole.at("cells"),
+            .whole_cells = static_cast<std::size_t>(whole_number_at(whole, "cells")),
             .crossed_share = json.at("crossed_by_edges"),
             .whole_rms = whole.at("rms"),
             .whole_limit = whole.at("limit"),
             .whole_over = whole.at("share_over_limit")};
 }
 
-Json json_of(const AtlasExports& exports) {
-    Json json = Json::object();
+OrderedJson json_of(const AtlasExports& exports) {
+    OrderedJson json = OrderedJson::object();
     for (const ExportedMosaic& mosaic : exports.bayer) {
         json["bayer"].push_back({{"file", mosaic.file}, {"altitude_m", mosaic.altitude_m}});
     }
@@ -105,8 +107,8 @@ AtlasExports exports_of(const Json& json) {
     return exports;
 }
 
-Json json_of(const AtlasManifest& manifest) {
-    Json bins = Json::array();
+OrderedJson json_of(const AtlasManifest& manifest) {
+    OrderedJson bins = OrderedJson::array();
     const std::vector<MapPoint> points = points_of(manifest.axes);
     for (std::size_t i = 0; i < points.size(); ++i) {
         bins.push_back({{"file", "bins/" + bin_name(points[i])},
@@ -138,7 +140,7 @@ void write_manifest(const fs::path& folder, const AtlasManifest& manifest) {
     // Titles are the user's and need not be UTF-8; JSON must be.
     write_text_file(
         manifest_path(folder),
-        json_of(manifest).dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n");
+        json_of(manifest).dump(kIndent, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
 }
 
 void require_axis(const std::vector<double>& values) {
@@ -156,8 +158,8 @@ AtlasManifest manifest_of(const Json& json) {
         .version = json.at("version"),
         .title = json.at("title"),
         .rig_digest = json.at("rig_sha256"),
-        .width_px = json.at("width_px"),
-        .height_px = json.at("height_px"),
+        .width_px = static_cast<int>(whole_number_at(json, "width_px", 1, kLargestImagePx)),
+        .height_px = static_cast<int>(whole_number_at(json, "height_px", 1, kLargestImagePx)),
         .error = json.at("error"),
         .axes = {.altitude_m = axes.at("altitude_m").get<Values>(),
                  .pitch_rad = scaled(axes.at("pitch_deg").get<Values>(), kRadiansPerDegree),
@@ -174,7 +176,6 @@ AtlasManifest manifest_of(const Json& json) {
     }
     for (const Json& bin : json.at("bins")) manifest.checksums.push_back(bin.at("sha256"));
     if (manifest.axes.altitude_m.front() <= 0.0) throw InputError("an altitude is not over 0");
-    if (manifest.width_px < 1 || manifest.height_px < 1) throw InputError("its maps have no size");
     if (manifest.checksums.size() != bin_count(manifest.axes)) {
         throw InputError("its bins are not those of its axes");
     }

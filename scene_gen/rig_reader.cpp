@@ -10,6 +10,7 @@
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/file_beside.h"
+#include "spectral/image_size.h"
 #include "spectral/nearest.h"
 #include "spectral/printable.h"
 #include "spectral/refraction.h"
@@ -56,7 +57,7 @@ struct Bounds {
 // What a rig may hold. Wide enough for any sled, narrow enough to catch a slipped unit.
 constexpr Bounds kAltitudeM{0.001, 10000.0};
 constexpr Bounds kTiltDeg{-89.9, 89.9};
-constexpr Bounds kResolutionPx{1.0, 16384.0};
+constexpr Bounds kResolutionPx{1.0, kLargestImagePx};
 constexpr Bounds kPixelPitchUm{0.01, 10000.0};
 constexpr Bounds kFocalLengthMm{0.01, 100000.0};
 constexpr Bounds kWavelengthNm{100.0, 10000.0};

@@ -2,6 +2,7 @@
 #include "spectral/json_text.h"
 
 #include "spectral/error.h"
+#include "spectral/printable.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -43,6 +44,25 @@ nlohmann::json parse_json(std::string_view text, const std::string& what) {
     nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
     if (json.is_discarded()) throw InputError(what + ": is not JSON");
     return json;
+}
+
+bool is_whole_number(const nlohmann::json& value, std::int64_t least, std::int64_t most) {
+    if (!value.is_number_integer()) return false;
+    const auto number = value.get<double>();
+    return number >= static_cast<double>(least) && number <= static_cast<double>(most);
+}
+
+std::int64_t whole_number_at(const nlohmann::json& object,
+                             const std::string& key,
+                             std::int64_t least,
+                             std::int64_t most) {
+    const nlohmann::json& value = object.at(key);
+    if (is_whole_number(value, least, most)) return value.get<std::int64_t>();
+    throw InputError(fmt::format("{}: found {}; allowed: a whole number from {} to {}",
+                                 key,
+                                 printable(value.dump()),
+                                 least,
+                                 most));
 }
 
 }  // namespace aphotic

@@ -4,6 +4,7 @@
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
+#include "spectral/image_size.h"
 #include "spectral/json_text.h"
 
 #include <fmt/format.h>
@@ -26,7 +27,6 @@ namespace {
 constexpr const char* kFormat = "aphotic-manifest-3";
 // A thousand times what the manifest of 100 wavelengths takes.
 constexpr std::size_t kMostManifestBytes = 64 * kMebibyte;
-constexpr int kLargestImagePx = 16384;
 
 constexpr const char* kChecksum = "sha256";
 
@@ -64,10 +64,7 @@ class Reader {
     [[nodiscard]] int integer(const std::string& key, int least, int most) const {
         const std::string allowed = fmt::format("a whole number from {} to {}", least, most);
         const Json& value = at(key, allowed);
-        if (!value.is_number_integer() || value.get<double>() < least ||
-            value.get<double>() > most) {
-            fail(key, allowed);
-        }
+        if (!is_whole_number(value, least, most)) fail(key, allowed);
         return value.get<int>();
     }
 

@@ -3,6 +3,7 @@
 
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
+#include "spectral/image_size.h"
 #include "spectral/json_text.h"
 #include "spectral/sensor.h"
 #include "validation/study_page.h"
@@ -189,35 +190,42 @@ Json channels_of(const StudyMeasure& measure) {
 }
 
 // JSON has no infinity: null stands for it.
-double number(const Json& json, const char* name) {
-    const Json& value = json.at(name);
+double number(const nlohmann::json& json, const char* name) {
+    const nlohmann::json& value = json.at(name);
     return value.is_null() ? kInfinity : value.get<double>();
 }
 
-Comparison comparison_from(const Json& json) {
+std::size_t count(const nlohmann::json& json, const char* name) {
+    return static_cast<std::size_t>(whole_number_at(json, name));
+}
+
+Comparison comparison_from(const nlohmann::json& json) {
+    const auto pixel = [&](const char* name) {
+        return static_cast<int>(whole_number_at(json, name, 0, kLargestImagePx - 1));
+    };
     return {.name = json.at("name").get<std::string>(),
             .max_error = number(json, "max_error"),
-            .column = json.at("column").get<int>(),
-            .row = json.at("row").get<int>(),
+            .column = pixel("column"),
+            .row = pixel("row"),
             .percentile_999 = number(json, "percentile_999"),
             .rms_error = number(json, "rms_error"),
             .mean_error = number(json, "mean_error"),
-            .compared = json.at("compared").get<std::size_t>(),
-            .on_edges = json.at("on_edges").get<std::size_t>(),
+            .compared = count(json, "compared"),
+            .on_edges = count(json, "on_edges"),
             .max_error_on_edges = number(json, "max_error_on_edges"),
-            .not_finite = json.at("not_finite").get<std::size_t>(),
+            .not_finite = count(json, "not_finite"),
             .bound = kInfinity};
 }
 
-std::optional<StudyMeasure> measure_from(const Json& json, const StudySetting& setting) {
+std::optional<StudyMeasure> measure_from(const nlohmann::json& json, const StudySetting& setting) {
     StudyMeasure measure{.setting = setting,
-                         .wavelengths = json.at("wavelengths").get<std::size_t>(),
-                         .frames = json.at("frames").get<std::size_t>(),
+                         .wavelengths = count(json, "wavelengths"),
+                         .frames = count(json, "frames"),
                          .promise = number(json, "promise"),
                          .render_s = json.at("render_s").get<double>(),
                          .integrate_s = json.at("integrate_s").get<double>(),
                          .channels = {}};
-    const Json& channels = json.at("channels");
+    const nlohmann::json& channels = json.at("channels");
     if (channels.size() != measure.channels.size()) return std::nullopt;
     std::ranges::transform(channels, measure.channels.begin(), comparison_from);
     return measure;
@@ -518,8 +526,14 @@ std::optional<StudyMeasure> saved_measure(const StudySetting& setting,
                                           const std::string& key,
                                           const std::filesystem::path& file) {
     if (!std::filesystem::exists(file)) return std::nullopt;
+    return parse_measure(read_text_file(file), setting, key);
+}
+
+std::optional<StudyMeasure> parse_measure(std::string_view text,
+                                          const StudySetting& setting,
+                                          const std::string& key) {
     try {
-        const Json json = parse_json(read_text_file(file), file.string());
+        const nlohmann::json json = parse_json(text, "measure");
         if (json.at("key").get<std::string>() != key) return std::nullopt;
         return measure_from(json, setting);
     } catch (const Json::exception&) {

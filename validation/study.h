@@ -129,6 +129,9 @@ struct Study {
 void save_measure(const StudyMeasure& measure,
                   const std::string& key,
                   const std::filesystem::path& file);
+[[nodiscard]] std::optional<StudyMeasure> parse_measure(std::string_view text,
+                                                        const StudySetting& setting,
+                                                        const std::string& key);
 [[nodiscard]] std::optional<StudyMeasure> saved_measure(const StudySetting& setting,
                                                         const std::string& key,
                                                         const std::filesystem::path& file);

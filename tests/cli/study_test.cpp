@@ -46,6 +46,14 @@ TEST_F(Study, MeasuresRecommendsAndGoesOnWhereItStopped) {
     ASSERT_EQ(resumed.status, 0) << resumed.err;
     EXPECT_NE(resumed.err.find("6 equal bands"), std::string::npos) << resumed.err;
     EXPECT_EQ(resumed.err.find("fitted"), std::string::npos) << resumed.err;
+    // A reference that is none is traced again.
+    const fs::path reference = folder_.path() / "out" / "reference" / "image.exr";
+    for (const std::string& half : {read_text_file(reference).substr(0, 700), std::string()}) {
+        write_file(reference, half);
+        const CommandResult traced = run(study);
+        EXPECT_EQ(traced.status, 0) << traced.err;
+        EXPECT_NE(read_text_file(reference), half);
+    }
 }
 
 TEST_F(Study, APlanIsAPictureToo) {

@@ -61,6 +61,33 @@ TEST(ParseJson, TakesBracketsInTextsForText) {
     EXPECT_EQ(parse_json("[\"\\\"" + brackets + "\"]", "f").at(0), "\"" + brackets);
 }
 
+TEST(WholeNumber, IsOneWithinItsBounds) {
+    const nlohmann::json json = parse_json(
+        R"({"a": 7, "half": 7.5, "seven": 7.0, "huge": 6.7e122, "most": 18446744073709551615,
+            "under": -1, "text": "7"})",
+        "f");
+    EXPECT_EQ(whole_number_at(json, "a", 1, 7), 7);
+    const auto error_at = [&](const std::string& key) -> std::string {
+        try {
+            static_cast<void>(whole_number_at(json, key, 0, 10));
+            return "no error";
+        } catch (const InputError& error) {
+            return error.what();
+        }
+    };
+    for (const auto& [key, found] :
+         std::map<std::string, std::string>{{"half", "7.5"},
+                                            {"seven", "7.0"},
+                                            {"huge", "6.7e+122"},
+                                            {"most", "18446744073709551615"},
+                                            {"under", "-1"},
+                                            {"text", "\"7\""}}) {
+        EXPECT_EQ(error_at(key),
+                  key + ": found " + found + "; allowed: a whole number from 0 to 10");
+    }
+    EXPECT_THROW(static_cast<void>(whole_number_at(json, "none")), nlohmann::json::out_of_range);
+}
+
 // Where each key was held against all before it, a million would take an hour.
 TEST(ParseJson, TakesAMillionKeys) {
     constexpr int kKeys = 1'000'000;

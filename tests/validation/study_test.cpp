@@ -456,6 +456,12 @@ TEST_F(SavedMeasure, ThatIsSomethingElseIsNothing) {
         write_file(file, json.dump());
         EXPECT_FALSE(saved_measure(setting, "key", file)) << "no " << name;
     }
+    for (const char* count : {"wavelengths", "frames"}) {
+        Json json = whole;
+        json[count] = 1e99;
+        write_file(file, json.dump());
+        EXPECT_FALSE(saved_measure(setting, "key", file)) << count;
+    }
     Json four = whole;
     four["channels"].push_back(four["channels"][0]);
     for (const std::string& text : {std::string("[]"), std::string("\"key\""), four.dump()}) {
