@@ -20,6 +20,7 @@
 #include "spectral/error.h"
 #include "spectral/exr.h"
 #include "spectral/integrator.h"
+#include "validation/saved_measure.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>

@@ -136,11 +136,7 @@ OrderedJson json_of(const AtlasManifest& manifest) {
 }
 
 void write_manifest(const fs::path& folder, const AtlasManifest& manifest) {
-    constexpr int kIndent = 2;
-    // Titles are the user's and need not be UTF-8; JSON must be.
-    write_text_file(
-        manifest_path(folder),
-        json_of(manifest).dump(kIndent, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
+    write_text_file(manifest_path(folder), json_text(json_of(manifest)));
 }
 
 void require_axis(const std::vector<double>& values) {

@@ -46,6 +46,11 @@ nlohmann::json parse_json(std::string_view text, const std::string& what) {
     return json;
 }
 
+std::string json_text(const nlohmann::ordered_json& json) {
+    constexpr int kIndent = 2;
+    return json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 bool is_whole_number(const nlohmann::json& value, std::int64_t least, std::int64_t most) {
     if (!value.is_number_integer()) return false;
     const auto number = value.get<double>();

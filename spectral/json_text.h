@@ -21,6 +21,10 @@ inline constexpr int kMostJsonDepth = 64;
 // An InputError begins with what, the name of the file.
 [[nodiscard]] nlohmann::json parse_json(std::string_view text, const std::string& what);
 
+// As it is written into files: indented, the last line ended. Titles are the user's and need not be
+// UTF-8; JSON must be: what is none is replaced.
+[[nodiscard]] std::string json_text(const nlohmann::ordered_json& json);
+
 // The library turns 1e99 into any int: a number is asked first. Counts have no bound but that every
 // double up to it is a whole number.
 inline constexpr std::int64_t kMostWholeNumber = std::int64_t{1}

@@ -124,18 +124,6 @@ struct Study {
                                                std::string_view name,
                                                std::string_view other);
 
-// One measure as JSON text, and back: how a study goes on where it stopped. `key` names all that
-// the measure depends on; nothing comes back for another key or a file that is not whole.
-void save_measure(const StudyMeasure& measure,
-                  const std::string& key,
-                  const std::filesystem::path& file);
-[[nodiscard]] std::optional<StudyMeasure> parse_measure(std::string_view text,
-                                                        const StudySetting& setting,
-                                                        const std::string& key);
-[[nodiscard]] std::optional<StudyMeasure> saved_measure(const StudySetting& setting,
-                                                        const std::string& key,
-                                                        const std::filesystem::path& file);
-
 // study.csv, one row a measure; study.json, all of the study; study.html, one self-contained page
 // with the plot (study_page.h). A number that is not finite is null in JSON and inf in CSV; a
 // promise that does not apply is null and empty.

@@ -2,7 +2,7 @@
 //
 // A saved measure of a study from any text: what is not ours tells of none, so every text is taken.
 #include "fuzz.h"
-#include "validation/study.h"
+#include "validation/saved_measure.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static_cast<void>(aphotic::parse_measure(

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
 
 namespace aphotic {
 
@@ -84,6 +85,19 @@ inline Study small_study() {
         study.measures.push_back(measure);
     }
     return study;
+}
+
+// What is rendered, whatever it is called.
+inline auto content_of(const StudySetting& s) {
+    return std::tuple(s.fitted,
+                      s.bands,
+                      s.per_frame,
+                      s.shrink,
+                      s.filter,
+                      s.one_soft_lamp,
+                      s.png,
+                      s.antialias,
+                      s.jobs);
 }
 
 }  // namespace aphotic
