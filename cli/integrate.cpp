@@ -74,19 +74,12 @@ Json account_of(const Options& options, const Manifest& manifest) {
     return account;
 }
 
-Needs needs_of_images(const Manifest& manifest) {
-    const ImageSize size = image_size(manifest);
-    const FileSizes files = largest_files(size);
-    const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    return {.folder_bytes = files.image_bytes + files.spectral_bytes + files.preview_bytes,
-            .temporary_bytes = 0,
-            .memory_bytes = integration_memory_bytes(size, threads)};
-}
-
 ExitStatus integrate_frames(const Options& options) {
     const fs::path images = images_folder(options);
     // Frames that cannot serve, and images that have no room, leave no folder behind.
-    require_room(needs_of_images(manifest_of(options)), images, options.ignore_needs);
+    const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    require_room(
+        integration_needs(image_size(manifest_of(options)), threads), images, options.ignore_needs);
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
     const Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
     Json outcome = integrate_folder(options.folder, manifest, options.preview, images);

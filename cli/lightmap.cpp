@@ -110,25 +110,6 @@ std::string words_of(const MapPromise& promise) {
                        promise.is_of_lamp_grids ? ", emitters being grids of lamps" : "");
 }
 
-// What an integration to as many channels holds, and beside it the planes of the file, a part's map
-// before it is one of them, and the preview's own copy.
-Needs needs_of_map(const Options& options, const Camera& camera, std::size_t parts) {
-    const ImageSize size{.width_px = camera.width_px,
-                         .height_px = camera.height_px,
-                         .wavelengths = kChannels * parts};
-    const bool has_preview = !options.preview_file.empty();
-    const std::uint64_t maps = 1 + parts + (parts > 0 ? 1 : 0) + (has_preview ? 1 : 0);
-    const std::uint64_t map_bytes = kChannels * sizeof(float) *
-                                    static_cast<std::uint64_t>(size.width_px) *
-                                    static_cast<std::uint64_t>(size.height_px);
-    const FileSizes files = largest_files(size);
-    ImageSize held = size;
-    held.wavelengths = std::max<std::size_t>(1, size.wavelengths);  // none is no integration
-    return {.folder_bytes = files.spectral_bytes + (has_preview ? files.preview_bytes : 0),
-            .temporary_bytes = 0,
-            .memory_bytes = integration_memory_bytes(held, options.map.threads) + maps * map_bytes};
-}
-
 ExitStatus make_lightmap(const Options& options) {
     const auto seconds_since = [](auto start) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -142,7 +123,11 @@ ExitStatus make_lightmap(const Options& options) {
         }
     };
     const std::vector<RigPart> parts = prefixed([&] { return parts_of(options, rig); });
-    require_room(needs_of_map(options, rig.camera, parts.size()),
+    require_room(lightmap_needs({.width_px = rig.camera.width_px,
+                                 .height_px = rig.camera.height_px,
+                                 .parts = parts.size(),
+                                 .has_preview = !options.preview_file.empty(),
+                                 .threads = options.map.threads}),
                  std::filesystem::absolute(options.file).parent_path(),
                  options.ignore_needs);
     const auto start = std::chrono::steady_clock::now();

@@ -157,6 +157,12 @@ Needs render_needs(const RenderWork& work) {
                                      integration_memory_bytes(work.size, work.jobs))};
 }
 
+Needs integration_needs(const ImageSize& size, int threads) {
+    return {.folder_bytes = images_bytes(size),
+            .temporary_bytes = 0,
+            .memory_bytes = integration_memory_bytes(size, threads)};
+}
+
 Needs trace_needs(const ImageSize& size, int threads) {
     return {.folder_bytes = images_bytes(size),
             .temporary_bytes = 0,
@@ -177,6 +183,22 @@ Needs study_needs(const ImageSize& size, std::size_t frames, int jobs) {
         std::max(needs.memory_bytes + kImageLibrary_bytes + kStudyReference_bytes * pixels_of(size),
                  study_memory_bytes(size, jobs));
     return needs;
+}
+
+// Held beside the planes of the file: a part's map before it is one of them, and the preview's own.
+Needs lightmap_needs(const LightmapWork& work) {
+    const ImageSize size{.width_px = work.width_px,
+                         .height_px = work.height_px,
+                         .wavelengths = kChannels * work.parts};
+    const FileSizes files = largest_files(size);
+    ImageSize held = size;
+    held.wavelengths = std::max<std::size_t>(1, size.wavelengths);  // none is no integration
+    const std::uint64_t maps =
+        1 + work.parts + (work.parts > 0 ? 1 : 0) + (work.has_preview ? 1 : 0);
+    return {.folder_bytes = files.spectral_bytes + (work.has_preview ? files.preview_bytes : 0),
+            .temporary_bytes = 0,
+            .memory_bytes = integration_memory_bytes(held, work.threads) +
+                            maps * kChannels * kFloat_bytes * pixels_of(size)};
 }
 
 Needs atlas_needs(const AtlasWork& work) {

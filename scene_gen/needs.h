@@ -21,7 +21,9 @@
 //   integration   12 P of signals, and the blocks of rows under way: two of ours, and two a thread
 //                 of OpenEXR's (spectral/row_blocks.h); then the preview, at which 25 P are held
 //                 together
-//   trace         the same, with 16 MiB of rows, or a row for each thread
+//   lightmap      the same as of an integration to three channels more for each part of the light,
+//                 and 12 P for each map that is held beside
+//   trace         that of an integration, with 16 MiB of rows, or a row for each thread
 //   validation    whole planes: 70 P, and 12 P for each wavelength of up to six at a time
 //   study         64 P, and 128 MiB of OpenImageIO: the reference, a setting's image, and what
 //                 compares them
@@ -88,11 +90,23 @@ struct RenderWork {
     int jobs = 1;
 };
 [[nodiscard]] Needs render_needs(const RenderWork& work);
+// Of frames that are there.
+[[nodiscard]] Needs integration_needs(const ImageSize& size, int threads);
 [[nodiscard]] Needs trace_needs(const ImageSize& size, int threads);
 // Beside those of its render.
 [[nodiscard]] Needs validation_needs(const ImageSize& size, int threads);
 // frames: of the setting that has most.
 [[nodiscard]] Needs study_needs(const ImageSize& size, std::size_t frames, int jobs);
+
+// A lightmap in one file (lightmap/lightmap.h), with those of parts of its light.
+struct LightmapWork {
+    int width_px = 0;
+    int height_px = 0;
+    std::size_t parts = 0;
+    bool has_preview = false;
+    int threads = 1;
+};
+[[nodiscard]] Needs lightmap_needs(const LightmapWork& work);
 
 // An atlas of lightmaps (lightmap/atlas.h), and what is exported beside it.
 struct AtlasWork {

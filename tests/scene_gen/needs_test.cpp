@@ -117,6 +117,34 @@ TEST(RenderNeeds, OfKeptFramesAreTheImagesAlone) {
     EXPECT_EQ(needs.memory_bytes, integration_memory_bytes(kSize, 4));
 }
 
+TEST(IntegrationNeeds, AreThoseOfKeptFrames) {
+    const Needs kept = render_needs({.size = kSize, .frames = 0, .scenes_bytes = 0, .jobs = 4});
+    const Needs needs = integration_needs(kSize, 4);
+    EXPECT_EQ(needs.folder_bytes, kept.folder_bytes);
+    EXPECT_EQ(needs.temporary_bytes, 0U);
+    EXPECT_EQ(needs.memory_bytes, kept.memory_bytes);
+}
+
+// Three floats a pixel and part, and as many of the sum; in memory the same beside what writing
+// takes, and a part's map on its own before it is one of them.
+TEST(LightmapNeeds, OfTheLargestImageAreByHand) {
+    LightmapWork work{.width_px = 16384, .height_px = 16384, .parts = 0, .threads = 1};
+    const auto near_px = [](std::uint64_t bytes, double bytes_of_pixel) {
+        EXPECT_NEAR(static_cast<double>(bytes),
+                    bytes_of_pixel * kPixelsOfLargest,
+                    kOverhead * bytes_of_pixel * kPixelsOfLargest);
+    };
+    near_px(lightmap_needs(work).folder_bytes, 12.0);
+    near_px(lightmap_needs(work).memory_bytes, 25.0 + 12.0);
+    work.parts = 4;
+    near_px(lightmap_needs(work).folder_bytes, 5.0 * 12.0);
+    near_px(lightmap_needs(work).memory_bytes, 25.0 + 6.0 * 12.0);
+    work.has_preview = true;
+    near_px(lightmap_needs(work).folder_bytes, 5.0 * 12.0 + 3.0);
+    near_px(lightmap_needs(work).memory_bytes, 25.0 + 7.0 * 12.0);
+    EXPECT_EQ(lightmap_needs(work).temporary_bytes, 0U);
+}
+
 // Rows come and go in blocks: what a higher image takes more are its signals and its preview,
 // however many the wavelengths.
 TEST(IntegrationMemory, GrowsWithTheHeightByTheSignalsAlone) {
