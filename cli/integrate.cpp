@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -41,6 +42,20 @@ fs::path images_folder(const Options& options) {
     if (!options.images_folder.empty()) return options.images_folder;
     if (options.rig_file.empty()) return options.folder;
     return fs::path(options.folder) / ("as-" + fs::path(options.rig_file).stem().string());
+}
+
+// Images of other frames, of another rig, or traced have the same names.
+void require_own_folder(const fs::path& images, const Options& options) {
+    std::error_code none;
+    const bool is_of_frames = fs::equivalent(images, options.folder, none);
+    if (is_of_frames && options.rig_file.empty()) return;
+    for (const fs::path& notes : {manifest_path(images), images / "trace.json"}) {
+        if (!fs::exists(notes)) continue;
+        throw InputError(fmt::format(
+            "{}: found the notes of a render or trace; allowed: a folder without, for these images "
+            "would take the place of its own",
+            notes.string()));
+    }
 }
 
 Manifest manifest_of(const Options& options) {
@@ -76,6 +91,7 @@ Json account_of(const Options& options, const Manifest& manifest) {
 
 ExitStatus integrate_frames(const Options& options) {
     const fs::path images = images_folder(options);
+    require_own_folder(images, options);
     // Frames that cannot serve, and images that have no room, leave no folder behind.
     const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     require_room(

@@ -73,6 +73,34 @@ TEST_F(CommandTrace, ItsImagesGiveWayToARender) {
     EXPECT_FALSE(fs::exists(file("again/trace.json")));
 }
 
+TEST_F(CommandTrace, IntegrationsKeepOutOfOtherImagesFolders) {
+    ASSERT_EQ(run("trace", "traced").status, 0);
+    ASSERT_EQ(run("render", "rendered").status, 0);
+    fs::copy(file("rendered"), file("other"), fs::copy_options::recursive);
+    const auto integrate = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"integrate", "rendered"});
+        return run_aphotic(folder_.path(), arguments);
+    };
+    const auto expect_refused = [&](const std::vector<std::string>& arguments,
+                                    const std::string& notes) {
+        const fs::path image = file(notes).parent_path() / "image.exr";
+        const std::string before = read_text_file(image);
+        const CommandResult refused = integrate(arguments);
+        EXPECT_EQ(refused.status, kBadInput);
+        EXPECT_NE(refused.err.find(notes + ": found the notes of a render or trace; allowed: "),
+                  std::string::npos)
+            << refused.err;
+        EXPECT_EQ(read_text_file(image), before);
+    };
+    expect_refused({"-o", "traced"}, "traced/trace.json");
+    expect_refused({"-o", "other"}, "other/manifest.json");
+    expect_refused({"--rig", "rig.toml", "--tolerance", "0.5", "-o", "rendered"},
+                   "rendered/manifest.json");
+    EXPECT_EQ(integrate({"-o", "rendered"}).status, 0);
+    EXPECT_EQ(integrate({"-o", "elsewhere"}).status, 0);
+    EXPECT_EQ(integrate({"-o", "elsewhere"}).status, 0) << "once more";
+}
+
 TEST_F(CommandTrace, IsNotHeldAgainstItself) {
     ASSERT_EQ(run("render", "rendered").status, 0);
     ASSERT_EQ(run("trace", "traced").status, 0);
