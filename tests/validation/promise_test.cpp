@@ -39,11 +39,11 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20240613;
 
-#ifdef __OPTIMIZE__
+#ifdef NDEBUG
 constexpr int kRigs = 500;
 constexpr int kRigsOfWavelengths = 100;
 #else
-// Unoptimised and with sanitizers the plan of one rig takes half a minute: there it is enough that
+// In debug builds, with sanitizers, the plan of one rig takes half a minute: there it is enough that
 // every line runs.
 constexpr int kRigs = 1;
 constexpr int kRigsOfWavelengths = 1;

@@ -28,7 +28,7 @@ namespace aphotic {
 namespace {
 
 constexpr std::uint64_t kSeed = 71'000;
-#ifdef __OPTIMIZE__
+#ifdef NDEBUG
 constexpr int kRigs = 400;
 constexpr int kRigsOfSignals = 120;  // the grid of wavelengths of one takes as long as ten images
 #else
