@@ -371,11 +371,12 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
             .index_nm = group.index_nm,
             .sdl = ""};
         for (const double l : lambda_nm.subspan(group.first, group.count)) {
+            const double radiance_bound = parts.brightest(l);
             scene.wavelengths.push_back(
                 {.lambda_nm = l,
-                 .exposure_log2 = exposure_log2(parts.brightest(l),
-                                                brightest_colour(rig, l, parts.fade_m),
-                                                options.peak_log2)});
+                 .exposure_log2 = exposure_log2(
+                     radiance_bound, brightest_colour(rig, l, parts.fade_m), options.peak_log2),
+                 .radiance_bound = radiance_bound});
         }
         scene.sdl = scene_sdl(rig, parts, scene, options);
         scenes.push_back(std::move(scene));

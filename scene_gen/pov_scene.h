@@ -37,7 +37,8 @@ namespace aphotic {
 
 struct FrameWavelength {
     double lambda_nm = 0.0;
-    int exposure_log2 = 0;  // e: the frame holds 2^e L(lambda)
+    int exposure_log2 = 0;        // e: the frame holds 2^e L(lambda)
+    double radiance_bound = 0.0;  // of L in view
 };
 
 struct FrameScene {

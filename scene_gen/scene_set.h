@@ -27,6 +27,7 @@ struct SceneSet {
     std::string scene_files_digest{};    // of the user's own, as it was planned for
 };
 
+// Throws InputError where a wavelength counts whose light is fainter than frames hold.
 [[nodiscard]] SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan);
 
 // What the lamps alone would signal: the sum over strobes of their light, undimmed and white, over
