@@ -43,8 +43,8 @@ constexpr std::uint64_t kSeed = 20240613;
 constexpr int kRigs = 500;
 constexpr int kRigsOfWavelengths = 100;
 #else
-// In debug builds, with sanitizers, the plan of one rig takes half a minute: there it is enough that
-// every line runs.
+// In debug builds, with sanitizers, the plan of one rig takes half a minute: there it is enough
+// that every line runs.
 constexpr int kRigs = 1;
 constexpr int kRigsOfWavelengths = 1;
 #endif
