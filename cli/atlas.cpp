@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct AtlasCommandOptions {
     std::string rig_file;
     std::string folder;
     AxisTexts axes;
@@ -46,11 +46,11 @@ struct Options {
     bool json = false;
 };
 
-bool is_exported(const Options& options, const char* what) {
+bool is_exported(const AtlasCommandOptions& options, const char* what) {
     return std::ranges::count(options.exports, what) > 0;
 }
 
-AtlasExports export_maps(const Options& options,
+AtlasExports export_maps(const AtlasCommandOptions& options,
                          const Rig& rig,
                          const std::vector<double>& altitude_m) {
     AtlasExports made;
@@ -70,7 +70,7 @@ AtlasExports export_maps(const Options& options,
     return made;
 }
 
-nlohmann::ordered_json json_of(const Options& options, const AtlasExports& exports) {
+nlohmann::ordered_json json_of(const AtlasCommandOptions& options, const AtlasExports& exports) {
     nlohmann::ordered_json made = nlohmann::ordered_json::object();
     const fs::path folder = options.folder;
     if (!exports.bayer.empty()) {
@@ -85,7 +85,7 @@ nlohmann::ordered_json json_of(const Options& options, const AtlasExports& expor
     return made;
 }
 
-void print(const nlohmann::ordered_json& outcome) {
+void print_atlas(const nlohmann::ordered_json& outcome) {
     fmt::print("{}: {}, {} of them computed, in {:.1f} s\n",
                outcome["title"].get<std::string>(),
                counted(outcome["bins"].get<std::size_t>(), "bin"),
@@ -130,7 +130,7 @@ std::function<void(double)> shown_as(const char* what, std::optional<ProgressLin
     };
 }
 
-ChosenAxes choose(const Options& options, const Rig& rig, const MapAxes& finest) {
+ChosenAxes choose(const AtlasCommandOptions& options, const Rig& rig, const MapAxes& finest) {
     std::optional<ProgressLine> line;
     const MeasureOptions measure{.threads = options.map.threads,
                                  .progress = shown_as("measuring", line)};
@@ -140,7 +140,7 @@ ChosenAxes choose(const Options& options, const Rig& rig, const MapAxes& finest)
 }
 
 // Of a map of the rig's size.
-AtlasWork work_of(const Options& options, const Rig& rig, const MapAxes& finest) {
+AtlasWork work_of(const AtlasCommandOptions& options, const Rig& rig, const MapAxes& finest) {
     return {.size = {.width_px = rig.camera.width_px, .height_px = rig.camera.height_px},
             .altitudes = finest.altitude_m.size(),
             .has_mosaics = is_exported(options, "bayer"),
@@ -149,7 +149,7 @@ AtlasWork work_of(const Options& options, const Rig& rig, const MapAxes& finest)
 }
 
 // Says what is to come, and refuses it where the disk has no room for it.
-void announce(const Options& options, const MapAxes& chosen, AtlasWork work) {
+void announce(const AtlasCommandOptions& options, const MapAxes& chosen, AtlasWork work) {
     const std::size_t all = bin_count(chosen);
     // One more, for a bin is written beside the one that it replaces.
     work.bins = std::min(all, bins_missing(options.folder, chosen) + 1);
@@ -172,7 +172,7 @@ struct MadeAtlas {
     AtlasExports exports;
 };
 
-MadeAtlas make(const Options& options, const Rig& rig, const MapAxes& finest) {
+MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes& finest) {
     if (is_exported(options, "exponential"))
         AltitudeFitter{finest.altitude_m};  // or it says why not
     MadeAtlas made{.chosen = choose(options, rig, finest), .exports = {}};
@@ -194,7 +194,7 @@ MadeAtlas make(const Options& options, const Rig& rig, const MapAxes& finest) {
     return made;
 }
 
-MadeAtlas make_named(const Options& options, const Rig& rig, const MapAxes& finest) {
+MadeAtlas make_named(const AtlasCommandOptions& options, const Rig& rig, const MapAxes& finest) {
     try {
         return make(options, rig, finest);
     } catch (const InputError& error) {
@@ -206,7 +206,7 @@ nlohmann::ordered_json noted_interpolation(const fs::path& folder) {
     return nlohmann::ordered_json::parse(read_text_file(folder / "atlas.json"))["interpolation"];
 }
 
-ExitStatus make_atlas(const Options& options) {
+ExitStatus make_atlas(const AtlasCommandOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     const Rig rig = read_rig(options.rig_file);
     const MadeAtlas made = make_named(options, rig, axes_of(options.axes, rig));
@@ -226,7 +226,7 @@ ExitStatus make_atlas(const Options& options) {
         fmt::print("{}\n", dumped(outcome));
         return holds ? kDone : kAnswerIsNo;
     }
-    print(outcome);
+    print_atlas(outcome);
     if (!holds) {
         fmt::print("  not within the tolerance of {:.2g}: the steps allow no finer bins\n",
                    options.tolerance);
@@ -239,7 +239,7 @@ ExitStatus make_atlas(const Options& options) {
 Action configure_atlas(CLI::App& app) {
     constexpr int kMostThreads = 1024;
     constexpr double kLeastTolerance = 1e-6;
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<AtlasCommandOptions>();
     app.add_option("RIG", options->rig_file, "the rig file (TOML)")->required();
     app.add_option("-o,--output", options->folder, "the folder to write to")
         ->required()

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/atlas_axes.h"
 
+#include "spectral/degrees.h"
 #include "spectral/error.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 namespace aphotic::cli {
 namespace {
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 struct Bounds {
     double least;

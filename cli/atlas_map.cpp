@@ -5,20 +5,18 @@
 #include "cli/words.h"
 #include "lightmap/atlas.h"
 #include "lightmap/planes.h"
+#include "spectral/degrees.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
 
 #include <fmt/format.h>
 
 #include <array>
-#include <numbers>
 #include <string>
 #include <vector>
 
 namespace aphotic::cli {
 namespace {
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 double value_on(const char* option,
                 const std::optional<double>& given,
@@ -95,7 +93,7 @@ void write_picture(const AtlasMapRequest& request, const Lightmap& map) {
                   request.preview_file);
 }
 
-void print(const nlohmann::ordered_json& outcome) {
+void print_map(const nlohmann::ordered_json& outcome) {
     const std::size_t bins = outcome["bins"];
     fmt::print(
         "{}: {} x {} pixels, {}\n",
@@ -147,7 +145,7 @@ ExitStatus write_atlas_map(const AtlasMapRequest& request) {
     if (request.json) {
         fmt::print("{}\n", dumped(outcome));
     } else {
-        print(outcome);
+        print_map(outcome);
     }
     return kDone;
 }

@@ -33,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct BaselineCommandOptions {
     std::string name;
     std::vector<std::string> images;
     std::string navigation;
@@ -50,7 +50,7 @@ Baseline baseline_named(const std::string& name) {
 }
 
 // The survey, and what has been found of it so far.
-struct Survey {
+struct BaselineSurvey {
     std::vector<SurveyFile> files;
     std::optional<Navigation> navigation;
     std::map<fs::path, std::string> skipped;      // an image, and why
@@ -61,7 +61,7 @@ struct Survey {
     }
 };
 
-RawImage read_finite(const SurveyFile& file, const Options& options) {
+RawImage read_finite(const SurveyFile& file, const BaselineCommandOptions& options) {
     RawImage image = without_black(read_survey_image(file.source, options.camera));
     if (!std::ranges::all_of(image.samples, [](float sample) { return std::isfinite(sample); })) {
         throw InputError("a sample is infinite or not a number");
@@ -69,7 +69,9 @@ RawImage read_finite(const SurveyFile& file, const Options& options) {
     return image;
 }
 
-void learn_survey(BaselineCorrector& corrector, Survey& survey, const Options& options) {
+void learn_survey(BaselineCorrector& corrector,
+                  BaselineSurvey& survey,
+                  const BaselineCommandOptions& options) {
     ProgressLine line;
     std::optional<RawImage> first;
     in_order(
@@ -88,7 +90,7 @@ void learn_survey(BaselineCorrector& corrector, Survey& survey, const Options& o
         });
 }
 
-fs::path result_of(const SurveyFile& file, const Options& options) {
+fs::path result_of(const SurveyFile& file, const BaselineCommandOptions& options) {
     return fs::path(options.folder) / (file.name.string() + ".exr");
 }
 
@@ -109,8 +111,8 @@ void write_image(const fs::path& file, const RawImage& image, const std::string&
 }
 
 std::size_t correct_survey(const BaselineCorrector& corrector,
-                           Survey& survey,
-                           const Options& options) {
+                           BaselineSurvey& survey,
+                           const BaselineCommandOptions& options) {
     ProgressLine line;
     std::size_t corrected = 0;
     in_order(
@@ -138,7 +140,7 @@ std::size_t correct_survey(const BaselineCorrector& corrector,
 }
 
 // Of all corrections, also what this one does not use.
-Json settings_of(const Options& options) {
+Json settings_of(const BaselineCommandOptions& options) {
     const BaselineOptions& baseline = options.baseline;
     return {{"aphotic", APHOTIC_VERSION},
             {"bayer", mosaic_name(options.camera.mosaic)},
@@ -152,23 +154,23 @@ Json settings_of(const Options& options) {
             {"bin_m", baseline.bin_m}};
 }
 
-Survey survey_of(const Options& options) {
-    Survey survey{.files = survey_files(options.images, options.folder),
-                  .navigation = {},
-                  .skipped = {},
-                  .found_later = {}};
+BaselineSurvey baseline_survey(const BaselineCommandOptions& options) {
+    BaselineSurvey survey{.files = survey_files(options.images, options.folder),
+                          .navigation = {},
+                          .skipped = {},
+                          .found_later = {}};
     require_sources_stay(survey.files, [&](const SurveyFile& file) {
         return std::vector<fs::path>{result_of(file, options)};
     });
     return survey;
 }
 
-ExitStatus correct(const Options& options) {
+ExitStatus correct_by_baseline(const BaselineCommandOptions& options) {
     BaselineCorrector corrector(baseline_named(options.name), options.baseline);
     if (corrector.needs_altitude() && options.navigation.empty())
         throw InputError(
             fmt::format("{}: needs --nav, for the altitude of each image", options.name));
-    Survey survey = survey_of(options);
+    BaselineSurvey survey = baseline_survey(options);
     if (corrector.needs_altitude()) survey.navigation = read_navigation(options.navigation, Sled{});
     const FolderLock lock = claim_tree(options.folder);
     // Before the first image: also what an interrupted run leaves is no survey.
@@ -231,7 +233,7 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options) {
 }  // namespace
 
 Action configure_baseline(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BaselineCommandOptions>();
     app.add_option("NAME", options->name, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
         ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
         ->required();
@@ -255,7 +257,7 @@ Action configure_baseline(CLI::App& app) {
         "from\n"
         "all images given, the others from each alone. An image that cannot be used is told and\n"
         "skipped; the exit status is then 1.");
-    return [options] { return correct(*options); };
+    return [options] { return correct_by_baseline(*options); };
 }
 
 }  // namespace aphotic::cli

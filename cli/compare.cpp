@@ -23,7 +23,7 @@
 namespace aphotic::cli {
 namespace {
 
-struct Options {
+struct CompareCommandOptions {
     std::string image;
     std::string reference;
     double bound = 6e-4;
@@ -39,7 +39,9 @@ bool has_channel(const AnyImage& image, const std::string& channel) {
     return std::ranges::find(image.channels, channel) != image.channels.end();
 }
 
-ChannelPairs channels_of(const AnyImage& a, const AnyImage& b, const Options& options) {
+ChannelPairs channels_of(const AnyImage& a,
+                         const AnyImage& b,
+                         const CompareCommandOptions& options) {
     ChannelPairs pairs = options.channels
                              ? named_channels(*options.channels, a.channels, b.channels)
                              : pair_channels(a.channels, b.channels, !options.scale.empty());
@@ -77,7 +79,7 @@ std::vector<unsigned char> unobserved_in(const AnyImage& a,
 std::vector<double> scales_of(const AnyImage& a,
                               const AnyImage& b,
                               const std::vector<std::string>& channels,
-                              const Options& options) {
+                              const CompareCommandOptions& options) {
     if (options.scale.empty()) return std::vector<double>(channels.size(), 1.0);
     std::vector<Scaling> scalings(options.scale == "image" ? 1 : channels.size());
     for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -105,7 +107,7 @@ ComparedChannel compare_channel(const AnyImage& a,
                                 const AnyImage& b,
                                 const std::string& name,
                                 double scale,
-                                const Options& options) {
+                                const CompareCommandOptions& options) {
     ComparedChannel channel{.comparison = {},
                             .scale = scale,
                             .image = samples_of(a, name),
@@ -131,7 +133,7 @@ ComparedChannel compare_channel(const AnyImage& a,
 }
 
 // Without a report the samples of a channel are let go before the next is read.
-ComparedImages compare_images(const Options& options) {
+ComparedImages compare_images(const CompareCommandOptions& options) {
     const AnyImage a = open_any_image(options.image);
     const AnyImage b = open_any_image(options.reference);
     if (a.width_px != b.width_px || a.height_px != b.height_px) {
@@ -168,7 +170,7 @@ ComparedImages compare_images(const Options& options) {
     return images;
 }
 
-nlohmann::ordered_json json_of(const Options& options, const ComparedImages& images) {
+nlohmann::ordered_json json_of(const CompareCommandOptions& options, const ComparedImages& images) {
     nlohmann::ordered_json json{{"image", options.image},
                                 {"reference", options.reference},
                                 {"bound", options.bound},
@@ -216,7 +218,7 @@ void print_channel(const ComparedChannel& channel, bool scaled) {
                notes);
 }
 
-void print_unpaired(const Options& options, const ComparedImages& images) {
+void print_unpaired(const CompareCommandOptions& options, const ComparedImages& images) {
     const auto print = [](const std::vector<std::string>& channels, const std::string& words) {
         if (!channels.empty()) fmt::print("{}: {}\n", words, fmt::join(channels, " "));
     };
@@ -225,7 +227,7 @@ void print_unpaired(const Options& options, const ComparedImages& images) {
     print(images.left_aside, "left aside");
 }
 
-void print_verdict(const Options& options, const ComparedImages& images) {
+void print_verdict(const CompareCommandOptions& options, const ComparedImages& images) {
     fmt::print("{} is {} {:.3g} of {}{}\n",
                options.image,
                images.are_within() ? "within" : "NOT within",
@@ -239,7 +241,7 @@ void print_verdict(const Options& options, const ComparedImages& images) {
     }
 }
 
-ExitStatus compare(const Options& options) {
+ExitStatus compare(const CompareCommandOptions& options) {
     const ComparedImages images = compare_images(options);
     const ExitStatus status = images.holds() ? kDone : kAnswerIsNo;
     const std::string json = dumped(json_of(options, images)) + "\n";
@@ -265,7 +267,7 @@ ExitStatus compare(const Options& options) {
 }  // namespace
 
 Action configure_compare(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CompareCommandOptions>();
     app.add_option("IMAGE", options->image, "the image in question, in any format of OpenImageIO")
         ->required();
     app.add_option("REFERENCE", options->reference, "what it should be")->required();

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CorrectCommandOptions {
     std::vector<std::string> images;
     std::string rig;
     std::string nav;
@@ -45,14 +45,14 @@ struct Options {
     bool json = false;
 };
 
-PerChannel wanted_middle(const Survey& survey, const Options& options) {
+PerChannel wanted_middle(const Survey& survey, const CorrectCommandOptions& options) {
     constexpr double kGrey = 0.2;
     if (!options.middle && survey.light.floor_colour) return *survey.light.floor_colour;
     const double middle = options.middle.value_or(kGrey);
     return {middle, middle, middle};
 }
 
-Json settings_of(const Survey& survey, const Options& options) {
+Json settings_of(const Survey& survey, const CorrectCommandOptions& options) {
     Json json{{"aphotic", APHOTIC_VERSION},
               {options.map.empty() ? "rig_sha256" : "map_sha256", survey.light.digest},
               {"bayer", mosaic_name(options.camera.mosaic)},
@@ -75,17 +75,18 @@ Json settings_of(const Survey& survey, const Options& options) {
     return json;
 }
 
-fs::path notes_of(const Options& options) {
+fs::path notes_of(const CorrectCommandOptions& options) {
     return options.result.folder / kCorrectionNotes;
 }
 
-std::optional<SurveyGain> noted_gain(const Options& options, const std::string& settings_sha256) {
+std::optional<SurveyGain> noted_gain(const CorrectCommandOptions& options,
+                                     const std::string& settings_sha256) {
     if (!fs::exists(notes_of(options))) return std::nullopt;
     return kept_gain(read_text_file(notes_of(options)), settings_sha256);
 }
 
 SurveyGain gain_of(const Survey& survey,
-                   const Options& options,
+                   const CorrectCommandOptions& options,
                    const std::string& settings_sha256) {
     if (!options.gain.empty()) {
         SurveyGain gain{.gain = {}, .middle = wanted_middle(survey, options), .images = {}};
@@ -134,7 +135,7 @@ Json json_of(const Outcome& outcome) {
     return json;
 }
 
-void print_summary(const Json& summary, const Options& options) {
+void print_summary(const Json& summary, const CorrectCommandOptions& options) {
     const std::size_t skipped = summary["skipped"].size();
     fmt::print("{} corrected in {:.1f} s, {} kept as they were, {} skipped\n",
                counted(summary["corrected"].get<std::size_t>(), "image"),
@@ -160,7 +161,7 @@ void print_summary(const Json& summary, const Options& options) {
     }
 }
 
-Survey survey_of(const Options& options) {
+Survey survey_of(const CorrectCommandOptions& options) {
     if (options.rig.empty() == options.map.empty()) {
         throw InputError("--rig with --nav, or --map: one of them is needed");
     }
@@ -189,7 +190,7 @@ Survey survey_of(const Options& options) {
     return survey;
 }
 
-ExitStatus correct(const Options& options) {
+ExitStatus correct(const CorrectCommandOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     const Survey survey = survey_of(options);
     const FolderLock lock = claim_tree(options.result.folder);
@@ -220,7 +221,7 @@ ExitStatus correct(const Options& options) {
     return outcome.skipped.empty() ? kDone : kAnswerIsNo;
 }
 
-void add_light_options(CLI::App& app, Options& options) {
+void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
     app.add_option("--rig", options.rig, "the sled that took the images")->type_name("RIG");
     app.add_option(
            "--nav",
@@ -238,7 +239,7 @@ void add_light_options(CLI::App& app, Options& options) {
         ->check(not_negative());
 }
 
-void add_raw_options(CLI::App& app, Options& options) {
+void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
     add_camera_options(app, options.camera);
     app.add_flag("--keep-mosaic", options.result.keep_mosaic, "write mosaics as such, not R, G, B");
     app.add_option("--white-level",
@@ -257,7 +258,7 @@ void add_raw_options(CLI::App& app, Options& options) {
         ->capture_default_str();
 }
 
-void add_result_options(CLI::App& app, Options& options) {
+void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
     constexpr double kLeastShare = 1e-6;
     constexpr double kLeastNoise = 1e-3;
     constexpr double kMostNoise = 10.0;
@@ -306,7 +307,7 @@ void add_result_options(CLI::App& app, Options& options) {
 
 Action configure_correct(CLI::App& app) {
     constexpr std::size_t kMostJobs = 1024;
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CorrectCommandOptions>();
     app.add_option(
            "IMAGES", options->images, "raw images, or folders of them: TIFF, PNG, EXR, JPEG")
         ->required();

@@ -45,7 +45,7 @@ constexpr std::array kMetadataKeys{"title",
                                    "uncertainty",
                                    "terms"};
 
-struct Options {
+struct DataCommandOptions {
     std::string name;
     bool csv = false;
     bool json = false;
@@ -226,7 +226,7 @@ Plot plot_of(const Entry& entry) {
     });
 }
 
-ExitStatus show_data(const Options& options) {
+ExitStatus show_data(const DataCommandOptions& options) {
     if (!options.splines.file.empty()) return write_spline_tables(options.splines, options.json);
     if (options.name.empty()) {
         list_tables(options.json);
@@ -247,7 +247,10 @@ ExitStatus show_data(const Options& options) {
     return kDone;
 }
 
-void add_spline_options(CLI::App& app, CLI::Option* name, CLI::Option* csv, Options& options) {
+void add_spline_options(CLI::App& app,
+                        CLI::Option* name,
+                        CLI::Option* csv,
+                        DataCommandOptions& options) {
     SplineOptions& splines = options.splines;
     auto* from = app.add_option("--from-spline",
                                 splines.file,
@@ -273,7 +276,7 @@ void add_spline_options(CLI::App& app, CLI::Option* name, CLI::Option* csv, Opti
 }  // namespace
 
 Action configure_data(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<DataCommandOptions>();
     auto* name = app.add_option("NAME", options->name, "a built-in table, or a CSV file to check");
     auto* csv = app.add_flag("--csv", options->csv, "the bare table: header row and numbers");
     app.add_flag("--json", options->json, "the same as JSON")->excludes(csv);

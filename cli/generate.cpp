@@ -22,14 +22,14 @@
 namespace aphotic::cli {
 namespace {
 
-struct Options {
+struct GenerateCommandOptions {
     PlanningOptions planning;
     std::string folder;
     std::string quick_look;
     bool json = false;
 };
 
-ExitStatus write_quick_look(const Options& options) {
+ExitStatus write_quick_look(const GenerateCommandOptions& options) {
     const Rig rig = read_rig(options.planning.rig_file);
     write_text_file(
         options.quick_look,
@@ -60,7 +60,7 @@ void print_own_scene(const SceneSet& scenes, const Manifest& manifest, const std
         shell_word(folder));
 }
 
-ExitStatus generate_scenes(const Options& options) {
+ExitStatus generate_scenes(const GenerateCommandOptions& options) {
     if (!options.quick_look.empty()) return write_quick_look(options);
     if (options.folder.empty()) {
         throw InputError("found neither --output nor --quick-look; allowed: one of them");
@@ -101,7 +101,7 @@ ExitStatus generate_scenes(const Options& options) {
 }  // namespace
 
 Action configure_generate(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<GenerateCommandOptions>();
     add_planning_options(app, options->planning);
     auto* folder =
         app.add_option("-o,--output", options->folder, "the folder to write to")->type_name("DIR");

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct IntegrateCommandOptions {
     std::string folder;
     std::string rig_file;
     std::string images_folder;
@@ -38,14 +38,14 @@ struct Options {
 };
 
 // Beside the frames' own images, so that neither takes the other's place.
-fs::path images_folder(const Options& options) {
+fs::path images_folder(const IntegrateCommandOptions& options) {
     if (!options.images_folder.empty()) return options.images_folder;
     if (options.rig_file.empty()) return options.folder;
     return fs::path(options.folder) / ("as-" + fs::path(options.rig_file).stem().string());
 }
 
 // Images of other frames, of another rig, or traced have the same names.
-void require_own_folder(const fs::path& images, const Options& options) {
+void require_own_folder(const fs::path& images, const IntegrateCommandOptions& options) {
     std::error_code none;
     const bool is_of_frames = fs::equivalent(images, options.folder, none);
     if (is_of_frames && options.rig_file.empty()) return;
@@ -58,7 +58,7 @@ void require_own_folder(const fs::path& images, const Options& options) {
     }
 }
 
-Manifest manifest_of(const Options& options) {
+Manifest manifest_of(const IntegrateCommandOptions& options) {
     Manifest manifest = read_manifest(options.folder);
     if (options.rig_file.empty()) return manifest;
     Rig rig = read_rig(options.rig_file);
@@ -75,7 +75,7 @@ Manifest manifest_of(const Options& options) {
 }
 
 // What the image is made of, for whoever finds it later.
-Json account_of(const Options& options, const Manifest& manifest) {
+Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest) {
     Json account{{"rig_title", manifest.rig_title},
                  {"rig_sha256", manifest.rig_sha256},
                  {"frames_of", fs::absolute(options.folder).lexically_normal().string()},
@@ -89,7 +89,7 @@ Json account_of(const Options& options, const Manifest& manifest) {
     return account;
 }
 
-ExitStatus integrate_frames(const Options& options) {
+ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     const fs::path images = images_folder(options);
     require_own_folder(images, options);
     // Frames that cannot serve, and images that have no room, leave no folder behind.
@@ -110,7 +110,7 @@ ExitStatus integrate_frames(const Options& options) {
 }  // namespace
 
 Action configure_integrate(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<IntegrateCommandOptions>();
     app.add_option("DIR", options->folder, "a folder of `aphotic render` or `aphotic generate`")
         ->required();
     auto* rig = app.add_option("--rig",

@@ -19,22 +19,21 @@
 namespace aphotic::cli {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 namespace {
 
 std::string line_of(const std::string& name, const JournalEntry& entry) {
-    const Json line{{"name", name},
-                    {"digest", entry.digest},
-                    {"files", entry.file_bytes},
-                    {"counts", entry.counts}};
-    return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const nlohmann::json line{{"name", name},
+                              {"digest", entry.digest},
+                              {"files", entry.file_bytes},
+                              {"counts", entry.counts}};
+    return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 // A line that was cut short, or that is not ours, tells of nothing.
 std::optional<std::pair<std::string, JournalEntry>> entry_of(const std::string& line) {
     try {
-        const Json read = parse_json(line, "journal");
+        const nlohmann::json read = parse_json(line, "journal");
         JournalEntry entry{.digest = read.at("digest").get<std::string>(),
                            .file_bytes = {},
                            .counts = read.at("counts").get<Counts>()};
@@ -43,7 +42,7 @@ std::optional<std::pair<std::string, JournalEntry>> entry_of(const std::string& 
             entry.file_bytes[file] = bytes.get<std::uintmax_t>();
         }
         return std::pair(read.at("name").get<std::string>(), std::move(entry));
-    } catch (const Json::exception&) {
+    } catch (const nlohmann::json::exception&) {
         return std::nullopt;
     } catch (const InputError&) {
         return std::nullopt;

@@ -13,6 +13,7 @@
 #include "lightmap/planes.h"
 #include "scene_gen/rig_reader.h"
 #include "scene_gen/scene_set.h"
+#include "spectral/degrees.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
 #include "spectral/preview.h"
@@ -24,16 +25,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <thread>
 
 namespace aphotic::cli {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
-
-struct Options {
+struct LightmapCommandOptions {
     std::string rig_file;
     std::string file;
     std::optional<double> altitude_m;
@@ -52,7 +50,7 @@ struct Options {
     bool json = false;
 };
 
-Rig rig_of(const Options& options) {
+Rig rig_of(const LightmapCommandOptions& options) {
     Rig rig = read_rig(options.rig_file);
     if (options.altitude_m) rig.sled.altitude_m = *options.altitude_m;
     if (options.pitch_deg) rig.sled.pitch_rad = *options.pitch_deg * kRadiansPerDegree;
@@ -61,7 +59,7 @@ Rig rig_of(const Options& options) {
     return rig;
 }
 
-std::vector<RigPart> parts_of(const Options& options, const Rig& rig) {
+std::vector<RigPart> parts_of(const LightmapCommandOptions& options, const Rig& rig) {
     std::vector<RigPart> parts;
     if (options.per_strobe) parts = parts_by_strobe(rig);
     if (options.per_cone) std::ranges::move(parts_by_cone(rig), std::back_inserter(parts));
@@ -83,7 +81,7 @@ struct Planes {
     }
 };
 
-void write(const Options& options, const Rig& rig, const Planes& planes) {
+void write(const LightmapCommandOptions& options, const Rig& rig, const Planes& planes) {
     ExrWriter writer(
         options.file,
         rig.camera.width_px,
@@ -110,7 +108,7 @@ std::string words_of(const MapPromise& promise) {
                        promise.is_of_lamp_grids ? ", emitters being grids of lamps" : "");
 }
 
-ExitStatus make_lightmap(const Options& options) {
+ExitStatus make_lightmap(const LightmapCommandOptions& options) {
     const auto seconds_since = [](auto start) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
@@ -208,7 +206,7 @@ ExitStatus make_lightmap(const Options& options) {
     return kDone;
 }
 
-void refuse_what_needs_a_rig(const CLI::App& app, const Options& options) {
+void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& options) {
     for (const char* option : {"--per-strobe", "--per-cone", "--error"}) {
         if (app.count(option) == 0) continue;
         throw InputError(fmt::format(
@@ -216,7 +214,7 @@ void refuse_what_needs_a_rig(const CLI::App& app, const Options& options) {
     }
 }
 
-ExitStatus make_map(const CLI::App& app, const Options& options) {
+ExitStatus make_map(const CLI::App& app, const LightmapCommandOptions& options) {
     if (!std::filesystem::is_directory(options.rig_file)) return make_lightmap(options);
     refuse_what_needs_a_rig(app, options);
     set_exr_threads(options.map.threads);
@@ -232,7 +230,7 @@ ExitStatus make_map(const CLI::App& app, const Options& options) {
                             .json = options.json});
 }
 
-void add_sled_options(CLI::App& app, Options& options) {
+void add_sled_options(CLI::App& app, LightmapCommandOptions& options) {
     constexpr double kLeastAltitude_m = 0.001;
     constexpr double kMostAltitude_m = 10000.0;
     constexpr double kMostTilt_deg = 89.9;
@@ -254,7 +252,7 @@ Action configure_lightmap(CLI::App& app) {
     constexpr int kMostThreads = 1024;
     constexpr double kLeastError = 1e-7;
     constexpr double kMostError = 0.1;
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<LightmapCommandOptions>();
     app.add_option("RIG", options->rig_file, "the rig file (TOML), or the folder of an atlas")
         ->required();
     app.add_option("-o,--output", options->file, "the OpenEXR file to write")

@@ -27,7 +27,7 @@
 namespace aphotic::cli {
 namespace {
 
-struct Options {
+struct ObserveCommandOptions {
     std::vector<std::string> images;
     std::string navigation;
     std::string output;
@@ -51,11 +51,6 @@ std::string name_of(Average average) {
         ->first;
 }
 
-struct Skipped {
-    std::filesystem::path image;
-    std::string why;
-};
-
 // The images at the altitude, and what became of the others.
 struct Selection {
     std::vector<std::filesystem::path> images;
@@ -73,7 +68,7 @@ Sled known_of(Sled sled, const Navigation& navigation) {
     return sled;
 }
 
-Selection selected(const Options& options) {
+Selection selected(const ObserveCommandOptions& options) {
     constexpr double kRounding_m = 1e-9;  // 2.1 lies within 0.1 of 2
     const Navigation navigation = read_navigation(options.navigation, Sled{});
     Selection selection;
@@ -89,7 +84,7 @@ Selection selected(const Options& options) {
             selection.images.push_back(file.source);
             selection.sleds.push_back(known_of(sled, navigation));
         } catch (const InputError& error) {
-            selection.skipped.push_back({.image = file.source, .why = error.what()});
+            selection.skipped.push_back({.image = file.source.string(), .why = error.what()});
         }
     }
     return selection;
@@ -98,7 +93,8 @@ Selection selected(const Options& options) {
 // Goes through the images in their order, and drops from the selection what cannot be used.
 class Pass {
   public:
-    Pass(const Options& options, Selection& selection) : options_(options), selection_(selection) {}
+    Pass(const ObserveCommandOptions& options, Selection& selection)
+        : options_(options), selection_(selection) {}
 
     // use(index, image); share: of all passes, where this one begins and ends.
     template <typename Use>
@@ -118,7 +114,7 @@ class Pass {
                     from + (to - from) * static_cast<double>(i + 1) / static_cast<double>(count));
             },
             [&](std::size_t i, const std::string& why) {
-                selection_.skipped.push_back({.image = selection_.images[i], .why = why});
+                selection_.skipped.push_back({.image = selection_.images[i].string(), .why = why});
                 bad.push_back(i);
             });
         for (; !bad.empty(); bad.pop_back()) {
@@ -147,7 +143,7 @@ class Pass {
                 .samples = {}};
     }
 
-    const Options& options_;
+    const ObserveCommandOptions& options_;
     Selection& selection_;
     RawImage first_;
     ProgressLine line_;
@@ -171,7 +167,7 @@ void append(std::vector<float>& to, const std::vector<float>& from) {
 
 // Every image is read once for each band of samples, as many as fit in memory of all images. A
 // first pass finds which images can be used at all.
-Observed ranked_by_bands(Pass& pass, Selection& selection, const Options& options) {
+Observed ranked_by_bands(Pass& pass, Selection& selection, const ObserveCommandOptions& options) {
     std::size_t samples = 0;
     pass.run([&](std::size_t, const RawImage& image) { samples = image.samples.size(); }, 0.0, 0.1);
     const std::size_t band = samples_in_memory(selection.images.size(), options.memory_mb);
@@ -192,7 +188,7 @@ Observed ranked_by_bands(Pass& pass, Selection& selection, const Options& option
             share(first + many));
         if (selection.skipped.size() > skipped) {
             throw RunError(fmt::format("{}: changed while it was read: {}",
-                                       selection.skipped.back().image.string(),
+                                       selection.skipped.back().image,
                                        selection.skipped.back().why));
         }
         const Observed part = average_of(images, options.average, options.trim, options.jobs);
@@ -218,7 +214,7 @@ double degrees(double radians) {
     return radians * 180.0 / std::numbers::pi;
 }
 
-void write_map(const Options& options,
+void write_map(const ObserveCommandOptions& options,
                const Observed& observed,
                const RawImage& like,
                std::size_t images,
@@ -264,7 +260,7 @@ double noise_of(const Observed& observed) {
                        : std::numeric_limits<double>::quiet_NaN();
 }
 
-nlohmann::ordered_json json_of(const Options& options,
+nlohmann::ordered_json json_of(const ObserveCommandOptions& options,
                                const Selection& selection,
                                const Sled& sled,
                                const Observed& observed) {
@@ -278,11 +274,11 @@ nlohmann::ordered_json json_of(const Options& options,
                                 {"relative_error", noise_of(observed)},
                                 {"skipped", nlohmann::ordered_json::array()}};
     for (const Skipped& skipped : selection.skipped)
-        json["skipped"].push_back({{"image", skipped.image.string()}, {"why", skipped.why}});
+        json["skipped"].push_back({{"image", skipped.image}, {"why", skipped.why}});
     return json;
 }
 
-void print_summary(const Options& options,
+void print_summary(const ObserveCommandOptions& options,
                    const Selection& selection,
                    const nlohmann::ordered_json& json) {
     const auto angle = [&](const char* key) {
@@ -305,7 +301,7 @@ void print_summary(const Options& options,
                selection.skipped.size());
 }
 
-ExitStatus observe(const Options& options) {
+ExitStatus observe(const ObserveCommandOptions& options) {
     Selection selection = selected(options);
     Observed observed;
     RawImage like;
@@ -337,7 +333,7 @@ ExitStatus observe(const Options& options) {
     return selection.skipped.empty() ? kDone : kAnswerIsNo;
 }
 
-void add_average_options(CLI::App& app, Options& options) {
+void add_average_options(CLI::App& app, ObserveCommandOptions& options) {
     app.add_option("--method", options.average, "mean, median or trimmed (mean)")
         ->transform(CLI::CheckedTransformer(kAverages).description(""))
         ->type_name("METHOD")
@@ -360,7 +356,7 @@ void add_average_options(CLI::App& app, Options& options) {
 }  // namespace
 
 Action configure_observe(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ObserveCommandOptions>();
     app.add_option("IMAGES", options->images, "images, and folders of images, in any format")
         ->required();
     app.add_option("--nav",

@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct PlanCommandOptions {
     PlanningOptions planning;
     std::string plot;
     bool json = false;
@@ -238,7 +238,7 @@ void print_for_people(const PlannedRender& planned, const SceneSet& scenes) {
 }  // namespace
 
 Action configure_plan(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<PlanCommandOptions>();
     add_planning_options(app, options->planning);
     app.add_option("--plot",
                    options->plot,

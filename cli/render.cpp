@@ -19,7 +19,7 @@
 namespace aphotic::cli {
 namespace {
 
-struct Options {
+struct RenderCommandOptions {
     PlanningOptions planning;
     std::string folder;
     int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -27,7 +27,7 @@ struct Options {
     bool json = false;
 };
 
-ExitStatus render_rig(const Options& options) {
+ExitStatus render_rig(const RenderCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const SceneSet scenes = scenes_of(planned, options.planning);
     const PovRay povray = povray_for(planned, options.planning, options.folder);
@@ -72,7 +72,7 @@ ExitStatus render_rig(const Options& options) {
 
 Action configure_render(CLI::App& app) {
     constexpr int kMostJobs = 1024;
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RenderCommandOptions>();
     add_planning_options(app, options->planning);
     app.add_option("-o,--output", options->folder, "the folder to write to")
         ->required()

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct StressCommandOptions {
     std::string folder;
     std::string povray;
     double stall_timeout_s = kStall_s;
@@ -58,7 +58,7 @@ RenderedImages render_case(const PovRay& povray,
 // A case mostly waits for POV-Ray, which starts by sleeping: so there are more at a time than
 // cores.
 std::vector<StressFound> measured(const std::vector<StressCase>& cases,
-                                  const Options& options,
+                                  const StressCommandOptions& options,
                                   const PovRay& povray) {
     constexpr std::size_t kWaiting = 2;
     std::vector<StressFound> found(cases.size());
@@ -96,7 +96,7 @@ void print_found(const std::vector<StressFound>& found, const std::string& folde
     fmt::print("  {0}/stress.md    to read\n  {0}/stress.json  for programs\n", folder);
 }
 
-ExitStatus stress(const Options& options) {
+ExitStatus stress(const StressCommandOptions& options) {
     const PovRay povray = find_povray(options.povray);
     std::vector<StressCase> cases = stress_cases(options.width_px);
     std::erase_if(cases, [&](const StressCase& asked) {
@@ -122,7 +122,7 @@ ExitStatus stress(const Options& options) {
 Action configure_stress(CLI::App& app) {
     constexpr int kMostJobs = 1024;
     constexpr int kMostWidth_px = 1360;
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<StressCommandOptions>();
     app.add_option("-o,--output", options->folder, "the folder to write to")
         ->required()
         ->type_name("DIR");

@@ -43,7 +43,7 @@ using Clock = std::chrono::steady_clock;
 // A 16-bit PNG ends at 1: the brightest pixel stays under a half, whatever the bound's margin.
 constexpr int kPngPeakLog2 = -1;
 
-struct Options {
+struct StudyCommandOptions {
     std::string rig_file;
     std::string folder;
     std::string povray;
@@ -279,7 +279,7 @@ void print_study(const Study& study, const fs::path& folder) {
 }
 
 // Of the setting that has most. Behind a port each wavelength may take a frame of its own.
-Needs needs_of(const Rig& rig, const std::vector<StudySetting>& settings, int cores) {
+Needs needs_of_renders(const Rig& rig, const std::vector<StudySetting>& settings, int cores) {
     int wavelengths = 0;
     int frames = 0;
     for (const StudySetting& s : settings) {
@@ -295,7 +295,7 @@ Needs needs_of(const Rig& rig, const std::vector<StudySetting>& settings, int co
                        cores);
 }
 
-ExitStatus study_rig(const Options& options) {
+ExitStatus study_rig(const StudyCommandOptions& options) {
     const fs::path folder = options.folder;
     Rig rig = read_rig(options.rig_file);
     if (!rig.scene.empty()) {
@@ -317,7 +317,7 @@ ExitStatus study_rig(const Options& options) {
                 .quick = options.quick,
                 .tolerance = options.tolerance};
     const std::vector<StudySetting> settings = study_settings(rig, options.quick, study.cores);
-    require_room(needs_of(rig, settings, study.cores), folder, options.ignore_needs);
+    require_room(needs_of_renders(rig, settings, study.cores), folder, options.ignore_needs);
     set_exr_threads(study.cores);
     const FolderLock lock = claim_folder(folder);
     make_folder(folder / "settings");
@@ -358,7 +358,7 @@ ExitStatus study_rig(const Options& options) {
 }  // namespace
 
 Action configure_study(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<StudyCommandOptions>();
     app.add_option("RIG", options->rig_file, "the rig file (TOML)")->required();
     app.add_option("-o,--output", options->folder, "the folder to write to")
         ->required()

@@ -6,6 +6,7 @@
 
 #include "cli/journal.h"
 #include "cli/survey_gain.h"
+#include "cli/survey_image.h"
 
 #include <algorithm>
 #include <array>
@@ -43,11 +44,6 @@ struct ResultOptions {
 // The files that are made of an image, below the folder.
 [[nodiscard]] std::vector<std::filesystem::path> results_of(const SurveyFile& file,
                                                             const ResultOptions& options);
-
-struct Skipped {
-    std::string image;
-    std::string why;
-};
 
 struct Outcome {
     std::size_t corrected = 0;

@@ -45,6 +45,11 @@ struct SurveyImage {
 // An InputError unless it is of this size, "as the map has".
 void require_size(const RawImage& image, int width_px, int height_px, std::string_view as);
 
+struct Skipped {
+    std::string image;
+    std::string why;
+};
+
 void print_skipped(const std::filesystem::path& file, const std::string& why);
 
 // In the format that the extension names: .exr of floats, all others of 16 bits; with what the

@@ -27,7 +27,7 @@
 namespace aphotic::cli {
 namespace {
 
-struct Options {
+struct TraceCommandOptions {
     PlanningOptions planning;
     std::string folder;
     int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -83,7 +83,7 @@ void print_errors(const nlohmann::ordered_json& outcome) {
     }
 }
 
-ExitStatus trace_rig(const Options& options) {
+ExitStatus trace_rig(const TraceCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     if (!planned.rig.scene.empty()) {
         fmt::print(stderr,
@@ -164,7 +164,7 @@ ExitStatus trace_rig(const Options& options) {
 
 Action configure_trace(CLI::App& app) {
     constexpr int kMostThreads = 1024;
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<TraceCommandOptions>();
     add_wavelength_options(app, options->planning);
     app.add_option("-o,--output", options->folder, "the folder to write to")
         ->required()

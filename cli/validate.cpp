@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ValidateCommandOptions {
     PlanningOptions planning;
     std::string folder;
     std::string rendered_folder;
@@ -44,7 +44,9 @@ struct Rendering {
     double integrate_s = 0.0;
 };
 
-Rendering render_here(const Options& options, const PovRay& povray, const SceneSet& scenes) {
+Rendering render_here(const ValidateCommandOptions& options,
+                      const PovRay& povray,
+                      const SceneSet& scenes) {
     const RenderedFrames frames = render_frames(povray,
                                                 options.folder,
                                                 scenes,
@@ -134,7 +136,7 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
         "  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);
 }
 
-void require_place_and_room(const Options& options, const PlannedRender& planned) {
+void require_place_and_room(const ValidateCommandOptions& options, const PlannedRender& planned) {
     Needs needs;
     if (options.rendered_folder.empty()) {
         const SceneSet scenes = scenes_of(planned, options.planning);
@@ -148,7 +150,7 @@ void require_place_and_room(const Options& options, const PlannedRender& planned
     require_room(needs, options.folder, options.planning.ignore_needs);
 }
 
-ExitStatus validate_rig(const Options& options) {
+ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const bool is_rendered = !options.rendered_folder.empty();
     // All that can be refused is refused before there is a folder.
@@ -207,7 +209,7 @@ ExitStatus validate_rig(const Options& options) {
 
 Action configure_validate(CLI::App& app) {
     constexpr int kMostJobs = 1024;
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ValidateCommandOptions>();
     add_planning_options(app, options->planning);
     app.add_option("-o,--output", options->folder, "the folder to write to")
         ->required()

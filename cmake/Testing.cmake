@@ -1,16 +1,20 @@
 # aphotic_tests(LABEL folder/name ...)
 #
-# Builds each tests/folder/name_test.cpp into a test program and gives its tests to CTest as
-# folder/Suite.Case, under a label:
+# Builds tests/folder/name_test.cpp ... into one test program a folder, folder_LABEL_tests, and gives
+# its tests to CTest as folder/Suite.Case, under a label:
 #
 #   unit    no other program needed; milliseconds each
 #   povray  runs POV-Ray, which takes every core: CTest counts such a test as two. Under the name
 #           povray_of_few_pixels it gets the same label and counts as one: POV-Ray mostly waits
 #   cli     runs the command as a user would
 #   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser
+#
+# A file's tests stand in a namespace of its name, aphotic::name_test: in a unity build the unnamed
+# namespaces of all files are one.
 include(GoogleTest)
 
 function(aphotic_tests label)
+    set(program ${label})
     if(label STREQUAL "povray")
         set(limits TIMEOUT 300 PROCESSORS 2)
     elseif(label STREQUAL "povray_of_few_pixels")
@@ -22,11 +26,16 @@ function(aphotic_tests label)
         set(limits TIMEOUT 300)  # for what hangs: with sanitizers on a busy machine some take 120
     endif()
 
-    foreach(name IN LISTS ARGN)
-        get_filename_component(folder ${name} DIRECTORY)
-        string(REPLACE "/" "_" target ${name}_test)
+    set(folders ${ARGN})
+    list(TRANSFORM folders REPLACE "/.*" "")
+    list(REMOVE_DUPLICATES folders)
+    foreach(folder IN LISTS folders)
+        set(sources ${ARGN})
+        list(FILTER sources INCLUDE REGEX "^${folder}/")
+        list(TRANSFORM sources APPEND _test.cpp)
+        set(target ${folder}_${program}_tests)
 
-        add_executable(${target} ${name}_test.cpp)
+        add_executable(${target} ${sources})
         target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}
                                                      ${PROJECT_SOURCE_DIR}/tests)
         # Half of the time to build them went into making tests fast that run for an instant.

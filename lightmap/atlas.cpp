@@ -2,6 +2,7 @@
 #include "lightmap/atlas.h"
 
 #include "spectral/atomic_file.h"
+#include "spectral/degrees.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
@@ -16,7 +17,6 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <optional>
 
 namespace aphotic {
@@ -28,7 +28,6 @@ using OrderedJson = nlohmann::ordered_json;  // as a reader of the file would li
 namespace {
 
 constexpr const char* kFormat = "aphotic-atlas-1";
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 // Of a number that was read in degrees and metres: as it was written, without the rounding of
 // radians.

@@ -33,7 +33,7 @@ MapAxes axes_of(const Rig& rig, const std::vector<double>& altitude_m) {
             .water_multiple = {rig.water.multiple}};
 }
 
-constexpr const char* kMosaics = "bayer";
+constexpr const char* kMosaicsFolder = "bayer";
 constexpr const char* kFits = "exponential.exr";
 
 // After the point, so that no altitude is rounded.
@@ -107,14 +107,14 @@ std::vector<ExportedMosaic> export_bayer(const fs::path& folder,
     const MapAxes axes = axes_of(rig, request.altitude_m);
     const int digits = digits_of(request.altitude_m);
     MapSource source(rig, axes, request.map);
-    make_folder(folder / kMosaics);
+    make_folder(folder / kMosaicsFolder);
     std::vector<ExportedMosaic> made;
     for (const MapPoint& point : points_of(axes)) {
         request.progress(static_cast<double>(made.size()) /
                          static_cast<double>(request.altitude_m.size()));
         const double altitude_m = point.sled.altitude_m;
         const std::string file =
-            fmt::format("{}/altitude_{:.{}f}m.exr", kMosaics, altitude_m, digits);
+            fmt::format("{}/altitude_{:.{}f}m.exr", kMosaicsFolder, altitude_m, digits);
         ExrAttributes attributes = attributes_of(rig);
         attributes.emplace_back("aphotic:altitude_m", fmt::format("{}", altitude_m));
         attributes.emplace_back("aphotic:mosaic", "RGGB");
@@ -129,16 +129,16 @@ std::vector<ExportedMosaic> export_bayer(const fs::path& folder,
 
 void remove_exports(const fs::path& folder) {
     fs::remove(folder / kFits);
-    if (!fs::is_directory(folder / kMosaics)) return;
-    remove_abandoned_files(folder / kMosaics);
+    if (!fs::is_directory(folder / kMosaicsFolder)) return;
+    remove_abandoned_files(folder / kMosaicsFolder);
     std::vector<fs::path> mosaics;
-    for (const auto& entry : fs::directory_iterator(folder / kMosaics)) {
+    for (const auto& entry : fs::directory_iterator(folder / kMosaicsFolder)) {
         const std::string name = entry.path().filename().string();
         if (name.starts_with("altitude_") && name.ends_with("m.exr"))
             mosaics.push_back(entry.path());
     }
     for (const fs::path& file : mosaics) fs::remove(file);
-    if (fs::is_empty(folder / kMosaics)) fs::remove(folder / kMosaics);
+    if (fs::is_empty(folder / kMosaicsFolder)) fs::remove(folder / kMosaicsFolder);
 }
 
 ExportedFit export_exponential(const fs::path& folder,

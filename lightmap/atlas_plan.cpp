@@ -134,7 +134,7 @@ class Cell {
 
 // By how much an axis' share of the tolerance shrinks at a time, and when it takes all its values.
 constexpr double kShrink = 0.75;
-constexpr double kLeastShare = 1e-3;
+constexpr double kShareThatCounts = 1e-3;
 
 using Axis = std::vector<double> MapAxes::*;
 constexpr std::array<Axis, 4> kAxes{
@@ -392,7 +392,7 @@ ChosenAxes axes_for(const Rig& rig,
         }
         const std::size_t a = most_to_blame(probe, finest, chosen, cell_of(chosen, worst));
         shares[a] *= kShrink;
-        chosen.*kAxes[a] = shares[a] < kLeastShare * tolerance
+        chosen.*kAxes[a] = shares[a] < kShareThatCounts * tolerance
                                ? finest.*kAxes[a]
                                : chosen_values(probe, finest, kAxes[a], shares[a], options);
     }

@@ -2,6 +2,7 @@
 #include "lightmap/cone_edge.h"
 
 #include "scene_gen/geometry.h"
+#include "spectral/image_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +14,6 @@ namespace aphotic {
 namespace {
 
 constexpr double kRightAngle = 0.5 * std::numbers::pi;
-
-std::size_t size_of(int number) {
-    return static_cast<std::size_t>(number);
-}
 
 // An emitter's rim at its corners and half way between them, and its middle; a point's own
 // position.

@@ -3,6 +3,7 @@
 
 #include "lightmap/cone_edge.h"
 #include "spectral/error.h"
+#include "spectral/image_size.h"
 #include "spectral/light_family.h"
 
 #include <fmt/format.h>
@@ -14,10 +15,6 @@
 namespace aphotic {
 
 namespace {
-
-std::size_t size_of(int number) {
-    return static_cast<std::size_t>(number);
-}
 
 void require_same_size(const RawImage& raw, const Lightmap& map) {
     if (raw.width_px == map.width_px && raw.height_px == map.height_px) return;

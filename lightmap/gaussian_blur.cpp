@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kBoxes = 5;
 
-using Plane = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using ImagePlane = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // 2 radius + 1 samples of weight 1, and one of weight `end` on either side of them.
-struct Box {
+struct BoxFilter {
     int radius = 0;
     double end = 0.0;
 
@@ -24,8 +24,8 @@ struct Box {
 
 // The longest box of whole samples whose variance is not above the wanted one, (L^2 - 1) / 12; its
 // ends make up what is missing.
-Box box_of(double variance) {
-    Box box{.radius = static_cast<int>((std::sqrt(12.0 * variance + 1.0) - 1.0) / 2.0)};
+BoxFilter box_of(double variance) {
+    BoxFilter box{.radius = static_cast<int>((std::sqrt(12.0 * variance + 1.0) - 1.0) / 2.0)};
     const double r = box.radius;
     box.end = (2.0 * r + 1.0) * (r * (r + 1.0) - 3.0 * variance) /
               (6.0 * (variance - (r + 1.0) * (r + 1.0)));
@@ -38,7 +38,7 @@ std::ptrdiff_t mirrored(std::ptrdiff_t at, std::ptrdiff_t length) {
     return in_period < length ? in_period : 2 * length - 1 - in_period;
 }
 
-void smooth_line(std::span<double> line, const Box& box, std::vector<double>& padded) {
+void smooth_line(std::span<double> line, const BoxFilter& box, std::vector<double>& padded) {
     const auto length = static_cast<std::ptrdiff_t>(line.size());
     const std::ptrdiff_t pad = box.radius + 1;
     padded.resize(static_cast<std::size_t>(length + 2 * pad));
@@ -53,7 +53,7 @@ void smooth_line(std::span<double> line, const Box& box, std::vector<double>& pa
     }
 }
 
-void smooth_rows(Plane& plane, const Box& box) {
+void smooth_rows(ImagePlane& plane, const BoxFilter& box) {
     std::vector<double> padded;
     for (Eigen::Index row = 0; row < plane.rows(); ++row) {
         const std::span line(plane.row(row).data(), static_cast<std::size_t>(plane.cols()));
@@ -66,10 +66,10 @@ void smooth_rows(Plane& plane, const Box& box) {
 std::vector<float> gaussian_blur(std::span<const float> plane, int width_px, double sigma_px) {
     using Samples = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const Eigen::Index height = static_cast<Eigen::Index>(plane.size()) / width_px;
-    const Box box = box_of(sigma_px * sigma_px / kBoxes);
-    Plane smooth = Eigen::Map<const Samples>(plane.data(), height, width_px).cast<double>();
+    const BoxFilter box = box_of(sigma_px * sigma_px / kBoxes);
+    ImagePlane smooth = Eigen::Map<const Samples>(plane.data(), height, width_px).cast<double>();
     smooth_rows(smooth, box);
-    Plane turned = smooth.transpose();
+    ImagePlane turned = smooth.transpose();
     smooth_rows(turned, box);
     std::vector<float> result(plane.size());
     Eigen::Map<Samples>(result.data(), height, width_px) = turned.transpose().cast<float>();

@@ -3,6 +3,7 @@
 
 #include "lightmap/row_light.h"
 #include "scene_gen/geometry.h"
+#include "spectral/degrees.h"
 #include "spectral/error.h"
 #include "spectral/light_family.h"
 #include "spectral/parallel.h"
@@ -41,17 +42,12 @@ void require_bare_floor(const Rig& rig) {
     }
 }
 
-bool is_same(const Spectrum& a, const Spectrum& b) {
-    return std::ranges::equal(a.lambda_nm(), b.lambda_nm()) &&
-           std::ranges::equal(a.values(), b.values());
-}
-
 // Each strobe's lamp spectrum: the first strobe that has it.
 std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
     std::vector<std::size_t> lamps;
     for (const Strobe& strobe : rig.strobes) {
         std::size_t first = 0;
-        while (!is_same(rig.strobes[first].spectrum, strobe.spectrum)) ++first;
+        while (!is_same_curve(rig.strobes[first].spectrum, strobe.spectrum)) ++first;
         lamps.push_back(first);
     }
     return lamps;
@@ -314,7 +310,6 @@ LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
 
 void LightmapMaker::require_served(const Sled& sled, bool is_before, bool is_beyond) const {
     if (!is_before && (!is_beyond || paths_.has_horizon)) return;
-    constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
     throw InputError(
         fmt::format("altitude {:.6g} m, pitch {:.6g}, roll {:.6g} degrees: the image sees paths {} "
                     "than the tables serve; allowed: from {:.6g} to {:.6g} m",

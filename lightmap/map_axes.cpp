@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/map_axes.h"
 
+#include "spectral/degrees.h"
 #include "spectral/error.h"
 
 #include <fmt/format.h>
@@ -8,13 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace aphotic {
 namespace {
 
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 // Of a value that went through text and degrees.
 constexpr double kSame = 1e-9;
 

@@ -2,6 +2,7 @@
 #include "lightmap/navigation.h"
 
 #include "spectral/atomic_file.h"
+#include "spectral/degrees.h"
 #include "spectral/error.h"
 #include "spectral/nearest.h"
 
@@ -12,7 +13,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr std::string_view kBlanks = " \t\r";
 
 // What a rig file allows, too.
@@ -38,10 +37,6 @@ constexpr std::string_view kImage = "image";
 constexpr std::string_view kAltitude = "altitude_m";
 constexpr std::string_view kPitch = "pitch_deg";
 constexpr std::string_view kRoll = "roll_deg";
-
-[[noreturn]] void fail(const std::string& name, std::size_t line, const std::string& what) {
-    throw InputError(fmt::format("{}:{}: {}", name, line, what));
-}
 
 std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(kBlanks);
@@ -75,7 +70,7 @@ std::vector<std::string_view> blank_fields(std::string_view line) {
 }
 
 // Which field of a line holds what.
-struct Layout {
+struct ColumnLayout {
     bool has_commas = false;
     std::size_t fields = 4;
     std::size_t image = 0;
@@ -91,33 +86,34 @@ std::optional<std::size_t> column_named(const std::vector<std::string_view>& col
     return static_cast<std::size_t>(found - columns.begin());
 }
 
-Layout layout_of(const std::string& name,
-                 std::size_t line,
-                 const std::vector<std::string_view>& columns) {
+ColumnLayout layout_of(const std::string& name,
+                       std::size_t line,
+                       const std::vector<std::string_view>& columns) {
     for (const std::string_view column : {kImage, kAltitude, kPitch, kRoll}) {
         if (std::ranges::count(columns, column) > 1) {
-            fail(name, line, fmt::format("the column '{}' stands twice", column));
+            fail_at_line(name, line, fmt::format("the column '{}' stands twice", column));
         }
     }
     for (const std::string_view needed : {kImage, kAltitude}) {
         if (column_named(columns, needed)) continue;
         const std::vector<std::string> known(columns.begin(), columns.end());
         const std::string near = nearest_name(needed, known);
-        fail(name,
-             line,
-             fmt::format("found the columns {}; needed: '{}'{}; allowed besides: {}, {}",
-                         fmt::join(columns, ","),
-                         needed,
-                         near.empty() ? "" : fmt::format(" (is it '{}'?)", near),
-                         kPitch,
-                         kRoll));
+        fail_at_line(name,
+                     line,
+                     fmt::format("found the columns {}; needed: '{}'{}; allowed besides: {}, {}",
+                                 fmt::join(columns, ","),
+                                 needed,
+                                 near.empty() ? "" : fmt::format(" (is it '{}'?)", near),
+                                 kPitch,
+                                 kRoll));
     }
     // Of an optional one under another name, the rig's would be taken and nobody be told.
     for (const auto& [wanted, word] : {std::pair{kPitch, "pitch"}, std::pair{kRoll, "roll"}}) {
         if (column_named(columns, wanted)) continue;
         for (const std::string_view column : columns) {
             if (!column.starts_with(word)) continue;
-            fail(name, line, fmt::format("found the column '{}'; allowed: '{}'", column, wanted));
+            fail_at_line(
+                name, line, fmt::format("found the column '{}'; allowed: '{}'", column, wanted));
         }
     }
     return {.has_commas = true,
@@ -138,26 +134,27 @@ double number_of(const std::string& name,
     const char* end = field.data() + field.size();
     const auto [stop, error] = std::from_chars(field.data(), end, number);
     if (error != std::errc() || stop != end) {
-        fail(name, line, fmt::format("{}: found '{}'; allowed: a number", column, field));
+        fail_at_line(name, line, fmt::format("{}: found '{}'; allowed: a number", column, field));
     }
     return number;
 }
 
 ImagePose pose_in(const std::string& name,
                   std::size_t line,
-                  const Layout& layout,
+                  const ColumnLayout& layout,
                   const std::vector<std::string_view>& fields,
                   const Sled& rig_sled) {
     if (fields.size() != layout.fields) {
-        fail(name,
-             line,
-             fmt::format("found {} fields; allowed: {}",
-                         fields.size(),
-                         layout.has_commas ? fmt::format("{}, as in the header row", layout.fields)
-                                           : "4: image, altitude, pitch, roll"));
+        fail_at_line(
+            name,
+            line,
+            fmt::format("found {} fields; allowed: {}",
+                        fields.size(),
+                        layout.has_commas ? fmt::format("{}, as in the header row", layout.fields)
+                                          : "4: image, altitude, pitch, roll"));
     }
     ImagePose pose{.image = std::string(fields[layout.image]), .line = line, .sled = rig_sled};
-    if (pose.image.empty()) fail(name, line, "found no image's name");
+    if (pose.image.empty()) fail_at_line(name, line, "found no image's name");
     pose.sled.altitude_m = number_of(name, line, kAltitude, fields[layout.altitude]);
     if (layout.pitch) {
         pose.sled.pitch_rad =
@@ -190,10 +187,11 @@ void require(const std::string& name,
              double value,
              const Bounds& bounds) {
     if (value >= bounds.least && value <= bounds.most) return;
-    fail(name,
-         pose.line,
-         fmt::format(
-             "{}: found {:.6g}; allowed: {} to {}", column, value, bounds.least, bounds.most));
+    fail_at_line(
+        name,
+        pose.line,
+        fmt::format(
+            "{}: found {:.6g}; allowed: {} to {}", column, value, bounds.least, bounds.most));
 }
 
 }  // namespace
@@ -213,7 +211,7 @@ Navigation parse_navigation(const std::string& name, std::string_view text, cons
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     Navigation navigation;
     navigation.name_ = name;
-    std::optional<Layout> layout;
+    std::optional<ColumnLayout> layout;
     std::size_t line = 0;
     for (std::size_t start = 0; start < text.size();) {
         const std::size_t end = std::min(text.find('\n', start), text.size());
@@ -227,7 +225,7 @@ Navigation parse_navigation(const std::string& name, std::string_view text, cons
             navigation.has_roll_ = layout->roll.has_value();
             continue;
         }
-        if (!layout) layout = Layout{};
+        if (!layout) layout = ColumnLayout{};
         ImagePose pose = pose_in(name,
                                  line,
                                  *layout,
@@ -236,13 +234,15 @@ Navigation parse_navigation(const std::string& name, std::string_view text, cons
         const std::string key = key_of(pose.image);
         const auto [other, is_new] = navigation.poses_.try_emplace(key, std::move(pose));
         if (!is_new) {
-            fail(name,
-                 line,
-                 fmt::format(
-                     "the image '{}' stands twice, first on line {}", key, other->second.line));
+            fail_at_line(
+                name,
+                line,
+                fmt::format(
+                    "the image '{}' stands twice, first on line {}", key, other->second.line));
         }
     }
-    if (navigation.poses_.empty()) fail(name, line + 1, "the file ends without a line of an image");
+    if (navigation.poses_.empty())
+        fail_at_line(name, line + 1, "the file ends without a line of an image");
     return navigation;
 }
 

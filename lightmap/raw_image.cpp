@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/raw_image.h"
 
+#include "spectral/image_size.h"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -15,18 +17,14 @@ struct MosaicSites {
     std::array<int, 4> channels;  // top left, top right, bottom left, bottom right
 };
 // In the order of Mosaic.
-constexpr std::array<MosaicSites, 5> kMosaics{{{"none", {}},
-                                               {"RGGB", {0, 1, 1, 2}},
-                                               {"BGGR", {2, 1, 1, 0}},
-                                               {"GRBG", {1, 0, 2, 1}},
-                                               {"GBRG", {1, 2, 0, 1}}}};
+constexpr std::array<MosaicSites, 5> kSitesOfMosaics{{{"none", {}},
+                                                      {"RGGB", {0, 1, 1, 2}},
+                                                      {"BGGR", {2, 1, 1, 0}},
+                                                      {"GRBG", {1, 0, 2, 1}},
+                                                      {"GBRG", {1, 2, 0, 1}}}};
 
 const MosaicSites& sites_of(Mosaic mosaic) {
-    return kMosaics[static_cast<std::size_t>(mosaic)];
-}
-
-std::size_t size_of(int number) {
-    return static_cast<std::size_t>(number);
+    return kSitesOfMosaics[static_cast<std::size_t>(mosaic)];
 }
 
 // The plane with one more pixel all around, mirrored about the outermost ones.

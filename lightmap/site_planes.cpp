@@ -7,14 +7,14 @@ namespace aphotic {
 namespace {
 
 // Where the planes of an image begin in its samples, and how far apart its sites are.
-struct Layout {
+struct SiteLayout {
     std::size_t planes = 0;
     std::size_t step = 1;
 };
 
-Layout layout_of(const RawImage& image) {
-    return image.mosaic == Mosaic::None ? Layout{.planes = kChannels, .step = 1}
-                                        : Layout{.planes = 4, .step = 2};
+SiteLayout layout_of(const RawImage& image) {
+    return image.mosaic == Mosaic::None ? SiteLayout{.planes = kChannels, .step = 1}
+                                        : SiteLayout{.planes = 4, .step = 2};
 }
 
 // Calls visit(index in the plane, index in the image) for every sample of the plane.
@@ -36,7 +36,7 @@ void for_each_site(const RawImage& image, std::size_t plane, const Visit& visit)
 }  // namespace
 
 std::vector<SitePlane> site_planes(const RawImage& image) {
-    const Layout layout = layout_of(image);
+    const SiteLayout layout = layout_of(image);
     const int step = static_cast<int>(layout.step);
     std::vector<SitePlane> planes(layout.planes);
     for (std::size_t p = 0; p < planes.size(); ++p) {

@@ -28,7 +28,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr auto kPollInterval = std::chrono::milliseconds(20);
 constexpr auto kReportInterval = std::chrono::milliseconds(250);
 
 // The image while it is made. Beside it POV-Ray keeps its state, and leaves that when it is

@@ -23,7 +23,7 @@ std::atomic<bool> is_told = false;  // Interrupted is on its way up
 
 std::mutex holds_mutex;
 int holds = 0;
-std::array<struct sigaction, kSignals.size()> before{};
+std::array<struct sigaction, kSignals.size()> previous_actions{};
 
 extern "C" void note_signal(int signal) {
     noted_signal = signal;
@@ -34,14 +34,14 @@ void start_noting() {
     noting.sa_handler = note_signal;
     noting.sa_flags = SA_RESTART;
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        ::sigaction(kSignals[i], nullptr, &before[i]);
-        if (before[i].sa_handler != SIG_IGN) ::sigaction(kSignals[i], &noting, nullptr);
+        ::sigaction(kSignals[i], nullptr, &previous_actions[i]);
+        if (previous_actions[i].sa_handler != SIG_IGN) ::sigaction(kSignals[i], &noting, nullptr);
     }
 }
 
 void stop_noting() {
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        ::sigaction(kSignals[i], &before[i], nullptr);
+        ::sigaction(kSignals[i], &previous_actions[i], nullptr);
     }
     const int signal = noted_signal.exchange(0);
     if (signal != 0 && !is_told.exchange(false)) ::raise(signal);

@@ -26,8 +26,6 @@ namespace bp = boost::process;
 
 namespace {
 
-constexpr auto kPollInterval = std::chrono::milliseconds(10);
-
 // POV-Ray must not outlive us, however we end: the kernel sends it SIGKILL. A group of its own, so
 // that what it starts can be stopped with it.
 struct DieWithParent : bp::extend::handler {

@@ -10,6 +10,7 @@
 // stopped.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -23,6 +24,9 @@ namespace aphotic {
 
 // A log of a frame that takes a day holds some MiB of POV-Ray's progress.
 inline constexpr std::uintmax_t kMostLogBytes = std::uintmax_t{64} << 20U;
+
+// How often one looks whether a process has ended.
+inline constexpr auto kPollInterval = std::chrono::milliseconds(20);
 
 struct ProcessRequest {
     std::filesystem::path executable;

@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <list>
 #include <optional>
@@ -33,8 +32,6 @@ namespace aphotic {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr auto kPollInterval = std::chrono::milliseconds(20);
 
 // What the scene asked for, as aphotic.inc tells it.
 struct Asked {

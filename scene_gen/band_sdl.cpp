@@ -15,11 +15,6 @@ namespace {
 constexpr std::size_t kMostNameLetters = 60;  // in aphotic.inc
 constexpr std::size_t kRoomForANumber = 6;
 
-bool is_same(const Spectrum& a, const Spectrum& b) {
-    return std::ranges::equal(a.lambda_nm(), b.lambda_nm()) &&
-           std::ranges::equal(a.values(), b.values());
-}
-
 std::string array_sdl(std::string_view name, const std::vector<std::string>& elements) {
     return fmt::format("#declare {} = array[{}] {{{}}}\n",
                        name,
@@ -68,7 +63,7 @@ std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra) {
         for (const NamedSpectrum& other : names) {
             if (scene_name(short_name(other.spectrum)) != name) continue;
             is_there |= short_name(other.spectrum) == short_name(spectrum) &&
-                        is_same(other.spectrum, spectrum);
+                        is_same_curve(other.spectrum, spectrum);
             ++same_name;
         }
         if (is_there) continue;
@@ -86,7 +81,7 @@ std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra) {
 const std::string& name_of(const Spectrum& spectrum, std::span<const NamedSpectrum> names) {
     for (const NamedSpectrum& named : names) {
         if (short_name(named.spectrum) == short_name(spectrum) &&
-            is_same(named.spectrum, spectrum)) {
+            is_same_curve(named.spectrum, spectrum)) {
             return named.name;
         }
     }

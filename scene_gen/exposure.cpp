@@ -19,14 +19,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::size_t kGrid = 33;              // points along each side of the image
+constexpr std::size_t kGridOfFloor = 33;       // points along each side of the image
 constexpr double kMarginView = 1.5;            // a point this far outside the image may still count
 constexpr double kLeastLampDistance_m = 1e-3;  // as the reader of rigs allows it
 constexpr int kColourLimitLog2 = 120;          // colours are single precision: 2^128 overflows
-
-double angle_between(const Vector3d& a, const Vector3d& b) {
-    return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 bool may_be_in_view(const Camera& camera, const Vector3d& point_m) {
     const double reach = kMarginView * 0.5 * camera.pixel_pitch_m / camera.focal_length_m;
@@ -75,11 +71,11 @@ double least_object_distance_m(const Strobe& strobe, const Object& object) {
 }  // namespace
 
 RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
-    const std::vector<std::optional<FloorSample>> samples = floor_samples(rig, kGrid);
+    const std::vector<std::optional<FloorSample>> samples = floor_samples(rig, kGridOfFloor);
     const auto neighbours_of = [&](std::size_t index) {
         std::vector<Vector3d> neighbours_m;
-        const bool is_last_of_row = index % kGrid == kGrid - 1;
-        for (const std::size_t step : {std::size_t{1}, kGrid}) {
+        const bool is_last_of_row = index % kGridOfFloor == kGridOfFloor - 1;
+        for (const std::size_t step : {std::size_t{1}, kGridOfFloor}) {
             if (step == 1 && is_last_of_row) continue;
             if (index + step >= samples.size() || !samples[index + step]) continue;
             neighbours_m.push_back(samples[index + step]->point_m);

@@ -133,4 +133,8 @@ double axial_intensity(const Cone& cone, ConeWeights weights) {
     return cone.weight / (std::numbers::pi * sin_gamma * sin_gamma);
 }
 
+double angle_between(const Vector3d& a, const Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
 }  // namespace aphotic

@@ -95,6 +95,9 @@ inline constexpr double kLampSpacing = 0.011;
 //   literal:  A_k = alpha_k, as the source paper prints it
 [[nodiscard]] double axial_intensity(const Cone& cone, ConeWeights weights);
 
+// [rad], of directions of any length.
+[[nodiscard]] double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 [[nodiscard]] inline Eigen::Vector3d to_povray(const Eigen::Vector3d& sled) {
     return {sled.y(), sled.x(), sled.z()};
 }

@@ -105,15 +105,11 @@ double first_lit_path_m(const Rig& rig) {
     return std::isfinite(first_m) ? first_m : 0.0;
 }
 
-bool is_same(const Spectrum& a, const Spectrum& b) {
-    return std::ranges::equal(a.lambda_nm(), b.lambda_nm()) &&
-           std::ranges::equal(a.values(), b.values());
-}
-
 std::vector<Spectrum> distinct(const std::vector<Spectrum>& curves) {
     std::vector<Spectrum> kept;
     for (const Spectrum& curve : curves) {
-        if (std::ranges::none_of(kept, [&](const Spectrum& k) { return is_same(k, curve); })) {
+        if (std::ranges::none_of(kept,
+                                 [&](const Spectrum& k) { return is_same_curve(k, curve); })) {
             kept.push_back(curve);
         }
     }
@@ -188,7 +184,7 @@ std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
     std::vector<std::size_t> lamps;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         std::size_t first = 0;
-        while (!is_same(rig.strobes[first].spectrum, rig.strobes[s].spectrum)) ++first;
+        while (!is_same_curve(rig.strobes[first].spectrum, rig.strobes[s].spectrum)) ++first;
         lamps.push_back(first);
     }
     return lamps;

@@ -25,10 +25,6 @@ constexpr double kPortShift = 0.02;
 // A cell that spans more than this, seen from a lamp close above it, may be widest at no corner.
 constexpr double kWideRad = 1.0;
 
-double angle_between(const Vector3d& a, const Vector3d& b) {
-    return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 // The angle off by which other wavelengths' rays and other lamps of an emitter may see a floor
 // point.
 double margin_rad(const Rig& rig, const Strobe& strobe, double distance_m, double camera_leg_m) {

@@ -81,7 +81,7 @@ Housing housing(const Camera& camera) {
     return h;
 }
 
-LampGrid lamps_of(const Rig& rig, const Strobe& strobe, const SceneOptions& options) {
+LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe, const SceneOptions& options) {
     if (options.soft_edges) return {};
     return options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_attenuation_per_m));
 }
@@ -101,7 +101,7 @@ constexpr std::size_t kMostLights = 100'000;
 void require_few_enough_lights(const Rig& rig, const SceneOptions& options) {
     std::size_t lights = 0;
     for (const Strobe& strobe : rig.strobes) {
-        const LampGrid grid = lamps_of(rig, strobe, options);
+        const LampGrid grid = grid_of_lamps(rig, strobe, options);
         const auto lamps =
             static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.along);
         lights += strobe.beam.cones.size() * (strobe.emitter ? lamps : 1);
@@ -173,7 +173,7 @@ void require_place_for_objects(const Rig& rig) {
 std::vector<StrobeInScene> strobes_in_scene(const Rig& rig, const SceneOptions& options) {
     std::vector<StrobeInScene> strobes;
     for (const Strobe& strobe : rig.strobes) {
-        StrobeInScene in_scene{.cones = {}, .lamps = lamps_of(rig, strobe, options)};
+        StrobeInScene in_scene{.cones = {}, .lamps = grid_of_lamps(rig, strobe, options)};
         for (const Cone& cone : strobe.beam.cones) {
             const bool shines = strobe.power > 0.0 && cone.weight > 0.0 &&
                                 (options.user_scene || lights_the_view(rig, strobe, cone));
@@ -185,7 +185,7 @@ std::vector<StrobeInScene> strobes_in_scene(const Rig& rig, const SceneOptions& 
     return strobes;
 }
 
-std::vector<NamedSpectrum> lamps_of(const Rig& rig) {
+std::vector<NamedSpectrum> named_lamps_of(const Rig& rig) {
     std::vector<Spectrum> spectra;
     for (const Strobe& strobe : rig.strobes) spectra.push_back(strobe.spectrum);
     return named(spectra);
@@ -317,7 +317,7 @@ std::string scene_sdl(const Rig& rig,
 }
 
 Parts parts_of(const Rig& rig, const SceneOptions& options) {
-    Parts parts{.lamps = lamps_of(rig),
+    Parts parts{.lamps = named_lamps_of(rig),
                 .reflectances = reflectances_of(rig, options),
                 .rig = "",
                 .fade_m = fade_distance_m(rig, options),
@@ -355,7 +355,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
     require_few_enough_lights(rig, options);
     require_place_for_objects(rig);
     for (const Strobe& strobe : rig.strobes) {
-        require_place_for_lamps(rig, strobe, lamps_of(rig, strobe, options));
+        require_place_for_lamps(rig, strobe, grid_of_lamps(rig, strobe, options));
     }
     const Parts parts = parts_of(rig, options);
     const std::vector<std::string> labels = wavelength_labels(lambda_nm);

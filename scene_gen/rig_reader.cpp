@@ -7,6 +7,7 @@
 #include "scene_gen/solid.h"
 #include "spectral/atomic_file.h"
 #include "spectral/builtin.h"
+#include "spectral/degrees.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/file_beside.h"
@@ -23,7 +24,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -32,7 +32,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr double kMetresPerMillimetre = 1e-3;
 constexpr double kMetresPerMicrometre = 1e-6;
 

@@ -2,6 +2,7 @@
 #include "scene_gen/rig_sdl.h"
 
 #include "scene_gen/pov_objects.h"
+#include "spectral/degrees.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +13,6 @@
 namespace aphotic {
 
 namespace {
-
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 // The share of its lamp's flux that a cone carries.
 double flux_share(const Cone& cone, ConeWeights weights) {

@@ -6,6 +6,7 @@
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
+#include "spectral/frame_check.h"
 
 #include <fmt/format.h>
 
@@ -73,8 +74,7 @@ void note_light(const Rig& rig, ManifestWavelength& w) {
 void require_light_that_counts(std::span<const FrameWavelength> light,
                                std::span<const WeightedWavelength> rule,
                                double frame_error) {
-    constexpr double kLostLog2 = -14.0;  // half floats begin to lose digits
-    constexpr double kHeldLog2 = -8.0;   // also a pixel 64 times darker has all of them
+    constexpr double kHeldLog2 = -8.0;  // also a pixel 64 times darker has all of them
     const auto peak_log2 = [](const FrameWavelength& w) {
         return std::log2(w.radiance_bound) + w.exposure_log2;
     };
@@ -90,7 +90,7 @@ void require_light_that_counts(std::span<const FrameWavelength> light,
             is_held = is_held || (counts(k) && peak_log2(light[k]) >= kHeldLog2);
         }
         for (std::size_t k = 0; is_held && k < rule.size(); ++k) {
-            if (!counts(k) || peak_log2(light[k]) >= kLostLog2) continue;
+            if (!counts(k) || peak_log2(light[k]) >= kSmallestNormalHalfLog2) continue;
             throw InputError(fmt::format(
                 "found light of at most {:.1e} at {} nm, fainter than frames hold, which counts in "
                 "{} by a weight of {:.1e}; allowed: wavelengths that frames hold, or that count "

@@ -8,7 +8,9 @@
 //             Exit status 3.
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
+#include <string>
 
 namespace aphotic {
 
@@ -21,5 +23,12 @@ class RunError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
+
+// An InputError about a line of a file that the user gave.
+[[noreturn]] inline void fail_at_line(const std::string& file,
+                                      std::size_t line,
+                                      const std::string& what) {
+    throw InputError(file + ":" + std::to_string(line) + ": " + what);
+}
 
 }  // namespace aphotic

@@ -12,6 +12,7 @@
 namespace aphotic {
 
 inline constexpr float kLargestHalf = 65504.0F;
+inline constexpr int kSmallestNormalHalfLog2 = -14;  // below it half floats lose digits
 
 // Samples of whole rows, the first of which is first_row.
 void check_samples(const std::filesystem::path& file,

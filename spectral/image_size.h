@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The most pixels across or along an image, of rigs and of what is made from them.
+// Sizes of images: numbers of pixels, rows and columns.
 #pragma once
+
+#include <cstddef>
 
 namespace aphotic {
 
+// The most pixels across or along an image, of rigs and of what is made from them.
 inline constexpr int kLargestImagePx = 16384;
+
+// A number that is not negative, as containers count.
+[[nodiscard]] constexpr std::size_t size_of(int number) {
+    return static_cast<std::size_t>(number);
+}
 
 }  // namespace aphotic

@@ -4,6 +4,7 @@
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
+#include "spectral/frame_check.h"
 #include "spectral/image_size.h"
 #include "spectral/json_text.h"
 
@@ -212,7 +213,6 @@ ManifestWavelength wavelength_of(const Reader& reader, double previous_nm, Frame
 
 double Manifest::black(std::size_t channel) const {
     constexpr double kRoom = 64.0;
-    constexpr int kSmallestNormalHalfLog2 = -14;
     double sum = 0.0;
     for (const ManifestWavelength& w : wavelengths) {
         sum += std::ldexp(std::abs(w.weight[channel]), kSmallestNormalHalfLog2 - w.exposure_log2);

@@ -133,4 +133,9 @@ std::vector<double> union_of_knots(std::span<const Spectrum* const> curves, Wave
     return knots;
 }
 
+bool is_same_curve(const Spectrum& a, const Spectrum& b) {
+    return std::ranges::equal(a.lambda_nm(), b.lambda_nm()) &&
+           std::ranges::equal(a.values(), b.values());
+}
+
 }  // namespace aphotic

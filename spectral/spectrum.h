@@ -46,6 +46,9 @@ class Spectrum {
     std::vector<double> values_;
 };
 
+// The same knots and values, under whatever names.
+[[nodiscard]] bool is_same_curve(const Spectrum& a, const Spectrum& b);
+
 // The range that all curves cover; first_nm > last_nm when there is none.
 [[nodiscard]] WavelengthRange common_range(std::span<const Spectrum* const> curves);
 

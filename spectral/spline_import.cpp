@@ -31,10 +31,6 @@ constexpr std::size_t kMaxVector = 5;   // POV-Ray's longest
 constexpr std::size_t kMostShown = 80;  // of a text, in a message
 constexpr int kMaxDepth = 100;          // of brackets in brackets
 
-[[noreturn]] void fail(const std::string& file, std::size_t line, const std::string& what) {
-    throw InputError(fmt::format("{}:{}: {}", file, line, what));
-}
-
 struct Token {
     enum class Kind { End, Number, Word, Text, Symbol };
     Kind kind = Kind::End;
@@ -100,7 +96,8 @@ class Lexer {
         const std::size_t first_line = line_;
         int depth = 0;
         do {
-            if (rest_.empty()) fail(file_, first_line, "the comment that begins here never ends");
+            if (rest_.empty())
+                fail_at_line(file_, first_line, "the comment that begins here never ends");
             const bool opens = rest_.starts_with("/*");
             const bool closes = rest_.starts_with("*/");
             depth += opens ? 1 : closes ? -1 : 0;
@@ -111,7 +108,7 @@ class Lexer {
     Token text() {
         std::size_t end = 1;
         while (end < rest_.size() && rest_[end] != '"') end += rest_[end] == '\\' ? 2 : 1;
-        if (end >= rest_.size()) fail(file_, line_, "the text that begins here never ends");
+        if (end >= rest_.size()) fail_at_line(file_, line_, "the text that begins here never ends");
         return cut(Token::Kind::Text, end + 1);
     }
 
@@ -175,7 +172,8 @@ class Parser {
             : is_printable
                 ? fmt::format("'{}'", printable(token_.text.substr(0, kMostShown)))
                 : fmt::format("the byte 0x{:02X}", static_cast<unsigned char>(token_.text[0]));
-        fail(file_, token_.line, fmt::format("{}: found {}; allowed: {}", where_, found, allowed));
+        fail_at_line(
+            file_, token_.line, fmt::format("{}: found {}; allowed: {}", where_, found, allowed));
     }
 
     [[noreturn]] void fail_for_want_of_spectra() const {
@@ -235,7 +233,7 @@ class Parser {
             spectrum.knots.push_back(knot);
         }
         if (fmt::format("{}", spectrum.knots.size()) != kArraySize) {
-            fail(
+            fail_at_line(
                 file_,
                 spectrum.line,
                 fmt::format(
@@ -245,21 +243,22 @@ class Parser {
 
     void check_wavelength(const SplineKnot& knot) const {
         if (kSplineRange.contains(knot.lambda_nm)) return;
-        fail(file_,
-             knot.line,
-             fmt::format("{}: found the wavelength {}; allowed: {} to {}, in nm",
-                         where_,
-                         knot.lambda_nm,
-                         kSplineRange.first_nm,
-                         kSplineRange.last_nm));
+        fail_at_line(file_,
+                     knot.line,
+                     fmt::format("{}: found the wavelength {}; allowed: {} to {}, in nm",
+                                 where_,
+                                 knot.lambda_nm,
+                                 kSplineRange.first_nm,
+                                 kSplineRange.last_nm));
     }
 
     void sort_knots(SplineSpectrum& spectrum) const {
         auto& knots = spectrum.knots;
         if (knots.size() < 2) {
-            fail(file_,
-                 spectrum.line,
-                 fmt::format("{}: found {} knots; a curve needs 2 or more", where_, knots.size()));
+            fail_at_line(
+                file_,
+                spectrum.line,
+                fmt::format("{}: found {} knots; a curve needs 2 or more", where_, knots.size()));
         }
         std::stable_sort(knots.begin(), knots.end(), [](const auto& a, const auto& b) {
             return a.lambda_nm < b.lambda_nm;
@@ -269,12 +268,13 @@ class Parser {
                 return !(a.lambda_nm < b.lambda_nm);
             });
         if (twice == knots.end()) return;
-        fail(file_,
-             std::next(twice)->line,
-             fmt::format("{}: found the wavelength {} again, first in line {}; allowed: once",
-                         where_,
-                         twice->lambda_nm,
-                         twice->line));
+        fail_at_line(
+            file_,
+            std::next(twice)->line,
+            fmt::format("{}: found the wavelength {} again, first in line {}; allowed: once",
+                        where_,
+                        twice->lambda_nm,
+                        twice->line));
     }
 
     // Two spectra may not go to one file, on disks that know no case either.
@@ -282,14 +282,15 @@ class Parser {
         const std::string table = spline_table_name(spectrum.identifier);
         for (const SplineSpectrum& other : found_.spectra) {
             if (spline_table_name(other.identifier) != table) continue;
-            fail(file_,
-                 spectrum.line,
-                 fmt::format("{}: found a second spectrum for {}, the first is {} in line {}; "
-                             "allowed: one",
-                             where_,
-                             table,
-                             other.identifier,
-                             other.line));
+            fail_at_line(
+                file_,
+                spectrum.line,
+                fmt::format("{}: found a second spectrum for {}, the first is {} in line {}; "
+                            "allowed: one",
+                            where_,
+                            table,
+                            other.identifier,
+                            other.line));
         }
         found_.spectra.push_back(std::move(spectrum));
     }
@@ -306,19 +307,21 @@ class Parser {
             std::adjacent_find(components.begin(), components.end(), std::not_equal_to<>()) !=
             components.end();
         if (unequal || components.size() < 2 || components.size() > kMaxVector) {
-            fail(file_,
-                 line,
-                 fmt::format("{}: found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
-                             where_,
-                             fmt::join(components, ", "),
-                             kMaxVector));
+            fail_at_line(
+                file_,
+                line,
+                fmt::format("{}: found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
+                            where_,
+                            fmt::join(components, ", "),
+                            kMaxVector));
         }
         return components.front();
     }
 
     [[nodiscard]] double finite(double number, std::size_t line) const {
         if (std::isfinite(number)) return number;
-        fail(file_, line, fmt::format("{}: found a number out of range; allowed: finite", where_));
+        fail_at_line(
+            file_, line, fmt::format("{}: found a number out of range; allowed: finite", where_));
     }
 
     double sum(int depth) {
@@ -382,14 +385,14 @@ void check_values(const std::string& file, const SplineSpectrum& spectrum, Curve
     for (const SplineKnot& knot : spectrum.knots) {
         const bool fits = knot.value >= 0.0 && (is_lamp(role) || knot.value <= 1.0);
         if (fits) continue;
-        fail(file,
-             knot.line,
-             fmt::format("{}: found {} at {} nm; allowed for {}: {}",
-                         spectrum.identifier,
-                         knot.value,
-                         knot.lambda_nm,
-                         role_name(role),
-                         is_lamp(role) ? "0 or more" : "0 to 1"));
+        fail_at_line(file,
+                     knot.line,
+                     fmt::format("{}: found {} at {} nm; allowed for {}: {}",
+                                 spectrum.identifier,
+                                 knot.value,
+                                 knot.lambda_nm,
+                                 role_name(role),
+                                 is_lamp(role) ? "0 or more" : "0 to 1"));
     }
 }
 

@@ -60,10 +60,6 @@ const RoleRule& rule_of(CurveRole role) {
     });
 }
 
-[[noreturn]] void fail(const std::string& name, std::size_t line, const std::string& what) {
-    throw InputError(fmt::format("{}:{}: {}", name, line, what));
-}
-
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view kBlanks = " \t\r";
     const std::size_t first = text.find_first_not_of(kBlanks);
@@ -114,9 +110,10 @@ double parse_field(const Table& table,
     const char* end = field.data() + field.size();
     const auto [stop, error] = std::from_chars(field.data(), end, number);
     if (error != std::errc() || stop != end || !std::isfinite(number)) {
-        fail(table.name,
-             line,
-             fmt::format("{}: found '{}'; allowed: a finite decimal number", column, field));
+        fail_at_line(
+            table.name,
+            line,
+            fmt::format("{}: found '{}'; allowed: a finite decimal number", column, field));
     }
     return number;
 }
@@ -134,28 +131,28 @@ void take_header(Table& table, std::size_t line, const std::vector<std::string_v
     table.columns.assign(fields.begin(), fields.end());
     std::set<std::string> seen;
     for (const std::string& column : table.columns) {
-        if (column.empty()) fail(table.name, line, "found a column without a name");
+        if (column.empty()) fail_at_line(table.name, line, "found a column without a name");
         const bool starts_like_a_name = std::isalpha(static_cast<unsigned char>(column[0])) != 0;
         if (!starts_like_a_name) {
-            fail(table.name,
-                 line,
-                 fmt::format("found '{}' where a header row such as "
-                             "wavelength_nm,reflectance is expected",
-                             column));
+            fail_at_line(table.name,
+                         line,
+                         fmt::format("found '{}' where a header row such as "
+                                     "wavelength_nm,reflectance is expected",
+                                     column));
         }
         if (!seen.insert(column).second) {
-            fail(table.name, line, fmt::format("the column '{}' stands twice", column));
+            fail_at_line(table.name, line, fmt::format("the column '{}' stands twice", column));
         }
     }
 }
 
 void take_row(Table& table, std::size_t line, const std::vector<std::string_view>& fields) {
     if (fields.size() != table.columns.size()) {
-        fail(table.name,
-             line,
-             fmt::format("found {} fields; allowed: {}, as in the header row",
-                         fields.size(),
-                         table.columns.size()));
+        fail_at_line(table.name,
+                     line,
+                     fmt::format("found {} fields; allowed: {}, as in the header row",
+                                 fields.size(),
+                                 table.columns.size()));
     }
     TableRow row{line, {}};
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -166,7 +163,7 @@ void take_row(Table& table, std::size_t line, const std::vector<std::string_view
 
 void take_line(Table& table, std::size_t line, std::string_view text) {
     if (!is_utf8_text(text)) {
-        fail(table.name, line, "found bytes that are not text; allowed: UTF-8");
+        fail_at_line(table.name, line, "found bytes that are not text; allowed: UTF-8");
     }
     const std::string_view content = trimmed(text);
     if (content.empty()) return;
@@ -189,12 +186,12 @@ void check_header(const Table& table, const RoleRule& rule) {
     for (const auto& header : rule.headers) {
         allowed.push_back(fmt::format("{}", fmt::join(header, ",")));
     }
-    fail(table.name,
-         table.header_line,
-         fmt::format("found the header row {}; allowed for {}: {}",
-                     fmt::join(table.columns, ","),
-                     rule.name,
-                     fmt::join(allowed, " or ")));
+    fail_at_line(table.name,
+                 table.header_line,
+                 fmt::format("found the header row {}; allowed for {}: {}",
+                             fmt::join(table.columns, ","),
+                             rule.name,
+                             fmt::join(allowed, " or ")));
 }
 
 void check_wavelengths(const Table& table) {
@@ -202,12 +199,13 @@ void check_wavelengths(const Table& table) {
     for (const TableRow& row : table.rows) {
         const double lambda_nm = row.fields[0];
         if (!(lambda_nm > last_nm)) {
-            fail(table.name,
-                 row.line,
-                 fmt::format("wavelength_nm: found {}; allowed: above {}, for wavelengths must "
-                             "increase",
-                             lambda_nm,
-                             last_nm));
+            fail_at_line(
+                table.name,
+                row.line,
+                fmt::format("wavelength_nm: found {}; allowed: above {}, for wavelengths must "
+                            "increase",
+                            lambda_nm,
+                            last_nm));
         }
         last_nm = lambda_nm;
     }
@@ -219,12 +217,13 @@ void check_values(const Table& table, const RoleRule& rule) {
             const double value = row.fields[i];
             if (value >= 0.0 && value <= rule.max_value) continue;
             const bool bounded = rule.max_value != kNoUpperBound;
-            fail(table.name,
-                 row.line,
-                 fmt::format("{}: found {}; allowed: {}",
-                             table.columns[i],
-                             value,
-                             bounded ? fmt::format("0 to {}", rule.max_value) : "0 or more"));
+            fail_at_line(
+                table.name,
+                row.line,
+                fmt::format("{}: found {}; allowed: {}",
+                            table.columns[i],
+                            value,
+                            bounded ? fmt::format("0 to {}", rule.max_value) : "0 or more"));
         }
     }
 }
@@ -253,8 +252,8 @@ Table parse_table(const std::string& name, std::string_view text) {
         take_line(table, ++line, text.substr(start, end - start));
         start = end + 1;
     }
-    if (table.columns.empty()) fail(name, line + 1, "the file ends without a header row");
-    if (table.rows.empty()) fail(name, line + 1, "the file ends without a row of numbers");
+    if (table.columns.empty()) fail_at_line(name, line + 1, "the file ends without a header row");
+    if (table.rows.empty()) fail_at_line(name, line + 1, "the file ends without a row of numbers");
     return table;
 }
 
@@ -279,7 +278,7 @@ std::vector<Spectrum> curves_of(const Table& table, CurveRole role) {
     check_wavelengths(table);
     check_values(table, rule);
     if (table.rows.size() < 2) {
-        fail(table.name, table.rows.back().line, "found 1 row; a curve needs 2 or more");
+        fail_at_line(table.name, table.rows.back().line, "found 1 row; a curve needs 2 or more");
     }
     const std::vector<double> lambda_nm = column_of(table, 0);
     std::vector<Spectrum> curves;
@@ -309,11 +308,11 @@ std::vector<CurveRole> roles_of(const Table& table) {
     }
     if (!roles.empty()) return roles;
     if (fault) throw *fault;
-    fail(table.name,
-         table.header_line,
-         fmt::format("found the header row {}; allowed: {}",
-                     fmt::join(table.columns, ","),
-                     fmt::join(headers, ", ")));
+    fail_at_line(table.name,
+                 table.header_line,
+                 fmt::format("found the header row {}; allowed: {}",
+                             fmt::join(table.columns, ","),
+                             fmt::join(headers, ", ")));
 }
 
 }  // namespace aphotic

@@ -284,7 +284,7 @@ std::string not_compared(const ComparedImages& images) {
                : "<h3>Channels not compared</h3>\n<dl id=\"not-compared\">\n" + list + "</dl>\n";
 }
 
-std::string rule(const ComparedImages& images) {
+std::string image_rule(const ComparedImages& images) {
     return error_rule(
         images.scaled ? "the image’s sample, divided by its channel’s scale" : "the image’s sample",
         "the reference’s sample",
@@ -318,7 +318,7 @@ std::string comparison_html(const ComparedImages& images) {
         user_text(images.image),
         user_text(images.reference),
         verdict(images),
-        rule(images));
+        image_rule(images));
     content += table(images) + not_compared(images);
     for (const ComparedChannel& channel : images.channels) content += section(channel, images);
     return html_page("Comparison of " + images.image, kReportStyle, content);

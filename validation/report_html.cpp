@@ -205,7 +205,7 @@ std::string errors_plot(const ValidationReport& report) {
                        errors_svg(report));
 }
 
-std::string rule() {
+std::string sample_rule() {
     return error_rule("POV-Ray’s sample",
                       "the reference’s sample",
                       "what counts as black: under it a difference is measured against it") +
@@ -265,7 +265,7 @@ std::string table(std::string_view id,
 }
 
 std::string numbers(const ValidationReport& report) {
-    return rule() + errors_plot(report) + "<h3>Channels</h3>\n" +
+    return sample_rule() + errors_plot(report) + "<h3>Channels</h3>\n" +
            table("channels", "channel", report.channels) + "<h3>Wavelengths</h3>\n" +
            table("wavelengths", "wavelength", report.wavelengths);
 }

@@ -16,9 +16,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-Json json_of(const Comparison& channel) {
+Json channel_json(const Comparison& channel) {
     return {{"name", channel.name},
             {"max_error", channel.max_error},
             {"column", channel.column},
@@ -35,7 +35,7 @@ Json json_of(const Comparison& channel) {
 // JSON has no infinity: null stands for it.
 double number(const nlohmann::json& json, const char* name) {
     const nlohmann::json& value = json.at(name);
-    return value.is_null() ? kInfinity : value.get<double>();
+    return value.is_null() ? kUnbounded : value.get<double>();
 }
 
 std::size_t count(const nlohmann::json& json, const char* name) {
@@ -57,7 +57,7 @@ Comparison comparison_from(const nlohmann::json& json) {
             .on_edges = count(json, "on_edges"),
             .max_error_on_edges = number(json, "max_error_on_edges"),
             .not_finite = count(json, "not_finite"),
-            .bound = kInfinity};
+            .bound = kUnbounded};
 }
 
 std::optional<StudyMeasure> measure_from(const nlohmann::json& json, const StudySetting& setting) {
@@ -78,7 +78,7 @@ std::optional<StudyMeasure> measure_from(const nlohmann::json& json, const Study
 
 Json json_of_channels(const StudyMeasure& measure) {
     Json channels = Json::array();
-    for (const Comparison& channel : measure.channels) channels.push_back(json_of(channel));
+    for (const Comparison& channel : measure.channels) channels.push_back(channel_json(channel));
     return channels;
 }
 

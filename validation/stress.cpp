@@ -4,6 +4,7 @@
 #include "scene_gen/rig_reader.h"
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
+#include "spectral/frame_check.h"
 #include "validation/comparison.h"
 #include "validation/exact_light.h"
 #include "validation/stress_sheet.h"
@@ -25,7 +26,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kSmallestNormalFloat = std::numeric_limits<float>::min();
-constexpr int kSmallestNormalHalfLog2 = -14;
 
 // --- The sheet
 // ------------------------------------------------------------------------------------

@@ -300,7 +300,7 @@ std::string tables(const Study& study) {
 
 // How to read it.
 
-std::string rule() {
+std::string signal_rule() {
     return "<div class=\"rule\">\n<p class=\"formula\"><i>e</i> = <span "
            "class=\"fraction\"><span><i>a</i> − <i>b</i></span>"
            "<span>max( |<i>b</i>|, <i>b</i><sub>0</sub> )</span></span></p>\n"
@@ -317,7 +317,7 @@ std::string baseline_in_words(const Study& study) {
 }
 
 std::string notes(const Study& study) {
-    return rule() +
+    return signal_rule() +
            html_paragraph(
                "Errors are of |<i>e</i>| in the worst of the three channels, over all pixels off "
                "the edges of cones, shadows and objects: the largest, the 99.9 percentile and the "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/validation.h"
 
+#include "spectral/frame_check.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>
@@ -16,7 +17,6 @@ namespace {
 
 // Planes held at a time, of each renderer.
 constexpr std::size_t kPlanesAtATime = 6;
-constexpr int kSmallestNormalHalfLog2 = -14;
 // How much of the work the signals are, for the progress: a full spectrum against a few planes.
 constexpr double kShareOfSignals = 0.5;
 

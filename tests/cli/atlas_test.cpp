@@ -10,7 +10,7 @@
 #include <cmath>
 #include <regex>
 
-namespace aphotic {
+namespace aphotic::atlas_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -265,4 +265,4 @@ TEST_F(CommandAtlas, RefusesAxesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::atlas_test

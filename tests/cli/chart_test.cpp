@@ -17,7 +17,7 @@
 #include <filesystem>
 #include <regex>
 
-namespace aphotic {
+namespace aphotic::chart_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ TEST_F(Chart, InWaterIsWhatTheReferenceTraces) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::chart_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace aphotic {
+namespace aphotic::compare_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -230,4 +230,4 @@ TEST_F(CommandCompare, LeavesAPageOfBoth) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::compare_test

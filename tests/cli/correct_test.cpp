@@ -27,7 +27,7 @@
 #include <regex>
 #include <thread>
 
-namespace aphotic {
+namespace aphotic::correct_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -638,4 +638,4 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::correct_test

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace aphotic {
+namespace aphotic::data_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -166,4 +166,4 @@ TEST_F(CommandData, UnknownNameNamesTheNearest) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::data_test

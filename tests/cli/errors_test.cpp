@@ -8,7 +8,7 @@
 
 #include <regex>
 
-namespace aphotic {
+namespace aphotic::errors_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -283,4 +283,4 @@ TEST_F(CommandErrors, FullStandardOutput) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::errors_test

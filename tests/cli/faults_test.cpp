@@ -21,7 +21,7 @@
 #include <regex>
 #include <sstream>
 
-namespace aphotic {
+namespace aphotic::faults_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -653,4 +653,4 @@ TEST_F(OwnScene, EditedWhileItIsLookedAtIsNotPlanned) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::faults_test

@@ -11,7 +11,7 @@
 
 #include <regex>
 
-namespace aphotic {
+namespace aphotic::fitted_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -171,4 +171,4 @@ TEST_F(Fitted, FramesThatCannotServeAreRefusedByWhatIsLacking) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::fitted_test

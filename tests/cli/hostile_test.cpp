@@ -13,7 +13,7 @@
 
 #include <regex>
 
-namespace aphotic {
+namespace aphotic::hostile_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -336,4 +336,4 @@ TEST(Hostile, FramesThatAreNoFilesAreRefusedWithoutWaiting) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::hostile_test

@@ -16,7 +16,7 @@
 #include <array>
 #include <random>
 
-namespace aphotic {
+namespace aphotic::interrupted_commands_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ INSTANTIATE_TEST_SUITE_P(All,
                          [](const auto& struck) { return std::string(struck.param.name); });
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::interrupted_commands_test

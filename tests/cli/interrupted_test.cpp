@@ -24,7 +24,7 @@
 #include <regex>
 #include <thread>
 
-namespace aphotic {
+namespace aphotic::interrupted_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -324,4 +324,4 @@ TEST(Interrupted, ATraceEndsAtOnce) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::interrupted_test

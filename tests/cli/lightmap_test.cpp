@@ -13,7 +13,7 @@
 #include <regex>
 #include <set>
 
-namespace aphotic {
+namespace aphotic::lightmap_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -171,4 +171,4 @@ TEST_F(CommandLightmap, LeavesNothingWhereItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::lightmap_test

@@ -26,7 +26,7 @@
 #include <thread>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::needs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -375,4 +375,4 @@ TEST(Needs, OfTheLargestImageArePlannedWithoutMakingIt) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::needs_test

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace aphotic {
+namespace aphotic::objects_test {
 namespace {
 
 // A half float's rounding, 4.9e-4, and a bit.
@@ -63,4 +63,4 @@ INSTANTIATE_TEST_SUITE_P(Ports, Objects, testing::Bool(), [](const auto& port) {
 });
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::objects_test

@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace aphotic {
+namespace aphotic::observe_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -324,4 +324,4 @@ TEST_F(CommandBaseline, ItsResultsAreNoRawImages) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::observe_test

@@ -10,7 +10,7 @@
 
 #include <regex>
 
-namespace aphotic {
+namespace aphotic::render_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ TEST_F(CommandRender, EverySceneInTheProjectIsAGoodRig) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::render_test

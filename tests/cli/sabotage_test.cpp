@@ -12,7 +12,7 @@
 #include <functional>
 #include <regex>
 
-namespace aphotic {
+namespace aphotic::sabotage_test {
 namespace {
 
 constexpr int kAnswerIsNo = 1;
@@ -286,4 +286,4 @@ TEST_F(Sabotage, TwoWavelengthsOfAFrameSwapped) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::sabotage_test

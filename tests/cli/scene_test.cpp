@@ -14,7 +14,7 @@
 #include <cmath>
 #include <regex>
 
-namespace aphotic {
+namespace aphotic::scene_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,4 +260,4 @@ INSTANTIATE_TEST_SUITE_P(All,
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ShippedUserScenes);
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::scene_test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace aphotic {
+namespace aphotic::stress_test {
 namespace {
 
 TEST(StressCommand, EveryExtremeComesOutAsTheTableSays) {
@@ -41,4 +41,4 @@ TEST(StressCommand, ANameThatFitsNoCaseIsRefused) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::stress_test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace aphotic {
+namespace aphotic::study_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -66,4 +66,4 @@ TEST_F(Study, APlanIsAPictureToo) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::study_test

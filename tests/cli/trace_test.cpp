@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace aphotic {
+namespace aphotic::trace_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -124,4 +124,4 @@ TEST_F(CommandTrace, IsNotHeldAgainstItself) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::trace_test

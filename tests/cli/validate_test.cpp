@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace aphotic {
+namespace aphotic::validate_test {
 namespace {
 
 class EveryScene : public testing::TestWithParam<std::filesystem::path> {};
@@ -156,4 +156,4 @@ TEST(Compare, SaysYesAndNo) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::validate_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace aphotic {
+namespace aphotic::altitude_fit_test {
 namespace {
 
 // The search over b ends at 16 bits.
@@ -83,4 +83,4 @@ TEST(AltitudeFit, TakesFourAltitudesAtLeast) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::altitude_fit_test

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::atlas_plan_test {
 namespace {
 
 Rig habcam() {
@@ -235,4 +235,4 @@ TEST(AtlasPlan, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::atlas_plan_test

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace aphotic {
+namespace aphotic::atlas_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -280,4 +280,4 @@ TEST(AtlasExport, ExponentialIsTheWatersOwnFarOff) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::atlas_test

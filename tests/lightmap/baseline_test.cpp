@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace aphotic {
+namespace aphotic::baseline_test {
 namespace {
 
 constexpr int kWidth_px = 48;
@@ -111,4 +111,4 @@ TEST(Baseline, TakesNothingForLightThatItDidNotLearn) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::baseline_test

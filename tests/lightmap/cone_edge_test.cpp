@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace aphotic {
+namespace aphotic::cone_edge_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -157,4 +157,4 @@ TEST(ConeEdge, SpreadingKeepsBitsAndRowsApart) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::cone_edge_test

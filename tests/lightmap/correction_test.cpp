@@ -13,7 +13,7 @@
 #include <random>
 #include <string>
 
-namespace aphotic {
+namespace aphotic::correction_test {
 namespace {
 
 constexpr int kWidth = 33;
@@ -360,4 +360,4 @@ TEST(Correction, TheFloorsColourIsItsMeanOverChannelAndLamps) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::correction_test

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-namespace aphotic {
+namespace aphotic::gaussian_blur_test {
 namespace {
 
 constexpr double kFloat = 1e-6;  // a few roundings of a float, relative
@@ -64,4 +64,4 @@ TEST(GaussianBlur, SpreadsAPointToTheGaussian) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::gaussian_blur_test

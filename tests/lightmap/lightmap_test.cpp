@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::lightmap_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -273,4 +273,4 @@ TEST(Lightmap, IsBlackWhereThereIsNoFloor) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::lightmap_test

@@ -9,7 +9,7 @@
 #include <limits>
 #include <set>
 
-namespace aphotic {
+namespace aphotic::map_axes_test {
 namespace {
 
 // A float, through logarithm and exponential.
@@ -80,4 +80,4 @@ TEST(MapAxes, RefusesWhatTheyDoNotCover) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::map_axes_test

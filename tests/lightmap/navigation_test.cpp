@@ -10,7 +10,7 @@
 
 #include <numbers>
 
-namespace aphotic {
+namespace aphotic::navigation_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -128,4 +128,4 @@ TEST(Navigation, FilesAreReadAndNamed) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::navigation_test

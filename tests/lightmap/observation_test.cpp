@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-namespace aphotic {
+namespace aphotic::observation_test {
 namespace {
 
 using Images = std::vector<std::vector<float>>;
@@ -154,4 +154,4 @@ TEST(Observation, SamplesInMemory) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::observation_test

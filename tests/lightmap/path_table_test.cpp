@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace aphotic {
+namespace aphotic::path_table_test {
 namespace {
 
 // A float's rounding, a few times over.
@@ -86,4 +86,4 @@ TEST(PathTable, HoldsAChannelThatSeesNothingAtNothing) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::path_table_test

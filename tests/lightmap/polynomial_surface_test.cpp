@@ -9,7 +9,7 @@
 #include <numeric>
 #include <random>
 
-namespace aphotic {
+namespace aphotic::polynomial_surface_test {
 namespace {
 
 constexpr int kWidth_px = 61;
@@ -80,4 +80,4 @@ TEST(PolynomialSurface, RefusesFewerPixelsThanTerms) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::polynomial_surface_test

@@ -8,7 +8,7 @@
 #include <array>
 #include <string>
 
-namespace aphotic {
+namespace aphotic::raw_image_test {
 namespace {
 
 constexpr std::array kMosaics{Mosaic::Rggb, Mosaic::Bggr, Mosaic::Grbg, Mosaic::Gbrg};
@@ -95,4 +95,4 @@ TEST(RawImage, OneSiteSpreadsAsATent) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::raw_image_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace aphotic {
+namespace aphotic::site_planes_test {
 namespace {
 
 TEST(SitePlanes, OfAMosaicAreEveryOtherPixel) {
@@ -34,4 +34,4 @@ TEST(SitePlanes, GoBackWhereTheyCameFrom) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::site_planes_test

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <random>
 
-namespace aphotic {
+namespace aphotic::slow_light_test {
 namespace {
 
 using Samples = std::vector<float>;
@@ -203,4 +203,4 @@ TEST(LocalEqualisation, GivesEveryPartTheSameBrightness) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::slow_light_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace aphotic {
+namespace aphotic::aphotic_inc_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -488,4 +488,4 @@ TEST_F(AphoticInc, RefusesAFrameOfAnotherVersion) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::aphotic_inc_test

@@ -3,7 +3,7 @@
 // What POV-Ray really renders, against the closed form of the physics, per pixel and wavelength.
 #include "support/rendered.h"
 
-namespace aphotic {
+namespace aphotic::closed_form_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -150,4 +150,4 @@ TEST(ClosedForm, DarkRedKeepsItsDigits) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::closed_form_test

@@ -12,7 +12,7 @@
 
 #include <array>
 
-namespace aphotic {
+namespace aphotic::folder_lock_test {
 namespace {
 
 std::string refusal(const std::filesystem::path& folder, FolderUse use) {
@@ -103,4 +103,4 @@ TEST(FolderLock, OfAMissingFolderIsNone) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::folder_lock_test

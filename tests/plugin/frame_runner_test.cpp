@@ -7,7 +7,7 @@
 #include "support/rendered.h"
 #include "support/run_command.h"
 
-namespace aphotic {
+namespace aphotic::frame_runner_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ TEST_F(FrameRunner, ProgressRunsToTheEnd) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::frame_runner_test

@@ -14,7 +14,7 @@
 #include <cstdlib>
 #include <functional>
 
-namespace aphotic {
+namespace aphotic::interruption_test {
 namespace {
 
 constexpr int kWentOn = 40;
@@ -116,4 +116,4 @@ TEST(Interruption, LeavesNoScratchFolder) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::interruption_test

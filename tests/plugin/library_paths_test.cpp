@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace aphotic {
+namespace aphotic::library_paths_test {
 namespace {
 
 using Paths = std::vector<std::string>;
@@ -44,4 +44,4 @@ TEST(LibraryPaths, AreOfTheFileThatPovrayWouldRead) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::library_paths_test

@@ -11,7 +11,7 @@
 #include <limits>
 #include <thread>
 
-namespace aphotic {
+namespace aphotic::life_signs_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -88,4 +88,4 @@ TEST(LifeSigns, PatienceWithoutEndHasNoEnd) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::life_signs_test

@@ -7,7 +7,7 @@
 
 #include <numbers>
 
-namespace aphotic {
+namespace aphotic::omissions_test {
 namespace {
 
 // Half floats of equal light differ by their last bit at most, where a sum's order or an
@@ -97,4 +97,4 @@ TEST(Omissions, AConeThatLightsNothingInView) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::omissions_test

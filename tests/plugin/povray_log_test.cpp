@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace aphotic {
+namespace aphotic::povray_log_test {
 namespace {
 
 // As POV-Ray 3.7 prints it, wrapped.
@@ -63,4 +63,4 @@ TEST(PovRayLog, QuotesNoMoreThanOneReads) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::povray_log_test

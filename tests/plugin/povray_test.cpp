@@ -9,7 +9,7 @@
 
 #include <cstdlib>
 
-namespace aphotic {
+namespace aphotic::povray_test {
 namespace {
 
 // As Debian's povray prints it, in part.
@@ -137,4 +137,4 @@ TEST(PovRay, MissingOneSaysWhereItWasLookedFor) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::povray_test

@@ -16,7 +16,7 @@
 #include <thread>
 #include <utility>
 
-namespace aphotic {
+namespace aphotic::process_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -318,4 +318,4 @@ TEST(Process, ThatPrintsWithoutEndIsStopped) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::process_test

@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::render_properties_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 6'200;
@@ -217,4 +217,4 @@ TEST(RenderedFrames, OfDarkLampsAreBlackAndNoFileIsLargerThanForetold) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::render_properties_test

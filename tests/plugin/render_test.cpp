@@ -9,7 +9,7 @@
 #include "support/rendered.h"
 #include "support/run_command.h"
 
-namespace aphotic {
+namespace aphotic::render_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,4 +120,4 @@ TEST_F(Render, GenerateTakesAwayFramesOfOtherScenes) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::render_test

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace aphotic {
+namespace aphotic::scene_survey_test {
 namespace {
 
 // Half floats round the two channels whose ratio tells a path.
@@ -263,4 +263,4 @@ TEST_F(SceneSurvey, LeavesTheUsersFolderAsItWas) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::scene_survey_test

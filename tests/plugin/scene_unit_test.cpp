@@ -8,7 +8,7 @@
 #include "support/rendered.h"
 #include "validation/tracer.h"
 
-namespace aphotic {
+namespace aphotic::scene_unit_test {
 namespace {
 
 constexpr double kLambda_nm = 550.0;
@@ -73,4 +73,4 @@ TEST(SceneUnit, InMetresTheShadowIsLost) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::scene_unit_test

@@ -13,7 +13,7 @@
 
 #include <sstream>
 
-namespace aphotic {
+namespace aphotic::spline_import_test {
 namespace {
 
 constexpr double kPrinted = 1e-6;  // ten decimals are printed; POV-Ray's splines are double
@@ -93,4 +93,4 @@ TEST(SplineImport, OtherSplinesPassThroughTheKnotsThatAreTaken) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::spline_import_test

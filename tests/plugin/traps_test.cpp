@@ -10,7 +10,7 @@
 
 #include "spectral/error.h"
 
-namespace aphotic {
+namespace aphotic::traps_test {
 namespace {
 
 // What a trap must at least cost to count as seen: ten times what rounding may.
@@ -180,4 +180,4 @@ TEST(Traps, PackingChangesNoBit) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::traps_test

@@ -8,7 +8,7 @@
 
 #include <set>
 
-namespace aphotic {
+namespace aphotic::band_sdl_test {
 namespace {
 
 Spectrum line(const std::string& name, double first, double last) {
@@ -82,4 +82,4 @@ TEST(BandSdl, HoldsEveryValueAtEachChannelsWavelength) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::band_sdl_test

@@ -14,7 +14,7 @@
 #include <limits>
 #include <random>
 
-namespace aphotic {
+namespace aphotic::exposure_test {
 namespace {
 
 constexpr unsigned kSeed = 20240607;
@@ -323,4 +323,4 @@ TEST(ExposureLog2, KeepsColoursInSinglePrecision) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::exposure_test

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::frame_groups_test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -288,4 +288,4 @@ TEST(FrameGroups, ShiftNoWavelengthByMoreThanTheBound) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::frame_groups_test

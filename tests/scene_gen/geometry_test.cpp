@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace aphotic {
+namespace aphotic::geometry_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -461,4 +461,4 @@ TEST(ToPovray, ChangesHandedness) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::geometry_test

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace aphotic {
+namespace aphotic::key_depth_test {
 namespace {
 
 std::string error_of(const std::string& toml) {
@@ -98,4 +98,4 @@ TEST(KeyDepth, EndsWithTheText) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::key_depth_test

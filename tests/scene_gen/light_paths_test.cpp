@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::light_paths_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -800,4 +800,4 @@ TEST(LightPathsOfObjects, BringTheirMaterialsAndTheirHighlight) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::light_paths_test

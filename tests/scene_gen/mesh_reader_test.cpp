@@ -11,7 +11,7 @@
 #include <numbers>
 #include <string>
 
-namespace aphotic {
+namespace aphotic::mesh_reader_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -145,4 +145,4 @@ TEST(MeshReader, CountsTheTrianglesOfPolygonsBeforeItCutsThem) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::mesh_reader_test

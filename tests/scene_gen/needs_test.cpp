@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::needs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -208,4 +208,4 @@ TEST(BytesInWords, HaveThreeDigits) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::needs_test

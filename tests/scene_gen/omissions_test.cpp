@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::omissions_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -440,4 +440,4 @@ TEST(LightsTheView, CountsEveryLampOfAnEmitter) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::omissions_test

@@ -14,7 +14,7 @@
 #include <regex>
 #include <sstream>
 
-namespace aphotic {
+namespace aphotic::pov_scene_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -498,4 +498,4 @@ TEST(PovObjects, MayNotReachIntoTheHousing) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::pov_scene_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace aphotic {
+namespace aphotic::quick_look_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,4 +27,4 @@ TEST(QuickLook, IsTheSameWhereverTheSceneLies) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::quick_look_test

@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::reintegration_test {
 namespace {
 
 constexpr unsigned kSeed = 20240615;
@@ -788,4 +788,4 @@ TEST(Reintegrate, KeepsItsPromiseOnPixelsForANarrowerRangeBehindAPort) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::reintegration_test

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::render_plan_test {
 namespace {
 
 constexpr unsigned kSeed = 20240614;
@@ -684,4 +684,4 @@ TEST(RenderPlan, FramesLightHasTheFramesIndices) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::render_plan_test

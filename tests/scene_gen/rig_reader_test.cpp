@@ -14,7 +14,7 @@
 #include <numbers>
 #include <utility>
 
-namespace aphotic {
+namespace aphotic::rig_reader_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -1201,4 +1201,4 @@ TEST(RigReader, RefusesFilesOfAbsurdSizeUnread) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::rig_reader_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-namespace aphotic {
+namespace aphotic::scene_set_test {
 namespace {
 
 // HabCam over so many times the absorption, in frames of red, green and blue light.
@@ -51,4 +51,4 @@ TEST(SceneSet, TakesWaterThatNoLightComesThrough) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::scene_set_test

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
-namespace aphotic {
+namespace aphotic::sdl_test {
 namespace {
 
 TEST(Sdl, NumbersReadBackToTheSameBits) {
@@ -33,4 +33,4 @@ TEST(Sdl, NoTextEndsItselfOrItsLine) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::sdl_test

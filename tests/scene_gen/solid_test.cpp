@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-namespace aphotic {
+namespace aphotic::solid_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -97,4 +97,4 @@ TEST(Solid, LeastThrowIsToTheFloorOrToANearerObjectInTheLight) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::solid_test

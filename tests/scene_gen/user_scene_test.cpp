@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace aphotic {
+namespace aphotic::user_scene_test {
 namespace {
 
 Rig habcam() {
@@ -129,4 +129,4 @@ TEST_F(SceneDigest, EndsWhereFilesNameEachOther) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::user_scene_test

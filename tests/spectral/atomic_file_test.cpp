@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -202,4 +202,4 @@ TEST(MakeFolder, NamesTheFolderThatCannotBeWrittenTo) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::atomic_file_test

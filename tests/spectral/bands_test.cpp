@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace aphotic {
+namespace aphotic::bands_test {
 namespace {
 
 // Sums of some dozen products of numbers near 1.
@@ -120,4 +120,4 @@ TEST(Wavelengths, MustIncreaseWithinTheRange) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::bands_test

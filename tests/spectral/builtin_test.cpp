@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <set>
 
-namespace aphotic {
+namespace aphotic::builtin_test {
 namespace {
 
 std::string message_of(const auto& action) {
@@ -215,4 +215,4 @@ TEST(ChartPatches, GreysAreAsLightAsPublished) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::builtin_test

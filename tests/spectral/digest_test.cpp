@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace aphotic {
+namespace aphotic::digest_test {
 namespace {
 
 // NIST, "Cryptographic Standards and Guidelines: Example Values", SHA-256; the empty message and
@@ -49,4 +49,4 @@ TEST(Sha256, OfAnUnreadableFileIsARunErrorThatNamesIt) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::digest_test

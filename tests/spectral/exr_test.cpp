@@ -15,7 +15,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace aphotic {
+namespace aphotic::exr_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -243,4 +243,4 @@ TEST(Exr, ThatCannotBeWrittenIsARunErrorThatNamesIt) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::exr_test

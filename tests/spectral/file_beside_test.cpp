@@ -8,7 +8,7 @@
 
 #include <sys/stat.h>
 
-namespace aphotic {
+namespace aphotic::file_beside_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ TEST_F(FileBeside, RefusesPipesAndFoldersWithoutWaiting) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::file_beside_test

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::frame_check_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,4 +117,4 @@ TEST(CheckFrame, WantsItsSizeAndItsChannels) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::frame_check_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace aphotic {
+namespace aphotic::free_room_test {
 namespace {
 
 // As Linux 6 writes it.
@@ -56,4 +56,4 @@ TEST(FreeMemory, IsSomeAndNotMoreThanTheMachineHas) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::free_room_test

@@ -21,7 +21,7 @@
 #include <regex>
 #include <utility>
 
-namespace aphotic {
+namespace aphotic::integrator_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -429,4 +429,4 @@ TEST(Integrator, DoesNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::integrator_test

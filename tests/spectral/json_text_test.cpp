@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace aphotic {
+namespace aphotic::json_text_test {
 namespace {
 
 std::string nested(std::size_t depth) {
@@ -99,4 +99,4 @@ TEST(ParseJson, TakesAMillionKeys) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::json_text_test

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::light_family_test {
 namespace {
 
 constexpr WavelengthRange kRange{400.0, 700.0};
@@ -436,4 +436,4 @@ TEST(ReferenceGrid, HoldsItsErrorForRandomFamilies) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::light_family_test

@@ -11,7 +11,7 @@
 
 #include <functional>
 
-namespace aphotic {
+namespace aphotic::manifest_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -397,4 +397,4 @@ TEST(Manifest, WantsExposuresThatADoubleCanHold) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::manifest_test

@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::minimax_test {
 namespace {
 
 using Eigen::ArrayXd;
@@ -577,4 +577,4 @@ TEST(MinimaxLowerBounds, BearDependentColumnsAndRowsWithoutWeight) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::minimax_test

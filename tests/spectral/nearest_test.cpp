@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::nearest_test {
 namespace {
 
 const std::vector<std::string> kKnown{"altitude_m", "pitch_deg", "roll_deg", "sand"};
@@ -43,4 +43,4 @@ TEST(NearestName, UnitLeftOffIsFound) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::nearest_test

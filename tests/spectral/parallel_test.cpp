@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace aphotic {
+namespace aphotic::parallel_test {
 namespace {
 
 TEST(ParallelFor, DoesEachPieceOnce) {
@@ -53,4 +53,4 @@ TEST(ParallelFor, WhatAPieceThrowsEndsAllAndComesOut) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::parallel_test

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::planner_test {
 namespace {
 
 constexpr WavelengthRange kRange{400.0, 720.0};
@@ -770,4 +770,4 @@ TEST_P(PlannerOfAnyLight, KeepsItsPromiseToAnyPixel) {
 INSTANTIATE_TEST_SUITE_P(Random, PlannerOfAnyLight, testing::Range(0U, 30U));
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::planner_test

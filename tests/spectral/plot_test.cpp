@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::plot_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -643,4 +643,4 @@ TEST(PlotPalette, KeepsItsColoursApart) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::plot_test

@@ -12,7 +12,7 @@
 #include <iterator>
 #include <limits>
 
-namespace aphotic {
+namespace aphotic::preview_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -224,4 +224,4 @@ TEST(Preview, ThatCannotBeWrittenIsARunErrorThatNamesIt) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::preview_test

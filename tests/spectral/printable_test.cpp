@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace aphotic {
+namespace aphotic::printable_test {
 namespace {
 
 using namespace std::string_view_literals;
@@ -31,4 +31,4 @@ TEST(HasControlCharacters, KnowsThoseOfAsciiAndThoseBeyond) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::printable_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace aphotic {
+namespace aphotic::refraction_test {
 namespace {
 
 constexpr double kFiveDecimals = 0.5e-5;  // expected values are given to five decimals
@@ -112,4 +112,4 @@ TEST(StatedRange, IsReadFromTheComment) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::refraction_test

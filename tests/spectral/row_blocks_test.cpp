@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::row_blocks_test {
 namespace {
 
 constexpr int kWidth_px = 1360;
@@ -69,4 +69,4 @@ TEST(RowsCompressedTogether, AreOneWhereZipSeesNoFurther) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::row_blocks_test

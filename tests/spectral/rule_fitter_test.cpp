@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::rule_fitter_test {
 namespace {
 
 constexpr WavelengthRange kRange{400.0, 700.0};
@@ -1238,4 +1238,4 @@ TEST(RuleFitter, TellsItsErrorOverThePathWithoutTilt) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::rule_fitter_test

@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace aphotic {
+namespace aphotic::sensor_test {
 namespace {
 
 // Photons in 1 J at 555 nm, 555e-9 / (6.62607015e-34 * 299792458), to the digits given.
@@ -77,4 +77,4 @@ TEST(BuiltinSensor, NikonIsAnEnergyResponse) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::sensor_test

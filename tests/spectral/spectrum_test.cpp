@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace aphotic {
+namespace aphotic::spectrum_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -138,4 +138,4 @@ TEST(UnionOfKnots, IsSortedWithoutRepeatsAndHoldsTheEnds) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::spectrum_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace aphotic {
+namespace aphotic::spline_import_test {
 namespace {
 
 std::string message_of(const auto& action) {
@@ -260,4 +260,4 @@ TEST(SplineTable, RefusesAFileNameThatCannotStandInATable) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::spline_import_test

@@ -8,7 +8,7 @@
 
 #include <locale>
 
-namespace aphotic {
+namespace aphotic::table_test {
 namespace {
 
 constexpr const char* kSand = "wavelength_nm,reflectance\n400,0.25\n500,0.5\n";
@@ -225,4 +225,4 @@ TEST(RoleName, GoesBothWays) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::table_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-namespace aphotic::survey {
+namespace aphotic::survey::chart_test {
 namespace {
 
 constexpr int kWidth_px = 40;
@@ -109,4 +109,4 @@ TEST(Chart, SumsUpASurvey) {
 }
 
 }  // namespace
-}  // namespace aphotic::survey
+}  // namespace aphotic::survey::chart_test

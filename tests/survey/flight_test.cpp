@@ -8,7 +8,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace aphotic::survey {
+namespace aphotic::survey::flight_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
@@ -90,4 +90,4 @@ TEST(Flight, LaysTheChartInTheFirstFiveAndThenEveryTenth) {
 }
 
 }  // namespace
-}  // namespace aphotic::survey
+}  // namespace aphotic::survey::flight_test

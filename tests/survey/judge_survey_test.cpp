@@ -12,7 +12,7 @@
 
 #include <functional>
 
-namespace aphotic {
+namespace aphotic::judge_survey_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +103,4 @@ TEST_F(Judge, RefusesWhatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::judge_survey_test

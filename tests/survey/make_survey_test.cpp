@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace aphotic::survey {
+namespace aphotic::survey::make_survey_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,4 +68,4 @@ TEST(MakeSurvey, RefusesARigThatIsNotThereAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace aphotic::survey
+}  // namespace aphotic::survey::make_survey_test

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic::survey {
+namespace aphotic::survey::proof_test {
 namespace {
 
 constexpr int kImages = 4;
@@ -165,4 +165,4 @@ TEST_F(Proof, RawImagesWithoutNoiseAreFlatToTheirRounding) {
 }
 
 }  // namespace
-}  // namespace aphotic::survey
+}  // namespace aphotic::survey::proof_test

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace aphotic::survey {
+namespace aphotic::survey::raw_camera_test {
 namespace {
 
 CameraImage uniform(int side_px, std::array<float, kChannels> signal) {
@@ -52,4 +52,4 @@ TEST(RawCamera, HasTheNoiseOfItsElectrons) {
 }
 
 }  // namespace
-}  // namespace aphotic::survey
+}  // namespace aphotic::survey::raw_camera_test

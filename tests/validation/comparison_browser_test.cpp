@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::comparison_browser_test {
 namespace {
 
 constexpr int kWidth_px = 48;
@@ -106,4 +106,4 @@ TEST_F(ComparisonInABrowser, IsFoundOutWhenItIsBroken) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::comparison_browser_test

@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace aphotic {
+namespace aphotic::comparison_page_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -120,4 +120,4 @@ TEST(ComparisonPage, SaysNoWhenOneChannelIsOut) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::comparison_page_test

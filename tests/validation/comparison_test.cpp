@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::comparison_test {
 namespace {
 
 // Two or three operations on doubles.
@@ -184,4 +184,4 @@ TEST(ComparePlanes, DoesNotHoldWhereBlackIsExpectedAndAnythingIsFound) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::comparison_test

@@ -14,7 +14,7 @@
 #include <numbers>
 #include <string>
 
-namespace aphotic {
+namespace aphotic::exact_light_test {
 namespace {
 
 using Fifty = boost::multiprecision::cpp_bin_float_50;
@@ -146,4 +146,4 @@ TEST(ExactLight, LongDoubleHoldsTowardsTheHorizonAndForGrazingLight) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::exact_light_test

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace aphotic {
+namespace aphotic::html_test {
 namespace {
 
 TEST(Escaped, LeavesNothingThatMarkupIsMadeOf) {
@@ -58,4 +58,4 @@ TEST(Counted, SetsThousandsApart) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::html_test

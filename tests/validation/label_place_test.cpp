@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::label_place_test {
 namespace {
 
 constexpr LabelBox kSheet{.left = 0.0, .top = 0.0, .right = 400.0, .bottom = 300.0};
@@ -67,4 +67,4 @@ TEST(PlaceLabel, KeepsTheLabelsOfScatteredPointsApart) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::label_place_test

@@ -34,7 +34,7 @@
 #include <thread>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::promise_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20240613;
@@ -364,4 +364,4 @@ TEST(Promise, OfTheWavelengthsAloneHoldsOnRandomRigs) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::promise_test

@@ -12,7 +12,7 @@
 
 #include <string>
 
-namespace aphotic {
+namespace aphotic::report_browser_test {
 namespace {
 
 std::string page_of(const ValidationReport& report) {
@@ -84,4 +84,4 @@ TEST_F(ReportInABrowser, ShowsAHostileTitleAsText) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::report_browser_test

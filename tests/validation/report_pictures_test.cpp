@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::report_pictures_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -102,4 +102,4 @@ TEST(DataUri, IsBase64) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::report_pictures_test

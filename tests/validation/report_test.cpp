@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace aphotic {
+namespace aphotic::report_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -496,4 +496,4 @@ TEST(Report, ThatCannotBeWrittenIsARunErrorThatNamesTheFile) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::report_test

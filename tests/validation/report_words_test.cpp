@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace aphotic {
+namespace aphotic::report_words_test {
 namespace {
 
 double radians(double deg) {
@@ -143,4 +143,4 @@ TEST(RigInWords, EscapesWhatUsersNamed) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::report_words_test

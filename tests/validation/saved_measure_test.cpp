@@ -11,7 +11,7 @@
 
 #include <limits>
 
-namespace aphotic {
+namespace aphotic::saved_measure_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,4 +126,4 @@ TEST_F(SavedMeasure, ThatIsSomethingElseIsNothing) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::saved_measure_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::scaling_test {
 namespace {
 
 using Samples = std::vector<float>;
@@ -44,4 +44,4 @@ TEST(Scaling, NoiseOfTheImageLeavesItRight) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::scaling_test

@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace aphotic {
+namespace aphotic::shapes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -131,4 +131,4 @@ TEST(TracedMesh, PassesOverTheFaceThatALineStartsOn) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::shapes_test

@@ -17,7 +17,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace aphotic {
+namespace aphotic::stress_test {
 namespace {
 
 constexpr int kWidth_px = 6;
@@ -188,4 +188,4 @@ TEST_F(Stress, TablesSayWhatWasFoundAndWhatWasExpected) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::stress_test

@@ -12,7 +12,7 @@
 
 #include <string>
 
-namespace aphotic {
+namespace aphotic::study_browser_test {
 namespace {
 
 constexpr int kDesk_px = 1200;
@@ -115,4 +115,4 @@ TEST_F(StudyInABrowser, ShowsHostileNamesAsText) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::study_browser_test

@@ -23,7 +23,7 @@
 #include <stdexcept>
 #include <tuple>
 
-namespace aphotic {
+namespace aphotic::study_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -709,4 +709,4 @@ TEST(StudyPlot, LeavesOutWhatHasNoLogarithm) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::study_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace aphotic {
+namespace aphotic::svg_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -90,4 +90,4 @@ TEST(SvgText, IsEscaped) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::svg_test

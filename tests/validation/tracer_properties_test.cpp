@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::tracer_properties_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 71'000;
@@ -391,4 +391,4 @@ TEST(Exposure, PutsThePeakOfEveryFrameWithinTheHalfFloatsRange) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::tracer_properties_test

@@ -29,7 +29,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic {
+namespace aphotic::tracer_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -1734,4 +1734,4 @@ TEST(TracerObjectEdges, AllowWhatThePlanDoes) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::tracer_test

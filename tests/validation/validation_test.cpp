@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace aphotic {
+namespace aphotic::validation_test {
 namespace {
 
 const std::vector<double> kLambda_nm{480.0, 600.0};
@@ -117,4 +117,4 @@ TEST(Validation, BoundsTheHalfShadowsOfObjects) {
 }
 
 }  // namespace
-}  // namespace aphotic
+}  // namespace aphotic::validation_test
