@@ -3,7 +3,8 @@
 # Builds tests/folder/name_test.cpp ... into one test program a folder, folder_LABEL_tests, and gives
 # its tests to CTest as folder/Suite.Case, under a label:
 #
-#   unit    no other program needed; milliseconds each
+#   unit    no other program needed; milliseconds each. Under the name unit_that_computes it gets the
+#           same label and is optimised, see below
 #   povray  runs POV-Ray, which takes every core: CTest counts such a test as two. Under the name
 #           povray_of_few_pixels it gets the same label and counts as one: POV-Ray mostly waits
 #   cli     runs the command as a user would
@@ -15,15 +16,21 @@ include(GoogleTest)
 
 function(aphotic_tests label)
     set(program ${label})
-    if(label STREQUAL "povray")
+    # Half of the time to build tests went into making those fast that run for an instant. What they
+    # test is as optimised as it is shipped; but for what a test and a library both make of other
+    # people's templates, of which the linker takes the test's. So tests that follow much light through
+    # Eigen are a program of their own, optimised too.
+    set(optimisation -O0)
+    set(limits TIMEOUT 300)  # for what hangs: with sanitizers on a busy machine some take 120
+    if(label STREQUAL "unit_that_computes")
+        set(label unit)
+        set(optimisation -O2)
+    elseif(label STREQUAL "povray")
         set(limits TIMEOUT 300 PROCESSORS 2)
     elseif(label STREQUAL "povray_of_few_pixels")
         set(label povray)
-        set(limits TIMEOUT 300)
     elseif(label STREQUAL "slow")
         set(limits TIMEOUT 600)
-    else()
-        set(limits TIMEOUT 300)  # for what hangs: with sanitizers on a busy machine some take 120
     endif()
 
     set(folders ${ARGN})
@@ -38,9 +45,7 @@ function(aphotic_tests label)
         add_executable(${target} ${sources})
         target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}
                                                      ${PROJECT_SOURCE_DIR}/tests)
-        # Half of the time to build them went into making tests fast that run for an instant.
-        # What they test is as optimised as it is shipped.
-        target_compile_options(${target} PRIVATE -O0)
+        target_compile_options(${target} PRIVATE ${optimisation})
         target_compile_definitions(${target} PRIVATE
             APHOTIC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
             APHOTIC_COMMAND="$<TARGET_FILE:aphotic>")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/reintegration.h"
 
+#include "scene_gen/lost_light.h"
 #include "scene_gen/scene_set.h"
 #include "scene_gen/solid.h"
 #include "spectral/digest.h"
@@ -264,6 +265,7 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
     for (std::size_t j = 0; j < now.wavelengths.size(); ++j) {
         now.wavelengths[j].weight = rule.wavelengths[j].weight;
     }
+    require_light_that_counts(now.wavelengths, now.frame_error);
     return now;
 }
 

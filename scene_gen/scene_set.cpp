@@ -2,18 +2,17 @@
 #include "scene_gen/scene_set.h"
 
 #include "scene_gen/include_library.h"
+#include "scene_gen/lost_light.h"
 #include "scene_gen/reintegration.h"
 #include "spectral/atomic_file.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
-#include "spectral/frame_check.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <span>
 #include <string>
 
@@ -68,41 +67,6 @@ void note_light(const Rig& rig, ManifestWavelength& w) {
     }
 }
 
-// A wavelength whose light is fainter than frames hold gives nothing: POV-Ray's colours are floats,
-// which bounds exposures. Where all light is so faint the image is black, as it should be. Where a
-// weight makes such a wavelength count beside others that are held, what is lost has no bound.
-void require_light_that_counts(std::span<const FrameWavelength> light,
-                               std::span<const WeightedWavelength> rule,
-                               double frame_error) {
-    constexpr double kHeldLog2 = -8.0;  // also a pixel 64 times darker has all of them
-    const auto peak_log2 = [](const FrameWavelength& w) {
-        return std::log2(w.radiance_bound) + w.exposure_log2;
-    };
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        const auto signal = [&](std::size_t k) {
-            return std::abs(rule[k].weight[c]) * light[k].radiance_bound;
-        };
-        double most = 0.0;
-        for (std::size_t k = 0; k < rule.size(); ++k) most = std::max(most, signal(k));
-        const auto counts = [&](std::size_t k) { return signal(k) > frame_error * most; };
-        bool is_held = false;
-        for (std::size_t k = 0; k < rule.size(); ++k) {
-            is_held = is_held || (counts(k) && peak_log2(light[k]) >= kHeldLog2);
-        }
-        for (std::size_t k = 0; is_held && k < rule.size(); ++k) {
-            if (!counts(k) || peak_log2(light[k]) >= kSmallestNormalHalfLog2) continue;
-            throw InputError(fmt::format(
-                "found light of at most {:.1e} at {} nm, fainter than frames hold, which counts in "
-                "{} by a weight of {:.1e}; allowed: wavelengths that frames hold, or that count "
-                "for nothing",
-                light[k].radiance_bound,
-                light[k].lambda_nm,
-                kChannelNames[c],
-                rule[k].weight[c]));
-        }
-    }
-}
-
 // All that the scenes include.
 std::string include_text() {
     std::string text;
@@ -119,10 +83,6 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
 
     SceneSet set;
     set.scenes = make_scenes(rig, lambda_nm, plan.scene);
-    std::vector<FrameWavelength> light;
-    for (const FrameScene& scene : set.scenes)
-        std::ranges::copy(scene.wavelengths, std::back_inserter(light));
-    require_light_that_counts(light, rule, plan.frame_error);
     set.ini = render_ini(rig, plan.scene);
     const UserScene* own = plan.scene.user_scene.get();
     if (own != nullptr) {
@@ -159,11 +119,13 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
                                  .frame = f,
                                  .channel = std::string(kChannelNames[c]),
                                  .exposure_log2 = scene.wavelengths[c].exposure_log2,
+                                 .radiance_bound = scene.wavelengths[c].radiance_bound,
                                  .index_nm = scene.index_nm};
             note_light(lit, w);
             manifest.wavelengths.push_back(std::move(w));
         }
     }
+    require_light_that_counts(manifest.wavelengths, manifest.frame_error);
     return set;
 }
 

@@ -25,7 +25,7 @@ using OrderedJson = nlohmann::ordered_json;  // as a reader of the file would li
 
 namespace {
 
-constexpr const char* kFormat = "aphotic-manifest-3";
+constexpr const char* kFormat = "aphotic-manifest-4";
 // A thousand times what the manifest of 100 wavelengths takes.
 constexpr std::size_t kMostManifestBytes = 64 * kMebibyte;
 
@@ -196,6 +196,8 @@ ManifestWavelength wavelength_of(const Reader& reader, double previous_nm, Frame
     if (w.channel != "R" && w.channel != "G" && w.channel != "B") {
         reader.fail("channel", "\"R\", \"G\" or \"B\"");
     }
+    w.radiance_bound = reader.number("radiance_bound");
+    if (!(w.radiance_bound >= 0.0)) reader.fail("radiance_bound", "0 or more");
     w.index_nm = reader.number("index_nm");
     w.attenuation_per_m = reader.number("attenuation_per_m");
     w.flux = reader.numbers("flux");
@@ -277,6 +279,7 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
                                        {"frame", manifest.frames[w.frame].name},
                                        {"channel", w.channel},
                                        {"exposure_log2", w.exposure_log2},
+                                       {"radiance_bound", w.radiance_bound},
                                        {"index_nm", w.index_nm},
                                        {"attenuation_per_m", w.attenuation_per_m},
                                        {"flux", w.flux},

@@ -43,8 +43,9 @@ struct ManifestWavelength {
     double lambda_nm = 0.0;
     std::array<double, kChannels> weight{};  // of L(lambda) in the signals of R, G, B
     std::size_t frame = 0;                   // index into Manifest::frames
-    std::string channel;                     // of the frame: R, G or B
+    std::string channel{};                   // of the frame: R, G or B
     int exposure_log2 = 0;                   // the frame holds 2^exposure_log2 L(lambda)
+    double radiance_bound = 0.0;             // of L(lambda) in view
     double index_nm = 0.0;                   // whose refractive indices the frame has
     // The light that the frame was rendered with, for weights of another water, lamp or sensor.
     double attenuation_per_m = 0.0;

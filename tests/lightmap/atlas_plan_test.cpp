@@ -3,6 +3,7 @@
 
 #include "scene_gen/rig_reader.h"
 #include "spectral/builtin.h"
+#include "support/effort.h"
 #include "support/random_rig.h"
 
 #include <gtest/gtest.h>
@@ -100,7 +101,7 @@ TEST(AtlasPlan, MeasuresWhatItChooses) {
 }
 
 TEST(AtlasPlan, KeepsAToleranceWheneverTheFullAxesDo) {
-    constexpr int kRigs = 12;
+    constexpr int kRigs = cases(12);
     for (const std::uint64_t seed : rig_seeds(1, kRigs)) {
         const Rig rig = with_pixels(random_rig(seed), 16, 12);
         Dice dice(seed);
@@ -158,7 +159,7 @@ TEST(AtlasPlan, StatesTheErrorOnTheEdgesOfCellsToo) {
 TEST(AtlasPlan, HoldsBetweenTheMiddlesToo) {
     // Aside of the middle light may be a little further off: by up to 1.1 as found in 300 points.
     constexpr double kAside = 1.2;
-    constexpr int kRigs = 12;
+    constexpr int kRigs = cases(12);
     constexpr int kPoints = 8;
     for (const std::uint64_t seed : rig_seeds(1, kRigs)) {
         const Rig rig = diffuse(with_pixels(random_rig(seed), 16, 12));

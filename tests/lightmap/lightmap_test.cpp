@@ -8,6 +8,7 @@
 #include "scene_gen/rig_reader.h"
 #include "spectral/builtin.h"
 #include "spectral/error.h"
+#include "support/effort.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
@@ -128,7 +129,7 @@ Rig random_rig(std::mt19937& engine) {
 
 TEST(Lightmap, IsThatOfTheTracerForRandomRigs) {
     std::mt19937 engine(20110711);
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < cases(40); ++i) {
         expect_equal(random_rig(engine), kWithoutPort, "rig " + std::to_string(i));
     }
 }
@@ -158,7 +159,7 @@ TEST(Lightmap, IsThatOfTheTracerForRandomRigsBehindPorts) {
         return std::uniform_real_distribution<double>(least, most)(engine);
     };
     const std::vector<const char*> glasses{"bk7", "sapphire", "fused-silica"};
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < cases(12); ++i) {
         Rig rig = random_rig(engine);
         rig.camera.width_px = 48;
         rig.camera.height_px = 36;

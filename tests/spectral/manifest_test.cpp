@@ -41,6 +41,7 @@ Manifest some_manifest() {
          .frame = 0,
          .channel = "R",
          .exposure_log2 = 12,
+         .radiance_bound = 0.75,
          .index_nm = 450.0,
          .attenuation_per_m = 1.0 / 3.0,
          .flux = {1.0 / 7.0, 0.0},
@@ -129,6 +130,7 @@ TEST(Manifest, ComesBackWhole) {
         EXPECT_EQ(read.wavelengths[j].frame, written.wavelengths[j].frame);
         EXPECT_EQ(read.wavelengths[j].channel, written.wavelengths[j].channel);
         EXPECT_EQ(read.wavelengths[j].exposure_log2, written.wavelengths[j].exposure_log2);
+        EXPECT_EQ(read.wavelengths[j].radiance_bound, written.wavelengths[j].radiance_bound);
         EXPECT_EQ(read.wavelengths[j].index_nm, written.wavelengths[j].index_nm);
         EXPECT_EQ(read.wavelengths[j].attenuation_per_m, written.wavelengths[j].attenuation_per_m);
         EXPECT_EQ(read.wavelengths[j].flux, written.wavelengths[j].flux);
@@ -264,7 +266,7 @@ TEST(Manifest, ChangedSinceItWasWrittenIsRefused) {
 
 TEST(Manifest, OfAnotherFormatIsRefused) {
     EXPECT_EQ(error_with("format", "aphotic-manifest-1"),
-              "format: found \"aphotic-manifest-1\"; allowed: \"aphotic-manifest-3\"");
+              "format: found \"aphotic-manifest-1\"; allowed: \"aphotic-manifest-4\"");
 }
 
 TEST(Manifest, NamesEachKeyOfTheWrongType) {
@@ -394,6 +396,11 @@ TEST(Manifest, WantsExposuresThatADoubleCanHold) {
         EXPECT_EQ(wavelength_error("exposure_log2", value),
                   "wavelengths[1]: exposure_log2: found " + value.dump() + allowed);
     }
+}
+
+TEST(Manifest, WantsBoundsOfLightThatLightCanHave) {
+    EXPECT_EQ(wavelength_error("radiance_bound", -1e-9),
+              "wavelengths[1]: radiance_bound: found -1e-09; allowed: 0 or more");
 }
 
 }  // namespace

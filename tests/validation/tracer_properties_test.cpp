@@ -7,6 +7,7 @@
 // The exposures of POV-Ray's frames are held against the same images at the end.
 #include "scene_gen/pov_scene.h"
 #include "spectral/frame_check.h"
+#include "support/effort.h"
 #include "support/random_rig.h"
 #include "support/rig_changes.h"
 #include "validation/comparison.h"
@@ -28,13 +29,9 @@ namespace aphotic::tracer_properties_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 71'000;
-#ifdef NDEBUG
-constexpr int kRigs = 400;
-constexpr int kRigsOfSignals = 120;  // the grid of wavelengths of one takes as long as ten images
-#else
-constexpr int kRigs = 12;  // enough that every line runs
-constexpr int kRigsOfSignals = 4;
-#endif
+constexpr int kRigs = cases(400);
+constexpr int kRigsOfSignals =
+    cases(120);  // the grid of wavelengths of one is as long as ten images
 
 constexpr int kWidth_px = 9;
 constexpr int kHeight_px = 7;

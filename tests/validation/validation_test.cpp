@@ -101,7 +101,7 @@ TEST(Validation, LeavesPenumbraeToTheEdgesWhereLampsAreNotKnown) {
 TEST(Validation, BoundsTheHalfShadowsOfObjects) {
     Rig rig = small_rig("objects");
     for (Strobe& strobe : rig.strobes) {
-        strobe.emitter = Emitter{.across_m = 0.2, .along_m = 0.1};
+        strobe.emitter = Emitter{.across_m = 0.1, .along_m = 0.05};
         // No cone's edge: what is left are shadows.
         strobe.beam.cones = {
             {.part = "diffuse", .half_angle_rad = 1.5707963267948966, .weight = 1.0}};
