@@ -173,6 +173,7 @@ struct MadeAtlas {
 };
 
 MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes& finest) {
+    require_over_floor(rig, finest);
     if (is_exported(options, "exponential"))
         AltitudeFitter{finest.altitude_m};  // or it says why not
     MadeAtlas made{.chosen = choose(options, rig, finest), .exports = {}};

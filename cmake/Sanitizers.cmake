@@ -1,6 +1,7 @@
 # For the whole tree, since instrumented and plain objects in one program report faults that
 # are none. A finding ends the program, so that no test passes over it.
-# Every program of ours links to aphotic_sanitizers, which names the findings that are not ours.
+# Every program of ours links to aphotic_sanitizers, which names the findings that are not ours, and
+# the programs in which the leak sanitizer crashes.
 add_library(aphotic_sanitizers INTERFACE)
 
 if(APHOTIC_SANITIZE)

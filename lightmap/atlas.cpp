@@ -302,8 +302,17 @@ std::size_t bins_missing(const fs::path& folder, const MapAxes& axes) {
         points, [&](const MapPoint& point) { return !fs::exists(bin_path(folder, point)); }));
 }
 
+void require_over_floor(const Rig& rig, const MapAxes& axes) {
+    // A strobe is the lower the lower the sled is.
+    MapAxes lowest = axes;
+    lowest.altitude_m.resize(1);
+    lowest.water_multiple.resize(1);
+    for (const MapPoint& point : points_of(lowest)) require_over_floor(rig, point.sled);
+}
+
 std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasRequest& request) {
     const std::vector<MapPoint> points = points_of(request.axes);
+    require_over_floor(rig, request.axes);
     AtlasManifest manifest{.version = request.version,
                            .title = rig.title,
                            .rig_digest = rig.digest,

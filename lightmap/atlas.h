@@ -59,6 +59,9 @@ struct AtlasRequest {
     std::function<void(double)> progress;  // share of the bins
 };
 
+// Throws InputError, which names pose and strobe, unless every bin holds all lamps over the floor.
+void require_over_floor(const Rig& rig, const MapAxes& axes);
+
 // Returns how many bins it computed; the others were there. Exports of an earlier run go.
 std::size_t write_atlas(const std::filesystem::path& folder,
                         const Rig& rig,

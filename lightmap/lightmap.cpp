@@ -109,6 +109,18 @@ SpectralSum spectral_sum(const Rig& rig,
     return sum;
 }
 
+// As in clear water: of what a signal counts, little is attenuated so much that it asks for more.
+LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
+    return lamp_grid(rig, strobe, 0.0);
+}
+
+std::string in_words(const Sled& sled) {
+    return fmt::format("altitude {:.6g} m, pitch {:.6g}, roll {:.6g} degrees",
+                       sled.altitude_m,
+                       sled.pitch_rad * kDegreesPerRadian,
+                       sled.roll_rad * kDegreesPerRadian);
+}
+
 std::vector<LampTerms> lamps_of(const Rig& rig, const Strobe& strobe, const Plane& floor) {
     LampTerms terms{.position_m = strobe.position_m,
                     .axis = strobe.axis,
@@ -117,9 +129,7 @@ std::vector<LampTerms> lamps_of(const Rig& rig, const Strobe& strobe, const Plan
                     .cone_intensity = {},
                     .phong = rig.seafloor.phong,
                     .phong_size = rig.seafloor.phong_size};
-    // As in clear water: of what a signal counts, little is attenuated so much that it asks for
-    // more.
-    const auto positions_m = lamp_positions_m(strobe, lamp_grid(rig, strobe, 0.0));
+    const auto positions_m = lamp_positions_m(strobe, grid_of_lamps(rig, strobe));
     const double share =
         strobe.power / (std::numbers::pi * static_cast<double>(positions_m.size()));
     for (const Cone& cone : strobe.beam.cones) {
@@ -130,7 +140,7 @@ std::vector<LampTerms> lamps_of(const Rig& rig, const Strobe& strobe, const Plan
     for (const Eigen::Vector3d& position_m : positions_m) {
         terms.position_m = position_m;
         terms.height_m = height_above(floor, position_m);
-        if (terms.height_m > 0.0) lamps.push_back(terms);
+        lamps.push_back(terms);
     }
     return lamps;
 }
@@ -220,6 +230,17 @@ PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds) {
     return all.longest_m > 0.0 ? all : PathRange{};
 }
 
+void require_over_floor(const Rig& rig, const Sled& sled) {
+    Rig flown = rig;
+    flown.sled = sled;
+    try {
+        for (const Strobe& strobe : flown.strobes)
+            require_over_floor(sled, strobe, grid_of_lamps(flown, strobe));
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", in_words(sled), error.what()));
+    }
+}
+
 MapPromise map_promise(const Rig& rig, const LightmapOptions& options) {
     constexpr double kRounding = 12.0 * 0x1p-24;
     constexpr double kOverTheIndex = 1e-4;
@@ -300,6 +321,7 @@ LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
     }
     Rig flown = rig_;
     flown.sled = sled;
+    require_over_floor(rig_, sled);
     for (std::size_t s = 0; s < rig_.strobes.size() && steps_.count > 0; ++s) {
         for (const LampTerms& lamp : lamps_of(flown, rig_.strobes[s], floor)) {
             scene.lamps.push_back({.terms = lamp, .spectrum = spectrum_of_strobe_[s]});
@@ -311,11 +333,9 @@ LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
 void LightmapMaker::require_served(const Sled& sled, bool is_before, bool is_beyond) const {
     if (!is_before && (!is_beyond || paths_.has_horizon)) return;
     throw InputError(
-        fmt::format("altitude {:.6g} m, pitch {:.6g}, roll {:.6g} degrees: the image sees paths {} "
+        fmt::format("{}: the image sees paths {} "
                     "than the tables serve; allowed: from {:.6g} to {:.6g} m",
-                    sled.altitude_m,
-                    sled.pitch_rad * kDegreesPerRadian,
-                    sled.roll_rad * kDegreesPerRadian,
+                    in_words(sled),
                     is_before ? "shorter" : "longer",
                     paths_.shortest_m,
                     paths_.longest_m));

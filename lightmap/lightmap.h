@@ -71,7 +71,8 @@ class LightmapMaker {
                   const std::optional<PathRange>& paths,
                   const LightmapOptions& options);
 
-    // Throws InputError when this sled sees paths that the tables do not serve.
+    // Throws InputError when this sled sees paths that the tables do not serve, or puts a lamp
+    // under the floor.
     [[nodiscard]] Lightmap map(const Sled& sled) const;
     // The same into a map that is there: without allocation when it has the size.
     void map_into(const Sled& sled, Lightmap& map) const;
@@ -111,6 +112,10 @@ class LightmapMaker {
     std::vector<LightTables> tables_;     // by lamp spectrum
     std::vector<std::size_t> spectrum_of_strobe_;
 };
+
+// Throws InputError, which names the sled's pose and the strobe, unless the sled holds all lamps of
+// the rig over the floor.
+void require_over_floor(const Rig& rig, const Sled& sled);
 
 // The paths that any of these sleds sees, with some room for those between them.
 [[nodiscard]] PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds);

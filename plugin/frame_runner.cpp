@@ -133,11 +133,11 @@ std::optional<ProcessEnd> poll(Running& run, const fs::path& folder) {
     }
 }
 
-void take_in(const Running& run,
-             const fs::path& folder,
-             int width_px,
-             int height_px,
-             const RunOptions& options) {
+void check(const Running& run,
+           const fs::path& folder,
+           int width_px,
+           int height_px,
+           const RunOptions& options) {
     const fs::path& part = run.part->path();
     try {
         if (options.convert) options.convert(part);
@@ -150,7 +150,6 @@ void take_in(const Running& run,
                                    run.log.string(),
                                    words_of_full_disk(folder)));
     }
-    run.part->commit();
 }
 
 }  // namespace
@@ -160,8 +159,7 @@ void run_frames(const PovRay& povray,
                 const std::vector<ManifestFrame>& frames,
                 int width_px,
                 int height_px,
-                const RunOptions& options,
-                const std::function<void(const ManifestFrame&)>& arrived) {
+                const RunOptions& options) {
     if (frames.empty()) return;
     make_folder(folder / "povray" / "logs");
     make_folder(folder / "povray" / "frames");
@@ -189,8 +187,10 @@ void run_frames(const PovRay& povray,
             if (started < frames.size()) {
                 running.push_back(start(povray, folder, frames[started++], threads, options));
             }
-            take_in(ended, folder, width_px, height_px, options);
-            arrived(ended.frame);
+            check(ended, folder, width_px, height_px, options);
+            if (options.checked) options.checked(ended.frame, ended.part->path());
+            ended.part->commit();
+            if (options.arrived) options.arrived(ended.frame);
             ++done;
         }
         if (options.report && std::chrono::steady_clock::now() >= next_report) {

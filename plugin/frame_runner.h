@@ -40,18 +40,21 @@ struct RunOptions {
     std::filesystem::path scene_folder{};
     std::vector<std::string> library_paths{};
     double stall_s = kStall_s;
+    // Called for each frame, in the order in which they end: with its image when that is whole,
+    // before it takes its place, so that what stands there has been noted, however we end; and when
+    // it is there.
+    std::function<void(const ManifestFrame&, const std::filesystem::path& image)> checked{};
+    std::function<void(const ManifestFrame&)> arrived{};
 };
 
-// Renders the frames, and calls `arrived` for each when its image stands checked in its place,
-// in the order in which they end. When one fails the others are stopped, and a RunError quotes
-// POV-Ray; when we are interrupted, Interrupted comes (plugin/interruption.h). Neither leaves
-// anything of the frames that were under way. Images do not depend on jobs.
+// Renders the frames. When one fails the others are stopped, and a RunError quotes POV-Ray; when we
+// are interrupted, Interrupted comes (plugin/interruption.h). Neither leaves anything of the frames
+// that were under way. Images do not depend on jobs.
 void run_frames(const PovRay& povray,
                 const std::filesystem::path& folder,
                 const std::vector<ManifestFrame>& frames,
                 int width_px,
                 int height_px,
-                const RunOptions& options,
-                const std::function<void(const ManifestFrame&)>& arrived);
+                const RunOptions& options);
 
 }  // namespace aphotic

@@ -58,18 +58,6 @@ bool still_holds(const fs::path& folder,
            is_whole(image_path(folder, earlier), manifest);
 }
 
-// Drawn, and not yet noted when the earlier run was killed. What stands under the name of a frame
-// that is noted as pending was made for its scene, for render() clears these names first. Of a
-// user's scene nobody checked that it was still the same.
-bool only_lacks_its_note(const fs::path& folder,
-                         const ManifestFrame& earlier,
-                         const ManifestFrame& wanted,
-                         const SceneSet& set) {
-    return !earlier.done() && earlier.scene_sha256 == wanted.scene_sha256 &&
-           set.scene_file.empty() && fs::exists(image_path(folder, earlier)) &&
-           is_whole(image_path(folder, earlier), set.manifest);
-}
-
 void take_away(const fs::path& file) {
     std::error_code error;
     fs::remove(file, error);
@@ -108,18 +96,6 @@ void take_away_what_is_past(const fs::path& folder,
         take_away(folder / image);
 }
 
-// A frame of a scene that was edited under way may be of either, so it goes.
-void require_still_that_scene(const fs::path& folder,
-                              const ManifestFrame& frame,
-                              const SceneSet& set) {
-    try {
-        require_unchanged(set.scene_file, set.scene_files_digest);
-    } catch (const RunError&) {
-        take_away(image_path(folder, frame));
-        throw;
-    }
-}
-
 }  // namespace
 
 RenderResult render(const PovRay& povray,
@@ -140,8 +116,6 @@ RenderResult render(const PovRay& povray,
         }
         if (before && still_holds(folder, *before, frame, set.manifest)) {
             frame.image_sha256 = before->image_sha256;
-        } else if (before && only_lacks_its_note(folder, *before, frame, set)) {
-            frame.image_sha256 = sha256_of_file(image_path(folder, frame));
         } else {
             missing.push_back(frame);
         }
@@ -155,15 +129,15 @@ RenderResult render(const PovRay& povray,
 
     RunOptions run = options;
     run.scene_folder = set.scene_file.parent_path();
-    const auto note = [&](const ManifestFrame& frame) {
-        if (!set.scene_file.empty()) require_still_that_scene(folder, frame, set);
+    run.checked = [&](const ManifestFrame& frame, const fs::path& image) {
+        // A frame of a scene that was edited under way may be of either.
+        if (!set.scene_file.empty()) require_unchanged(set.scene_file, set.scene_files_digest);
         for (ManifestFrame& noted : result.manifest.frames) {
-            if (noted.name != frame.name) continue;
-            noted.image_sha256 = sha256_of_file(image_path(folder, frame));
+            if (noted.name == frame.name) noted.image_sha256 = sha256_of_file(image);
         }
         write_manifest(folder, result.manifest);
     };
-    run_frames(povray, folder, missing, set.manifest.width_px, set.manifest.height_px, run, note);
+    run_frames(povray, folder, missing, set.manifest.width_px, set.manifest.height_px, run);
     return result;
 }
 

@@ -19,10 +19,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::size_t kGridOfFloor = 33;       // points along each side of the image
-constexpr double kMarginView = 1.5;            // a point this far outside the image may still count
-constexpr double kLeastLampDistance_m = 1e-3;  // as the reader of rigs allows it
-constexpr int kColourLimitLog2 = 120;          // colours are single precision: 2^128 overflows
+constexpr std::size_t kGridOfFloor = 33;  // points along each side of the image
+constexpr double kMarginView = 1.5;       // a point this far outside the image may still count
+constexpr int kColourLimitLog2 = 120;     // colours are single precision: 2^128 overflows
 
 bool may_be_in_view(const Camera& camera, const Vector3d& point_m) {
     const double reach = kMarginView * 0.5 * camera.pixel_pitch_m / camera.focal_length_m;
@@ -65,7 +64,7 @@ double least_object_distance_m(const Strobe& strobe, const Object& object) {
     for (const Vector3d& lamp_m : lamp_positions_m(strobe, kGridOfLamps)) {
         least_m = std::min(least_m, distance_m(object.shape, lamp_m));
     }
-    return std::max(kLeastLampDistance_m, least_m);
+    return std::max(kLeastDistance_m, least_m);
 }
 
 }  // namespace

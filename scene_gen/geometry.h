@@ -89,6 +89,13 @@ inline constexpr double kLampSpacing = 0.011;
 // plane sees it (down, for a strobe that shines fore or aft), `across` completes it.
 [[nodiscard]] std::vector<Eigen::Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid);
 
+// How far off what it lights a strobe must stand [m].
+inline constexpr double kLeastDistance_m = 0.001;
+
+// Throws InputError, which names the strobe, unless it stands so high over the floor and all of its
+// lamps are over it: an emitter may reach under it.
+void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid);
+
 // A_k of the cone: its intensity on the axis per unit of lamp power [1/sr].
 //
 //   flux:     A_k = alpha_k / (pi sin^2 gamma_k), so that the cone carries alpha_k of the flux

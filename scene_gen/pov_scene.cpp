@@ -118,16 +118,9 @@ void require_few_enough_lights(const Rig& rig, const SceneOptions& options) {
 }
 
 void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid) {
-    const Plane floor = floor_plane(rig.sled);
-    const std::vector<Vector3d> lamps_m = lamp_positions_m(strobe, grid);
-    for (const Vector3d& lamp_m : lamps_m) {
-        if (height_above(floor, lamp_m) > 0.0) continue;
-        throw InputError(
-            fmt::format("strobe '{}' has a lamp at or under the sea floor, {:.4f} m below it",
-                        strobe.name,
-                        -height_above(floor, lamp_m)));
-    }
+    require_over_floor(rig.sled, strobe, grid);
     if (!rig.camera.port) return;
+    const std::vector<Vector3d> lamps_m = lamp_positions_m(strobe, grid);
     const Housing h = housing(rig.camera);
     const double front_m = rig.camera.port->distance_m + rig.camera.port->thickness_m;
     const double behind_m = h.back_m + rig.camera.port->thickness_m;

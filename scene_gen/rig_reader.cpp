@@ -75,7 +75,6 @@ constexpr Bounds kDirection{-1e6, 1e6};
 constexpr Bounds kAimTiltDeg{0.0, 180.0};
 constexpr Bounds kPower{0.0, 1e12};
 constexpr Bounds kEmitterMm{0.0, 10000.0};
-constexpr double kLeastHeightM = 0.001;
 // An object's size: POV-Ray passes over blockers within a millimetre of what they shade.
 constexpr Bounds kRadiusM{0.001, 1000.0};
 constexpr double kLeastSideM = 0.001;
@@ -532,9 +531,10 @@ Emitter RigReader::read_emitter(Section& strobe) {
 
 Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled) {
     const auto [x, y, z] = section.numbers<3>("position_m", kPositionM);
-    if (height_above(floor_plane(sled), {x, y, z}) < kLeastHeightM) {
-        section.found_but("position_m",
-                          fmt::format("a point at least {} m above the sea floor", kLeastHeightM));
+    if (height_above(floor_plane(sled), {x, y, z}) < kLeastDistance_m) {
+        section.found_but(
+            "position_m",
+            fmt::format("a point at least {} m above the sea floor", kLeastDistance_m));
     }
     Strobe strobe{.name = section.text("name", "a name in quotes"),
                   .position_m = {x, y, z},
@@ -603,13 +603,13 @@ void require_place(const Shape& shape, const std::vector<Strobe>& strobes) {
     }
     for (const Strobe& strobe : strobes) {
         const double away_m = distance_m(shape, strobe.position_m);
-        if (away_m >= kLeastHeightM && !holds(shape, strobe.position_m)) continue;
+        if (away_m >= kLeastDistance_m && !holds(shape, strobe.position_m)) continue;
         throw InputError(
             fmt::format("found strobe '{}' inside of the object or {:.3g} m off it; allowed: at "
                         "least {} m off",
                         strobe.name,
                         away_m,
-                        kLeastHeightM));
+                        kLeastDistance_m));
     }
 }
 

@@ -96,17 +96,13 @@ void render_pictures(const PovRay& povray,
             waiting[frame.name] = entry;
         }
     }
-    run_frames(povray,
-               folder,
-               frames,
-               plan.width_px,
-               plan.height_px,
-               options,
-               [&](const ManifestFrame& frame) {
-                   Waiting& picture = *waiting.at(frame.name);
-                   if (--picture.frames_left > 0) return;
-                   integrate_picture(folder, picture.manifest, picture.picture->image);
-               });
+    RunOptions run = options;
+    run.arrived = [&](const ManifestFrame& frame) {
+        Waiting& picture = *waiting.at(frame.name);
+        if (--picture.frames_left > 0) return;
+        integrate_picture(folder, picture.manifest, picture.picture->image);
+    };
+    run_frames(povray, folder, frames, plan.width_px, plan.height_px, run);
 }
 
 }  // namespace aphotic::survey

@@ -235,6 +235,16 @@ TEST_F(CommandAtlas, RefusesAFitOverFewAltitudesBeforeItBegins) {
     EXPECT_FALSE(fs::exists(folder_.path() / "atlas"));
 }
 
+TEST_F(CommandAtlas, RefusesBinsWithAStrobeUnderTheFloorBeforeItBegins) {
+    const CommandResult run = atlas({"--altitude", "0.02:0.1:0.04", "--pitch", "-30:30:30"});
+    EXPECT_EQ(run.status, kBadInput);
+    EXPECT_NE(run.err.find("rig.toml: altitude 0.02 m, pitch -30, roll 0 degrees: strobe 'fore' "
+                           "stands 0.2327 m under the sea floor"),
+              std::string::npos)
+        << run.err;
+    EXPECT_FALSE(fs::exists(folder_.path() / "atlas"));
+}
+
 TEST_F(CommandAtlas, SaysHowFarWholeMapsAreOff) {
     const CommandResult run = atlas({"--altitude", "1:4:0.5", "--tolerance", "0.05"});
     ASSERT_EQ(run.status, 0) << run.err;

@@ -477,6 +477,24 @@ TEST_F(CorrectCommand, AnotherNumberOfGainImagesTakesTheGainAnew) {
 
 // A name that leads nowhere when its turn comes, be it a link or a file that went meanwhile, and a
 // pipe, which one would wait for without end: each is one bad image, whichever way it was named.
+// Its light would be that of the other strobes alone.
+TEST_F(CorrectCommand, APoseWithAStrobeUnderTheFloorIsSkipped) {
+    take_survey();
+    fs::copy_file(path("raw/0.tif"), path("raw/tilted.tif"));
+    note("tilted.tif", {0.02, 30.0 * kDegree, 0.0});
+    const CommandResult run = correct({"--json"});
+    EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
+    const Json summary = Json::parse(run.out);
+    EXPECT_EQ(summary["corrected"], 4);
+    EXPECT_EQ(summary["gain_from"].size(), 4U);
+    ASSERT_EQ(summary["skipped"].size(), 1U);
+    EXPECT_EQ(summary["skipped"][0]["image"], "raw/tilted.tif");
+    EXPECT_EQ(
+        summary["skipped"][0]["why"],
+        "altitude 0.02 m, pitch 30, roll 0 degrees: strobe 'aft' stands 0.2327 m under the sea "
+        "floor; allowed: at least 0.001 m over it");
+}
+
 TEST_F(CorrectCommand, WhatIsNoFileWhenItsTurnComesCostsNoOther) {
     take_survey();
     fs::create_symlink("moved-away.tif", path("raw/gone.tif"));

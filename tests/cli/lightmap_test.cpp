@@ -163,6 +163,14 @@ TEST_F(CommandLightmap, RefusesARigWithObjects) {
     EXPECT_FALSE(fs::exists(folder_.path() / "map.exr"));
 }
 
+TEST_F(CommandLightmap, RefusesASledThatPutsAStrobeUnderTheFloor) {
+    const CommandResult run = lightmap({"--altitude-m", "0.02", "--pitch-deg", "30"});
+    EXPECT_EQ(run.status, kBadInput);
+    EXPECT_NE(run.err.find("strobe 'aft' stands 0.2327 m under the sea floor"), std::string::npos)
+        << run.err;
+    EXPECT_FALSE(fs::exists(folder_.path() / "map.exr"));
+}
+
 TEST_F(CommandLightmap, LeavesNothingWhereItCannotWrite) {
     const CommandResult run =
         run_aphotic(folder_.path(), {"lightmap", "rig.toml", "-o", "no-such-folder/map.exr"});

@@ -198,7 +198,7 @@ TEST(Lightmap, IsThatOfTheTracerForGlossyFloors) {
 
 TEST(Lightmap, IsThatOfTheTracerUpToTheHorizon) {
     Rig rig = scene("habcam", 96, 72);
-    rig.sled.pitch_rad = -80.0 * kDegree;
+    rig.sled = {.altitude_m = 4.0, .pitch_rad = -80.0 * kDegree};  // the fore strobe 0.2 m over it
     for (const double loss_per_m : {0.0, 0.3}) {
         rig.water.uniform_loss_per_m = loss_per_m;
         expect_equal(rig, kWithoutPort, "horizon " + std::to_string(loss_per_m));
@@ -227,6 +227,46 @@ TEST(Lightmap, RefusesSledsWhosePathsItsTablesDoNotServe) {
     EXPECT_NO_THROW((void)maker.map({.altitude_m = 2.0}));
     EXPECT_THROW((void)maker.map({.altitude_m = 1.5}), InputError);
     EXPECT_THROW((void)maker.map({.altitude_m = 2.8}), InputError);
+}
+
+std::string refusal_of(const Rig& rig, const Sled& sled) {
+    try {
+        (void)LightmapMaker(rig, paths_of(rig, {sled}), {}).map(sled);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+// The aft strobe, half a metre behind the pupil, stands h cos(p) - 0.5 m sin(p) over the floor.
+TEST(Lightmap, RefusesSledsThatPutAStrobeUnderTheFloor) {
+    const Rig rig = scene("habcam", 32, 24);
+    EXPECT_EQ(
+        refusal_of(rig, {.altitude_m = 0.02, .pitch_rad = 30.0 * kDegree}),
+        "altitude 0.02 m, pitch 30, roll 0 degrees: strobe 'aft' stands 0.2327 m under the sea "
+        "floor; allowed: at least 0.001 m over it");
+    const double grazing_m = 0.5 * std::tan(30.0 * kDegree);
+    for (const double over_m : {-1e-6, 0.9e-3}) {
+        const Sled low{.altitude_m = grazing_m + over_m / std::cos(30.0 * kDegree),
+                       .pitch_rad = 30.0 * kDegree};
+        EXPECT_NE(refusal_of(rig, low), "none") << over_m;
+    }
+    const Sled above{.altitude_m = grazing_m + 1.2e-3, .pitch_rad = 30.0 * kDegree};
+    EXPECT_EQ(refusal_of(rig, above), "none");
+}
+
+TEST(Lightmap, RefusesSledsThatPutPartOfAnEmitterUnderTheFloor) {
+    Rig rig = scene("one-lamp", 32, 24);
+    rig.strobes[0].position_m = {0.0, 0.5, 0.0};
+    rig.strobes[0].axis = Eigen::Vector3d::UnitZ();
+    rig.strobes[0].emitter = {.across_m = 0.1, .along_m = 0.1};
+    EXPECT_EQ(refusal_of(rig, {.altitude_m = 0.6}), "none");
+    // The middle 8.7 mm over the floor, the side forward 34 mm nearer.
+    const std::string refusal = refusal_of(rig, {.altitude_m = 0.01, .pitch_rad = -30.0 * kDegree});
+    EXPECT_TRUE(
+        refusal.starts_with("altitude 0.01 m, pitch -30, roll 0 degrees: strobe 'lamp' "
+                            "has a lamp at or under the sea floor, 0.0"))
+        << refusal;
 }
 
 TEST(Lightmap, RefusesObjectsAndScenes) {
@@ -266,11 +306,12 @@ TEST(Lightmap, IsLinearInTheLamps) {
     }
 }
 
-TEST(Lightmap, IsBlackWhereThereIsNoFloor) {
-    Rig rig = scene("habcam", 32, 24);
-    rig.sled.pitch_rad = -std::numbers::pi;
-    const Lightmap map = map_of(rig);
-    EXPECT_TRUE(std::ranges::all_of(map.samples, [](float s) { return s == 0.0F; }));
+TEST(Lightmap, RefusesASledUnderTheFloor) {
+    const Rig rig = scene("habcam", 32, 24);
+    EXPECT_EQ(
+        refusal_of(rig, {.altitude_m = 2.0, .pitch_rad = -std::numbers::pi}),
+        "altitude 2 m, pitch -180, roll 0 degrees: strobe 'fore' stands 2.0000 m under the sea "
+        "floor; allowed: at least 0.001 m over it");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // What becomes of a run when POV-Ray does not do as it should, and when it does.
 #include "plugin/frame_runner.h"
 
+#include "spectral/digest.h"
 #include "spectral/error.h"
 #include "support/rendered.h"
 #include "support/run_command.h"
@@ -90,6 +91,31 @@ TEST_F(FrameRunner, UsersIniIsNotInherited) {
     ::unsetenv("POVINI");
     EXPECT_EQ(found.worst, clean.worst);
     EXPECT_LE(found.worst, kHalfFloatError);
+}
+
+// So what stands in its place can only be what was noted, also when we are killed in between.
+TEST_F(FrameRunner, NotesAFrameBeforeItTakesItsPlace) {
+    const fs::path place = image_path(folder_.path(), set_.manifest.frames[0]);
+    std::string noted;
+    RunOptions options{.jobs = 1, .report = {}};
+    options.arrived = [&](const ManifestFrame&) {
+        noted = read_manifest(folder_.path()).frames[0].image_sha256;
+        EXPECT_EQ(noted, sha256_of_file(place));
+    };
+    render(find_povray(""), folder_.path(), set_, options);
+    EXPECT_FALSE(noted.empty());
+
+    fs::remove(place);
+    int checked = 0;
+    options.checked = [&](const ManifestFrame&, const fs::path& image) {
+        EXPECT_TRUE(fs::exists(image));
+        EXPECT_FALSE(fs::exists(place));
+        ++checked;
+    };
+    options.arrived = {};
+    run_frames(find_povray(""), folder_.path(), set_.manifest.frames, 16, 12, options);
+    EXPECT_EQ(checked, 1);
+    EXPECT_TRUE(fs::exists(place));
 }
 
 TEST_F(FrameRunner, ProgressRunsToTheEnd) {

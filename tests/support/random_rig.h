@@ -224,16 +224,16 @@ inline Rig random_rig(std::uint64_t seed) {
 // What the reader of rigs allows: neither pupil nor strobe within it or too close, and no port in
 // it.
 inline bool has_place(const Rig& rig, const Shape& shape) {
-    constexpr double kLeastDistance_m = 0.02;
+    constexpr double kLeastFromLamp_m = 0.02;
     constexpr double kHousing_m = 0.6;  // from the pupil to the farthest corner of any of these
-    const double from_pupil_m = rig.camera.port ? kHousing_m : kLeastDistance_m;
+    const double from_pupil_m = rig.camera.port ? kHousing_m : kLeastFromLamp_m;
     if (bounds_m(shape).exteriorDistance(Eigen::Vector3d::Zero().eval()) < from_pupil_m) {
         return false;
     }
     return std::ranges::all_of(rig.strobes, [&](const Strobe& strobe) {
         const double reach_m =
             strobe.emitter ? std::hypot(strobe.emitter->across_m, strobe.emitter->along_m) : 0.0;
-        return bounds_m(shape).exteriorDistance(strobe.position_m) > kLeastDistance_m + reach_m;
+        return bounds_m(shape).exteriorDistance(strobe.position_m) > kLeastFromLamp_m + reach_m;
     });
 }
 
