@@ -111,7 +111,18 @@ SpectralSum spectral_sum(const Rig& rig,
 
 // As in clear water: of what a signal counts, little is attenuated so much that it asks for more.
 LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
-    return lamp_grid(rig, strobe, 0.0);
+    constexpr double kMostLamps = 1e5;  // a map adds up the lamps pixel by pixel
+    const LampGrid grid = lamp_grid(rig, strobe, 0.0);
+    if (static_cast<double>(grid.across) * grid.along > kMostLamps) {
+        throw InputError(
+            fmt::format("strobe '{}': found an emitter that takes {} x {} lamps so low over the "
+                        "floor; allowed: up to {} of them",
+                        strobe.name,
+                        grid.across,
+                        grid.along,
+                        kMostLamps));
+    }
+    return grid;
 }
 
 std::string in_words(const Sled& sled) {
@@ -234,8 +245,10 @@ void require_over_floor(const Rig& rig, const Sled& sled) {
     Rig flown = rig;
     flown.sled = sled;
     try {
-        for (const Strobe& strobe : flown.strobes)
+        for (const Strobe& strobe : flown.strobes) {
+            require_over_floor(sled, strobe, {});  // else no number of lamps would do
             require_over_floor(sled, strobe, grid_of_lamps(flown, strobe));
+        }
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", in_words(sled), error.what()));
     }

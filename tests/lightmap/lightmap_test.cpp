@@ -261,12 +261,24 @@ TEST(Lightmap, RefusesSledsThatPutPartOfAnEmitterUnderTheFloor) {
     rig.strobes[0].axis = Eigen::Vector3d::UnitZ();
     rig.strobes[0].emitter = {.across_m = 0.1, .along_m = 0.1};
     EXPECT_EQ(refusal_of(rig, {.altitude_m = 0.6}), "none");
-    // The middle 8.7 mm over the floor, the side forward 34 mm nearer.
-    const std::string refusal = refusal_of(rig, {.altitude_m = 0.01, .pitch_rad = -30.0 * kDegree});
+    // The middle 40 mm over the floor, the side forward 43.3 mm nearer.
+    const std::string refusal = refusal_of(rig, {.altitude_m = 0.08, .pitch_rad = -60.0 * kDegree});
     EXPECT_TRUE(
-        refusal.starts_with("altitude 0.01 m, pitch -30, roll 0 degrees: strobe 'lamp' "
-                            "has a lamp at or under the sea floor, 0.0"))
+        refusal.starts_with("altitude 0.08 m, pitch -60, roll 0 degrees: strobe 'lamp' has "
+                            "a lamp at or under the sea floor, "))
         << refusal;
+}
+
+// Lamps a hundredth of their height apart: 1e8 of them, and a map would take a day.
+TEST(Lightmap, RefusesAnEmitterOfMoreLampsThanAnyoneHasTimeFor) {
+    Rig rig = scene("one-lamp", 32, 24);
+    rig.strobes[0].emitter = {.across_m = 0.2, .along_m = 0.2};
+    const std::string refusal = refusal_of(rig, {.altitude_m = 0.002});
+    EXPECT_TRUE(
+        refusal.starts_with("altitude 0.002 m, pitch 0, roll 0 degrees: strobe 'lamp': found "
+                            "an emitter that takes "))
+        << refusal;
+    EXPECT_TRUE(refusal.ends_with("; allowed: up to 100000 of them")) << refusal;
 }
 
 TEST(Lightmap, RefusesObjectsAndScenes) {
