@@ -159,14 +159,14 @@ TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
         "same() { cmp -s $1 $2 || echo \"amiss: $1 is not $2\"; }\n"
         "try() {\n"
         "  name=$1; kib=$2; expected=$3; shift 3\n"
-        "  fill $kib; $APHOTIC \"$@\" >/dev/null 2>err; status=$?\n"
+        "  fill $kib; \"$APHOTIC\" \"$@\" >/dev/null 2>err; status=$?\n"
         "  echo \"$name $kib $status $(tr '\\n' ' ' <err)\"\n"
         "  find disk -name '.*.part*' -o -name '*.pov-state' | sed 's/^/amiss: /'\n"
         "  for image in disk/out/image.exr disk/out/spectral.exr; do\n"
         "    [ ! -e $image ] || same $image $expected/${image##*/}\n"
         "  done\n"
         "  rm disk/fill\n"
-        "  $APHOTIC \"$@\" >/dev/null || echo \"amiss: $name with space\"\n"
+        "  \"$APHOTIC\" \"$@\" >/dev/null || echo \"amiss: $name with space\"\n"
         "  if [ $expected = generated ]; then\n"
         "    diff -r $expected disk/out | sed 's/^/amiss: /'\n"
         "  else\n"
@@ -228,7 +228,7 @@ TEST_F(Faults, AFullFolderForTemporaryFilesIsSaid) {
         "mkdir tmp\n"
         "mount -t tmpfs -o size=64k none tmp\n"
         "dd if=/dev/zero of=tmp/fill bs=1k 2>/dev/null\n"
-        "TMPDIR=$PWD/tmp $APHOTIC render rig.toml -o out >/dev/null 2>err\n"
+        "TMPDIR=$PWD/tmp \"$APHOTIC\" render rig.toml -o out >/dev/null 2>err\n"
         "echo \"$? $(tr '\\n' ' ' <err)\"\n");
     ASSERT_EQ(lines.size(), 1U);
     EXPECT_TRUE(lines[0].starts_with("3 aphotic: POV-Ray: ")) << lines[0];
@@ -251,7 +251,7 @@ TEST_F(Faults, AFileThatCannotGrowIsSaid) {
     const auto before = contents(file("out"));
     const auto limited = [&](const std::string& arguments) {
         const std::string script =
-            "ulimit -f 4; exec " + std::string(APHOTIC_COMMAND) + " " + arguments;
+            "ulimit -f 4; exec '" + std::string(APHOTIC_COMMAND) + "' " + arguments;
         const ProcessEnd end = run_process({.executable = "/bin/sh",
                                             .arguments = {"-c", script},
                                             .folder = folder_.path(),
@@ -281,10 +281,10 @@ TEST_F(Faults, AReadOnlyFolderIsSaid) {
         "for c in 'render rig.toml -o out' 'generate rig.toml -o out' 'integrate out' \\\n"
         "         'trace rig.toml -o out' 'validate rig.toml -o out' "
         "'study rig.toml --quick -o out'; do\n"
-        "  $APHOTIC $c >/dev/null 2>err; echo \"$? $(tr '\\n' ' ' <err)\"\n"
+        "  \"$APHOTIC\" $c >/dev/null 2>err; echo \"$? $(tr '\\n' ' ' <err)\"\n"
         "done\n"
         // Its frames can be read all the same.
-        "$APHOTIC integrate out -o elsewhere >/dev/null; echo \"$?\"\n");
+        "\"$APHOTIC\" integrate out -o elsewhere >/dev/null; echo \"$?\"\n");
     ASSERT_EQ(lines.size(), 7U);
     EXPECT_EQ(lines.back(), "0");
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
@@ -577,7 +577,7 @@ TEST_F(BadPovRay, ThatLiesAboutItsProgress) {
     const ProcessEnd end = run_process(
         {.executable = "/usr/bin/script",
          .arguments = {"-qec",
-                       std::string(APHOTIC_COMMAND) + " render rig.toml -o out --bands 3",
+                       "'" + std::string(APHOTIC_COMMAND) + "' render rig.toml -o out --bands 3",
                        "/dev/null"},
          .folder = folder_.path(),
          .environment = {{"APHOTIC_POVRAY", file("povray").string()}},

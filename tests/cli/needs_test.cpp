@@ -247,7 +247,7 @@ OnSmallDisk on_small_disk(const fs::path& folder,
     const fs::path script =
         write_script(folder / "small.sh",
                      fmt::format("mkdir -p disk && mount -t tmpfs -o size={} none disk || exit 99\n"
-                                 "{} {}\nstatus=$?\nls -A disk\nexit $status\n",
+                                 "'{}' {}\nstatus=$?\nls -A disk\nexit $status\n",
                                  size,
                                  APHOTIC_COMMAND,
                                  command));
@@ -313,9 +313,9 @@ TEST(Needs, AreHeldAgainstTheLimitsOfTheProcess) {
         run_aphotic(folder.path(), {"generate", "rig.toml", "--fitted", "3", "-o", "out"}).status,
         0);
     for (const std::string command :
-         {"ulimit -v 300000; exec {} integrate out -o images",
-          "ulimit -d 300000; exec {} integrate out -o images",
-          "ulimit -v 300000; exec {} lightmap rig.toml -o images.exr"}) {
+         {"ulimit -v 300000; exec '{}' integrate out -o images",
+          "ulimit -d 300000; exec '{}' integrate out -o images",
+          "ulimit -v 300000; exec '{}' lightmap rig.toml -o images.exr"}) {
         const ProcessEnd end =
             run_process({.executable = "/bin/sh",
                          .arguments = {"-c", fmt::format(fmt::runtime(command), APHOTIC_COMMAND)},
@@ -344,7 +344,7 @@ TEST(Needs, FramesThatAreKeptNeedNone) {
     const auto again = [&](const char* bands) {
         return on_small_disk(folder.path(),
                              "9m",
-                             fmt::format("render rig.toml --bands 12 -o disk/out{} && {} render "
+                             fmt::format("render rig.toml --bands 12 -o disk/out{} && '{}' render "
                                          "rig.toml --bands {} -o disk/out",
                                          fill,
                                          APHOTIC_COMMAND,

@@ -235,18 +235,18 @@ TEST_P(ShippedUserScenes, RenderSmallAndInAQuickLook) {
 
     std::smatch scene;
     ASSERT_TRUE(std::regex_search(rig, scene, std::regex(R"re(\nscene *= *"([^"]+)")re")));
-    const ProcessEnd end =
-        run_process({.executable = find_povray("").executable,
-                     .arguments = {"+I" + scene[1].str(),
-                                   "+Oquick.png",
-                                   std::string("+L") + APHOTIC_SOURCE_DIR + "/plugin/include",
-                                   "+W34",
-                                   "+H26",
-                                   "-D"},
-                     .folder = home,
-                     .environment = {},
-                     .log = folder.path() / "log"},
-                    120.0);
+    const ProcessEnd end = run_process(
+        {.executable = find_povray("").executable,
+         .arguments = {"+I" + scene[1].str(),
+                       "+Oquick.png",
+                       path_option("+L", std::string(APHOTIC_SOURCE_DIR) + "/plugin/include"),
+                       "+W34",
+                       "+H26",
+                       "-D"},
+         .folder = home,
+         .environment = {},
+         .log = folder.path() / "log"},
+        120.0);
     EXPECT_TRUE(end.succeeded());
     EXPECT_EQ(read_text_file(folder.path() / "log").find("as grey"), std::string::npos)
         << "a quick look of ours knows all its spectra";
