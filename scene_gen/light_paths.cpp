@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/light_paths.h"
 
+#include "scene_gen/floor_light.h"
 #include "scene_gen/frame_groups.h"
 #include "scene_gen/geometry.h"
 #include "scene_gen/solid.h"
@@ -127,42 +128,23 @@ std::vector<std::vector<Spectrum>> sources_of(const Rig& rig,
     return sources;
 }
 
-// What one image point gets of each kind of light, where every ray of the port's goes on to the
-// same cones: diffuse light and highlight of every lamp spectrum.
+// What one image point gets of each kind of light: diffuse light and highlight of every lamp
+// spectrum.
 std::vector<double> light_at(const Rig& rig,
                              const std::vector<std::size_t>& lamp_of_strobe,
                              const WaterRay& ray,
                              const Vector3d& cones_at_m,
                              double lambda_nm) {
-    const Plane floor = floor_plane(rig.sled);
-    const auto distance_m = distance_to(floor, ray);
-    if (!distance_m) return {};
-    const Vector3d point_m = ray.origin_m + *distance_m * ray.direction;
-    const Vector3d mirrored = ray.direction - 2.0 * ray.direction.dot(floor.normal) * floor.normal;
     const double K_per_m = rig.water.attenuation_per_m(lambda_nm);
     const double reflectance = rig.seafloor.reflectance.at(lambda_nm);
     std::vector<double> kinds(2 * rig.strobes.size());
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        const Strobe& strobe = rig.strobes[s];
-        const Vector3d towards = point_m - strobe.position_m;
-        const double d_m = towards.norm();
-        const double cos_theta = strobe.axis.dot(towards) / d_m;
-        const double cos_i = -floor.normal.dot(towards) / d_m;
-        if (cos_theta <= 0.0 || cos_i <= 0.0) continue;
-        const double cos_of_cones = strobe.axis.dot((cones_at_m - strobe.position_m).normalized());
-        double intensity = 0.0;
-        for (const Cone& cone : strobe.beam.cones) {
-            if (cos_of_cones < std::cos(cone.half_angle_rad)) continue;
-            intensity += axial_intensity(cone, strobe.beam.weights) * cos_theta;
-        }
-        const double light = strobe.spectrum.at(lambda_nm) * strobe.power * intensity /
-                             (d_m * d_m) * std::exp(-K_per_m * (d_m + *distance_m));
-        const double cos_mirrored = std::max(0.0, -mirrored.dot(towards) / d_m);
-        const std::size_t lamp = lamp_of_strobe[s];
-        kinds[2 * lamp] += light * cos_i * reflectance;
-        if (rig.seafloor.phong == 0.0) continue;
-        kinds[2 * lamp + 1] +=
-            light * rig.seafloor.phong * std::pow(cos_mirrored, rig.seafloor.phong_size);
+        const auto lit = floor_light(rig, rig.strobes[s], ray, cones_at_m);
+        if (!lit) return {};
+        const double flux =
+            rig.strobes[s].spectrum.at(lambda_nm) * std::exp(-K_per_m * lit->path_m);
+        kinds[2 * lamp_of_strobe[s]] += flux * reflectance * lit->diffuse_per_m2;
+        kinds[2 * lamp_of_strobe[s] + 1] += flux * lit->specular_per_m2;
     }
     return kinds;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/reintegration.h"
 
+#include "scene_gen/certificate.h"
 #include "scene_gen/lost_light.h"
 #include "scene_gen/scene_set.h"
 #include "scene_gen/solid.h"
@@ -144,6 +145,23 @@ std::vector<FrameLight> light_in(const Manifest& manifest,
     return frames;
 }
 
+// What they show of the bare floor; of a user's own scene, none.
+std::vector<FloorFrame> floor_frames(const Manifest& manifest, const Rig& changed) {
+    std::vector<FloorFrame> frames;
+    for (const ManifestWavelength& w : manifest.wavelengths) {
+        if (manifest.scene) break;
+        FloorFrame frame{.index_nm = w.index_nm,
+                         .attenuation_per_m = w.attenuation_per_m,
+                         .reflectance = w.reflectance.front()};
+        for (std::size_t s = 0; s < changed.strobes.size(); ++s) {
+            const double power = changed.strobes[s].power;
+            frame.spectrum.push_back(power > 0.0 ? w.flux[s] / power : 0.0);
+        }
+        frames.push_back(std::move(frame));
+    }
+    return frames;
+}
+
 Rig with_lit_strobes_only(Rig rig) {
     std::erase_if(rig.strobes, [](const Strobe& strobe) { return strobe.power == 0.0; });
     return rig;
@@ -245,7 +263,8 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
     }
     const RuleFitter fitter(changed.camera.sensor, family, changed.camera.range);
     const std::vector<FrameLight> frames = light_in(manifest, changed, family);
-    const FittedRule rule = fitter.fit(frames, manifest.frame_error);
+    FittedRule rule = fitter.fit(frames, manifest.frame_error);
+    certify(changed, fitter, frames, floor_frames(manifest, changed), rule);
     const double promise = rule.promise(manifest.frame_error);
     if (promise > tolerance) {
         throw InputError(

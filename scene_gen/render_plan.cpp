@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/render_plan.h"
 
+#include "scene_gen/certificate.h"
+#include "spectral/error.h"
 #include "spectral/planner.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace aphotic {
@@ -33,6 +38,11 @@ int wavelengths_per_step(const Rig& rig, const SceneOptions& scene) {
     return rig.camera.port ? 1 : scene.wavelengths_per_frame;
 }
 
+// What a shift changes on an object has no bound.
+double pixel_shift(const Rig& rig, const SceneOptions& scene) {
+    return rig.objects.empty() && !scene.user_scene ? scene.pixel_shift : 0.0;
+}
+
 // As many wavelengths as kinds of light tell all of them apart on one path; a few more serve the
 // others.
 int most_wavelengths(const LightFamily& family) {
@@ -54,6 +64,61 @@ void share_frames(const Rig& rig,
     } else {
         plan.rule = fitter.fit(frames, plan.frame_error);
     }
+    std::vector<FloorFrame> in_view;
+    for (const FrameGroup& group : plan.frames) {
+        if (plan.scene.user_scene) break;
+        for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+            in_view.push_back(floor_frame(rig, lambda_nm[i], group.index_nm));
+        }
+    }
+    certify(rig, fitter, frames, in_view, plan.rule);
+}
+
+// The fewest wavelengths that keep the tolerance, and keep it by the certificate too: where only
+// the fit finds them good enough, the fit is asked for more. Where sharing frames behind a port
+// breaks the tolerance, none is shared.
+void plan_to_tolerance(const Rig& rig,
+                       const RuleFitter& fitter,
+                       const PlanRequest& request,
+                       RenderPlan& plan) {
+    constexpr int kMostTrials = 4;
+    constexpr double kStricter = 0.7;
+    PlanTarget target{.tolerance = request.tolerance,
+                      .frame_error = plan.frame_error,
+                      .step = wavelengths_per_step(rig, request.scene),
+                      .most = most_wavelengths(plan.family)};
+    plan.tolerance = request.tolerance;
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t least_wavelengths = 0;
+    for (int trial = 0; trial < kMostTrials; ++trial) {
+        std::vector<double> lambda_nm;
+        try {
+            lambda_nm =
+                wavelengths_of(plan_wavelengths(fitter, rig.camera.range, target).wavelengths);
+        } catch (const InputError&) {
+            if (trial == 0) throw;
+            break;
+        }
+        plan.scene.pixel_shift = pixel_shift(rig, request.scene);
+        share_frames(rig, fitter, lambda_nm, plan);
+        if (plan.promise() > plan.tolerance && plan.scene.pixel_shift > 0.0) {
+            plan.scene.pixel_shift = 0.0;
+            share_frames(rig, fitter, lambda_nm, plan);
+        }
+        if (plan.promise() <= plan.tolerance) return;
+        if (plan.promise() < least) {
+            least = plan.promise();
+            least_wavelengths = lambda_nm.size();
+        }
+        const double allowed = request.tolerance - plan.frame_error;
+        target.tolerance = plan.frame_error + kStricter * (target.tolerance - plan.frame_error) *
+                                                  allowed / (plan.promise() - plan.frame_error);
+    }
+    throw InputError(
+        fmt::format("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
+                    request.tolerance,
+                    tolerance_to_ask_for(least),
+                    least_wavelengths));
 }
 
 }  // namespace
@@ -87,8 +152,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                     .scene = request.scene,
                     .frames = {},
                     .omissions = omissions(rig, request.scene.user_scene != nullptr)};
-    // What a shift changes on an object has no bound.
-    if (!rig.objects.empty() || request.scene.user_scene) plan.scene.pixel_shift = 0.0;
+    plan.scene.pixel_shift = pixel_shift(rig, request.scene);
     const RuleFitter fitter(rig.camera.sensor, plan.family, range);
     std::vector<double> lambda_nm;
     if (request.bands) {
@@ -102,21 +166,10 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
     } else if (request.fitted) {
         lambda_nm = best_wavelengths(fitter, range, *request.fitted, plan.frame_error);
     } else {
-        plan.tolerance = request.tolerance;
-        lambda_nm =
-            wavelengths_of(plan_wavelengths(fitter,
-                                            range,
-                                            {.tolerance = request.tolerance,
-                                             .frame_error = plan.frame_error,
-                                             .step = wavelengths_per_step(rig, request.scene),
-                                             .most = most_wavelengths(plan.family)})
-                               .wavelengths);
+        plan_to_tolerance(rig, fitter, request, plan);
+        return plan;
     }
     share_frames(rig, fitter, lambda_nm, plan);
-    if (plan.tolerance > 0.0 && plan.promise() > plan.tolerance) {
-        plan.scene.pixel_shift = 0.0;
-        share_frames(rig, fitter, lambda_nm, plan);
-    }
     return plan;
 }
 

@@ -244,14 +244,13 @@ FittedRule fitted(const RuleFitter& fitter, std::span<const double> lambda_nm, d
     return fitter.fit(frames, frame_error);
 }
 
-// To three digits, so that what is printed can be asked for.
-double rounded_up(double value) {
-    if (!(value > 0.0)) return value;
-    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
-    return std::ceil(value / digit) * digit;
-}
-
 }  // namespace
+
+double tolerance_to_ask_for(double promise) {
+    if (!(promise > 0.0)) return promise;
+    const double digit = std::pow(10.0, std::floor(std::log10(promise)) - 2.0);
+    return std::ceil(promise / digit) * digit;
+}
 
 std::vector<double> best_wavelengths(const RuleFitter& fitter,
                                      WavelengthRange range,
@@ -320,7 +319,7 @@ FittedRule plan_wavelengths(const RuleFitter& fitter,
     throw InputError(
         fmt::format("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
                     target.tolerance,
-                    rounded_up(best.promise(target.frame_error)),
+                    tolerance_to_ask_for(best.promise(target.frame_error)),
                     best.wavelengths.size()));
 }
 

@@ -38,6 +38,9 @@ inline constexpr double kFinestStepNm = 0.125;
                                           WavelengthRange range,
                                           const PlanTarget& target);
 
+// The promise, rounded up to three digits: what is printed can be asked for.
+[[nodiscard]] double tolerance_to_ask_for(double promise);
+
 // The best `count` wavelengths beside those of `given`, whose frames are there already. When a
 // first look finds them far from an error of `budget`, it is left at that.
 [[nodiscard]] std::vector<double> best_wavelengths(const RuleFitter& fitter,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace aphotic {
@@ -74,6 +75,7 @@ RuleFitter::RuleFitter(const Sensor& sensor, const LightFamily& family, Waveleng
     grid_tilt_ = ArrayXd::Zero(nodes);
     grid_sources_.resize(nodes, sources);
     grid_weights_.resize(nodes, kChannels);
+    grid_width_nm_.resize(nodes);
     for (Index i = 0; i < nodes; ++i) {
         const WeightedWavelength& w = grid[static_cast<std::size_t>(i)];
         grid_lambda_nm_(i) = w.lambda_nm;
@@ -86,6 +88,11 @@ RuleFitter::RuleFitter(const Sensor& sensor, const LightFamily& family, Waveleng
         for (Index c = 0; c < kChannels; ++c) {
             grid_weights_(i, c) = w.weight[static_cast<std::size_t>(c)];
         }
+    }
+    for (Index i = 0; i < nodes; ++i) {
+        const double below_nm = i > 0 ? grid_lambda_nm_(i - 1) : range.first_nm;
+        const double above_nm = i + 1 < nodes ? grid_lambda_nm_(i + 1) : range.last_nm;
+        grid_width_nm_(i) = above_nm - below_nm;
     }
     if (nodes > 0) least_attenuation_per_m_ = grid_attenuation_per_m_.minCoeff();
     const std::vector<double> fit_tilts = family.tilt ? std::vector{-1.0, 0.0, 1.0} : kNoTilt;
@@ -117,8 +124,14 @@ FrameLight RuleFitter::frame_at(double lambda_nm) const {
 RuleFitter::Sample RuleFitter::sample(ArrayXd paths_m, std::vector<double> tilts) const {
     const Index paths = paths_m.size();
     const Index sources = grid_sources_.cols();
-    Sample sample{.path_m = std::move(paths_m), .tilts = std::move(tilts), .signals = {}};
-    sample.signals.resize(sources * static_cast<Index>(sample.tilts.size()) * paths, kChannels);
+    Sample sample{.path_m = std::move(paths_m),
+                  .tilts = std::move(tilts),
+                  .signals = {},
+                  .response = {},
+                  .light = {}};
+    const Index members = sources * static_cast<Index>(sample.tilts.size()) * paths;
+    sample.signals.resize(members, kChannels);
+    sample.light.resize(members);
     Index row = 0;
     for (Index s = 0; s < sources; ++s) {
         const MatrixXd weighted = grid_weights_.colwise() * grid_sources_.col(s);
@@ -128,10 +141,21 @@ RuleFitter::Sample RuleFitter::sample(ArrayXd paths_m, std::vector<double> tilts
                     ((least_attenuation_per_m_ - grid_attenuation_per_m_) * sample.path_m(p) +
                      tilt * grid_tilt_)
                         .exp();
-                sample.signals.row(row++) = (light.matrix().transpose() * weighted).array();
+                sample.signals.row(row) = (light.matrix().transpose() * weighted).array();
+                sample.light(row++) = (light * grid_sources_.col(s) * grid_width_nm_).sum();
             }
         }
     }
+    // Members by sources: where a column is dark beside the brightest, it is black.
+    const Index each = members / std::max<Index>(1, sources);
+    const ArrayXd brightest = sample.light.reshaped(each, sources).rowwise().maxCoeff();
+    for (Index i = 0; i < members; ++i) {
+        if (sample.light(i) > kDarkness * brightest(i % each)) continue;
+        sample.light(i) = 0.0;
+        sample.signals.row(i).setZero();
+    }
+    sample.response = sample.signals.colwise() / sample.light;
+    sample.response = (sample.response > 0.0).select(sample.response, 0.0);  // 0/0 is dark
     return sample;
 }
 
@@ -154,19 +178,48 @@ MatrixXd RuleFitter::light_of(const Sample& sample, std::span<const FrameLight> 
     return light;
 }
 
-namespace {
-
-// One channel's rows: those members that it sees, relative to what it sees of them.
-MatrixXd relative_light(const MatrixXd& light, const ArrayXd& signals) {
-    const auto seen = (signals > 0.0).count();
-    MatrixXd relative(seen, light.cols());
-    if (light.cols() == 0) return relative;  // Eigen's rows would step off a null pointer
-    Index row = 0;
-    for (Index i = 0; i < signals.size(); ++i) {
-        if (signals(i) > 0.0) relative.row(row++) = light.row(i) / signals(i);
+RuleFitter::View RuleFitter::view_of(const MatrixXd& light,
+                                     const Sample& sample,
+                                     Index channel) const {
+    const ArrayXd response = sample.response.col(channel);
+    const double best = response.size() > 0 ? response.maxCoeff() : 0.0;
+    std::vector<Index> seen;
+    View view{.relative = {},
+              .whole_response = best * grid_width_nm_.sum(),
+              .unseen = ArrayXd::Zero(light.cols()),
+              .is_usable = {}};
+    for (Index i = 0; i < response.size(); ++i) {
+        if (response(i) > kBlind * best) {
+            seen.push_back(i);
+        } else if (sample.light(i) > 0.0) {
+            view.unseen = view.unseen.max(light.row(i).transpose().array() / sample.light(i) *
+                                          grid_width_nm_.sum());
+        }
     }
-    return relative;
+    view.relative.resize(static_cast<Index>(seen.size()), light.cols());
+    if (light.cols() == 0) return view;  // Eigen's rows would step off a null pointer
+    for (Index row = 0; row < view.relative.rows(); ++row) {
+        const Index i = seen[static_cast<std::size_t>(row)];
+        view.relative.row(row) = light.row(i) / sample.signals(i, channel);
+    }
+    for (Index j = 0; j < light.cols(); ++j) {
+        const double most =
+            seen.empty() ? 0.0 : view.relative.col(j).maxCoeff() * view.whole_response;
+        view.is_usable.push_back(view.unseen(j) <= kBlind && most * kMostWeight >= 1.0 &&
+                                 std::isfinite(most));
+    }
+    return view;
 }
+
+MatrixXd RuleFitter::View::usable() const {
+    MatrixXd light = relative;
+    for (Index j = 0; j < light.cols(); ++j) {
+        if (!is_usable[static_cast<std::size_t>(j)]) light.col(j).setZero();
+    }
+    return light;
+}
+
+namespace {
 
 RuleQuality quality_of(const MatrixXd& relative, const VectorXd& weights) {
     if (relative.rows() == 0) return {};
@@ -185,10 +238,13 @@ std::array<RuleQuality, kChannels> RuleFitter::judge(std::span<const WeightedWav
         for (std::size_t j = 0; j < rule.size(); ++j) {
             weights(static_cast<Index>(j)) = rule[j].weight[c];
         }
-        const MatrixXd check = relative_light(light, checking_.signals.col(static_cast<Index>(c)));
-        if (check.rows() == 0) continue;
-        quality[c] = quality_of(check, weights);
+        const View check = view_of(light, checking_, static_cast<Index>(c));
+        if (check.relative.rows() == 0) continue;
+        quality[c] = quality_of(check.relative, weights);
         quality[c].error += tilt_shape_error();
+        if ((weights.array().abs() * check.unseen > kLeak * check.whole_response).any()) {
+            quality[c].error = std::numeric_limits<double>::infinity();
+        }
     }
     return quality;
 }
@@ -202,9 +258,14 @@ FittedRule RuleFitter::fit(std::span<const FrameLight> frames, double frame_erro
     }
     for (std::size_t c = 0; c < kChannels; ++c) {
         const auto channel = static_cast<Index>(c);
-        const MatrixXd rows = relative_light(light, fitting_.signals.col(channel));
-        const MatrixXd check = relative_light(checked, checking_.signals.col(channel));
-        if (check.rows() == 0) continue;
+        View fitted = view_of(light, fitting_, channel);
+        const View checking = view_of(checked, checking_, channel);
+        if (checking.relative.rows() == 0) continue;
+        for (std::size_t j = 0; j < frames.size(); ++j) {
+            if (!checking.is_usable[j]) fitted.is_usable[j] = false;
+        }
+        const MatrixXd rows = fitted.usable();
+        const MatrixXd check = checking.usable();
         rule.quality[c] = {.error = 1.0, .amplification = 0.0};  // of no weights at all
         double best = 1.0 + kFreeAmplification * frame_error;
         for (const double ridge : kRidges) {
@@ -232,7 +293,7 @@ RuleFitter::Column RuleFitter::column_of(std::span<const FrameLight> frames) con
     const MatrixXd light = light_of(fitting_, frames);
     Column column;
     for (std::size_t c = 0; c < kChannels; ++c) {
-        column.light[c] = relative_light(light, fitting_.signals.col(static_cast<Index>(c)));
+        column.light[c] = view_of(light, fitting_, static_cast<Index>(c)).usable();
     }
     return column;
 }

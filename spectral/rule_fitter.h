@@ -17,6 +17,11 @@
 // (spectral/minimax.h); where that takes so large weights of either sign that the promise
 // suffers, they are held down.
 //
+// A channel may be blind to a member: it sees less than kBlind of what it sees, light for light, of
+// the member that it sees best. Such light counts for nothing, provided that it gets no weight
+// either: a wavelength at which it shines has none in that channel. Nor has one so dark that it
+// would need a weight of over kMostWeight times the channel's whole response to count.
+//
 // Behind a port pixels change along curves of their own, of which the family's tilt is the largest:
 // kTiltShape of half its span is added to the error for their shapes.
 //
@@ -75,7 +80,8 @@ class RuleFitter {
     // port on twice as many tilts.
     [[nodiscard]] FittedRule fit(std::span<const FrameLight> frames, double frame_error) const;
 
-    // The same of weights that are given.
+    // The same of weights that are given; the error is infinite where a channel's weights show it
+    // light that it is blind to.
     [[nodiscard]] std::array<RuleQuality, kChannels> judge(
         std::span<const WeightedWavelength> rule, std::span<const FrameLight> frames) const;
 
@@ -114,6 +120,9 @@ class RuleFitter {
                                                           std::span<const FrameLight> frames,
                                                           std::size_t source) const;
 
+    // What the shapes of pixels' own tilts add to the error; 0 without a port.
+    [[nodiscard]] double tilt_shape_error() const;
+
     // No member gives any channel a signal.
     [[nodiscard]] bool is_dark() const;
 
@@ -126,13 +135,30 @@ class RuleFitter {
     struct Sample {
         Eigen::ArrayXd path_m;
         std::vector<double> tilts;
-        Eigen::ArrayXXd signals;  // members by channels
+        Eigen::ArrayXXd signals;   // members by channels
+        Eigen::ArrayXXd response;  // the same, relative to all of a member's light; 0: it has none
+        Eigen::ArrayXd light;      // all of a member's, int f dlambda
+    };
+    // What one channel knows of frames: their light to the members that it sees, relative to what
+    // it sees of them, and which of the frames it may use.
+    struct View {
+        Eigen::MatrixXd relative;
+        double whole_response = 0.0;  // to the member that it sees best, over the range
+        // By frame: its light over the range, relative to all of a member's that the channel is
+        // blind to, the largest.
+        Eigen::ArrayXd unseen;
+        std::vector<bool> is_usable;
+
+        // What may not be used is as good as dark.
+        [[nodiscard]] Eigen::MatrixXd usable() const;
     };
 
-    [[nodiscard]] double tilt_shape_error() const;
     [[nodiscard]] Sample sample(Eigen::ArrayXd paths_m, std::vector<double> tilts) const;
     [[nodiscard]] Eigen::MatrixXd light_of(const Sample& sample,
                                            std::span<const FrameLight> frames) const;
+    [[nodiscard]] View view_of(const Eigen::MatrixXd& light,
+                               const Sample& sample,
+                               Eigen::Index channel) const;
 
     LightFamily family_;
     double least_attenuation_per_m_ = 0.0;
@@ -142,11 +168,19 @@ class RuleFitter {
     Eigen::ArrayXd grid_tilt_;
     Eigen::ArrayXXd grid_sources_;  // wavelengths by sources
     Eigen::ArrayXXd grid_weights_;  // wavelengths by channels
+    Eigen::ArrayXd grid_width_nm_;  // of light, not of a channel
     Sample fitting_;
     Sample checking_;
 };
 
 inline constexpr int kCheckPaths = 161;
+// Light of a source under kDarkness of the brightest source's on the same path counts for nothing,
+// a channel's response to a member under kBlind of its best counts as none, and weights that come
+// to less than kLeak of its best over all of the range as none to that member.
+inline constexpr double kDarkness = 1e-200;
+inline constexpr double kBlind = 1e-50;
+inline constexpr double kLeak = 1e-40;
+inline constexpr double kMostWeight = 1e20;
 inline constexpr double kTiltShape = 0.01;
 inline constexpr double kFreeAmplification = 1.25;
 

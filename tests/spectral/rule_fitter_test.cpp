@@ -904,6 +904,60 @@ TEST(RuleFitter, KnowsTheTiltOfAFrameFromItsOwnIndices) {
     }
 }
 
+// --- Light that a channel does not see -----------------------------------------------------------
+
+Spectrum table(std::vector<double> lambda_nm, std::vector<double> values) {
+    return {"table", std::move(lambda_nm), std::move(values)};
+}
+
+// Red sees nothing under 600 nm, so nothing of the second lamp. At 450 nm both shine: a weight
+// there would be no error to the first lamp, and show red the second, which may be brighter by any
+// factor.
+TEST(RuleFitter, GivesNoWeightToLightThatAChannelIsBlindTo) {
+    const Spectrum red = table({400.0, 600.0, 601.0, 700.0}, {0.0, 0.0, 1.0, 1.0});
+    const Spectrum blue_lamp = table({400.0, 500.0, 501.0, 700.0}, {1.0, 1.0, 0.0, 0.0});
+    const LightFamily family = family_of({{flat(1.0)}, {blue_lamp}}, pure_water(), 1.0, 5.0);
+    const RuleFitter fitter({{red, flat(1.0), flat(1.0)}, ResponseKind::Energy}, family, kRange);
+    const FittedRule rule =
+        fitter.fit(frames_at(fitter, {450.0, 520.0, 620.0, 660.0, 690.0}), kFrameError);
+    EXPECT_EQ(rule.wavelengths[0].weight[0], 0.0);
+    EXPECT_NE(rule.wavelengths[1].weight[0], 0.0);  // the second lamp does not shine there
+    EXPECT_NE(rule.wavelengths[0].weight[1], 0.0);
+    EXPECT_LT(rule.quality[0].error, 1e-2);
+}
+
+// The same when the weights are given.
+TEST(RuleFitter, JudgesWeightOnLightThatAChannelIsBlindToAsInfinitelyWrong) {
+    const Spectrum red = table({400.0, 600.0, 601.0, 700.0}, {0.0, 0.0, 1.0, 1.0});
+    const Spectrum blue_lamp = table({400.0, 500.0, 501.0, 700.0}, {1.0, 1.0, 0.0, 0.0});
+    const LightFamily family = family_of({{flat(1.0)}, {blue_lamp}}, clear_water(), 1.0, 5.0);
+    const Sensor sensor({red, flat(1.0), flat(1.0)}, ResponseKind::Energy);
+    const auto judged_with = [&](double blind_weight) {
+        return judged(sensor,
+                      family,
+                      kRange,
+                      {{.lambda_nm = 450.0, .weight = {blind_weight, 100.5, 100.5}},
+                       {.lambda_nm = 650.0, .weight = {99.5, 199.5, 199.5}}});
+    };
+    EXPECT_LT(judged_with(0.0)[0].error, kGridError);
+    EXPECT_EQ(judged_with(1e-6)[0].error, std::numeric_limits<double>::infinity());
+}
+
+// In a notch 70 decades deep there is no light that a frame could hold, and a weight of 1e70 would
+// make it count.
+TEST(RuleFitter, GivesNoWeightToLightThatNoFrameHolds) {
+    const Spectrum notched =
+        table({400.0, 499.0, 500.0, 510.0, 511.0, 700.0}, {1.0, 1.0, 1e-70, 1e-70, 1.0, 1.0});
+    const LightFamily family = family_of({{notched}}, pure_water(), 1.0, 5.0);
+    const RuleFitter fitter(flat_sensor(), family, kRange);
+    const FittedRule rule =
+        fitter.fit(frames_at(fitter, {450.0, 505.0, 560.0, 620.0}), kFrameError);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        EXPECT_EQ(rule.wavelengths[1].weight[c], 0.0);
+        EXPECT_NE(rule.wavelengths[2].weight[c], 0.0);
+    }
+}
+
 // --- Invariance ----------------------------------------------------------------------------------
 
 void expect_equal(const FittedRule& one, const FittedRule& other, double relative) {

@@ -6,6 +6,10 @@
 //   random_rig(seed)       the floor alone under point lamps, 48 x 36 pixels
 //   random_full_rig(seed)  the same rig with what else there is: emitters of a size, objects, cones
 //                          of no weight, strobes of no power
+//   random_nasty_rig(seed) the same geometry with users' worst tables: filters that rise over
+//   hundreds
+//                          of decades, lamps of a single line, notches, knots that almost coincide,
+//                          and 30 decades between lamps
 //
 // A test that fails prints the seed with in_words(); run alone with APHOTIC_RIG_SEED=<seed>, it
 // tries that rig and no other.
@@ -277,6 +281,98 @@ inline Rig random_full_rig(std::uint64_t seed) {
     }
     const int objects = dice.chance(0.3) ? dice.whole(1, 3) : 0;
     for (int k = 0; k < objects; ++k) add_random_object(dice, rig);
+    return rig;
+}
+
+// Knots: some even, some so close to another that they almost coincide.
+inline std::vector<double> nasty_knots_nm(Dice& dice) {
+    constexpr WavelengthRange kCovered{.first_nm = 360.0, .last_nm = 760.0};
+    const double spacing_nm = dice.over_octaves(2.0, 40.0);
+    std::vector<double> knots_nm{kCovered.first_nm};
+    while (knots_nm.back() < kCovered.last_nm) {
+        if (dice.chance(0.1)) knots_nm.push_back(knots_nm.back() + dice.over_octaves(1e-9, 1e-2));
+        knots_nm.push_back(knots_nm.back() + spacing_nm);
+    }
+    return knots_nm;
+}
+
+inline Spectrum curve_of(const std::vector<double>& knots_nm, const auto& value_at) {
+    std::vector<double> values;
+    for (const double nm : knots_nm) values.push_back(value_at(nm));
+    return {"nasty", knots_nm, std::move(values)};
+}
+
+// A bell over so many decades that its skirts may end in zeros, on a pedestal or none.
+inline Spectrum steep_filter(Dice& dice) {
+    const double centre_nm = dice.between(380.0, 740.0);
+    const double width_nm = dice.over_octaves(3.0, 100.0);
+    const double power = dice.chance(0.5) ? 2.0 : dice.between(1.0, 6.0);
+    const double pedestal = dice.chance(0.5) ? 0.0 : dice.over_octaves(1e-12, 0.1);
+    return curve_of(nasty_knots_nm(dice), [&](double nm) {
+        return pedestal + std::exp(-std::pow(std::abs(nm - centre_nm) / width_nm, power));
+    });
+}
+
+// Bright between two wavelengths alone.
+inline Spectrum window(Dice& dice, double most) {
+    const double first_nm = dice.between(360.0, 740.0);
+    const double last_nm = first_nm + dice.over_octaves(1.0, 200.0);
+    return curve_of(nasty_knots_nm(dice), [&](double nm) {
+        return nm >= first_nm && nm <= last_nm ? most * dice.between(0.2, 1.0) : 0.0;
+    });
+}
+
+// Lines a thousandth to three nanometres wide, up or down to nothing, on a level.
+inline Spectrum lines(Dice& dice, double level, double peak) {
+    std::vector<double> knots_nm{360.0};
+    std::vector<double> values{level};
+    const int count = dice.whole(1, 4);
+    for (int k = 0; k < count; ++k) {
+        const double half_nm = dice.over_octaves(5e-4, 1.5);
+        const double from_nm = knots_nm.back() + dice.between(1.0, 360.0 / count - 4.0);
+        const double value = dice.chance(0.3) ? 0.0 : peak;
+        for (const double step : {0.0, 1.0, 2.0}) {
+            knots_nm.push_back(from_nm + step * half_nm);
+            values.push_back(step == 1.0 ? value : level);
+        }
+    }
+    knots_nm.push_back(760.0);
+    values.push_back(level);
+    return {"nasty", std::move(knots_nm), std::move(values)};
+}
+
+inline Spectrum nasty_lamp(Dice& dice) {
+    const double level = dice.over_octaves(1e-3, 1e3);
+    if (dice.chance(0.3)) return window(dice, level);
+    if (dice.chance(0.3)) return lines(dice, 0.0, level);
+    if (dice.chance(0.5)) return lines(dice, level, level * dice.over_octaves(1.0, 1e3));
+    if (dice.chance(0.5)) return steep_filter(dice);
+    return random_lamp(dice);
+}
+
+inline Sensor nasty_sensor(Dice& dice) {
+    std::vector<Spectrum> responses;
+    for (int c = 0; c < kChannels; ++c) {
+        responses.push_back(dice.chance(0.7) ? steep_filter(dice) : lines(dice, 0.01, 1.0));
+    }
+    if (dice.chance(0.5))
+        return Sensor::filtered(std::move(responses), random_curve(dice, 0.1, 1.0));
+    return {std::move(responses), dice.chance(0.5) ? ResponseKind::Energy : ResponseKind::Quantum};
+}
+
+inline Rig random_nasty_rig(std::uint64_t seed) {
+    Rig rig = random_rig(seed);
+    Dice dice(seed ^ 0x6e61737479ULL);
+    rig.camera.sensor = nasty_sensor(dice);
+    if (dice.chance(0.5)) rig.water.multiple *= dice.between(1.0, 3.0);
+    if (dice.chance(0.3)) rig.seafloor.reflectance = lines(dice, 0.3, 1.0);
+    std::vector<Spectrum> lamps;
+    const int kinds = dice.whole(1, 3);
+    for (int k = 0; k < kinds; ++k) lamps.push_back(nasty_lamp(dice));
+    for (Strobe& strobe : rig.strobes) {
+        strobe.spectrum = lamps[dice.index_in(lamps)];
+        strobe.power = dice.over_octaves(1e-15, 1e15);
+    }
     return rig;
 }
 

@@ -8,6 +8,7 @@
 // POV-Ray itself, its single-precision colours and its way to the inverse square law, is not in
 // it: kFrameError keeps 2e-6 for these (spectral/rule_fitter.h).
 #include "scene_gen/render_plan.h"
+#include "scene_gen/rig_reader.h"
 #include "scene_gen/scene_set.h"
 #include "spectral/error.h"
 #include "support/random_rig.h"
@@ -24,7 +25,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -32,6 +35,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace aphotic::promise_test {
@@ -42,11 +46,13 @@ constexpr std::uint64_t kSeed = 20240613;
 #ifdef NDEBUG
 constexpr int kRigs = 500;
 constexpr int kRigsOfWavelengths = 100;
+constexpr int kNastyRigs = 200;
 #else
 // In debug builds, with sanitizers, the plan of one rig takes half a minute: there it is enough
 // that every line runs.
 constexpr int kRigs = 1;
 constexpr int kRigsOfWavelengths = 1;
+constexpr int kNastyRigs = 1;
 #endif
 constexpr unsigned kThreads = 2;
 
@@ -58,6 +64,8 @@ const double kTolerance = PlanRequest{}.tolerance;
 // For rigs of which kTolerance asks too much: none of these 500, nor of 1900 more.
 constexpr double kLooseTolerance = 1e-2;
 constexpr double kRareShare = 0.01;
+// The worst tables ask for more wavelengths than there may be now and then.
+constexpr double kNastyRefusals = 0.02;
 
 // Promises are to be worth something: on half of the rigs no more than so many times the error.
 constexpr double kMedianRatio = 5.0;
@@ -141,8 +149,12 @@ struct Trial {
     [[nodiscard]] double largest_found() const { return std::ranges::max(found); }
 };
 
-std::optional<RenderPlan> try_plan(const Rig& rig, double tolerance, std::string& refusal) {
+std::optional<RenderPlan> try_plan(const Rig& rig,
+                                   double tolerance,
+                                   const SceneOptions& scene,
+                                   std::string& refusal) {
     PlanRequest request;
+    request.scene = scene;
     request.tolerance = tolerance;
     try {
         return plan_render(rig, request);
@@ -207,15 +219,14 @@ void compare(const Rig& rig, const Manifest& manifest, Frames kind, Dice& dice, 
     }
 }
 
-Trial try_out(std::uint64_t seed, Frames kind) {
-    const Rig rig = random_rig(seed);
+Trial try_out(const Rig& rig, Frames kind, Dice dice, const SceneOptions& scene = {}) {
     Trial trial;
     trial.has_port = rig.camera.port.has_value();
     trial.has_highlight = rig.seafloor.phong > 0.0;
     const auto start = std::chrono::steady_clock::now();
     std::optional<RenderPlan> plan;
     for (const double tolerance : {kTolerance, kLooseTolerance}) {
-        plan = try_plan(rig, tolerance, trial.refusal);
+        plan = try_plan(rig, tolerance, scene, trial.refusal);
         if (plan) {
             trial.tolerance = tolerance;
             break;
@@ -229,18 +240,23 @@ Trial try_out(std::uint64_t seed, Frames kind) {
     trial.wavelengths = set.manifest.wavelengths.size();
     trial.quality = set.manifest.quality;
     trial.frame_error = set.manifest.frame_error;
-    Dice dice(~seed);
     compare(rig, set.manifest, kind, dice, trial);
     return trial;
 }
 
-std::vector<Trial> try_out_all(std::uint64_t first_seed, int count, Frames kind) {
+using MakeRig = Rig(std::uint64_t seed);
+
+std::vector<Trial> try_out_all(MakeRig& make_rig,
+                               std::uint64_t first_seed,
+                               int count,
+                               Frames kind) {
     std::vector<Trial> trials(static_cast<std::size_t>(count));
     std::atomic<std::size_t> next = 0;
     const auto work = [&] {
         for (std::size_t i = next++; i < trials.size(); i = next++) {
             try {
-                trials[i] = try_out(first_seed + i, kind);
+                const std::uint64_t seed = first_seed + i;
+                trials[i] = try_out(make_rig(seed), kind, Dice(~seed));
             } catch (const std::exception& error) {
                 trials[i].fault = error.what();
             }
@@ -320,17 +336,19 @@ void expect_sound(const std::vector<Trial>& trials) {
         << "rigs of which " << kTolerance << " asks too much";
 }
 
+void expect_kept(const std::vector<Trial>& trials, std::size_t i) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        EXPECT_LE(trials[i].found[c], trials[i].promise(c)) << description_of(trials, i, c);
+    }
+}
+
 // --- Claims --------------------------------------------------------------------------------------
 
 TEST(Promise, HoldsOnRandomRigsAndIsSeldomFarAboveTheError) {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<Trial> trials = try_out_all(kSeed, kRigs, Frames::Halves);
+    const std::vector<Trial> trials = try_out_all(random_rig, kSeed, kRigs, Frames::Halves);
     expect_sound(trials);
-    for (std::size_t i = 0; i < trials.size(); ++i) {
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            EXPECT_LE(trials[i].found[c], trials[i].promise(c)) << description_of(trials, i, c);
-        }
-    }
+    for (std::size_t i = 0; i < trials.size(); ++i) expect_kept(trials, i);
     EXPECT_LE(median_ratio(trials), kMedianRatio);
 
     const double all_s =
@@ -345,11 +363,47 @@ TEST(Promise, HoldsOnRandomRigsAndIsSeldomFarAboveTheError) {
               << " (largest)\nframes:" << frames_taken(trials) << '\n';
 }
 
+// APHOTIC_NASTY_RIGS=2000 tries so many.
+TEST(Promise, HoldsWithUsersWorstTables) {
+    const char* asked = std::getenv("APHOTIC_NASTY_RIGS");
+    const int count = asked != nullptr ? std::atoi(asked) : kNastyRigs;
+    const std::vector<Trial> trials = try_out_all(random_nasty_rig, kSeed, count, Frames::Halves);
+    int refused = 0;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        EXPECT_EQ(trials[i].fault, "") << description_of(trials, i);
+        if (trials[i].tolerance == 0.0) {
+            ++refused;
+            std::cout << description_of(trials, i) << ": " << trials[i].refusal << '\n';
+        }
+        expect_kept(trials, i);
+    }
+    EXPECT_LE(refused, kNastyRefusals * static_cast<double>(trials.size()) + 1.0);
+}
+
+// Rigs that were found with promises that did not hold: by 114 times, 33 times, 1.8 times, and
+// behind a port, where frames hold two wavelengths, by a twentieth.
+TEST(Promise, HoldsWhereItOnceDidNot) {
+    std::vector<Trial> trials;
+    for (const auto& [name, per_frame] : {std::pair{"blind-red", 3},
+                                          {"blind-blue-of-three-lamps", 3},
+                                          {"blind-blue-in-clear-water", 3},
+                                          {"highlight-behind-port", 2}}) {
+        SceneOptions scene;
+        scene.wavelengths_per_frame = per_frame;
+        const std::filesystem::path folder = std::filesystem::path(APHOTIC_SOURCE_DIR);
+        const Rig rig = read_rig(folder / "tests/rigs" / name / "rig.toml");
+        trials.push_back(try_out(rig, Frames::Halves, Dice(kSeed), scene));
+        expect_kept(trials, trials.size() - 1);
+    }
+    expect_sound(trials);
+}
+
 // Without any rounding a pixel is a sum of members of the family of light with factors that are not
 // negative, so no pixel may err by more than the family's worst member.
 TEST(Promise, OfTheWavelengthsAloneHoldsOnRandomRigs) {
     // None of the other test's rigs.
-    const std::vector<Trial> trials = try_out_all(kSeed + kRigs, kRigsOfWavelengths, Frames::Exact);
+    const std::vector<Trial> trials =
+        try_out_all(random_rig, kSeed + kRigs, kRigsOfWavelengths, Frames::Exact);
     expect_sound(trials);
     const auto allowed = [](const Trial& t, std::size_t c) {
         return (1.0 + kBetweenPaths) * t.quality[c].error + kReferenceError;

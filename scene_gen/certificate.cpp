@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/certificate.h"
+
+#include "scene_gen/floor_light.h"
+#include "spectral/panel_quadrature.h"
+#include "spectral/rule_certificate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+constexpr int kSide = 17;
+// Over these points of the range light is a straight line: dispersion bends it by some per cent.
+constexpr int kGeometryPoints = 65;
+constexpr double kBlackShare = 1e-8;
+
+struct Node {
+    std::size_t point = 0;  // of the geometry, and the share of the way to the next
+    double share = 0.0;
+    FloorFrame light;
+    std::array<double, kChannels> response{};  // times the node's width
+};
+
+double geometry_nm(WavelengthRange range, std::size_t point) {
+    return std::lerp(
+        range.first_nm, range.last_nm, static_cast<double>(point) / (kGeometryPoints - 1));
+}
+
+double longest_path_m(const Rig& rig) {
+    double longest_m = 0.0;
+    for (const auto& sample : floor_samples(rig, 2)) {
+        if (!sample) continue;
+        for (const Strobe& strobe : rig.strobes) {
+            longest_m = std::max(
+                longest_m, (sample->point_m - strobe.position_m).norm() + sample->camera_leg_m);
+        }
+    }
+    return longest_m;
+}
+
+std::vector<Node> nodes_of(const Rig& rig) {
+    const WavelengthRange range = rig.camera.range;
+    std::vector<const Spectrum*> tables = rig.camera.sensor.curves();
+    tables.push_back(&rig.seafloor.reflectance);
+    for (const Strobe& strobe : rig.strobes) tables.push_back(&strobe.spectrum);
+    std::vector<Node> nodes;
+    for (const auto& [lambda_nm, width_nm] :
+         panel_quadrature(tables, rig.water, longest_path_m(rig), nullptr, range)) {
+        const double at =
+            (lambda_nm - range.first_nm) / (range.last_nm - range.first_nm) * (kGeometryPoints - 1);
+        const double point = std::min(std::floor(at), kGeometryPoints - 2.0);
+        Node node{.point = static_cast<std::size_t>(point),
+                  .share = at - point,
+                  .light = floor_frame(rig, lambda_nm, lambda_nm)};
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            node.response[c] =
+                width_nm * rig.camera.sensor.response(static_cast<int>(c), lambda_nm);
+        }
+        nodes.push_back(std::move(node));
+    }
+    return nodes;
+}
+
+double radiance(const FloorFrame& light, std::size_t strobe, const FloorLight& lit) {
+    return light.spectrum[strobe] * (light.reflectance * lit.diffuse_per_m2 + lit.specular_per_m2) *
+           std::exp(-light.attenuation_per_m * lit.path_m);
+}
+
+FloorLight between(const FloorLight& a, const FloorLight& b, double share) {
+    return {.diffuse_per_m2 = std::lerp(a.diffuse_per_m2, b.diffuse_per_m2, share),
+            .specular_per_m2 = std::lerp(a.specular_per_m2, b.specular_per_m2, share),
+            .path_m = std::lerp(a.path_m, b.path_m, share)};
+}
+
+struct Signals {
+    std::array<double, kChannels> right{};
+    std::array<double, kChannels> found{};
+};
+
+// The floor that one pixel shows, wavelength by wavelength.
+class Pixel {
+  public:
+    Pixel(const Rig& rig, double column, double row) : rig_(rig), column_(column), row_(row) {
+        const WavelengthRange range = rig.camera.range;
+        const WaterRay middle = ray_at(geometry_nm(range, kGeometryPoints / 2));
+        const auto distance_m = distance_to(floor_plane(rig.sled), middle);
+        if (distance_m) cones_at_m_ = middle.origin_m + *distance_m * middle.direction;
+    }
+
+    // Nothing where the pixel shows no floor.
+    [[nodiscard]] std::optional<FloorLight> at(const Strobe& strobe, double lambda_nm) const {
+        if (!cones_at_m_) return std::nullopt;
+        return floor_light(rig_, strobe, ray_at(lambda_nm), *cones_at_m_);
+    }
+
+  private:
+    [[nodiscard]] WaterRay ray_at(double lambda_nm) const {
+        return pixel_ray(rig_, column_, row_, lambda_nm);
+    }
+
+    const Rig& rig_;
+    double column_;
+    double row_;
+    std::optional<Eigen::Vector3d> cones_at_m_;
+};
+
+std::optional<Signals> signals_of(const Rig& rig,
+                                  const Pixel& pixel,
+                                  std::span<const Node> nodes,
+                                  std::span<const WeightedWavelength> rule,
+                                  std::span<const FloorFrame> frames) {
+    Signals signals;
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        const Strobe& strobe = rig.strobes[s];
+        std::vector<FloorLight> lit;
+        for (std::size_t point = 0; point < kGeometryPoints; ++point) {
+            const auto light = pixel.at(strobe, geometry_nm(rig.camera.range, point));
+            if (!light) return std::nullopt;
+            lit.push_back(*light);
+        }
+        for (const Node& node : nodes) {
+            const double L =
+                radiance(node.light, s, between(lit[node.point], lit[node.point + 1], node.share));
+            for (std::size_t c = 0; c < kChannels; ++c) signals.right[c] += node.response[c] * L;
+        }
+        for (std::size_t j = 0; j < rule.size(); ++j) {
+            const auto light = pixel.at(strobe, frames[j].index_nm);
+            if (!light) return std::nullopt;
+            const double L = radiance(frames[j], s, *light);
+            for (std::size_t c = 0; c < kChannels; ++c) signals.found[c] += rule[j].weight[c] * L;
+        }
+    }
+    return signals;
+}
+
+}  // namespace
+
+FloorFrame floor_frame(const Rig& rig, double lambda_nm, double index_nm) {
+    FloorFrame frame{.index_nm = index_nm,
+                     .attenuation_per_m = rig.water.attenuation_per_m(lambda_nm),
+                     .reflectance = rig.seafloor.reflectance.at(lambda_nm)};
+    for (const Strobe& strobe : rig.strobes) {
+        frame.spectrum.push_back(strobe.spectrum.at(lambda_nm));
+    }
+    return frame;
+}
+
+std::array<double, kChannels> port_error(const Rig& rig,
+                                         std::span<const WeightedWavelength> rule,
+                                         std::span<const FloorFrame> frames) {
+    const std::vector<Node> nodes = nodes_of(rig);
+    std::vector<Signals> image;
+    for (int v = 0; v < kSide; ++v) {
+        for (int u = 0; u < kSide; ++u) {
+            const Pixel pixel(rig,
+                              rig.camera.width_px * (u / (kSide - 1.0)),
+                              rig.camera.height_px * (v / (kSide - 1.0)));
+            const auto signals = signals_of(rig, pixel, nodes, rule, frames);
+            if (signals) image.push_back(*signals);
+        }
+    }
+    std::array<double, kChannels> error{};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        double brightest = 0.0;
+        for (const Signals& pixel : image) brightest = std::max(brightest, pixel.right[c]);
+        for (const Signals& pixel : image) {
+            if (!(pixel.right[c] > kBlackShare * brightest)) continue;
+            const double off = std::abs(pixel.found[c] / pixel.right[c] - 1.0);
+            error[c] = std::max(error[c], kBetweenPixels * off);
+        }
+    }
+    return error;
+}
+
+void certify(const Rig& rig,
+             const RuleFitter& fitter,
+             std::span<const FrameLight> frames,
+             std::span<const FloorFrame> in_view,
+             FittedRule& rule) {
+    const auto family = certified_quality(
+        rig.camera.sensor, fitter.family(), rig.camera.range, rule.wavelengths, frames);
+    std::array<double, kChannels> port{};
+    if (rig.camera.port && !in_view.empty()) port = port_error(rig, rule.wavelengths, in_view);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        RuleQuality& quality = rule.quality[c];
+        const double shape = family[c].amplification > 0.0 ? fitter.tilt_shape_error() : 0.0;
+        quality.error = std::max({quality.error, family[c].error + shape, port[c]});
+        quality.amplification = std::max(quality.amplification, family[c].amplification);
+    }
+}
+
+}  // namespace aphotic

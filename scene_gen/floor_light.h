@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What one strobe does to the point of the floor that a ray shows, without wavelength:
+//
+//   L = Phi (rho diffuse + specular) exp(-K path)
+//
+//   diffuse   = power sum_k A_k cos(theta) cos(i) / (pi d^2)                        [1/m^2]
+//   specular  = power sum_k A_k cos(theta) phong max(0, m.l)^size / (pi d^2)
+//   path      = d + r                                                               [m]
+//
+// with the letters of docs/physics.md. The strobe is a point.
+#pragma once
+
+#include "scene_gen/geometry.h"
+#include "scene_gen/rig.h"
+
+namespace aphotic {
+
+struct FloorLight {
+    double diffuse_per_m2 = 0.0;
+    double specular_per_m2 = 0.0;
+    double path_m = 0.0;
+};
+
+// Of the cones that light the point cones_at_m: rays that differ by a port's dispersion alone keep
+// to the same cones. Nothing when the ray shows no floor; dark when the strobe does not light it.
+[[nodiscard]] std::optional<FloorLight> floor_light(const Rig& rig,
+                                                    const Strobe& strobe,
+                                                    const WaterRay& ray,
+                                                    const Eigen::Vector3d& cones_at_m);
+
+}  // namespace aphotic

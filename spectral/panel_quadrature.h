@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Integrals over wavelength for those who check a plan: no grid that was made to measure, and no
+// line shared with the fit's (spectral/light_family.h).
+//
+//   int f(lambda) dlambda ~ sum_i width_i f(lambda_i)     f = line line ... line exp(-x)
+//
+// Between neighbouring knots of all tables every factor of a signal is a straight line, but for the
+// water's exponential. Over a panel, Gauss's rule of n points is exact for 2n - 1 - p powers of
+// that exponential, p the number of lines; and since no line is negative and no width is, what it
+// misses of the exponential it misses relative to the panel's integral, however steep the lines
+// are: a filter may rise over 300 decades. Over a panel on which x changes by 4, ten points and six
+// lines leave 1e-10.
+//
+// Nearest to the bright end of an interval panels are so short for the longest path. Farther off,
+// where that path has lost e^-50, they are for shorter paths, and grow with the distance.
+#pragma once
+
+#include "spectral/spectrum.h"
+#include "spectral/water.h"
+
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+struct QuadratureNode {
+    double lambda_nm = 0.0;
+    double width_nm = 0.0;
+};
+
+// tables: all but the water's, which light goes through for longest_path_m at most.
+// tilt: a further exponent, or null.
+[[nodiscard]] std::vector<QuadratureNode> panel_quadrature(std::span<const Spectrum* const> tables,
+                                                           const Water& water,
+                                                           double longest_path_m,
+                                                           const Spectrum* tilt,
+                                                           WavelengthRange range);
+
+}  // namespace aphotic
