@@ -67,8 +67,9 @@ Nodes nodes_of(const Sensor& sensor, const LightFamily& family, WavelengthRange 
 
 std::vector<double> paths_of(const LightFamily& family) {
     std::vector<double> paths_m;
-    for (int i = 0; i < kCertifiedPaths; ++i) {
-        const double share = i / (kCertifiedPaths - 1.0);
+    const int count = family.tilt ? kCertifiedPathsOfEachTilt : kCertifiedPaths;
+    for (int i = 0; i < count; ++i) {
+        const double share = i / (count - 1.0);
         const double even_m = std::lerp(family.shortest_path_m, family.longest_path_m, share);
         paths_m.push_back(family.shortest_path_m > 0.0
                               ? family.shortest_path_m *

@@ -20,6 +20,7 @@
 namespace aphotic {
 
 inline constexpr int kCertifiedPaths = 200;
+inline constexpr int kCertifiedPathsOfEachTilt = 50;
 
 // By channel: zero for one that sees nothing, an infinite error for one that is shown light it is
 // blind to. frames: what each wavelength's frame holds, in the rule's order.
