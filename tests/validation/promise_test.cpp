@@ -46,7 +46,7 @@ constexpr std::uint64_t kSeed = 20240613;
 #ifdef NDEBUG
 constexpr int kRigs = 500;
 constexpr int kRigsOfWavelengths = 100;
-constexpr int kNastyRigs = 200;
+constexpr int kNastyRigs = 100;
 #else
 // In debug builds, with sanitizers, the plan of one rig takes half a minute: there it is enough
 // that every line runs.
