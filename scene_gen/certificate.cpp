@@ -49,7 +49,7 @@ std::vector<Node> nodes_of(const Rig& rig) {
     for (const Strobe& strobe : rig.strobes) tables.push_back(&strobe.spectrum);
     std::vector<Node> nodes;
     for (const auto& [lambda_nm, width_nm] :
-         panel_quadrature(tables, rig.water, longest_path_m(rig), nullptr, range)) {
+         panel_quadrature(light_panels(tables, rig.water, longest_path_m(rig), nullptr, range))) {
         const double at =
             (lambda_nm - range.first_nm) / (range.last_nm - range.first_nm) * (kGeometryPoints - 1);
         const double point = std::min(std::floor(at), kGeometryPoints - 2.0);

@@ -13,46 +13,34 @@ constexpr unsigned kPanelPoints = 10;
 constexpr double kPanelFall = 4.0;
 constexpr double kSpent = 50.0;
 
-// The ten points of a panel, in increasing order but for their mirror images.
-void add_panel(double a_nm, double b_nm, std::vector<QuadratureNode>& nodes) {
-    using Gauss = boost::math::quadrature::gauss<double, kPanelPoints>;
-    const double middle_nm = 0.5 * (a_nm + b_nm);
-    const double half_nm = 0.5 * std::abs(b_nm - a_nm);
-    // Boost lists the abscissae that are not negative; the rule is symmetric.
-    for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
-        const double away_nm = half_nm * Gauss::abscissa()[k];
-        const double width_nm = half_nm * Gauss::weights()[k];
-        nodes.push_back({.lambda_nm = middle_nm - away_nm, .width_nm = width_nm});
-        nodes.push_back({.lambda_nm = middle_nm + away_nm, .width_nm = width_nm});
-    }
-}
-
 // An interval over which the longest path's light falls by `fall`.
 void add_interval(double bright_nm,
                   double dark_nm,
                   double fall,
-                  std::vector<QuadratureNode>& nodes) {
+                  std::vector<WavelengthRange>& panels) {
     double from = 0.0;  // a share of the interval
     while (from < 1.0) {
         const double step = kPanelFall * std::max(1.0, fall * from / kSpent) / fall;
         const double to = std::min(1.0, from + step);
-        add_panel(std::lerp(bright_nm, dark_nm, from), std::lerp(bright_nm, dark_nm, to), nodes);
+        const double a_nm = std::lerp(bright_nm, dark_nm, from);
+        const double b_nm = std::lerp(bright_nm, dark_nm, to);
+        panels.push_back({std::min(a_nm, b_nm), std::max(a_nm, b_nm)});
         from = to;
     }
 }
 
 }  // namespace
 
-std::vector<QuadratureNode> panel_quadrature(std::span<const Spectrum* const> tables,
-                                             const Water& water,
-                                             double longest_path_m,
-                                             const Spectrum* tilt,
-                                             WavelengthRange range) {
+std::vector<WavelengthRange> light_panels(std::span<const Spectrum* const> tables,
+                                          const Water& water,
+                                          double longest_path_m,
+                                          const Spectrum* tilt,
+                                          WavelengthRange range) {
     std::vector<const Spectrum*> all(tables.begin(), tables.end());
     if (water.multiple != 0.0) all.push_back(&water.absorption_per_m);
     if (tilt != nullptr) all.push_back(tilt);
     const std::vector<double> knots_nm = union_of_knots(all, range);
-    std::vector<QuadratureNode> nodes;
+    std::vector<WavelengthRange> panels;
     for (std::size_t i = 0; i + 1 < knots_nm.size(); ++i) {
         const double a_nm = knots_nm[i];
         const double b_nm = knots_nm[i + 1];
@@ -60,9 +48,26 @@ std::vector<QuadratureNode> panel_quadrature(std::span<const Spectrum* const> ta
         double fall = std::abs(rise_per_m) * longest_path_m;
         if (tilt != nullptr) fall += std::abs(tilt->at(b_nm) - tilt->at(a_nm));
         if (rise_per_m >= 0.0) {
-            add_interval(a_nm, b_nm, fall, nodes);
+            add_interval(a_nm, b_nm, fall, panels);
         } else {
-            add_interval(b_nm, a_nm, fall, nodes);
+            add_interval(b_nm, a_nm, fall, panels);
+        }
+    }
+    return panels;
+}
+
+std::vector<QuadratureNode> panel_quadrature(std::span<const WavelengthRange> panels) {
+    using Gauss = boost::math::quadrature::gauss<double, kPanelPoints>;
+    std::vector<QuadratureNode> nodes;
+    for (const WavelengthRange& panel : panels) {
+        const double middle_nm = 0.5 * (panel.first_nm + panel.last_nm);
+        const double half_nm = 0.5 * (panel.last_nm - panel.first_nm);
+        // Boost lists the abscissae that are not negative; the rule is symmetric.
+        for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
+            const double away_nm = half_nm * Gauss::abscissa()[k];
+            const double width_nm = half_nm * Gauss::weights()[k];
+            nodes.push_back({.lambda_nm = middle_nm - away_nm, .width_nm = width_nm});
+            nodes.push_back({.lambda_nm = middle_nm + away_nm, .width_nm = width_nm});
         }
     }
     return nodes;

@@ -31,10 +31,13 @@ struct QuadratureNode {
 
 // tables: all but the water's, which light goes through for longest_path_m at most.
 // tilt: a further exponent, or null.
-[[nodiscard]] std::vector<QuadratureNode> panel_quadrature(std::span<const Spectrum* const> tables,
-                                                           const Water& water,
-                                                           double longest_path_m,
-                                                           const Spectrum* tilt,
-                                                           WavelengthRange range);
+[[nodiscard]] std::vector<WavelengthRange> light_panels(std::span<const Spectrum* const> tables,
+                                                        const Water& water,
+                                                        double longest_path_m,
+                                                        const Spectrum* tilt,
+                                                        WavelengthRange range);
+
+// Ten points of each.
+[[nodiscard]] std::vector<QuadratureNode> panel_quadrature(std::span<const WavelengthRange> panels);
 
 }  // namespace aphotic

@@ -5,6 +5,7 @@
 #include "spectral/light_family.h"
 #include "spectral/parallel.h"
 #include "spectral/refraction.h"
+#include "validation/full_spectrum.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -224,9 +225,9 @@ Tracer::Index Tracer::index_at(double lambda_nm) const {
             .water = seawater_index(lambda_nm, rig_.water.salinity_psu, rig_.water.temperature_c)};
 }
 
-// The family of this rig's light: paths from the shortest to the longest that the image sees,
+// The lights of this rig: paths from the shortest to the longest that the image sees,
 // with some room on both sides.
-std::vector<WeightedWavelength> Tracer::full_spectrum() const {
+std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
     constexpr int kSteps = 16;
     constexpr double kRoom = 1.05;
     LightFamily family{.sources = {},
@@ -279,12 +280,12 @@ std::vector<WeightedWavelength> Tracer::full_spectrum() const {
         }
     }
     if (family.longest_path_m == 0.0) family.shortest_path_m = 0.0;  // nothing in view
-    return reference_grid(rig_.camera.sensor, family, rig_.camera.range, kSpectralError);
+    return full_spectrum(rig_.camera.sensor, family, rig_.camera.range, kSpectralError);
 }
 
 void Tracer::tabulate_spectra() {
     std::vector<WeightedWavelength> grid;
-    if (options_.signals) grid = full_spectrum();
+    if (options_.signals) grid = spectrum_in_view();
     signal_nodes_ = grid.size();
     for (const WeightedWavelength& w : grid) lambda_nm_.push_back(w.lambda_nm);
     lambda_nm_.insert(lambda_nm_.end(), options_.planes_nm.begin(), options_.planes_nm.end());

@@ -19,7 +19,7 @@
 // Double precision, but for heights over the floor and the angle to the horizon, which are small
 // differences at the extremes: these are taken in long double. Light of which the water leaves less
 // than e^-kBlackDepth is black: doubles end soon after. The spectral grid is exact to
-// kSpectralError of a channel's signal (spectral/light_family.h). An emitter of a size is as many
+// kSpectralError of a channel's signal (full_spectrum.h). An emitter of a size is as many
 // equal lamps as hold the smooth part of its light to kEmitterError of the value, at every plane's
 // wavelength and in every signal; a cone's edge is a staircase with as many steps. Every term of a
 // sum has the same sign, so a sum of n terms is right to n 1.1e-16.
@@ -164,7 +164,7 @@ class Tracer {
     [[nodiscard]] EmitterLamps lamps_of(std::size_t strobe) const;
     [[nodiscard]] double spacing_m(std::size_t strobe, double d_m, bool is_floor) const;
     void tabulate_spectra();
-    [[nodiscard]] std::vector<WeightedWavelength> full_spectrum() const;
+    [[nodiscard]] std::vector<WeightedWavelength> spectrum_in_view() const;
     // Over the floor.
     [[nodiscard]] double height_m(const Eigen::Vector3d& point_m) const;
     [[nodiscard]] bool look(double column, double row, const Index& index, View& view) const;

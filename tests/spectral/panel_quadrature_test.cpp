@@ -31,7 +31,7 @@ const Water kClear{.absorption_per_m = line(1.0, 1.0), .multiple = 0.0};
 std::vector<QuadratureNode> nodes_of(const std::vector<const Spectrum*>& tables,
                                      const Water& water,
                                      double longest_path_m) {
-    return panel_quadrature(tables, water, longest_path_m, nullptr, kRange);
+    return panel_quadrature(light_panels(tables, water, longest_path_m, nullptr, kRange));
 }
 
 // By the nodes, of exp(-K l).
@@ -114,7 +114,8 @@ TEST(PanelQuadrature, SeesALineBetweenKnotsThatAlmostCoincide) {
 TEST(PanelQuadrature, FollowsATilt) {
     const Spectrum tilt = line(-3.0, 3.0);
     double sum = 0.0;
-    for (const auto& [lambda_nm, width_nm] : panel_quadrature({}, kClear, 1.0, &tilt, kRange)) {
+    for (const auto& [lambda_nm, width_nm] :
+         panel_quadrature(light_panels({}, kClear, 1.0, &tilt, kRange))) {
         sum += width_nm * std::exp(tilt.at(lambda_nm));
     }
     const double right = kWidth_nm * std::sinh(3.0) / 3.0;

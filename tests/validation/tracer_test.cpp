@@ -12,6 +12,7 @@
 #include "spectral/light_family.h"
 #include "support/box_mesh.h"
 #include "support/closed_form.h"
+#include "validation/full_spectrum.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -1118,7 +1119,7 @@ TEST(TracerSignal, IsTheWeightedSumOfThePlanes) {
                              .water = rig.water,
                              .shortest_path_m = 1.0,
                              .longest_path_m = 1.0};
-    const auto grid = reference_grid(rig.camera.sensor, family, rig.camera.range, kSpectralError);
+    const auto grid = full_spectrum(rig.camera.sensor, family, rig.camera.range, kSpectralError);
     TraceOptions options{.signals = true, .planes_nm = {}};
     for (const WeightedWavelength& w : grid) options.planes_nm.push_back(w.lambda_nm);
     const Tracer tracer(rig, options);

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "validation/full_spectrum.h"
+
+#include "spectral/panel_quadrature.h"
+
+#include <Eigen/Core>
+#include <boost/math/quadrature/gauss.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace aphotic {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+struct GaussPoint {
+    double at;  // from -1 to 1
+    double width;
+};
+
+template <unsigned kPoints>
+std::vector<GaussPoint> gauss_rule() {
+    using Gauss = boost::math::quadrature::gauss<double, kPoints>;
+    std::vector<GaussPoint> rule;
+    // Boost lists the abscissae that are not negative; the rule is symmetric.
+    for (std::size_t k = 0; k < Gauss::abscissa().size(); ++k) {
+        const double at = Gauss::abscissa()[k];
+        rule.push_back({.at = at, .width = Gauss::weights()[k]});
+        if (at != 0.0) rule.push_back({.at = -at, .width = Gauss::weights()[k]});
+    }
+    std::ranges::sort(rule, {}, &GaussPoint::at);
+    return rule;
+}
+
+// The last is what the others are held to.
+const std::array<std::vector<GaussPoint>, 7>& gauss_rules() {
+    static const std::array<std::vector<GaussPoint>, 7> kRules{gauss_rule<1>(),
+                                                               gauss_rule<2>(),
+                                                               gauss_rule<3>(),
+                                                               gauss_rule<4>(),
+                                                               gauss_rule<5>(),
+                                                               gauss_rule<7>(),
+                                                               gauss_rule<10>()};
+    return kRules;
+}
+
+ArrayXd paths_of(const LightFamily& lights) {
+    if (!(lights.shortest_path_m > 0.0)) return ArrayXd::Constant(1, lights.longest_path_m);
+    return ArrayXd::LinSpaced(
+               kPaths, std::log(lights.shortest_path_m), std::log(lights.longest_path_m))
+        .exp();
+}
+
+// What some wavelengths add to the signals: channels by lights, relative to the least loss at the
+// longest path, so that no double ends.
+class Signals {
+  public:
+    Signals(const Sensor& sensor, const LightFamily& lights, double least_loss_per_m)
+        : sensor_(sensor),
+          lights_(lights),
+          paths_m_(paths_of(lights)),
+          least_loss_per_m_(least_loss_per_m) {}
+
+    [[nodiscard]] MatrixXd of(std::span<const WeightedWavelength> wavelengths) const {
+        const Index paths = paths_m_.size();
+        const auto sources = static_cast<Index>(lights_.sources.size());
+        MatrixXd signals = MatrixXd::Zero(kChannels, sources * paths);
+        for (const WeightedWavelength& w : wavelengths) {
+            const double loss_per_m =
+                lights_.water.attenuation_per_m(w.lambda_nm) - least_loss_per_m_;
+            const Eigen::RowVectorXd left = (-loss_per_m * paths_m_).exp();
+            const Eigen::Map<const Eigen::Vector3d> weight(w.weight.data());
+            for (Index s = 0; s < sources; ++s) {
+                double light = 1.0;
+                for (const Spectrum& factor : lights_.sources[static_cast<std::size_t>(s)]) {
+                    light *= factor.at(w.lambda_nm);
+                }
+                signals.middleCols(s * paths, paths) += light * weight * left;
+            }
+        }
+        return signals;
+    }
+
+    [[nodiscard]] std::vector<WeightedWavelength> on(const WavelengthRange& panel,
+                                                     std::span<const GaussPoint> rule) const {
+        const double middle_nm = 0.5 * (panel.first_nm + panel.last_nm);
+        const double half_nm = 0.5 * (panel.last_nm - panel.first_nm);
+        std::vector<WeightedWavelength> wavelengths;
+        for (const GaussPoint& point : rule) {
+            WeightedWavelength w{.lambda_nm = middle_nm + half_nm * point.at, .weight = {}};
+            for (std::size_t c = 0; c < kChannels; ++c) {
+                w.weight[c] =
+                    half_nm * point.width * sensor_.response(static_cast<int>(c), w.lambda_nm);
+            }
+            wavelengths.push_back(w);
+        }
+        return wavelengths;
+    }
+
+  private:
+    const Sensor& sensor_;
+    const LightFamily& lights_;
+    ArrayXd paths_m_;
+    double least_loss_per_m_;
+};
+
+std::vector<WavelengthRange> panels_of(const Sensor& sensor,
+                                       const LightFamily& lights,
+                                       WavelengthRange range) {
+    std::vector<const Spectrum*> tables = sensor.curves();
+    for (const auto& source : lights.sources) {
+        for (const Spectrum& factor : source) tables.push_back(&factor);
+    }
+    std::vector<WavelengthRange> panels =
+        light_panels(tables, lights.water, lights.longest_path_m, nullptr, range);
+    std::ranges::sort(panels, {}, &WavelengthRange::first_nm);
+    return panels;
+}
+
+}  // namespace
+
+std::vector<WeightedWavelength> full_spectrum(const Sensor& sensor,
+                                              const LightFamily& lights,
+                                              WavelengthRange range,
+                                              double error) {
+    const std::vector<WavelengthRange> panels = panels_of(sensor, lights, range);
+    double least_loss_per_m = lights.water.attenuation_per_m(range.last_nm);
+    for (const WavelengthRange& panel : panels) {
+        least_loss_per_m =
+            std::min(least_loss_per_m, lights.water.attenuation_per_m(panel.first_nm));
+    }
+    const Signals signals(sensor, lights, least_loss_per_m);
+    std::vector<MatrixXd> exact;
+    for (const WavelengthRange& panel : panels) {
+        exact.push_back(signals.of(signals.on(panel, gauss_rules().back())));
+    }
+    MatrixXd total = MatrixXd::Zero(exact.front().rows(), exact.front().cols());
+    for (const MatrixXd& of_panel : exact) total += of_panel;
+
+    const MatrixXd allowed = error / static_cast<double>(panels.size()) * total;
+    std::vector<WeightedWavelength> spectrum;
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        std::vector<WeightedWavelength> wavelengths;
+        for (const std::vector<GaussPoint>& rule : gauss_rules()) {
+            wavelengths = signals.on(panels[i], rule);
+            const MatrixXd off = (signals.of(wavelengths) - exact[i]).cwiseAbs();
+            if ((off.array() <= allowed.array()).all()) break;
+        }
+        spectrum.insert(spectrum.end(), wavelengths.begin(), wavelengths.end());
+    }
+    return spectrum;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The wavelengths at which the reference takes its integrals over the spectrum. The plan has a grid
+// of its own (spectral/light_family.h), and neither knows the other's.
+//
+//   S_c = int L Q_c dlambda ~ sum_j w_cj L(lambda_j)
+//
+// Each panel (spectral/panel_quadrature.h), on which ten points would be right to 1e-10, gets the
+// fewest of Gauss's points by which no channel's signal of any of the lights is off what ten points
+// make of it by more than the panel's share of `error`. Lights: every source, over kPaths paths in
+// even ratios from the shortest to the longest.
+#pragma once
+
+#include "spectral/bands.h"
+#include "spectral/light_family.h"
+#include "spectral/sensor.h"
+
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr int kPaths = 7;
+
+// Of a family without a tilt.
+[[nodiscard]] std::vector<WeightedWavelength> full_spectrum(const Sensor& sensor,
+                                                            const LightFamily& lights,
+                                                            WavelengthRange range,
+                                                            double error);
+
+}  // namespace aphotic
