@@ -237,7 +237,7 @@ Action configure_baseline(CLI::App& app) {
     app.add_option("NAME", options->name, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
         ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
         ->required();
-    app.add_option("IMAGES", options->images, "images, and folders of images, in any format")
+    app.add_option("IMAGES", options->images, "images, and folders of images: TIFF, PNG, EXR, JPEG")
         ->required();
     app.add_option("-o,--output", options->folder, "where the corrected images go, as float EXR")
         ->type_name("DIR")

@@ -268,7 +268,8 @@ ExitStatus compare(const CompareCommandOptions& options) {
 
 Action configure_compare(CLI::App& app) {
     const auto options = std::make_shared<CompareCommandOptions>();
-    app.add_option("IMAGE", options->image, "the image in question, in any format of OpenImageIO")
+    app.add_option(
+           "IMAGE", options->image, "the image in question: EXR, TIFF, PNG, JPEG and others")
         ->required();
     app.add_option("REFERENCE", options->reference, "what it should be")->required();
     app.add_option("--bound", options->bound, "the largest |e| that is allowed")

@@ -357,7 +357,7 @@ void add_average_options(CLI::App& app, ObserveCommandOptions& options) {
 
 Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
-    app.add_option("IMAGES", options->images, "images, and folders of images, in any format")
+    app.add_option("IMAGES", options->images, "images, and folders of images: TIFF, PNG, EXR, JPEG")
         ->required();
     app.add_option("--nav",
                    options->navigation,

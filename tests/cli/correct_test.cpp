@@ -284,12 +284,14 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     const std::vector<std::uint16_t> grey(kPixels, 1000);
     const std::string short_of_rows = tiff_of(grey, kWidth, kHeight, "", true);
     write_file(path("raw/rows.tif"), short_of_rows.substr(0, short_of_rows.size() / 2));
+    const std::string packed = tiff_of(grey, kWidth, kHeight, "", true, true);
+    write_file(path("raw/packed.tif"), packed.substr(0, packed.size() / 2));
     write_file(path("raw/words.png"), "this is no image");
     write_file(path("raw/small.tif"), tiff_of({1, 2, 3, 4}, 2, 2, ""));
     write_file(path("raw/unknown.tif"), whole);
     write_file(path("raw/low.tif"), whole);
     write_file(path("raw/notes.txt"), "no image by its name: not taken up");
-    for (const char* name : {"cut.tif", "rows.tif", "words.png", "small.tif"})
+    for (const char* name : {"cut.tif", "rows.tif", "packed.tif", "words.png", "small.tif"})
         note(name, {2.0, 0.0, 0.0});
     note("low.tif", {0.0, 0.0, 0.0});
     const CommandResult run = correct({"--json"});
@@ -298,14 +300,14 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     EXPECT_EQ(summary["corrected"], 4);
     std::map<std::string, std::string> why;
     for (const Json& one : summary["skipped"]) why[one["image"]] = one["why"];
-    EXPECT_EQ(why.size(), 6U) << summary.dump(2);
-    EXPECT_NE(why["raw/rows.tif"].find("it is cut short"), std::string::npos)
-        << why["raw/rows.tif"];
+    EXPECT_EQ(why.size(), 7U) << summary.dump(2);
+    for (const char* name : {"raw/rows.tif", "raw/packed.tif"})
+        EXPECT_NE(why[name].find("it is cut short"), std::string::npos) << why[name];
     EXPECT_NE(why["raw/cut.tif"].find("cannot be read"), std::string::npos) << why["raw/cut.tif"];
     EXPECT_NE(why["raw/words.png"].find("cannot be read"), std::string::npos);
     EXPECT_EQ(why["raw/small.tif"], "found 2 x 2 pixels; allowed: 48 x 36, as the map has");
     EXPECT_EQ(why["raw/unknown.tif"], "nav.eic has no line for it");
-    EXPECT_EQ(why["raw/low.tif"], "nav.eic:9: altitude_m: found 0; allowed: 0.001 to 10000");
+    EXPECT_EQ(why["raw/low.tif"], "nav.eic:10: altitude_m: found 0; allowed: 0.001 to 10000");
     for (const auto& [image, reason] : why) {
         EXPECT_NE(run.err.find("aphotic: " + image + ": " + reason + "; skipped"),
                   std::string::npos)

@@ -3,6 +3,7 @@
 // aphotic observe and aphotic baseline on small surveys, as a user runs them.
 #include "spectral/exr.h"
 #include "support/run_command.h"
+#include "support/tiff.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -185,6 +186,28 @@ TEST_F(CommandObserve, SkipsBadImagesAndSaysSo) {
             EXPECT_NE(result.err.find(name), std::string::npos) << name;
         EXPECT_EQ(channel_of(path("map.exr"), "count.R")[0], 3.0F);
     }
+}
+
+// libtiff reads what is gone of an image as zeros.
+TEST_F(CommandObserve, AnImageThatWasCutShortIsInNoMapAndNoResult) {
+    fs::create_directories(path("raw"));
+    const std::vector<std::uint16_t> grey(kPixels, 1000);
+    const std::string whole = tiff_of(grey, kWidth_px, kHeight_px, "", true, true);
+    for (const char* name : {"raw/a.tif", "raw/b.tif"}) write_file(path(name), whole);
+    write_file(path("raw/cut.tif"), whole.substr(0, whole.size() / 2));
+    write_file(path("nav.csv"), "image,altitude_m\na,2\nb,2\ncut,2\n");
+    constexpr const char* kWhy = "raw/cut.tif: cannot be read: it is cut short: found ";
+    const CommandResult observed = observe({"--bayer", "RGGB"});
+    EXPECT_EQ(observed.status, 1) << observed.out;
+    EXPECT_NE(observed.err.find("it is cut short: found "), std::string::npos) << observed.err;
+    EXPECT_EQ(channel_of(path("map.exr"), "count.R")[0], 2.0F);
+    const CommandResult baseline =
+        run({"baseline", "homomorphic", "raw", "-o", "out", "--bayer", "RGGB"});
+    EXPECT_EQ(baseline.status, 1) << baseline.out;
+    EXPECT_FALSE(fs::exists(path("out/cut.exr")));
+    const CommandResult compared = run({"compare", "raw/cut.tif", "raw/a.tif"});
+    EXPECT_EQ(compared.status, 2) << compared.out;
+    EXPECT_NE(compared.err.find(kWhy), std::string::npos) << compared.err;
 }
 
 TEST_F(CommandObserve, WritesNoMapOfNoImage) {
