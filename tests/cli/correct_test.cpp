@@ -318,6 +318,26 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     EXPECT_EQ(files.size(), 4U + 2U);  // the images, and the two that say what was done
 }
 
+TEST_F(CorrectCommand, AnImageWithoutAnAltitudeIsSkippedHoweverItIsWritten) {
+    take("a.tif", {2.0, 0.0, 0.0});
+    std::string lines = "image,altitude_m,pitch_deg,roll_deg\na,2,0,0\n";
+    const std::vector<std::string> unknown{"", "NaN", "-9999", "NA"};
+    for (std::size_t i = 0; i < unknown.size(); ++i) {
+        fs::copy(path("raw/a.tif"), path(fmt::format("raw/b{}.tif", i)));
+        lines += fmt::format("b{},{},0,0\n", i, unknown[i]);
+    }
+    write_file(path("nav.eic"), lines);
+    const CommandResult run = correct({"--json"});
+    EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
+    const Json summary = Json::parse(run.out);
+    EXPECT_EQ(summary["corrected"], 1);
+    ASSERT_EQ(summary["skipped"].size(), unknown.size());
+    for (const Json& one : summary["skipped"]) {
+        const std::string why = one["why"];
+        EXPECT_NE(why.find("altitude_m: found "), std::string::npos) << why;
+    }
+}
+
 TEST_F(CorrectCommand, GivenAgainItDoesWhatIsNewAlone) {
     take_survey();
     ASSERT_EQ(correct({}).status, 0);
