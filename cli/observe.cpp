@@ -317,10 +317,17 @@ ExitStatus observe(const ObserveCommandOptions& options) {
             selection.outside > 0
                 ? fmt::format("; the nearest is {:.3g} m off", selection.nearest_m)
                 : "";
-        throw InputError(fmt::format("no image to be used within {} m of {} m{}",
+        const std::string first = selection.skipped.empty()
+                                      ? ""
+                                      : fmt::format("; skipped: {}, the first: {}: {}",
+                                                    selection.skipped.size(),
+                                                    selection.skipped.front().image,
+                                                    selection.skipped.front().why);
+        throw InputError(fmt::format("no image to be used within {} m of {} m{}{}",
                                      options.within_m,
                                      options.altitude_m,
-                                     others));
+                                     others,
+                                     first));
     }
     const Sled sled = mean_of(selection.sleds);
     write_map(options, observed, like, selection.images.size(), sled);

@@ -33,6 +33,7 @@ SurveyGain measured_gain(const Survey& survey, const GainRequest& request) {
     ProgressLine line;
     std::mutex line_mutex;
     std::string first_why;
+    std::size_t unusable = 0;
     parallel_for(count, request.jobs, [&](std::size_t i, std::size_t) {
         try {
             const Sled sled = survey.light.pose(file_of(i).source);
@@ -44,8 +45,9 @@ SurveyGain measured_gain(const Survey& survey, const GainRequest& request) {
         } catch (const InputError& error) {
             // It is said of the image when its turn comes, if one does.
             const std::scoped_lock lock(line_mutex);
+            ++unusable;
             if (first_why.empty()) {
-                first_why = fmt::format("; {}: {}", file_of(i).name.string(), error.what());
+                first_why = fmt::format("{}: {}", file_of(i).name.string(), error.what());
             }
         }
         const std::scoped_lock lock(line_mutex);
@@ -60,11 +62,16 @@ SurveyGain measured_gain(const Survey& survey, const GainRequest& request) {
         gain.images.push_back(file_of(i).name.string());
         for (std::size_t c = 0; c < kChannels; ++c) quotients[c].push_back((*middles[i])[c]);
     }
+    if (unusable == count) {
+        throw InputError(
+            fmt::format("none of the {} images looked at can be corrected; {}", count, first_why));
+    }
     if (gain.images.empty()) {
         throw InputError(
             fmt::format("no gain can be taken from these images: of {} looked at, none has light "
-                        "and a map in every channel; allowed: --gain{}",
+                        "and a map in every channel; allowed: --gain{}{}",
                         count,
+                        first_why.empty() ? "" : "; ",
                         first_why));
     }
     for (std::size_t c = 0; c < kChannels; ++c)

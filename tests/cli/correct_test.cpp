@@ -671,6 +671,9 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     write_file(path("dark/a.tif"), tiff_of(black, kWidth, kHeight, ""));
     refused(with({"dark", "-o", "out", "--bayer", "GRBG", "--black-level", "60"}),
             "no gain can be taken from these images");
+    refused(with({"raw", "-o", "out"}),
+            "none of the 1 images looked at can be corrected; a: found one channel and no --bayer; "
+            "allowed: R, G, B, or a mosaic whose pattern --bayer names");
     fs::create_directories(path("empty"));
     refused(with({"empty", "-o", "out"}), "empty: the folder holds no image");
     write_file(path("nav.eic"), "a.tif two 0 0\n");

@@ -217,6 +217,14 @@ TEST_F(CommandObserve, WritesNoMapOfNoImage) {
     EXPECT_EQ(result.status, 2);
     EXPECT_NE(result.err.find("the nearest is 0.7 m off"), std::string::npos) << result.err;
     EXPECT_FALSE(fs::exists(path("map.exr")));
+    fs::remove_all(path("raw"));
+    fs::create_directories(path("raw"));
+    write_file(path("raw/a.tif"), tiff_of({1, 2, 3, 4}, 2, 2, ""));
+    const CommandResult mosaic = observe({});
+    EXPECT_EQ(mosaic.status, 2);
+    EXPECT_NE(mosaic.err.find("skipped: 1, the first: raw/a.tif: found one channel and no --bayer"),
+              std::string::npos)
+        << mosaic.err;
 }
 
 // The paper's section 3.2 in small: an observed map is its model, but for the exposure.
