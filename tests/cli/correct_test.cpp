@@ -25,6 +25,7 @@
 #include <map>
 #include <numbers>
 #include <regex>
+#include <sstream>
 #include <thread>
 
 namespace aphotic::correct_test {
@@ -139,6 +140,12 @@ class CorrectCommand : public testing::Test {
                                            "60",
                                            "--white-level",
                                            "4095"};
+        // In place of the same option here.
+        for (const std::string& option : more) {
+            if (!option.starts_with("--")) continue;
+            const auto same = std::ranges::find(arguments, option);
+            if (same != arguments.end()) arguments.erase(same, same + 2);
+        }
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_aphotic(folder_.path(), arguments);
     }
@@ -336,6 +343,57 @@ TEST_F(CorrectCommand, AnImageWithoutAnAltitudeIsSkippedHoweverItIsWritten) {
         const std::string why = one["why"];
         EXPECT_NE(why.find("altitude_m: found "), std::string::npos) << why;
     }
+}
+
+// Numbers that the images gainsay: a word, with --strict an end, and no gain that outlives them.
+TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
+    constexpr int kImages = 12;
+    for (int i = 0; i < kImages; ++i) {
+        take(fmt::format("{:02}.tif", i),
+             {1.5 + 0.1 * i, (i % 5 - 1) * 2.0 * kDegree, (i % 3 - 1) * 3.0 * kDegree});
+    }
+    const std::string right = lines_;
+    const auto told = [&](const std::string& navigation, const std::vector<std::string>& more) {
+        write_file(path("nav.eic"), navigation);
+        const CommandResult run = correct(more);
+        EXPECT_EQ(run.status, 0) << run.err;
+        std::string about;
+        const Json notes = Json::parse(read_text_file(path("out/correction.json")));
+        for (const Json& one : notes["looks_wrong"]) {
+            about += one["about"];
+            EXPECT_NE(run.err.find("aphotic: looks wrong: " + one["about"].get<std::string>() +
+                                   ": " + one["what"].get<std::string>()),
+                      std::string::npos)
+                << run.err;
+        }
+        return about;
+    };
+    const auto changed = [&](double altitude_m, double tilt) {
+        std::string lines;
+        std::istringstream all(right);
+        std::string name;
+        for (double h = 0, pitch = 0, roll = 0; all >> name >> h >> pitch >> roll;) {
+            lines += fmt::format("{} {} {} {}\n", name, h + altitude_m, tilt * pitch, tilt * roll);
+        }
+        return lines;
+    };
+    const std::string high = changed(50.0, 1.0);
+    write_file(path("nav.eic"), high);
+    const CommandResult refused = correct({"--strict"});
+    EXPECT_EQ(refused.status, kBadInput);
+    EXPECT_NE(refused.err.find("looks wrong, by --strict: altitude: "), std::string::npos)
+        << refused.err;
+    EXPECT_FALSE(fs::exists(path("out")));
+
+    EXPECT_EQ(told(high, {}), "altitude");
+    EXPECT_EQ(told(right, {"--strict"}), "") << "the gain is taken anew";
+    EXPECT_EQ(told(changed(0.0, kDegree), {"--middle", "0.3"}), "attitude");
+    EXPECT_EQ(told(right, {"--bayer", "RGGB"}), "bayer");
+    EXPECT_EQ(told(right, {"--gain", "1", "--bayer", "GBRG"}), "bayer");
+    // The lowest image set the exposure: nearer still, much of an image is saturated.
+    take("low.tif", {1.2, 0.0, 0.0});
+    EXPECT_EQ(told(lines_, {"--strict"}), "");
+    EXPECT_EQ(told(lines_, {"--white-level", "65535"}), "white-level");
 }
 
 TEST_F(CorrectCommand, GivenAgainItDoesWhatIsNewAlone) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic observe and aphotic baseline on small surveys, as a user runs them.
+#include "lightmap/raw_image.h"
 #include "spectral/exr.h"
 #include "support/run_command.h"
 #include "support/tiff.h"
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -208,6 +210,54 @@ TEST_F(CommandObserve, AnImageThatWasCutShortIsInNoMapAndNoResult) {
     const CommandResult compared = run({"compare", "raw/cut.tif", "raw/a.tif"});
     EXPECT_EQ(compared.status, 2) << compared.out;
     EXPECT_NE(compared.err.find(kWhy), std::string::npos) << compared.err;
+}
+
+// A mosaic whose green sites are the other two, and a sensor that is saturated at 1000.
+TEST_F(CommandObserve, WhatLooksWrongIsToldAndByStrictAnEnd) {
+    fs::create_directories(path("raw"));
+    std::vector<std::uint16_t> mosaic;
+    for (int i = 0; i < static_cast<int>(kPixels); ++i) {
+        const int channel = channel_at(Mosaic::Rggb, i % kWidth_px, i / kWidth_px);
+        const int number = 300 + 200 * channel + i;
+        mosaic.push_back(static_cast<std::uint16_t>(std::min(number, 700)));
+    }
+    write_file(path("raw/a.tif"), tiff_of(mosaic, kWidth_px, kHeight_px, ""));
+    write_file(path("nav.csv"), "image,altitude_m\na,2\n");
+    for (const std::string command : {"observe", "baseline"}) {
+        const auto told = [&](const std::string& pattern, bool is_strict) {
+            std::vector<std::string> arguments{"raw", "--bayer", pattern, "--json"};
+            const std::vector<std::string> own =
+                command == "observe"
+                    ? std::vector<std::string>{command,
+                                               "--nav",
+                                               "nav.csv",
+                                               "-o",
+                                               "map.exr",
+                                               "--altitude",
+                                               "2"}
+                    : std::vector<std::string>{command, "homomorphic", "-o", "out"};
+            arguments.insert(arguments.begin(), own.begin(), own.end());
+            if (is_strict) arguments.emplace_back("--strict");
+            return run(arguments);
+        };
+        const CommandResult strict = told("GBRG", true);
+        EXPECT_EQ(strict.status, 2) << strict.out;
+        EXPECT_FALSE(fs::exists(path("map.exr")) || fs::exists(path("out"))) << command;
+        const CommandResult wrong = told("GBRG", false);
+        EXPECT_EQ(wrong.status, 0) << wrong.err;
+        const nlohmann::json json = nlohmann::json::parse(wrong.out)["looks_wrong"];
+        ASSERT_EQ(json.size(), 2U) << json.dump();
+        EXPECT_EQ(json[0]["about"], "white-level");
+        EXPECT_EQ(json[1]["about"], "bayer");
+        EXPECT_NE(
+            wrong.err.find("aphotic: looks wrong: bayer: the two sites that GBRG makes green"),
+            std::string::npos)
+            << wrong.err;
+        const CommandResult right = told("RGGB", false);
+        EXPECT_EQ(nlohmann::json::parse(right.out)["looks_wrong"].size(), 1U) << right.err;
+        fs::remove(path("map.exr"));
+        fs::remove_all(path("out"));
+    }
 }
 
 TEST_F(CommandObserve, WritesNoMapOfNoImage) {
