@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images of any format that OpenImageIO reads or writes, and its filters.
+// Images in the formats that OpenImageIO reads whole or not at all, those that it writes, and its
+// filters.
 //
 // OpenImageIO brings some two hundred libraries with it, which take 0.3 s and 100 MB to load: a
 // part of the command by itself, aphotic_any_image.so, loads it when such an image is asked for.
@@ -28,7 +29,9 @@ struct AnyImage {
     std::string date_time;    // when it was taken, "YYYY:MM:DD hh:mm:ss", or empty
 };
 
-// An image that cannot be read is an InputError; a program installed without the part, a RunError.
+// An image that cannot be read, is cut short, or is of a format of which that cannot be told, is an
+// InputError, also when its samples are asked for; a program installed without the part, a
+// RunError.
 [[nodiscard]] AnyImage open_any_image(const std::filesystem::path& file);
 
 // Planes as an image, in the format that the file's extension names, whole or not there. Integers

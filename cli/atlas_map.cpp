@@ -83,10 +83,6 @@ void write(const AtlasMapRequest& request,
 
 void write_picture(const AtlasMapRequest& request, const Lightmap& map) {
     if (request.preview_file.empty()) return;
-    if (request.preview.white == PreviewWhite::Lamp) {
-        throw InputError(
-            "--preview-white: found lamp, which an atlas does not know; allowed: image, none");
-    }
     write_preview({map.width_px, map.height_px, map.samples},
                   {1.0, 1.0, 1.0},
                   request.preview,
@@ -125,8 +121,8 @@ ExitStatus write_atlas_map(const AtlasMapRequest& request) {
     Lightmap map = map_of(request, atlas, point);
     const std::array<float, kChannels> peaks = peaks_of(map);
     if (request.normalised) divide_by(peaks, map);
-    write_picture(request, map);
     write(request, manifest, point, map);
+    write_picture(request, map);
     const nlohmann::ordered_json outcome = {{"title", manifest.title},
                                             {"rig_sha256", manifest.rig_digest},
                                             {"file", request.file},

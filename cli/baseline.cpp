@@ -11,6 +11,7 @@
 #include "cli/progress.h"
 #include "cli/survey_files.h"
 #include "cli/survey_image.h"
+#include "cli/survey_look.h"
 #include "cli/words.h"
 #include "lightmap/navigation.h"
 #include "spectral/atomic_file.h"
@@ -41,6 +42,7 @@ struct BaselineCommandOptions {
     BaselineOptions baseline;
     CameraNumbers camera;
     int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    bool strict = false;
     bool json = false;
 };
 
@@ -172,11 +174,16 @@ ExitStatus correct_by_baseline(const BaselineCommandOptions& options) {
             fmt::format("{}: needs --nav, for the altitude of each image", options.name));
     BaselineSurvey survey = baseline_survey(options);
     if (corrector.needs_altitude()) survey.navigation = read_navigation(options.navigation, Sled{});
+    const std::vector<Suspicion> looks_wrong =
+        suspicions_of(survey.files, options.camera, static_cast<std::size_t>(options.jobs));
+    tell(looks_wrong, options.strict);
     const FolderLock lock = claim_tree(options.folder);
     // Before the first image: also what an interrupted run leaves is no survey.
     const fs::path notes_file = fs::path(options.folder) / kBaselineNotes;
-    Json notes{
-        {"baseline", options.name}, {"settings", settings_of(options)}, {"folder", options.folder}};
+    Json notes{{"baseline", options.name},
+               {"settings", settings_of(options)},
+               {"folder", options.folder},
+               {"looks_wrong", suspicions_json(looks_wrong)}};
     write_text_file(notes_file, dumped(notes) + "\n");
     if (corrector.learns()) learn_survey(corrector, survey, options);
     const std::size_t corrected = correct_survey(corrector, survey, options);
@@ -237,7 +244,7 @@ Action configure_baseline(CLI::App& app) {
     app.add_option("NAME", options->name, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
         ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
         ->required();
-    app.add_option("IMAGES", options->images, "images, and folders of images, in any format")
+    app.add_option("IMAGES", options->images, "images, and folders of images: TIFF, PNG, EXR, JPEG")
         ->required();
     app.add_option("-o,--output", options->folder, "where the corrected images go, as float EXR")
         ->type_name("DIR")
@@ -251,6 +258,7 @@ Action configure_baseline(CLI::App& app) {
     app.add_option("--jobs", options->jobs, "images at a time")
         ->check(in_range(1, 1024))
         ->capture_default_str();
+    add_strict_option(app, options->strict);
     app.add_flag("--json", options->json, "print DIR/baseline.json");
     app.footer(
         "What users do without a model of the lamps, to hold it against. The polynomials learn "

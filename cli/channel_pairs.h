@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Which channels of two images are compared, and what becomes of the others: none is passed over in
-// silence. A channel that the other image lacks has no partner, unless it is one of these, which
-// are left aside: opacity (A, alpha), and what `aphotic observe` says of its averages (count.NAME,
-// stderr.NAME).
+// silence. Partners have one name, or are one quantity at one wavelength however it is spelt
+// (spectral/channel_wavelength.h). A channel that the other image lacks has no partner, unless it
+// is one of these, which are left aside: opacity (A, alpha), and what `aphotic observe` says of its
+// averages (count.NAME, stderr.NAME).
 #pragma once
 
 #include <string>
@@ -11,8 +12,13 @@
 
 namespace aphotic::cli {
 
+struct ChannelPair {
+    std::string image;  // its name there
+    std::string reference;
+};
+
 struct ChannelPairs {
-    std::vector<std::string> compared;
+    std::vector<ChannelPair> compared;
     std::vector<std::string> only_in_image;
     std::vector<std::string> only_in_reference;
     std::vector<std::string> left_aside;
@@ -23,8 +29,9 @@ struct ChannelPairs {
                                          const std::vector<std::string>& reference,
                                          bool scaled);
 
-// Those that the user names, separated by commas. A name may hold commas itself, as
-// S0.550,000000nm does. Throws InputError when one is not in both images, or none is named.
+// Those that the user names, as either image has them, separated by commas. A name may hold commas
+// itself, as S0.550,000000nm does. Throws InputError when one is not in both images, or none is
+// named.
 [[nodiscard]] ChannelPairs named_channels(const std::string& names,
                                           const std::vector<std::string>& image,
                                           const std::vector<std::string>& reference);

@@ -61,10 +61,11 @@ std::vector<float> samples_of(const AnyImage& image, const std::string& channel)
 // Marks what either image says that it never observed.
 std::vector<unsigned char> unobserved_in(const AnyImage& a,
                                          const AnyImage& b,
-                                         const std::string& channel) {
+                                         const ChannelPair& channel) {
     std::vector<unsigned char> marks;
-    const std::string count = "count." + channel;
-    for (const AnyImage* image : {&a, &b}) {
+    for (const auto& [image, name] :
+         {std::pair(&a, channel.image), std::pair(&b, channel.reference)}) {
+        const std::string count = "count." + name;
         if (!has_channel(*image, count)) continue;
         const std::vector<float> counts = samples_of(*image, count);
         marks.resize(counts.size(), 0);
@@ -78,13 +79,13 @@ std::vector<unsigned char> unobserved_in(const AnyImage& a,
 // Of every channel, the same or each its own.
 std::vector<double> scales_of(const AnyImage& a,
                               const AnyImage& b,
-                              const std::vector<std::string>& channels,
+                              const std::vector<ChannelPair>& channels,
                               const CompareCommandOptions& options) {
     if (options.scale.empty()) return std::vector<double>(channels.size(), 1.0);
     std::vector<Scaling> scalings(options.scale == "image" ? 1 : channels.size());
     for (std::size_t c = 0; c < channels.size(); ++c) {
-        scalings[std::min(c, scalings.size() - 1)].add(samples_of(a, channels[c]),
-                                                       samples_of(b, channels[c]),
+        scalings[std::min(c, scalings.size() - 1)].add(samples_of(a, channels[c].image),
+                                                       samples_of(b, channels[c].reference),
                                                        unobserved_in(a, b, channels[c]));
     }
     std::vector<double> scales;
@@ -95,7 +96,7 @@ std::vector<double> scales_of(const AnyImage& a,
                 fmt::format("{}: channel {} is {:.3g} times that of {}; --scale "
                             "needs a positive factor",
                             options.image,
-                            channels[c],
+                            channels[c].image,
                             scales.back(),
                             options.reference));
         }
@@ -105,14 +106,14 @@ std::vector<double> scales_of(const AnyImage& a,
 
 ComparedChannel compare_channel(const AnyImage& a,
                                 const AnyImage& b,
-                                const std::string& name,
+                                const ChannelPair& pair,
                                 double scale,
                                 const CompareCommandOptions& options) {
     ComparedChannel channel{.comparison = {},
                             .scale = scale,
-                            .image = samples_of(a, name),
-                            .reference = samples_of(b, name),
-                            .marks = unobserved_in(a, b, name)};
+                            .image = samples_of(a, pair.image),
+                            .reference = samples_of(b, pair.reference),
+                            .marks = unobserved_in(a, b, pair)};
     if (scale != 1.0) {
         for (float& sample : channel.image) sample = static_cast<float>(sample / scale);
     }
@@ -122,7 +123,7 @@ ComparedChannel compare_channel(const AnyImage& a,
     }
     channel.black = options.black * brightest;
     channel.comparison =
-        compare_planes(name,
+        compare_planes(pair.image,
                        channel.image,
                        std::vector<double>(channel.reference.begin(), channel.reference.end()),
                        a.width_px,
@@ -146,7 +147,7 @@ ComparedImages compare_images(const CompareCommandOptions& options) {
                                      options.reference));
     }
     const ChannelPairs pairs = channels_of(a, b, options);
-    const std::vector<std::string>& channels = pairs.compared;
+    const std::vector<ChannelPair>& channels = pairs.compared;
     const std::vector<double> scales = scales_of(a, b, channels, options);
     ComparedImages images{.image = options.image,
                           .reference = options.reference,
@@ -268,7 +269,8 @@ ExitStatus compare(const CompareCommandOptions& options) {
 
 Action configure_compare(CLI::App& app) {
     const auto options = std::make_shared<CompareCommandOptions>();
-    app.add_option("IMAGE", options->image, "the image in question, in any format of OpenImageIO")
+    app.add_option(
+           "IMAGE", options->image, "the image in question: EXR, TIFF, PNG, JPEG and others")
         ->required();
     app.add_option("REFERENCE", options->reference, "what it should be")->required();
     app.add_option("--bound", options->bound, "the largest |e| that is allowed")
@@ -298,6 +300,7 @@ Action configure_compare(CLI::App& app) {
         ->type_name("FILE.html");
     app.add_flag("--json", options->json, "print the numbers as JSON");
     app.footer(
+        "Spectral channels are paired by wavelength, however it is spelt.\n"
         "For every channel, e = (a - b) / max(|b|, black). Exit status 0 when all |e| are within\n"
         "the bound and every channel is in both images, 1 when not. Opacity and what aphotic "
         "observe\n"

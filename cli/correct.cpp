@@ -42,6 +42,7 @@ struct CorrectCommandOptions {
     std::size_t gain_images = 16;
     std::vector<double> altitudes_m;
     ResultOptions result;
+    bool strict = false;
     bool json = false;
 };
 
@@ -85,23 +86,35 @@ std::optional<SurveyGain> noted_gain(const CorrectCommandOptions& options,
     return kept_gain(read_text_file(notes_of(options)), settings_sha256);
 }
 
-SurveyGain gain_of(const Survey& survey,
-                   const CorrectCommandOptions& options,
-                   const std::string& settings_sha256) {
-    if (!options.gain.empty()) {
-        SurveyGain gain{.gain = {}, .middle = wanted_middle(survey, options), .images = {}};
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            gain.gain[c] = options.gain[options.gain.size() == 1 ? 0 : c];
-        }
-        return gain;
+SurveyGain given_gain(const Survey& survey, const CorrectCommandOptions& options) {
+    SurveyGain gain{.gain = {}, .middle = wanted_middle(survey, options), .images = {}};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        gain.gain[c] = options.gain[options.gain.size() == 1 ? 0 : c];
     }
-    if (const auto noted = noted_gain(options, settings_sha256)) return *noted;
+    return gain;
+}
+
+// What a look at the survey gives.
+struct FirstLook {
+    SurveyGain gain;
+    std::vector<Suspicion> suspicions;
+};
+
+FirstLook first_look(const Survey& survey,
+                     const CorrectCommandOptions& options,
+                     const std::string& settings_sha256) {
+    const auto noted = noted_gain(options, settings_sha256);
+    if (noted) return {options.gain.empty() ? *noted : given_gain(survey, options), {}};
     try {
-        return measured_gain(survey,
-                             {.middle = wanted_middle(survey, options),
-                              .most_images = options.gain_images,
-                              .least_light = options.result.limit.share,
-                              .jobs = options.result.jobs});
+        const SurveyLook look = look_at(survey,
+                                        {.most_images = options.gain_images,
+                                         .least_light = options.result.limit.share,
+                                         .jobs = options.result.jobs});
+        std::vector<Suspicion> found = suspicions(look.images, survey.camera.mosaic);
+        tell(found, options.strict);
+        return {options.gain.empty() ? measured_gain(look, wanted_middle(survey, options))
+                                     : given_gain(survey, options),
+                std::move(found)};
     } catch (const InputError&) {
         // Refused before anything is written: no folder is left either, unless it holds something.
         std::error_code ignored;
@@ -197,11 +210,12 @@ ExitStatus correct(const CorrectCommandOptions& options) {
     set_exr_threads(0);  // the images themselves are spread over the threads
     const Json settings = settings_of(survey, options);
     const std::string settings_sha256 = sha256_of_text(settings.dump());
-    const SurveyGain gain = gain_of(survey, options, settings_sha256);
+    const auto [gain, looks_wrong] = first_look(survey, options, settings_sha256);
     Json notes{{"settings", settings},
                {"settings_sha256", settings_sha256},
                {"gain", gain.gain},
-               {"gain_from", gain.images}};
+               {"gain_from", gain.images},
+               {"looks_wrong", suspicions_json(looks_wrong)}};
     write_text_file(notes_of(options), dumped(notes) + "\n");
 
     Journal journal(options.result.folder / "corrected.jsonl");
@@ -320,6 +334,7 @@ Action configure_correct(CLI::App& app) {
     app.add_option("--jobs", options->result.jobs, "images at a time; by default the cores")
         ->check(in_range(1, kMostJobs))
         ->capture_default_str();
+    add_strict_option(app, options->strict);
     app.add_flag("--json", options->json, "print DIR/correction.json");
     app.footer(
         "Given again, it goes on where it stopped. Exit status 0 when all images are corrected, 1\n"

@@ -16,6 +16,7 @@ std::optional<SurveyGain> kept_gain(std::string_view text, const std::string& se
     try {
         const nlohmann::json notes = parse_json(text, "correction.json");
         if (notes.at("settings_sha256") != settings_sha256) return std::nullopt;
+        if (!notes.at("looks_wrong").empty()) return std::nullopt;
         SurveyGain kept{.gain = notes.at("gain").get<PerChannel>(),
                         .middle = notes.at("settings").at("middle").get<PerChannel>(),
                         .images = notes.at("gain_from").get<std::vector<std::string>>()};

@@ -13,7 +13,7 @@
 namespace aphotic::cli {
 
 // None when the text is of other settings, or not as `aphotic correct` wrote it: a gain that is no
-// finite number above 0 among it.
+// finite number above 0 among it. Nor of a survey that looked wrong: it may be mended since.
 [[nodiscard]] std::optional<SurveyGain> kept_gain(std::string_view text,
                                                   const std::string& settings_sha256);
 

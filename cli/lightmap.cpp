@@ -212,11 +212,17 @@ void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& 
         throw InputError(fmt::format(
             "{}: found with the atlas {}; allowed: with a rig", option, options.rig_file));
     }
+    if (app.count("--preview-white") > 0 && options.preview.white == PreviewWhite::Lamp) {
+        throw InputError(
+            "--preview-white: found lamp, which an atlas does not know; allowed: image, none");
+    }
 }
 
 ExitStatus make_map(const CLI::App& app, const LightmapCommandOptions& options) {
     if (!std::filesystem::is_directory(options.rig_file)) return make_lightmap(options);
     refuse_what_needs_a_rig(app, options);
+    PreviewOptions preview = options.preview;
+    if (preview.white == PreviewWhite::Lamp) preview.white = PreviewWhite::Image;  // by default
     set_exr_threads(options.map.threads);
     return write_atlas_map({.folder = options.rig_file,
                             .file = options.file,
@@ -226,7 +232,7 @@ ExitStatus make_map(const CLI::App& app, const LightmapCommandOptions& options) 
                             .water_multiple = options.water_multiple,
                             .normalised = options.normalised,
                             .preview_file = options.preview_file,
-                            .preview = options.preview,
+                            .preview = preview,
                             .json = options.json});
 }
 
@@ -287,7 +293,8 @@ Action configure_lightmap(CLI::App& app) {
     app.footer(
         "Of the bare flat floor; POV-Ray is not needed. The file holds what image.exr of a render\n"
         "does: R, G, B, linear, 32-bit floats. Of an atlas it is blended from the bins about that\n"
-        "altitude, attitude and water.");
+        "altitude, attitude and water, and the preview's white is image or none: image by "
+        "default.");
     return [&app, options] { return make_map(app, *options); };
 }
 

@@ -9,6 +9,7 @@
 #include "cli/progress.h"
 #include "cli/survey_files.h"
 #include "cli/survey_image.h"
+#include "cli/survey_look.h"
 #include "cli/words.h"
 #include "lightmap/navigation.h"
 #include "lightmap/observation.h"
@@ -40,6 +41,7 @@ struct ObserveCommandOptions {
     CameraNumbers camera;
     double memory_mb = 1000.0;
     int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    bool strict = false;
     bool json = false;
 };
 
@@ -301,8 +303,18 @@ void print_summary(const ObserveCommandOptions& options,
                selection.skipped.size());
 }
 
+std::vector<Suspicion> looked_at(const Selection& selection, const ObserveCommandOptions& options) {
+    std::vector<SurveyFile> files;
+    for (const std::filesystem::path& image : selection.images) {
+        files.push_back({.source = image, .name = image.filename()});
+    }
+    return suspicions_of(files, options.camera, static_cast<std::size_t>(options.jobs));
+}
+
 ExitStatus observe(const ObserveCommandOptions& options) {
     Selection selection = selected(options);
+    const std::vector<Suspicion> looks_wrong = looked_at(selection, options);
+    tell(looks_wrong, options.strict);
     Observed observed;
     RawImage like;
     {
@@ -317,14 +329,22 @@ ExitStatus observe(const ObserveCommandOptions& options) {
             selection.outside > 0
                 ? fmt::format("; the nearest is {:.3g} m off", selection.nearest_m)
                 : "";
-        throw InputError(fmt::format("no image to be used within {} m of {} m{}",
+        const std::string first = selection.skipped.empty()
+                                      ? ""
+                                      : fmt::format("; skipped: {}, the first: {}: {}",
+                                                    selection.skipped.size(),
+                                                    selection.skipped.front().image,
+                                                    selection.skipped.front().why);
+        throw InputError(fmt::format("no image to be used within {} m of {} m{}{}",
                                      options.within_m,
                                      options.altitude_m,
-                                     others));
+                                     others,
+                                     first));
     }
     const Sled sled = mean_of(selection.sleds);
     write_map(options, observed, like, selection.images.size(), sled);
-    const nlohmann::ordered_json json = json_of(options, selection, sled, observed);
+    nlohmann::ordered_json json = json_of(options, selection, sled, observed);
+    json["looks_wrong"] = suspicions_json(looks_wrong);
     if (options.json) {
         fmt::print("{}\n", dumped(json));
     } else {
@@ -357,7 +377,7 @@ void add_average_options(CLI::App& app, ObserveCommandOptions& options) {
 
 Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
-    app.add_option("IMAGES", options->images, "images, and folders of images, in any format")
+    app.add_option("IMAGES", options->images, "images, and folders of images: TIFF, PNG, EXR, JPEG")
         ->required();
     app.add_option("--nav",
                    options->navigation,
@@ -384,6 +404,7 @@ Action configure_observe(CLI::App& app) {
     app.add_option("--jobs", options->jobs, "images read at a time")
         ->check(in_range(1, 1024))
         ->capture_default_str();
+    add_strict_option(app, options->strict);
     app.add_flag("--json", options->json, "print what was done as JSON");
     app.footer(
         "MAP.exr holds the average in R, G, B, the number of images in count.R ..., the standard\n"

@@ -4,23 +4,13 @@
 // (lightmap/correction.h).
 #pragma once
 
-#include "cli/survey_files.h"
-#include "cli/survey_image.h"
-#include "cli/survey_light.h"
+#include "cli/survey_look.h"
 #include "lightmap/correction.h"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace aphotic::cli {
-
-// What is corrected, the light that it was taken in, and by what camera.
-struct Survey {
-    std::vector<SurveyFile> files;
-    SurveyLight light;
-    CameraNumbers camera;
-};
 
 struct SurveyGain {
     PerChannel gain{};
@@ -28,15 +18,8 @@ struct SurveyGain {
     std::vector<std::string> images;  // that it was taken from; none when it was given
 };
 
-struct GainRequest {
-    PerChannel middle{};
-    std::size_t most_images = 16;
-    double least_light = 0.0;  // of the map's brightest: darker pixels do not count
-    std::size_t jobs = 1;
-};
-
-// Of images spread evenly over the survey, the median of each one's own middle quotient. An
-// InputError when there is none.
-[[nodiscard]] SurveyGain measured_gain(const Survey& survey, const GainRequest& request);
+// The median of the middle quotients of the images that were looked at. An InputError when there is
+// none.
+[[nodiscard]] SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle);
 
 }  // namespace aphotic::cli

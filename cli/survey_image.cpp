@@ -30,11 +30,16 @@ std::vector<std::size_t> places_of(const AnyImage& image, Mosaic mosaic) {
         if (image.channels.size() != 1) refuse_channels(image, "one, with --bayer");
         return {0};
     }
+    if (image.channels.size() == 1) {
+        throw InputError(
+            "found one channel and no --bayer; allowed: R, G, B, or a mosaic whose pattern --bayer "
+            "names");
+    }
     std::vector<std::size_t> places;
     for (const std::string_view name : kChannelNames) {
         const auto found = std::ranges::find(image.channels, name);
         if (found == image.channels.end()) {
-            refuse_channels(image, "R, G, B, or one of a mosaic that --bayer names");
+            refuse_channels(image, "R, G, B");
         }
         places.push_back(static_cast<std::size_t>(found - image.channels.begin()));
     }

@@ -3,7 +3,9 @@
 
 #include "lightmap/cone_edge.h"
 #include "lightmap/navigation.h"
+#include "lightmap/survey_check.h"
 #include "scene_gen/rig_reader.h"
+#include "spectral/degrees.h"
 #include "spectral/digest.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
@@ -53,6 +55,43 @@ PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds) {
     return paths_of(rig, corners);
 }
 
+using MapAsRadians = std::function<std::optional<Lightmap>(const Sled& sled)>;
+
+MapAsRadians map_as_radians(const Rig& rig, const Navigation& navigation, std::vector<Sled> sleds) {
+    const auto is_small = [](double tilt_rad) {
+        return std::abs(tilt_rad) <= kSmall_deg * kRadiansPerDegree;
+    };
+    const auto in_radians = [has_pitch = navigation.has_pitch(),
+                             has_roll = navigation.has_roll()](Sled sled) {
+        if (has_pitch) sled.pitch_rad /= kRadiansPerDegree;
+        if (has_roll) sled.roll_rad /= kRadiansPerDegree;
+        return sled;
+    };
+    bool is_level = true;
+    for (Sled& sled : sleds) {
+        if (navigation.has_pitch() && !is_small(sled.pitch_rad)) return {};
+        if (navigation.has_roll() && !is_small(sled.roll_rad)) return {};
+        const Sled other = in_radians(sled);
+        if (other.pitch_rad != sled.pitch_rad || other.roll_rad != sled.roll_rad) is_level = false;
+        sled = other;
+    }
+    if (is_level) return {};
+    try {
+        // Of its own, so that the maps of a sled that is as steady as that stay as they are.
+        const auto maker = std::make_shared<const LightmapMaker>(
+            rig, paths_of_survey(rig, sleds), LightmapOptions{});
+        return [maker, in_radians](const Sled& sled) -> std::optional<Lightmap> {
+            try {
+                return maker->map(in_radians(sled));
+            } catch (const InputError&) {
+                return std::nullopt;
+            }
+        };
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
 }  // namespace
 
 SurveyLight light_of_rig(const std::string& rig_file,
@@ -71,6 +110,7 @@ SurveyLight light_of_rig(const std::string& rig_file,
             // It is said of the image when its turn comes.
         }
     }
+    const MapAsRadians as_radians = map_as_radians(rig, navigation, sleds);
     const auto light = [&] {
         try {
             return std::make_shared<const RigLight>(
@@ -92,6 +132,7 @@ SurveyLight light_of_rig(const std::string& rig_file,
             .map = [light](const Sled& sled) { return light->maker.map(sled); },
             .edges = [light](const Sled& sled,
                              int within_px) { return light->edges.mask(sled, within_px); },
+            .map_as_radians = as_radians,
             .floor_colour = floor_colour(rig)};
 }
 
@@ -122,6 +163,7 @@ SurveyLight light_of_map(const std::string& map_file) {
             .pose = [](const std::filesystem::path&) { return Sled{}; },
             .map = [map](const Sled&) { return map; },
             .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); },
+            .map_as_radians = {},
             .floor_colour = std::nullopt};
 }
 

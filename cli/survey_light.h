@@ -26,6 +26,9 @@ struct SurveyLight {
     // These are called from several threads.
     std::function<Lightmap(const Sled& sled)> map;
     std::function<std::vector<std::uint8_t>(const Sled& sled, int within_px)> edges;
+    // The map of tilts that the navigation tells in radians instead of degrees; none where that
+    // puts a strobe under the floor. Empty where they are surely degrees.
+    std::function<std::optional<Lightmap>(const Sled& sled)> map_as_radians;
     std::optional<PerChannel> floor_colour;  // none: nothing is known of the floor
 };
 

@@ -13,6 +13,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -53,7 +54,7 @@ std::vector<std::string_view> comma_fields(std::string_view line) {
     std::vector<std::string_view> fields;
     for (std::size_t start = 0; start <= line.size();) {
         const std::size_t end = std::min(line.find(',', start), line.size());
-        fields.push_back(unquoted(trimmed(line.substr(start, end - start))));
+        fields.push_back(trimmed(unquoted(trimmed(line.substr(start, end - start)))));
         start = end + 1;
     }
     return fields;
@@ -124,11 +125,26 @@ ColumnLayout layout_of(const std::string& name,
             .roll = column_named(columns, kRoll)};
 }
 
-// NaN is a number here: loggers write it when they know none.
+std::string lower(std::string text) {
+    std::ranges::transform(text, text.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return text;
+}
+
+// What loggers, databases and spreadsheets write when they know no number, besides NaN itself.
+bool is_unknown(std::string_view field) {
+    static constexpr std::array<std::string_view, 8> kUnknown{
+        "", "-", "na", "n/a", "#n/a", "null", "none", "1.#qnan"};
+    return std::ranges::find(kUnknown, lower(std::string(field))) != kUnknown.end();
+}
+
+// NaN when there is none.
 double number_of(const std::string& name,
                  std::size_t line,
                  std::string_view column,
                  std::string_view field) {
+    if (is_unknown(field)) return std::numeric_limits<double>::quiet_NaN();
     double number = 0.0;
     if (field.starts_with('+')) field.remove_prefix(1);
     const char* end = field.data() + field.size();
@@ -166,13 +182,6 @@ ImagePose pose_in(const std::string& name,
     return pose;
 }
 
-std::string lower(std::string text) {
-    std::ranges::transform(text, text.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return text;
-}
-
 // The file's name without its folder, of either kind of slash, and without an image's extension.
 std::string key_of(std::string_view image) {
     const std::size_t slash = image.find_last_of("/\\");
@@ -187,11 +196,13 @@ void require(const std::string& name,
              double value,
              const Bounds& bounds) {
     if (value >= bounds.least && value <= bounds.most) return;
-    fail_at_line(
-        name,
-        pose.line,
-        fmt::format(
-            "{}: found {:.6g}; allowed: {} to {}", column, value, bounds.least, bounds.most));
+    fail_at_line(name,
+                 pose.line,
+                 fmt::format("{}: found {}; allowed: {} to {}",
+                             column,
+                             std::isnan(value) ? "no number" : fmt::format("{:.6g}", value),
+                             bounds.least,
+                             bounds.most));
 }
 
 }  // namespace
@@ -218,7 +229,9 @@ Navigation parse_navigation(const std::string& name, std::string_view text, cons
         const std::string_view content = trimmed(text.substr(start, end - start));
         ++line;
         start = end + 1;
-        if (content.empty() || content.front() == '#') continue;
+        // Spreadsheets end a table with rows of commas alone.
+        const bool is_empty = content.find_first_not_of(',') == std::string_view::npos;
+        if (is_empty || content.front() == '#') continue;
         if (!layout && content.find(',') != std::string_view::npos) {
             layout = layout_of(name, line, comma_fields(content));
             navigation.has_pitch_ = layout->pitch.has_value();

@@ -12,7 +12,8 @@
 //
 //   201207.0001.tif 2.05 4.8 -0.3
 //
-// Lines that are empty or begin with # are comments. altitude_m is measured along the camera's
+// Lines that are empty, hold commas alone or begin with # are passed over. A cell that is empty or
+// says NaN, NA, null or the like costs its own image alone. altitude_m is measured along the camera's
 // axis, pitch is positive bow up, roll positive starboard down: the rig's own conventions. A CSV
 // file without a column for pitch or roll leaves it as the rig has it.
 //
@@ -40,7 +41,7 @@ class Navigation {
   public:
     // The pose of an image file. An InputError when there is no line for it, or when the line's
     // numbers are none that a sled can have, such as the zeros and NaN of an altimeter that lost
-    // the floor: that is of one image, and the others can do without it.
+    // the floor, or none: that is of one image, and the others can do without it.
     [[nodiscard]] const ImagePose& pose_of(const std::filesystem::path& image) const;
 
     [[nodiscard]] std::size_t size() const { return poses_.size(); }

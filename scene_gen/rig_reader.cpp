@@ -59,6 +59,9 @@ constexpr Bounds kTiltDeg{-89.9, 89.9};
 constexpr Bounds kResolutionPx{1.0, kLargestImagePx};
 constexpr Bounds kPixelPitchUm{0.01, 10000.0};
 constexpr Bounds kFocalLengthMm{0.01, 100000.0};
+// From corner to corner. No lens without distortion sees more than 135 degrees, and what a slipped
+// point makes of a focal length does.
+constexpr double kMostView_deg = 150.0;
 constexpr Bounds kWavelengthNm{100.0, 10000.0};
 constexpr Bounds kPortDistanceMm{1.0, 10000.0};
 constexpr Bounds kPortThicknessMm{1.0, 1000.0};
@@ -232,6 +235,13 @@ class Section {
                              hint.empty() ? "." : hint,
                              fmt::join(known_, ", ")));
         }
+    }
+
+    // Before any is asked for: where another key stands in place of one that is required, that is
+    // the cause.
+    void refuse_keys_but(const std::vector<std::string>& known) {
+        known_ = known;
+        refuse_unknown_keys();
     }
 
     // Runs read(), and puts file, line and key before whatever InputError comes out of it.
@@ -423,6 +433,24 @@ Sensor RigReader::read_response(Section& camera) {
     return camera.at_key("response", [&] { return builtin_sensor(name); });
 }
 
+void require_view(const Section& section, const Camera& camera) {
+    const double half_m =
+        0.5 * camera.pixel_pitch_m * std::hypot(camera.width_px, camera.height_px);
+    const double view_deg = 2.0 * std::atan(half_m / camera.focal_length_m) / kRadiansPerDegree;
+    if (view_deg <= kMostView_deg) return;
+    section.found_but(
+        "focal_length_mm",
+        fmt::format(
+            "{:.3g} and more, for a view of at most {} degrees from corner to corner; with "
+            "{} x {} pixels of {:.6g} um it is {:.1f}",
+            half_m / std::tan(0.5 * kMostView_deg * kRadiansPerDegree) / kMetresPerMillimetre,
+            kMostView_deg,
+            camera.width_px,
+            camera.height_px,
+            camera.pixel_pitch_m / kMetresPerMicrometre,
+            view_deg));
+}
+
 Camera RigReader::read_camera(Section section) {
     const auto resolution = section.numbers<2>("resolution", kResolutionPx);
     for (const double size : resolution) {
@@ -445,6 +473,7 @@ Camera RigReader::read_camera(Section section) {
         .range = range,
         .sensor = std::move(sensor),
         .port = std::nullopt};
+    require_view(section, camera);
     if (section.has("port")) camera.port = read_port(section.section("port", "a table"));
     section.refuse_unknown_keys();
     return camera;
@@ -498,9 +527,9 @@ Beam RigReader::read_beam(Section section, std::string name) {
 }
 
 Eigen::Vector3d RigReader::axis_from_aim(Section aim, const Eigen::Vector3d& position_m) {
+    aim.refuse_keys_but({"tilt_deg", "toward"});
     const double tilt_rad = aim.number("tilt_deg", kAimTiltDeg) * kRadiansPerDegree;
     (void)aim.word("toward", {"axis"});
-    aim.refuse_unknown_keys();
     const Eigen::Vector3d inward(-position_m.x(), -position_m.y(), 0.0);
     if (inward.norm() == 0.0) {
         if (tilt_rad == 0.0) return Eigen::Vector3d::UnitZ();

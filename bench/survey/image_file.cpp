@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/survey/image_file.h"
 
+#include "cli/any_image.h"
 #include "spectral/atomic_file.h"
 #include "spectral/error.h"
 
@@ -9,6 +10,10 @@
 
 #include <string>
 #include <vector>
+
+// Linked here, not loaded when it is asked for.
+extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
+                                       aphotic::cli::AnyImage& image);
 
 namespace aphotic::survey {
 
@@ -57,27 +62,15 @@ void write_picture(const std::filesystem::path& file,
 }
 
 CameraImage read_image(const std::filesystem::path& file) {
-    const auto input = OIIO::ImageInput::open(file.string());
-    if (!input) {
-        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), OIIO::geterror()));
-    }
-    const OIIO::ImageSpec spec = input->spec();
-    if (spec.nchannels < static_cast<int>(kChannels)) {
+    cli::AnyImage any;
+    aphotic_open_any_image(file, any);
+    if (any.channels.size() < kChannels) {
         throw InputError(fmt::format(
-            "{}: found {} channels; allowed: R, G and B", file.string(), spec.nchannels));
+            "{}: found {} channels; allowed: R, G and B", file.string(), any.channels.size()));
     }
-    const std::size_t pixels = spec.image_pixels();
-    CameraImage image{.width_px = spec.width,
-                      .height_px = spec.height,
-                      .samples = std::vector<float>(kChannels * pixels)};
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        const auto channel = static_cast<int>(c);
-        if (!input->read_image(
-                0, 0, channel, channel + 1, OIIO::TypeDesc::FLOAT, &image.samples[c * pixels])) {
-            throw InputError(
-                fmt::format("{}: cannot be read: {}", file.string(), input->geterror()));
-        }
-    }
+    CameraImage image{
+        .width_px = any.width_px, .height_px = any.height_px, .samples = any.planes()};
+    image.samples.resize(kChannels * image.samples.size() / any.channels.size());
     return image;
 }
 

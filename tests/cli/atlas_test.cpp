@@ -148,6 +148,23 @@ TEST_F(CommandAtlas, IsBlendedIntoMaps) {
     EXPECT_NE(map("atlas", between), lower);
 }
 
+// The lamps, by whose white a rig's preview is shown, are not in an atlas: nobody asked for them.
+TEST_F(CommandAtlas, HasPreviews) {
+    ASSERT_EQ(atlas({"--altitude", "2:2.4:0.2"}).status, 0);
+    const auto preview = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> arguments{
+            "lightmap", "atlas", "--altitude-m", "2.1", "-o", "map.exr", "--preview", "map.png"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const CommandResult run = run_aphotic(folder_.path(), arguments);
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_TRUE(fs::exists(folder_.path() / "map.exr"));
+        return read_text_file(folder_.path() / "map.png");
+    };
+    const std::string by_default = preview({});
+    EXPECT_EQ(by_default, preview({"--preview-white", "image"}));
+    EXPECT_NE(by_default, preview({"--preview-white", "none"}));
+}
+
 TEST_F(CommandAtlas, IsNoMapBeyondItsAxesOrWithWhatNeedsARig) {
     ASSERT_EQ(atlas({"--altitude", "2:2.4:0.2"}).status, 0);
     const auto refused = [&](const std::vector<std::string>& options) {
@@ -161,13 +178,13 @@ TEST_F(CommandAtlas, IsNoMapBeyondItsAxesOrWithWhatNeedsARig) {
     EXPECT_NE(refused({"--altitude-m", "2.5"}).find("allowed: from 2 to 2.4"), std::string::npos);
     EXPECT_NE(refused({"--json"}).find("--altitude-m: found none"), std::string::npos);
     const std::vector<std::string> there{"--altitude-m", "2.1"};
-    for (const std::vector<std::string>& option :
-         std::vector<std::vector<std::string>>{{"--per-strobe"},
-                                               {"--per-cone"},
-                                               {"--error", "1e-5"},
-                                               {"--pitch-deg", "1"},
-                                               {"--water-multiple", "2"},
-                                               {"--preview", "map.png"}}) {
+    for (const std::vector<std::string>& option : std::vector<std::vector<std::string>>{
+             {"--per-strobe"},
+             {"--per-cone"},
+             {"--error", "1e-5"},
+             {"--pitch-deg", "1"},
+             {"--water-multiple", "2"},
+             {"--preview", "map.png", "--preview-white", "lamp"}}) {
         std::vector<std::string> options = option;
         options.insert(options.end(), there.begin(), there.end());
         EXPECT_NE(refused(options).find("allowed"), std::string::npos) << option.front();

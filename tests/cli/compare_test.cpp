@@ -189,6 +189,25 @@ TEST_F(CommandCompare, ComparesTheChannelsThatAreNamed) {
                          "--channels: found X; allowed: those of both images, R, " + shared));
 }
 
+// As the reference writer of the layout, pbrt and others spell them, in the order of their names.
+TEST_F(CommandCompare, PairsSpectralChannelsByWavelength) {
+    const std::vector<std::string> ours{"S0.1000,000000nm", "S0.374,687500nm", "S0.440,000000nm"};
+    const std::vector<std::string> theirs{"S0.374,688nm", "S0.440,0nm", "S0.1um"};
+    write("a.exr", kReference, ours);
+    write("b.exr", {kReference[1], kReference[2], kReference[0]}, theirs);
+    const nlohmann::json json = json_of({}, 0);
+    EXPECT_EQ(json["channels"].size(), ours.size());
+    EXPECT_EQ(json["only_in_image"].size() + json["only_in_reference"].size(), 0U);
+    for (const std::string& name : {ours[2], theirs[1], std::string("S0.440nm")}) {
+        const nlohmann::json named = json_of({"--channels", name}, 0);
+        ASSERT_EQ(named["channels"].size(), 1U) << name;
+        EXPECT_EQ(named["channels"][0]["name"], ours[2]);
+    }
+    // Each has one partner at most.
+    write("b.exr", kReference, {"S0.440nm", "S0.440,0nm", "S0.440,00nm"});
+    EXPECT_EQ(json_of({}, 1)["only_in_reference"].size(), 2U);
+}
+
 // A picture with opacity against one without.
 TEST_F(CommandCompare, LeavesOpacityAsideWithAWord) {
     std::vector<Plane> with_opacity = kReference;

@@ -25,6 +25,7 @@
 #include <map>
 #include <numbers>
 #include <regex>
+#include <sstream>
 #include <thread>
 
 namespace aphotic::correct_test {
@@ -139,6 +140,12 @@ class CorrectCommand : public testing::Test {
                                            "60",
                                            "--white-level",
                                            "4095"};
+        // In place of the same option here.
+        for (const std::string& option : more) {
+            if (!option.starts_with("--")) continue;
+            const auto same = std::ranges::find(arguments, option);
+            if (same != arguments.end()) arguments.erase(same, same + 2);
+        }
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run_aphotic(folder_.path(), arguments);
     }
@@ -284,12 +291,14 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     const std::vector<std::uint16_t> grey(kPixels, 1000);
     const std::string short_of_rows = tiff_of(grey, kWidth, kHeight, "", true);
     write_file(path("raw/rows.tif"), short_of_rows.substr(0, short_of_rows.size() / 2));
+    const std::string packed = tiff_of(grey, kWidth, kHeight, "", true, true);
+    write_file(path("raw/packed.tif"), packed.substr(0, packed.size() / 2));
     write_file(path("raw/words.png"), "this is no image");
     write_file(path("raw/small.tif"), tiff_of({1, 2, 3, 4}, 2, 2, ""));
     write_file(path("raw/unknown.tif"), whole);
     write_file(path("raw/low.tif"), whole);
     write_file(path("raw/notes.txt"), "no image by its name: not taken up");
-    for (const char* name : {"cut.tif", "rows.tif", "words.png", "small.tif"})
+    for (const char* name : {"cut.tif", "rows.tif", "packed.tif", "words.png", "small.tif"})
         note(name, {2.0, 0.0, 0.0});
     note("low.tif", {0.0, 0.0, 0.0});
     const CommandResult run = correct({"--json"});
@@ -298,14 +307,14 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     EXPECT_EQ(summary["corrected"], 4);
     std::map<std::string, std::string> why;
     for (const Json& one : summary["skipped"]) why[one["image"]] = one["why"];
-    EXPECT_EQ(why.size(), 6U) << summary.dump(2);
-    EXPECT_NE(why["raw/rows.tif"].find("it is cut short"), std::string::npos)
-        << why["raw/rows.tif"];
+    EXPECT_EQ(why.size(), 7U) << summary.dump(2);
+    for (const char* name : {"raw/rows.tif", "raw/packed.tif"})
+        EXPECT_NE(why[name].find("it is cut short"), std::string::npos) << why[name];
     EXPECT_NE(why["raw/cut.tif"].find("cannot be read"), std::string::npos) << why["raw/cut.tif"];
     EXPECT_NE(why["raw/words.png"].find("cannot be read"), std::string::npos);
     EXPECT_EQ(why["raw/small.tif"], "found 2 x 2 pixels; allowed: 48 x 36, as the map has");
     EXPECT_EQ(why["raw/unknown.tif"], "nav.eic has no line for it");
-    EXPECT_EQ(why["raw/low.tif"], "nav.eic:9: altitude_m: found 0; allowed: 0.001 to 10000");
+    EXPECT_EQ(why["raw/low.tif"], "nav.eic:10: altitude_m: found 0; allowed: 0.001 to 10000");
     for (const auto& [image, reason] : why) {
         EXPECT_NE(run.err.find("aphotic: " + image + ": " + reason + "; skipped"),
                   std::string::npos)
@@ -314,6 +323,77 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     EXPECT_EQ(Json::parse(read_text_file(path("out/correction.json"))), summary);
     const auto files = files_in("out");
     EXPECT_EQ(files.size(), 4U + 2U);  // the images, and the two that say what was done
+}
+
+TEST_F(CorrectCommand, AnImageWithoutAnAltitudeIsSkippedHoweverItIsWritten) {
+    take("a.tif", {2.0, 0.0, 0.0});
+    std::string lines = "image,altitude_m,pitch_deg,roll_deg\na,2,0,0\n";
+    const std::vector<std::string> unknown{"", "NaN", "-9999", "NA"};
+    for (std::size_t i = 0; i < unknown.size(); ++i) {
+        fs::copy(path("raw/a.tif"), path(fmt::format("raw/b{}.tif", i)));
+        lines += fmt::format("b{},{},0,0\n", i, unknown[i]);
+    }
+    write_file(path("nav.eic"), lines);
+    const CommandResult run = correct({"--json"});
+    EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
+    const Json summary = Json::parse(run.out);
+    EXPECT_EQ(summary["corrected"], 1);
+    ASSERT_EQ(summary["skipped"].size(), unknown.size());
+    for (const Json& one : summary["skipped"]) {
+        const std::string why = one["why"];
+        EXPECT_NE(why.find("altitude_m: found "), std::string::npos) << why;
+    }
+}
+
+// Numbers that the images gainsay: a word, with --strict an end, and no gain that outlives them.
+TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
+    constexpr int kImages = 12;
+    for (int i = 0; i < kImages; ++i) {
+        take(fmt::format("{:02}.tif", i),
+             {1.5 + 0.1 * i, (i % 5 - 1) * 2.0 * kDegree, (i % 3 - 1) * 3.0 * kDegree});
+    }
+    const std::string right = lines_;
+    const auto told = [&](const std::string& navigation, const std::vector<std::string>& more) {
+        write_file(path("nav.eic"), navigation);
+        const CommandResult run = correct(more);
+        EXPECT_EQ(run.status, 0) << run.err;
+        std::string about;
+        const Json notes = Json::parse(read_text_file(path("out/correction.json")));
+        for (const Json& one : notes["looks_wrong"]) {
+            about += one["about"];
+            EXPECT_NE(run.err.find("aphotic: looks wrong: " + one["about"].get<std::string>() +
+                                   ": " + one["what"].get<std::string>()),
+                      std::string::npos)
+                << run.err;
+        }
+        return about;
+    };
+    const auto changed = [&](double altitude_m, double tilt) {
+        std::string lines;
+        std::istringstream all(right);
+        std::string name;
+        for (double h = 0, pitch = 0, roll = 0; all >> name >> h >> pitch >> roll;) {
+            lines += fmt::format("{} {} {} {}\n", name, h + altitude_m, tilt * pitch, tilt * roll);
+        }
+        return lines;
+    };
+    const std::string high = changed(50.0, 1.0);
+    write_file(path("nav.eic"), high);
+    const CommandResult refused = correct({"--strict"});
+    EXPECT_EQ(refused.status, kBadInput);
+    EXPECT_NE(refused.err.find("looks wrong, by --strict: altitude: "), std::string::npos)
+        << refused.err;
+    EXPECT_FALSE(fs::exists(path("out")));
+
+    EXPECT_EQ(told(high, {}), "altitude");
+    EXPECT_EQ(told(right, {"--strict"}), "") << "the gain is taken anew";
+    EXPECT_EQ(told(changed(0.0, kDegree), {"--middle", "0.3"}), "attitude");
+    EXPECT_EQ(told(right, {"--bayer", "RGGB"}), "bayer");
+    EXPECT_EQ(told(right, {"--gain", "1", "--bayer", "GBRG"}), "bayer");
+    // The lowest image set the exposure: nearer still, much of an image is saturated.
+    take("low.tif", {1.2, 0.0, 0.0});
+    EXPECT_EQ(told(lines_, {"--strict"}), "");
+    EXPECT_EQ(told(lines_, {"--white-level", "65535"}), "white-level");
 }
 
 TEST_F(CorrectCommand, GivenAgainItDoesWhatIsNewAlone) {
@@ -649,6 +729,9 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     write_file(path("dark/a.tif"), tiff_of(black, kWidth, kHeight, ""));
     refused(with({"dark", "-o", "out", "--bayer", "GRBG", "--black-level", "60"}),
             "no gain can be taken from these images");
+    refused(with({"raw", "-o", "out"}),
+            "none of the 1 images looked at can be corrected; a: found one channel and no --bayer; "
+            "allowed: R, G, B, or a mosaic whose pattern --bayer names");
     fs::create_directories(path("empty"));
     refused(with({"empty", "-o", "out"}), "empty: the folder holds no image");
     write_file(path("nav.eic"), "a.tif two 0 0\n");

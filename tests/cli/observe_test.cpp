@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic observe and aphotic baseline on small surveys, as a user runs them.
+#include "lightmap/raw_image.h"
 #include "spectral/exr.h"
 #include "support/run_command.h"
+#include "support/tiff.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -187,6 +190,76 @@ TEST_F(CommandObserve, SkipsBadImagesAndSaysSo) {
     }
 }
 
+// libtiff reads what is gone of an image as zeros.
+TEST_F(CommandObserve, AnImageThatWasCutShortIsInNoMapAndNoResult) {
+    fs::create_directories(path("raw"));
+    const std::vector<std::uint16_t> grey(kPixels, 1000);
+    const std::string whole = tiff_of(grey, kWidth_px, kHeight_px, "", true, true);
+    for (const char* name : {"raw/a.tif", "raw/b.tif"}) write_file(path(name), whole);
+    write_file(path("raw/cut.tif"), whole.substr(0, whole.size() / 2));
+    write_file(path("nav.csv"), "image,altitude_m\na,2\nb,2\ncut,2\n");
+    constexpr const char* kWhy = "raw/cut.tif: cannot be read: it is cut short: found ";
+    const CommandResult observed = observe({"--bayer", "RGGB"});
+    EXPECT_EQ(observed.status, 1) << observed.out;
+    EXPECT_NE(observed.err.find("it is cut short: found "), std::string::npos) << observed.err;
+    EXPECT_EQ(channel_of(path("map.exr"), "count.R")[0], 2.0F);
+    const CommandResult baseline =
+        run({"baseline", "homomorphic", "raw", "-o", "out", "--bayer", "RGGB"});
+    EXPECT_EQ(baseline.status, 1) << baseline.out;
+    EXPECT_FALSE(fs::exists(path("out/cut.exr")));
+    const CommandResult compared = run({"compare", "raw/cut.tif", "raw/a.tif"});
+    EXPECT_EQ(compared.status, 2) << compared.out;
+    EXPECT_NE(compared.err.find(kWhy), std::string::npos) << compared.err;
+}
+
+// A mosaic whose green sites are the other two, and a sensor that is saturated at 1000.
+TEST_F(CommandObserve, WhatLooksWrongIsToldAndByStrictAnEnd) {
+    fs::create_directories(path("raw"));
+    std::vector<std::uint16_t> mosaic;
+    for (int i = 0; i < static_cast<int>(kPixels); ++i) {
+        const int channel = channel_at(Mosaic::Rggb, i % kWidth_px, i / kWidth_px);
+        const int number = 300 + 200 * channel + i;
+        mosaic.push_back(static_cast<std::uint16_t>(std::min(number, 700)));
+    }
+    write_file(path("raw/a.tif"), tiff_of(mosaic, kWidth_px, kHeight_px, ""));
+    write_file(path("nav.csv"), "image,altitude_m\na,2\n");
+    for (const std::string command : {"observe", "baseline"}) {
+        const auto told = [&](const std::string& pattern, bool is_strict) {
+            std::vector<std::string> arguments{"raw", "--bayer", pattern, "--json"};
+            const std::vector<std::string> own =
+                command == "observe"
+                    ? std::vector<std::string>{command,
+                                               "--nav",
+                                               "nav.csv",
+                                               "-o",
+                                               "map.exr",
+                                               "--altitude",
+                                               "2"}
+                    : std::vector<std::string>{command, "homomorphic", "-o", "out"};
+            arguments.insert(arguments.begin(), own.begin(), own.end());
+            if (is_strict) arguments.emplace_back("--strict");
+            return run(arguments);
+        };
+        const CommandResult strict = told("GBRG", true);
+        EXPECT_EQ(strict.status, 2) << strict.out;
+        EXPECT_FALSE(fs::exists(path("map.exr")) || fs::exists(path("out"))) << command;
+        const CommandResult wrong = told("GBRG", false);
+        EXPECT_EQ(wrong.status, 0) << wrong.err;
+        const nlohmann::json json = nlohmann::json::parse(wrong.out)["looks_wrong"];
+        ASSERT_EQ(json.size(), 2U) << json.dump();
+        EXPECT_EQ(json[0]["about"], "white-level");
+        EXPECT_EQ(json[1]["about"], "bayer");
+        EXPECT_NE(
+            wrong.err.find("aphotic: looks wrong: bayer: the two sites that GBRG makes green"),
+            std::string::npos)
+            << wrong.err;
+        const CommandResult right = told("RGGB", false);
+        EXPECT_EQ(nlohmann::json::parse(right.out)["looks_wrong"].size(), 1U) << right.err;
+        fs::remove(path("map.exr"));
+        fs::remove_all(path("out"));
+    }
+}
+
 TEST_F(CommandObserve, WritesNoMapOfNoImage) {
     write_survey();
     const CommandResult result =
@@ -194,6 +267,14 @@ TEST_F(CommandObserve, WritesNoMapOfNoImage) {
     EXPECT_EQ(result.status, 2);
     EXPECT_NE(result.err.find("the nearest is 0.7 m off"), std::string::npos) << result.err;
     EXPECT_FALSE(fs::exists(path("map.exr")));
+    fs::remove_all(path("raw"));
+    fs::create_directories(path("raw"));
+    write_file(path("raw/a.tif"), tiff_of({1, 2, 3, 4}, 2, 2, ""));
+    const CommandResult mosaic = observe({});
+    EXPECT_EQ(mosaic.status, 2);
+    EXPECT_NE(mosaic.err.find("skipped: 1, the first: raw/a.tif: found one channel and no --bayer"),
+              std::string::npos)
+        << mosaic.err;
 }
 
 // The paper's section 3.2 in small: an observed map is its model, but for the exposure.

@@ -92,10 +92,34 @@ TEST(Navigation, AnAltimeterThatLostTheFloorCostsItsOwnImageAlone) {
     EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); }),
               "nav.csv:1: altitude_m: found 0; allowed: 0.001 to 10000");
     EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
-              "nav.csv:2: altitude_m: found nan; allowed: 0.001 to 10000");
+              "nav.csv:2: altitude_m: found no number; allowed: 0.001 to 10000");
     EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("c.tif")); }),
               "nav.csv:3: pitch_deg: found 95; allowed: -89.9 to 89.9");
     EXPECT_EQ(nav.pose_of("d.tif").sled.altitude_m, 2.0);
+}
+
+// However a logger, a database or a spreadsheet writes that it knows no number.
+TEST(Navigation, ACellWithoutANumberCostsItsOwnImageAlone) {
+    for (const char* none :
+         {"", " ", "\"\"", "NaN", "-nan", "NA", "n/a", "#N/A", "null", "None", "-"}) {
+        const std::string cell = none;
+        const Navigation nav =
+            parsed("image,altitude_m,pitch_deg,roll_deg,latitude\n" + std::string("a.tif,") + cell +
+                   ",1,2,41\nb.tif,2," + cell + ",2,41\nc.tif,2,1," + cell + ",41\nd.tif,2,1,2," +
+                   cell + "\n");
+        EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); }),
+                  "nav.csv:2: altitude_m: found no number; allowed: 0.001 to 10000")
+            << none;
+        EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
+                  "nav.csv:3: pitch_deg: found no number; allowed: -89.9 to 89.9")
+            << none;
+        EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("c.tif")); }),
+                  "nav.csv:4: roll_deg: found no number; allowed: -89.9 to 89.9")
+            << none;
+        EXPECT_EQ(nav.pose_of("d.tif").sled.altitude_m, 2.0) << none;
+    }
+    EXPECT_EQ(parsed("a.tif NA 1 2\nb.tif 2 1 2\n").size(), 2U);
+    EXPECT_EQ(parsed("image,altitude_m\na.tif,2\n,\n,,\n").size(), 1U);
 }
 
 TEST(Navigation, FaultsNameFileAndLine) {

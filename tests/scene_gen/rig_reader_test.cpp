@@ -264,6 +264,9 @@ TEST(RigReader, TakesEitherAimOrDirection) {
     EXPECT_EQ(error_of(minimal_and("direction = [0, 0, 1]\n")),
               "rig.toml:18: strobe[0].direction: found [0, 0, 1]; " + allowed);
     EXPECT_EQ(error_of(with(16, "")), "rig.toml:13: strobe[0].aim: is missing; " + allowed);
+    EXPECT_EQ(
+        error_of(with(16, "aim = { direction = [0, 0, 1] }")),
+        "rig.toml:16: strobe[0].aim.direction: is no known key. Known here: tilt_deg, toward");
     EXPECT_EQ(error_of(with(16, "aim = 26")), "rig.toml:16: strobe[0].aim: found 26; " + allowed);
     EXPECT_EQ(error_of(with(16, "direction = [0, 0, 0]")),
               "rig.toml:16: strobe[0].direction: found [0, 0, 0]; allowed: a vector that is not "
@@ -304,8 +307,21 @@ TEST(RigReader, NamesFileLineKeyWhatWasFoundAndWhatIsAllowed) {
         // More digits than a double holds.
         {6, "focal_length_mm = 9007199254740993", focal + "9007199254740993" + allowed},
     });
-    EXPECT_EQ(error_of(with(6, "focal_length_mm = 0.01")), "no error");
+    std::string smallest = with(6, "focal_length_mm = 0.01");
+    smallest.replace(smallest.find("= 6.45"), 6, "= 0.01");
+    EXPECT_EQ(error_of(smallest), "no error");
     EXPECT_EQ(error_of(with(6, "focal_length_mm = 100000")), "no error");
+}
+
+// The chip's half diagonal is 0.5 * 6.45 um * hypot(1360, 1024) = 5.490 mm: behind 0.6628 mm that
+// is 2 atan(8.283) = 166.2 degrees, and 75 degrees to either side are 1.471 mm.
+TEST(RigReader, NamesAViewThatNoLensHas) {
+    EXPECT_EQ(
+        error_of(with(6, "focal_length_mm = 0.6628")),
+        "rig.toml:6: camera.focal_length_mm: found 0.6628; allowed: 1.47 and more, for a view "
+        "of at most 150 degrees from corner to corner; with 1360 x 1024 pixels of 6.45 um it "
+        "is 166.2");
+    EXPECT_EQ(error_of(with(6, "focal_length_mm = 1.4712")), "no error");
 }
 
 TEST(RigReader, ChecksEveryNumber) {
@@ -538,7 +554,8 @@ TEST(RigReader, MisspeltRequiredKeyIsNamed) {
     EXPECT_EQ(error_of(with(1, "[sledd]")),
               "rig.toml:1: sledd: is no known key; did you mean 'sled'?");
     EXPECT_EQ(error_of(with(16, "aim = { tilt_de = 26, toward = \"axis\" }")),
-              "rig.toml:16: strobe[0].aim.tilt_de: is no known key; did you mean 'tilt_deg'?");
+              "rig.toml:16: strobe[0].aim.tilt_de: is no known key; did you mean 'tilt_deg'? Known "
+              "here: tilt_deg, toward");
 }
 
 TEST(RigReader, UnknownBeamNamesTheBeamsThereAre) {

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A first look at some images of a survey, spread evenly over it: what the gain is taken from
+// (survey_gain.h), and what looks wrong (lightmap/survey_check.h).
+#pragma once
+
+#include "cli/survey_files.h"
+#include "cli/survey_image.h"
+#include "cli/survey_light.h"
+#include "lightmap/survey_check.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace aphotic::cli {
+
+// What is corrected, the light that it was taken in, and by what camera.
+struct Survey {
+    std::vector<SurveyFile> files;
+    SurveyLight light;  // of a survey whose light nobody knows, as it is by default
+    CameraNumbers camera;
+};
+
+struct LookRequest {
+    std::size_t most_images = 16;
+    double least_light = 0.0;  // of the map's brightest: darker pixels do not count
+    std::size_t jobs = 1;
+};
+
+struct SurveyLook {
+    std::vector<ImageLook> images;   // those that can be used
+    std::vector<std::string> names;  // theirs
+    std::size_t count = 0;           // that were looked at
+    std::string first_why;           // why one of them cannot be used, and which; or empty
+};
+
+[[nodiscard]] SurveyLook look_at(const Survey& survey, const LookRequest& request);
+
+// What looks wrong about images whose light nobody knows.
+[[nodiscard]] std::vector<Suspicion> suspicions_of(std::vector<SurveyFile> files,
+                                                   const CameraNumbers& camera,
+                                                   std::size_t jobs);
+
+// --strict.
+void add_strict_option(CLI::App& app, bool& strict);
+
+// Says what looks wrong; when strict as an InputError.
+void tell(const std::vector<Suspicion>& suspicions, bool strict);
+[[nodiscard]] nlohmann::ordered_json suspicions_json(const std::vector<Suspicion>& suspicions);
+
+}  // namespace aphotic::cli
