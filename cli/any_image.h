@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,13 +37,16 @@ struct AnyImage {
 
 // Planes as an image, in the format that the file's extension names, whole or not there. Integers
 // are 0 to 1 over their range, rounded and clipped. What cannot be written is a RunError.
-enum class SampleType { Bits8, Bits16, Float };
+enum class SampleType { Bits8, Bits16 };
+// All of them lossless: deflate at its fastest level and at the level that most programs take.
+enum class Compression { None, Fast, Small };
 struct WrittenImage {
     int width_px = 0;
     int height_px = 0;
     std::vector<std::string> channels;
-    std::vector<float> planes;
+    std::span<const float> planes;
     SampleType type = SampleType::Bits16;
+    Compression compression = Compression::Fast;
     std::string description;
     std::string date_time;  // empty: not known. Never now: the same image is the same file
 };

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -29,8 +30,9 @@ double full_scale_of(const OIIO::ImageSpec& spec) {
     return std::exp2(bits) - 1.0;
 }
 
-// Pixels with their channels side by side, as planes; and the way back.
-std::vector<float> planes_of(const std::vector<float>& pixels, std::size_t channels) {
+// Of pixels with their channels side by side.
+std::vector<float> planes_of(std::vector<float> pixels, std::size_t channels) {
+    if (channels == 1) return pixels;
     const std::size_t count = pixels.size() / channels;
     std::vector<float> planes(pixels.size());
     for (std::size_t c = 0; c < channels; ++c) {
@@ -39,20 +41,42 @@ std::vector<float> planes_of(const std::vector<float>& pixels, std::size_t chann
     return planes;
 }
 
-std::vector<float> pixels_of(const std::vector<float>& planes, std::size_t channels) {
-    return planes_of(planes, planes.size() / channels);
+// Halves away from 0, as the library rounds; what is no number is 0.
+template <typename Integer>
+Integer rounded(float sample) {
+    constexpr auto kMost = static_cast<float>(std::numeric_limits<Integer>::max());
+    constexpr float kHalf = 0.5F;
+    float number = sample * kMost;
+    number = number > 0.0F ? number : 0.0F;
+    number = number < kMost ? number : kMost;
+    const int whole = static_cast<int>(number);
+    return static_cast<Integer>(whole + (number - static_cast<float>(whole) >= kHalf ? 1 : 0));
 }
 
-OIIO::TypeDesc type_of(aphotic::cli::SampleType type) {
-    switch (type) {
-        case aphotic::cli::SampleType::Bits8:
-            return OIIO::TypeDesc::UINT8;
-        case aphotic::cli::SampleType::Bits16:
-            return OIIO::TypeDesc::UINT16;
-        case aphotic::cli::SampleType::Float:
-            return OIIO::TypeDesc::FLOAT;
+// The channels of a pixel side by side, as the file has them: the library would first make as many
+// floats of them.
+template <typename Integer>
+bool write_as(OIIO::ImageOutput& output, const aphotic::cli::WrittenImage& image) {
+    const std::size_t channels = image.channels.size();
+    const std::size_t count = image.planes.size() / channels;
+    std::vector<Integer> pixels(image.planes.size());
+    for (std::size_t c = 0; c < channels; ++c) {
+        const float* const plane = image.planes.data() + c * count;
+        Integer* const to = pixels.data() + c;
+        for (std::size_t i = 0; i < count; ++i) to[i * channels] = rounded<Integer>(plane[i]);
     }
-    return OIIO::TypeDesc::UNKNOWN;
+    return output.write_image(output.spec().format, pixels.data());
+}
+
+void compress(OIIO::ImageSpec& spec, aphotic::cli::Compression compression) {
+    using aphotic::cli::Compression;
+    constexpr int kFastest = 1;
+    constexpr int kUsual = 6;
+    const bool is_packed = compression != Compression::None;
+    const int level = compression == Compression::Small ? kUsual : kFastest;
+    spec.attribute("compression", is_packed ? "zip" : "none");
+    spec.attribute("tiff:zipquality", level);
+    spec.attribute("png:compressionLevel", is_packed ? level : 0);
 }
 
 // Formats of which a file that was cut short is known as such: the tests cut each of them.
@@ -141,10 +165,12 @@ extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
     };
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(file.string());
     if (!output) fail(OIIO::geterror());
+    const bool is_bytes = image.type == aphotic::cli::SampleType::Bits8;
     OIIO::ImageSpec spec(image.width_px,
                          image.height_px,
                          static_cast<int>(image.channels.size()),
-                         type_of(image.type));
+                         is_bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
+    compress(spec, image.compression);
     spec.channelnames = image.channels;
     if (!image.description.empty()) spec.attribute("ImageDescription", image.description);
     // Exif's words for a time that is not known; without any, TIFF gets the time of writing.
@@ -153,9 +179,10 @@ extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
     if (is_dated || std::string_view(output->format_name()) == "tiff") {
         spec.attribute("DateTime", is_dated ? image.date_time : kUnknown);
     }
-    const std::vector<float> pixels = pixels_of(image.planes, image.channels.size());
+    output->threads(1);  // images are spread over threads, not their rows
     const bool is_whole = output->open(file.string(), spec) &&
-                          output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) &&
+                          (is_bytes ? write_as<std::uint8_t>(*output, image)
+                                    : write_as<std::uint16_t>(*output, image)) &&
                           output->close();
     if (!is_whole) fail(output->geterror());
 }

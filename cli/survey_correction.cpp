@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <mutex>
 #include <system_error>
+#include <utility>
 
 namespace aphotic::cli {
 
@@ -27,9 +28,12 @@ fs::path result_of(const SurveyFile& file, const ResultOptions& options) {
 // Samples that the format cannot hold are marked; the writer clips them.
 void mark_clipped(CorrectedImage& result) {
     const std::size_t pixels = result.doubts.size();
-    for (std::size_t i = 0; i < result.image.samples.size(); ++i) {
-        const float sample = result.image.samples[i];
-        if (sample < 0.0F || sample > 1.0F) result.doubts[i % pixels] |= kClipped;
+    for (std::size_t first = 0; first < result.image.samples.size(); first += pixels) {
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const float sample = result.image.samples[first + i];
+            const bool is_clipped = sample < 0.0F || sample > 1.0F;
+            result.doubts[i] |= is_clipped ? kClipped : std::uint8_t{0};
+        }
     }
 }
 
@@ -53,7 +57,7 @@ Counts correct_image(const SurveyFile& file,
                      const Survey& survey,
                      const ResultOptions& options,
                      const SurveyGain& gain) {
-    const SurveyImage taken = read_survey_image(file.source, survey.camera);
+    SurveyImage taken = read_survey_image(file.source, survey.camera);
     const PlaneSize size = survey.light.size;
     require_size(taken.raw, size.width_px, size.height_px, "as the map has");
     NoiseLimit limit = options.limit;
@@ -61,16 +65,17 @@ Counts correct_image(const SurveyFile& file,
     if (!options.limits_noise) limit = {.share = options.limit.share};
     const Correction correction{
         .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = limit};
-    CorrectedImage result = corrected(taken.raw, survey.light.map(sled), correction);
+    CorrectedImage result = corrected(std::move(taken.raw), survey.light.map(sled), correction);
     if (result.image.mosaic != Mosaic::None && !options.keep_mosaic) result = demosaiced(result);
     const std::vector<std::uint8_t> edges = survey.light.edges(sled, options.edge_px);
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        if (edges[i] != 0) result.doubts[i] |= kEdge;
+        result.doubts[i] |= edges[i] != 0 ? kEdge : std::uint8_t{0};
     }
     if (options.format != "exr") mark_clipped(result);
     make_folder((options.folder / file.name).parent_path());
-    if (options.mask) write_mask(options.folder / mask_of(file), result);
-    write_corrected(options.folder / result_of(file, options), result.image, taken);
+    if (options.mask) write_mask(options.folder / mask_of(file), result, options.compression);
+    write_corrected(
+        options.folder / result_of(file, options), result.image, taken, options.compression);
     return doubts_in(result.doubts);
 }
 

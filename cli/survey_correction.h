@@ -38,6 +38,7 @@ struct ResultOptions {
     int edge_px = 2;
     bool mask = false;
     std::string format = "tiff";
+    Compression compression = Compression::Fast;
     std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
 };
 

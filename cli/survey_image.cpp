@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/survey_image.h"
 
-#include "cli/any_image.h"
 #include "cli/survey_files.h"
 #include "spectral/error.h"
 #include "spectral/exr.h"
@@ -46,6 +45,18 @@ std::vector<std::size_t> places_of(const AnyImage& image, Mosaic mosaic) {
     return places;
 }
 
+void keep_planes(std::vector<float>& planes,
+                 std::size_t pixels,
+                 const std::vector<std::size_t>& places) {
+    std::vector<float> kept;
+    kept.reserve(places.size() * pixels);
+    for (const std::size_t place : places) {
+        const auto first = planes.begin() + static_cast<std::ptrdiff_t>(place * pixels);
+        kept.insert(kept.end(), first, first + static_cast<std::ptrdiff_t>(pixels));
+    }
+    planes = std::move(kept);
+}
+
 SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) {
     const std::vector<std::size_t> places = places_of(image, camera.mosaic);
     if (camera.mosaic != Mosaic::None && std::min(image.width_px, image.height_px) < 2) {
@@ -63,14 +74,9 @@ SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) 
                       .levels = {.black = camera.black_level},
                       .description = image.description,
                       .date_time = image.date_time};
-    const std::vector<float> planes = image.planes();
-    const std::size_t pixels = taken.raw.pixels();
-    taken.raw.samples.reserve(places.size() * pixels);
-    for (const std::size_t place : places) {
-        for (std::size_t i = place * pixels; i < (place + 1) * pixels; ++i) {
-            taken.raw.samples.push_back(static_cast<float>(planes[i] * scale));
-        }
-    }
+    taken.raw.samples = image.planes();
+    if (image.channels.size() > 1) keep_planes(taken.raw.samples, taken.raw.pixels(), places);
+    for (float& sample : taken.raw.samples) sample = static_cast<float>(sample * scale);
     if (is_whole_numbers) {
         taken.levels.white = static_cast<float>(scale);
         taken.rounding = 1.0 / std::sqrt(12.0);
@@ -82,6 +88,12 @@ SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) 
 std::vector<std::string> channel_names(const RawImage& image) {
     if (image.mosaic != Mosaic::None) return {"Y"};
     return {kChannelNames.begin(), kChannelNames.end()};
+}
+
+int zip_level(Compression compression) {
+    constexpr int kUsual = 6;
+    if (compression == Compression::None) return 0;
+    return compression == Compression::Small ? kUsual : ExrWriter::kFastestZip;
 }
 
 }  // namespace
@@ -132,12 +144,20 @@ void print_skipped(const fs::path& file, const std::string& why) {
     fmt::print(stderr, "aphotic: {}: {}; skipped\n", file.string(), why);
 }
 
-void write_corrected(const fs::path& file, const RawImage& image, const SurveyImage& source) {
+void write_corrected(const fs::path& file,
+                     const RawImage& image,
+                     const SurveyImage& source,
+                     Compression compression) {
     if (file.extension() == ".exr") {
         ExrAttributes attributes{{"aphotic:version", APHOTIC_VERSION}};
         if (!source.description.empty()) attributes.emplace_back("comments", source.description);
         if (!source.date_time.empty()) attributes.emplace_back("capDate", source.date_time);
-        ExrWriter writer(file, image.width_px, image.height_px, channel_names(image), attributes);
+        ExrWriter writer(file,
+                         image.width_px,
+                         image.height_px,
+                         channel_names(image),
+                         attributes,
+                         zip_level(compression));
         writer.write_rows(image.height_px, image.samples);
         writer.finish();
         return;
@@ -148,11 +168,12 @@ void write_corrected(const fs::path& file, const RawImage& image, const SurveyIm
                      .channels = channel_names(image),
                      .planes = image.samples,
                      .type = SampleType::Bits16,
+                     .compression = compression,
                      .description = source.description,
                      .date_time = source.date_time});
 }
 
-void write_mask(const fs::path& file, const CorrectedImage& image) {
+void write_mask(const fs::path& file, const CorrectedImage& image, Compression compression) {
     constexpr float kByte = 255.0F;
     std::vector<float> plane;
     plane.reserve(image.doubts.size());
@@ -163,8 +184,9 @@ void write_mask(const fs::path& file, const CorrectedImage& image) {
                     {.width_px = image.image.width_px,
                      .height_px = image.image.height_px,
                      .channels = {"Y"},
-                     .planes = std::move(plane),
+                     .planes = plane,
                      .type = SampleType::Bits8,
+                     .compression = compression,
                      .description = "",
                      .date_time = ""});
 }

@@ -3,6 +3,7 @@
 // A survey's images as files: raw ones as cameras write them, corrected ones and their masks.
 #pragma once
 
+#include "cli/any_image.h"
 #include "lightmap/correction.h"
 #include "lightmap/raw_image.h"
 
@@ -56,9 +57,12 @@ void print_skipped(const std::filesystem::path& file, const std::string& why);
 // source says of itself.
 void write_corrected(const std::filesystem::path& file,
                      const RawImage& image,
-                     const SurveyImage& source);
+                     const SurveyImage& source,
+                     Compression compression = Compression::Fast);
 
 // 8 bits a pixel, the numbers themselves.
-void write_mask(const std::filesystem::path& file, const CorrectedImage& image);
+void write_mask(const std::filesystem::path& file,
+                const CorrectedImage& image,
+                Compression compression);
 
 }  // namespace aphotic::cli

@@ -17,147 +17,140 @@ constexpr double kRightAngle = 0.5 * std::numbers::pi;
 
 // An emitter's rim at its corners and half way between them, and its middle; a point's own
 // position.
-std::vector<Eigen::Vector3f> places_of(const Strobe& strobe) {
-    if (!strobe.emitter) return {strobe.position_m.cast<float>()};
+std::vector<LampTerms> places_of(const Strobe& strobe) {
+    LampTerms place{.position_m = strobe.position_m,
+                    .axis = strobe.axis,
+                    .cone_cosine = {},
+                    .cone_intensity = {}};
+    if (!strobe.emitter) return {place};
     // The centres of a grid of three by three cells lie two thirds of the way to the rim.
     constexpr double kToTheRim = 1.5;
-    std::vector<Eigen::Vector3f> places;
+    std::vector<LampTerms> places;
     for (const Eigen::Vector3d& centre : lamp_positions_m(strobe, {.across = 3, .along = 3})) {
-        places.push_back(
-            (strobe.position_m + kToTheRim * (centre - strobe.position_m)).cast<float>());
+        place.position_m = strobe.position_m + kToTheRim * (centre - strobe.position_m);
+        places.push_back(place);
     }
     return places;
 }
 
+std::vector<double> cosines_of_edges(const Strobe& strobe) {
+    std::vector<double> cosines;
+    for (const Cone& cone : strobe.beam.cones) {
+        if (cone.weight == 0.0 || strobe.power == 0.0 || cone.half_angle_rad >= kRightAngle) {
+            continue;
+        }
+        cosines.push_back(std::cos(cone.half_angle_rad));
+    }
+    return cosines;
+}
+
+// Bytes of two rows that differ, in bits of their own.
+void note_differences(const std::uint8_t* a,
+                      const std::uint8_t* b,
+                      std::size_t count,
+                      std::uint8_t* noted) {
+    for (std::size_t i = 0; i < count; ++i)
+        noted[i] = static_cast<std::uint8_t>(noted[i] | (a[i] ^ b[i]));
+}
+
+// Counts that are neither none nor all.
+void note_parts(const std::uint8_t* counts,
+                std::uint8_t most,
+                std::size_t count,
+                std::uint8_t* noted) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool is_part = (counts[i] > 0) & (counts[i] < most);
+        noted[i] = static_cast<std::uint8_t>(noted[i] | (is_part ? 1 : 0));
+    }
+}
+
+void take_in(const std::uint8_t* bits, std::size_t count, std::uint8_t* mask) {
+    for (std::size_t i = 0; i < count; ++i) mask[i] = static_cast<std::uint8_t>(mask[i] | bits[i]);
+}
+
 }  // namespace
 
-ConeEdges::ConeEdges(const Rig& rig)
-    : width_px_(rig.camera.width_px), height_px_(rig.camera.height_px) {
-    std::vector<double> ends_nm{rig.camera.range.first_nm};
-    if (rig.camera.port) ends_nm.push_back(rig.camera.range.last_nm);
-    const std::size_t pixels = size_of(width_px_) * size_of(height_px_);
-    for (const double lambda_nm : ends_nm) {
-        Rays& rays = rays_.emplace_back();
-        for (auto* plane : {&rays.x_m, &rays.y_m, &rays.slope_x, &rays.slope_y}) {
-            plane->reserve(pixels);
-        }
-        for (int row = 0; row < height_px_; ++row) {
-            for (int column = 0; column < width_px_; ++column) {
-                const WaterRay ray = pixel_ray(rig, column + 0.5, row + 0.5, lambda_nm);
-                rays.of_z_m = static_cast<float>(ray.origin_m.z());
-                rays.x_m.push_back(static_cast<float>(ray.origin_m.x()));
-                rays.y_m.push_back(static_cast<float>(ray.origin_m.y()));
-                rays.slope_x.push_back(static_cast<float>(ray.direction.x() / ray.direction.z()));
-                rays.slope_y.push_back(static_cast<float>(ray.direction.y() / ray.direction.z()));
-            }
-        }
-    }
+ConeEdges::ConeEdges(const Rig& rig) : rig_(rig), ends_nm_{rig.camera.range.first_nm} {
+    if (rig.camera.port) ends_nm_.push_back(rig.camera.range.last_nm);
+    most_.push_back(static_cast<std::uint8_t>(ends_nm_.size()));
     for (const Strobe& strobe : rig.strobes) {
-        for (const aphotic::Cone& cone : strobe.beam.cones) {
-            if (cone.weight == 0.0 || strobe.power == 0.0 || cone.half_angle_rad >= kRightAngle) {
-                continue;
-            }
-            const double cos_edge = std::cos(cone.half_angle_rad);
-            cones_.push_back({.lamps_m = places_of(strobe),
-                              .axis = strobe.axis.cast<float>(),
-                              .cos2_edge = static_cast<float>(cos_edge * cos_edge)});
-        }
+        const Lamp lamp{.places = places_of(strobe), .cosines = cosines_of_edges(strobe)};
+        if (lamp.cosines.empty()) continue;
+        most_.insert(most_.end(),
+                     lamp.cosines.size(),
+                     static_cast<std::uint8_t>(ends_nm_.size() * lamp.places.size()));
+        lamps_.push_back(lamp);
     }
 }
 
-std::size_t ConeEdges::most_of(std::size_t thing) const {
-    return rays_.size() * (thing == 0 ? 1 : cones_[thing - 1].lamps_m.size());
-}
-
-void ConeEdges::count_row(int row, const Sled& sled, Counts& counts) const {
-    const std::size_t width = size_of(width_px_);
-    const std::size_t first = size_of(row) * width;
-    const Plane floor = floor_plane(sled);
-    const Eigen::Vector3f normal = floor.normal.cast<float>();
-    const auto height = static_cast<float>(floor.normal.dot(floor.point_m));
-    std::vector<float> x_m(width);
-    std::vector<float> y_m(width);
-    std::vector<float> z_m(width);
-    std::vector<std::uint8_t> is_seen(width);
-    for (auto& thing : counts) thing.assign(width, 0);
-    for (const Rays& rays : rays_) {
-        const float height_z = height - normal.z() * rays.of_z_m;
-        for (std::size_t i = 0; i < width; ++i) {
-            const std::size_t p = first + i;
-            const float left = height_z - normal.x() * rays.x_m[p] - normal.y() * rays.y_m[p];
-            const float fall =
-                normal.x() * rays.slope_x[p] + normal.y() * rays.slope_y[p] + normal.z();
-            const float depth_m = left / fall;
-            is_seen[i] = depth_m > 0.0F ? 1 : 0;
-            x_m[i] = rays.x_m[p] + depth_m * rays.slope_x[p];
-            y_m[i] = rays.y_m[p] + depth_m * rays.slope_y[p];
-            z_m[i] = rays.of_z_m + depth_m;
-            counts[0][i] += is_seen[i];
-        }
-        for (std::size_t k = 0; k < cones_.size(); ++k) {
-            const Cone& cone = cones_[k];
-            std::vector<std::uint8_t>& within = counts[k + 1];
-            for (const Eigen::Vector3f& lamp : cone.lamps_m) {
-                for (std::size_t i = 0; i < width; ++i) {
-                    const float x = x_m[i] - lamp.x();
-                    const float y = y_m[i] - lamp.y();
-                    const float z = z_m[i] - lamp.z();
-                    const float along = x * cone.axis.x() + y * cone.axis.y() + z * cone.axis.z();
-                    const float edge2 = (x * x + y * y + z * z) * cone.cos2_edge;
-                    const bool is_within = along > 0.0F && along * along >= edge2;
-                    within[i] += static_cast<std::uint8_t>(is_within ? is_seen[i] : 0);
+void ConeEdges::count_row(int row, const std::vector<RayTerms>& ends, Counts& counts) const {
+    RayBlock rays;
+    LampBlock lit;
+    for (auto& thing : counts) std::ranges::fill(thing, 0);
+    for (int column = 0; column < rig_.camera.width_px; column += kRowBlock) {
+        const std::size_t first = size_of(column);
+        for (const RayTerms& end : ends) {
+            look_along(end, {}, row, column, rays);
+            count_seen(rays, &counts[0][first]);
+            std::size_t thing = 1;
+            for (const Lamp& lamp : lamps_) {
+                for (const LampTerms& place : lamp.places) {
+                    shine(rays, place, lit);
+                    for (std::size_t k = 0; k < lamp.cosines.size(); ++k) {
+                        count_within(rays, lit, lamp.cosines[k], &counts[thing + k][first]);
+                    }
                 }
+                thing += lamp.cosines.size();
             }
         }
     }
 }
 
 std::vector<std::uint8_t> ConeEdges::mask(const Sled& sled, int within_px) const {
-    const std::size_t width = size_of(width_px_);
-    std::vector<std::uint8_t> mask(width * size_of(height_px_));
+    const std::size_t width = size_of(rig_.camera.width_px);
+    std::vector<std::uint8_t> mask(width * size_of(rig_.camera.height_px));
     if (within_px == 0) return mask;
-    Counts counts(cones_.size() + 1);
+    const Plane floor = floor_plane(sled);
+    std::vector<RayTerms> ends;
+    for (const double lambda_nm : ends_nm_) ends.push_back(ray_terms(rig_, floor, lambda_nm));
+    const std::size_t blocks = (width + kRowBlock - 1) / kRowBlock;
+    Counts counts(most_.size(), std::vector<std::uint8_t>(blocks * kRowBlock));
     Counts above(counts);
-    for (int row = 0; row < height_px_; ++row) {
-        count_row(row, sled, counts);
-        const std::size_t first = size_of(row) * width;
+    std::vector<std::uint8_t> beside(width);
+    std::vector<std::uint8_t> below(width);
+    for (int row = 0; row < rig_.camera.height_px; ++row) {
+        count_row(row, ends, counts);
+        std::uint8_t* const marks = &mask[size_of(row) * width];
+        std::ranges::fill(beside, 0);
+        std::ranges::fill(below, 0);
         for (std::size_t k = 0; k < counts.size(); ++k) {
-            const std::vector<std::uint8_t>& now = counts[k];
-            const std::size_t most = most_of(k);
-            for (std::size_t i = 0; i < width; ++i) {
-                mask[first + i] |= static_cast<std::uint8_t>(now[i] > 0 && now[i] < most);
-            }
-            for (std::size_t i = 1; i < width; ++i) {
-                const auto differs = static_cast<std::uint8_t>(now[i] != now[i - 1]);
-                mask[first + i] |= differs;
-                mask[first + i - 1] |= differs;
-            }
-            for (std::size_t i = 0; row > 0 && i < width; ++i) {
-                const auto differs = static_cast<std::uint8_t>(now[i] != above[k][i]);
-                mask[first + i] |= differs;
-                mask[first + i - width] |= differs;
-            }
+            const std::uint8_t* const now = counts[k].data();
+            note_parts(now, most_[k], width, marks);
+            note_differences(now, now + 1, width - 1, beside.data());
+            if (row > 0) note_differences(now, above[k].data(), width, below.data());
         }
+        take_in(beside.data(), width - 1, marks);
+        take_in(beside.data(), width - 1, marks + 1);
+        take_in(below.data(), width, marks);
+        if (row > 0) take_in(below.data(), width, marks - width);
         std::swap(counts, above);
     }
-    spread(mask, width_px_, within_px - 1);
+    for (std::uint8_t& mark : mask) mark = mark != 0 ? 1 : 0;
+    spread(mask, rig_.camera.width_px, within_px - 1);
     return mask;
 }
 
 void spread(std::vector<std::uint8_t>& mask, int width_px, int within_px) {
     const std::size_t width = size_of(width_px);
+    std::vector<std::uint8_t> before(within_px > 0 ? mask.size() : 0);
     for (int step = 0; step < within_px; ++step) {
-        const std::vector<std::uint8_t> before = mask;
-        for (std::size_t i = width; i < mask.size(); ++i) {
-            mask[i] |= before[i - width];
-            mask[i - width] |= before[i];
-        }
-        const std::vector<std::uint8_t> rows = mask;
+        before = mask;
+        take_in(before.data(), mask.size() - width, mask.data() + width);
+        take_in(before.data() + width, mask.size() - width, mask.data());
+        before = mask;
         for (std::size_t start = 0; start < mask.size(); start += width) {
-            for (std::size_t i = start + 1; i < start + width; ++i) {
-                mask[i] |= rows[i - 1];
-                mask[i - 1] |= rows[i];
-            }
+            take_in(&before[start], width - 1, &mask[start + 1]);
+            take_in(&before[start + 1], width - 1, &mask[start]);
         }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where the edges of the strobes' cones fall in the image, by geometry alone.
+// Where the edges of the strobes' cones fall in the image, by the geometry of lightmaps
+// (row_light.h).
 //
 // A pixel's point of the floor is within a cone of half angle g when its direction from the lamp,
 // v, keeps v.a >= |v| cos g with the strobe's axis a. An edge passes between neighbouring pixels of
@@ -9,6 +10,7 @@
 // edge: its light ends as cos 90 = 0. The horizon is an edge too.
 #pragma once
 
+#include "lightmap/row_light.h"
 #include "scene_gen/rig.h"
 
 #include <cstdint>
@@ -25,29 +27,21 @@ class ConeEdges {
     [[nodiscard]] std::vector<std::uint8_t> mask(const Sled& sled, int within_px) const;
 
   private:
-    // Where the pixels' rays enter the water, all at the height of_z_m, and their slopes per metre
-    // down.
-    struct Rays {
-        float of_z_m = 0.0F;
-        std::vector<float> x_m, y_m, slope_x, slope_y;
+    // The cones of a strobe that have an edge, and the places that its light comes from.
+    struct Lamp {
+        std::vector<LampTerms> places;
+        std::vector<double> cosines;
     };
-    // A strobe's cone from each place that its light comes from.
-    struct Cone {
-        std::vector<Eigen::Vector3f> lamps_m;
-        Eigen::Vector3f axis;
-        float cos2_edge = 0.0F;
-    };
-    // By thing that has an edge, the floor itself and then the cones, and by pixel of a row: how
-    // many of the rays and places have the pixel's point within it.
+    // By pixel of a row, how many of the rays and places have the pixel's point within a thing that
+    // has an edge: the floor itself, then each cone of each strobe.
     using Counts = std::vector<std::vector<std::uint8_t>>;
 
-    void count_row(int row, const Sled& sled, Counts& counts) const;
-    [[nodiscard]] std::size_t most_of(std::size_t thing) const;
+    void count_row(int row, const std::vector<RayTerms>& rays, Counts& counts) const;
 
-    int width_px_;
-    int height_px_;
-    std::vector<Rays> rays_;  // of the ends of the range behind a port, else one
-    std::vector<Cone> cones_;
+    Rig rig_;
+    std::vector<double> ends_nm_;  // of the range behind a port, else one wavelength
+    std::vector<Lamp> lamps_;
+    std::vector<std::uint8_t> most_;  // that a count can be, by thing
 };
 
 // Non-zero pixels spread to all within so many pixels along rows and columns: a mask widened.

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace aphotic {
 
@@ -99,10 +100,11 @@ double least_signal(const NoiseLimit& limit) {
            (2.0 * most2);
 }
 
-CorrectedImage corrected(const RawImage& raw, const Lightmap& map, const Correction& correction) {
+CorrectedImage corrected(RawImage raw, const Lightmap& map, const Correction& correction) {
     require_same_size(raw, map);
     require_finite(raw.samples, raw.width_px, "the image");
-    CorrectedImage result{.image = raw, .doubts = std::vector<std::uint8_t>(raw.pixels())};
+    const std::size_t pixels = raw.pixels();
+    CorrectedImage result{.image = std::move(raw), .doubts = std::vector<std::uint8_t>(pixels)};
     const double signal = least_signal(correction.limit);
     std::array<float, kChannels> least{};
     std::array<float, kChannels> gain{};
@@ -118,25 +120,25 @@ CorrectedImage corrected(const RawImage& raw, const Lightmap& map, const Correct
     }
     const std::array<std::span<const float>, kChannels> lights{
         plane_of(map, 0), plane_of(map, 1), plane_of(map, 2)};
-    for_each_run(raw, [&](const Run& run) {
+    for_each_run(result.image, [&](const Run& run) {
         const float black = correction.levels.black;
         const float white = correction.levels.white;
         const float floor = least[size_of(run.channel)];
         const float scale = gain[size_of(run.channel)];
         const float* const light = lights[size_of(run.channel)].data() + run.pixel;
-        const float* const from = raw.samples.data() + run.sample;
-        float* const to = result.image.samples.data() + run.sample;
+        float* const samples = result.image.samples.data() + run.sample;
         std::uint8_t* const doubts = result.doubts.data() + run.pixel;
         for (std::size_t n = 0; n < run.count; ++n) {
             const std::size_t i = n * run.step;
             const float held = held_share(lights, least, run.pixel + i);
-            to[i] = scale * ((from[i] - black) * held / std::max(light[i], held * floor));
+            const float taken = samples[i];
+            samples[i] = scale * ((taken - black) * held / std::max(light[i], held * floor));
             const int doubt = (held < 1.0F || light[i] < floor ? kDark : 0) |
-                              (from[i] >= white ? kSaturated : 0) | (from[i] <= black ? kBlack : 0);
+                              (taken >= white ? kSaturated : 0) | (taken <= black ? kBlack : 0);
             doubts[i] |= static_cast<std::uint8_t>(doubt);
         }
     });
-    require_finite(result.image.samples, raw.width_px, "the corrected image");
+    require_finite(result.image.samples, result.image.width_px, "the corrected image");
     return result;
 }
 

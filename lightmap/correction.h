@@ -73,7 +73,7 @@ struct CorrectedImage {
 
 // Throws InputError when raw and map are not of one size, when a sample is not finite, or when it
 // does not stay so under the gain.
-[[nodiscard]] CorrectedImage corrected(const RawImage& raw,
+[[nodiscard]] CorrectedImage corrected(RawImage raw,
                                        const Lightmap& map,
                                        const Correction& correction);
 

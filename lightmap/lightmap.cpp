@@ -156,21 +156,6 @@ std::vector<LampTerms> lamps_of(const Rig& rig, const Strobe& strobe, const Plan
     return lamps;
 }
 
-RayTerms ray_terms(const Rig& rig, const Plane& floor, double lambda_nm) {
-    RayTerms terms{.width_px = rig.camera.width_px,
-                   .slope_per_px = rig.camera.pixel_pitch_m / rig.camera.focal_length_m,
-                   .middle_column = 0.5 * rig.camera.width_px,
-                   .middle_row = 0.5 * rig.camera.height_px,
-                   .down = -floor.normal,
-                   .floor_m = height_above(floor, Eigen::Vector3d::Zero())};
-    if (!rig.camera.port) return terms;
-    terms.distance_m = rig.camera.port->distance_m;
-    terms.thickness_m = rig.camera.port->thickness_m;
-    terms.glass_index = rig.camera.port->glass.index(lambda_nm);
-    terms.water_index = water_index(rig, lambda_nm);
-    return terms;
-}
-
 void store(const SumBlock& sums, int row, int first_column, Lightmap& map) {
     const auto width = static_cast<std::size_t>(map.width_px);
     const std::size_t plane = width * static_cast<std::size_t>(map.height_px);

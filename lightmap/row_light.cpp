@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/row_light.h"
 
+#include "spectral/refraction.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -137,6 +139,21 @@ void add_pixels(const LampBlock& block,
 
 }  // namespace
 
+RayTerms ray_terms(const Rig& rig, const Plane& floor, double lambda_nm) {
+    RayTerms terms{.width_px = rig.camera.width_px,
+                   .slope_per_px = rig.camera.pixel_pitch_m / rig.camera.focal_length_m,
+                   .middle_column = 0.5 * rig.camera.width_px,
+                   .middle_row = 0.5 * rig.camera.height_px,
+                   .down = -floor.normal,
+                   .floor_m = height_above(floor, Eigen::Vector3d::Zero())};
+    if (!rig.camera.port) return terms;
+    terms.distance_m = rig.camera.port->distance_m;
+    terms.thickness_m = rig.camera.port->thickness_m;
+    terms.glass_index = rig.camera.port->glass.index(lambda_nm);
+    terms.water_index = seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
+    return terms;
+}
+
 void look_along(
     const RayTerms& terms, const PathSteps& steps, int row, int first_column, RayBlock& rays) {
     const double u = (terms.middle_row - (row + 0.5)) * terms.slope_per_px;
@@ -177,6 +194,27 @@ void find_cones(const LampTerms& lamp, LampBlock& block) {
     for (std::size_t k = 0; k < lamp.cone_cosine.size(); ++k) {
         if (lamp.cone_cosine[k] < kNoEdge) continue;
         add_cone(lamp.cone_cosine[k], lamp.cone_intensity[k], block);
+    }
+}
+
+APHOTIC_WIDE void count_seen(const RayBlock& rays, std::uint8_t* counts) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+        counts[i] = static_cast<std::uint8_t>(counts[i] + (rays.w3[i] > 0.0F ? 1 : 0));
+    }
+}
+
+APHOTIC_WIDE void count_within(const RayBlock& rays,
+                               const LampBlock& block,
+                               double cosine,
+                               std::uint8_t* counts) {
+    const double square = cosine * cosine;
+    RowBlock<float> is_within;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const double along = block.V_axis[i] * std::abs(block.V_axis[i]);
+        is_within[i] = along >= square * block.V2[i] ? rays.w3[i] : 0.0F;
+    }
+    for (std::size_t i = 0; i < kCount; ++i) {
+        counts[i] = static_cast<std::uint8_t>(counts[i] + (is_within[i] > 0.0F ? 1 : 0));
     }
 }
 

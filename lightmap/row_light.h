@@ -32,10 +32,13 @@
 #pragma once
 
 #include "lightmap/path_table.h"
+#include "scene_gen/geometry.h"
+#include "scene_gen/rig.h"
 
 #include <Eigen/Core>
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -59,6 +62,8 @@ struct RayTerms {
     Eigen::Vector3d down;
     double floor_m = 0.0;  // from the pupil along `down`
 };
+
+[[nodiscard]] RayTerms ray_terms(const Rig& rig, const Plane& floor, double lambda_nm);
 
 struct RayBlock {
     double o_z = 0.0;
@@ -101,6 +106,13 @@ struct LampBlock {
 void shine(const RayBlock& rays, const LampTerms& lamp, LampBlock& block);
 // Of the rays last shone on; it stays for rays of other indices.
 void find_cones(const LampTerms& lamp, LampBlock& block);
+// One more for each of kRowBlock pixels that see the floor; and that see it within a cone of this
+// cosine, of the rays last shone on.
+void count_seen(const RayBlock& rays, std::uint8_t* counts);
+void count_within(const RayBlock& rays,
+                  const LampBlock& block,
+                  double cosine,
+                  std::uint8_t* counts);
 
 // Pixels with light whose path is not in the table.
 struct Outside {

@@ -16,30 +16,41 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kLooks = 8;
+constexpr double kLooks = 8.0;
 
-struct ProcessStat {
+struct Stat {
+    char state = ' ';  // R: it runs, or would if a processor were free
     pid_t group = 0;
     std::uintmax_t ticks = 0;
 };
 
-// /proc/PID/stat: "PID (name) state parent group ... utime stime ...", where the name may hold
-// anything, parentheses too (proc(5)).
-ProcessStat stat_of(const fs::path& process) {
+// Of a process or one of its threads: "ID (name) state parent group ... utime stime ...", where the
+// name may hold anything, parentheses too (proc(5)).
+Stat stat_of(const fs::path& folder) {
     constexpr int kFieldsFromGroupToTimes = 8;
-    std::ifstream in(process / "stat");
+    std::ifstream in(folder / "stat");
     std::string text;
     std::getline(in, text, '\0');
     std::istringstream fields(text.substr(text.rfind(')') + 1));
     std::string skipped;
-    ProcessStat stat;
-    fields >> skipped >> skipped >> stat.group;
+    Stat stat;
+    fields >> stat.state >> skipped >> stat.group;
     for (int i = 0; i < kFieldsFromGroupToTimes; ++i) fields >> skipped;
     std::uintmax_t user = 0;
     std::uintmax_t system = 0;
     fields >> user >> system;
     stat.ticks = user + system;
     return stat;
+}
+
+// "running waiting turns", in nanoseconds; of a kernel that does not count them, 0.
+double waited_s_of(const fs::path& thread) {
+    constexpr double kNanosecond = 1e-9;
+    std::ifstream in(thread / "schedstat");
+    std::uintmax_t running_ns = 0;
+    std::uintmax_t waiting_ns = 0;
+    in >> running_ns >> waiting_ns;
+    return kNanosecond * static_cast<double>(waiting_ns);
 }
 
 bool is_process(const fs::path& entry) {
@@ -49,15 +60,20 @@ bool is_process(const fs::path& entry) {
 
 }  // namespace
 
-std::uintmax_t processor_ticks_of(pid_t group) {
-    std::uintmax_t ticks = 0;
+ProcessorUse processor_use_of(pid_t group) {
+    ProcessorUse use;
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator("/proc", ignored)) {
         if (!is_process(entry.path())) continue;
-        const ProcessStat stat = stat_of(entry.path());
-        if (stat.group == group) ticks += stat.ticks;
+        const Stat stat = stat_of(entry.path());
+        if (stat.group != group) continue;
+        use.ticks += stat.ticks;
+        for (const auto& thread : fs::directory_iterator(entry.path() / "task", ignored)) {
+            use.waited_s += waited_s_of(thread.path());
+            use.is_ready |= stat_of(thread.path()).state == 'R';
+        }
     }
-    return ticks;
+    return use;
 }
 
 LifeSigns::LifeSigns(pid_t group, double patience_s)
@@ -67,11 +83,15 @@ bool LifeSigns::are_gone(std::uintmax_t written_bytes) {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_look_ < interval_) return false;
     last_look_ = now;
-    const std::uintmax_t ticks = processor_ticks_of(group_);
-    const bool is_quiet = written_bytes == written_bytes_ && ticks == processor_ticks_;
-    quiet_looks_ = is_quiet ? quiet_looks_ + 1 : 0;
+    const ProcessorUse use = processor_use_of(group_);
+    const double waited = (use.waited_s - use_.waited_s) / interval_.count();
+    if (written_bytes != written_bytes_ || use.ticks != use_.ticks) {
+        quiet_looks_ = 0.0;
+    } else if (!use.is_ready) {
+        quiet_looks_ += 1.0 - std::clamp(waited, 0.0, 1.0);
+    }
     written_bytes_ = written_bytes;
-    processor_ticks_ = ticks;
+    use_ = use;
     return quiet_looks_ >= kLooks;
 }
 

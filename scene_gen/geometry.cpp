@@ -112,7 +112,7 @@ LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m) {
 
 std::vector<Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid) {
     if (!strobe.emitter) return {strobe.position_m};
-    const bool is_fore_and_aft = std::abs(strobe.axis.x()) > 1.0 - 1e-9;
+    const bool is_fore_and_aft = strobe.axis.cross(Vector3d::UnitX()).norm() < kForeAndAftSine;
     const Vector3d reference = is_fore_and_aft ? Vector3d::UnitZ() : Vector3d::UnitX();
     const Vector3d along = (reference - reference.dot(strobe.axis) * strobe.axis).normalized();
     const Vector3d across = strobe.axis.cross(along);

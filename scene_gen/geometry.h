@@ -86,7 +86,9 @@ inline constexpr double kLampSpacing = 0.011;
 [[nodiscard]] double most_attenuation_per_m(const Rig& rig, std::span<const double> lambda_nm);
 
 // Centres of the grid's cells [m]. `along` is the sled's forward direction as the emitter's
-// plane sees it (down, for a strobe that shines fore or aft), `across` completes it.
+// plane sees it (down, for a strobe that shines within a millionth of a radian of fore or aft,
+// where forward is all but lost in rounding), `across` completes it. aphotic.inc has the same rule.
+inline constexpr double kForeAndAftSine = 1e-6;
 [[nodiscard]] std::vector<Eigen::Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid);
 
 // How far off what it lights a strobe must stand [m].

@@ -22,10 +22,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Level 1 of 9: the samples carry 11 significant bits, so a quick look finds the zeros; higher
-// levels take several times longer for a few per cent.
-constexpr int kZipLevel = 1;
-
 // A frame buffer over planar rows, of which the first is first_row of the file.
 Imf::FrameBuffer planar_rows(std::span<const std::string> channels,
                              int width_px,
@@ -139,7 +135,8 @@ ExrWriter::ExrWriter(const fs::path& file,
                      int width_px,
                      int height_px,
                      std::vector<std::string> channels,
-                     const ExrAttributes& attributes)
+                     const ExrAttributes& attributes,
+                     int zip_level)
     : destination_(file),
       channels_(std::move(channels)),
       width_px_(width_px),
@@ -148,7 +145,11 @@ ExrWriter::ExrWriter(const fs::path& file,
     header.compression() = rows_compressed_together(width_px, channels_.size()) == kRowsOfZip
                                ? Imf::ZIP_COMPRESSION
                                : Imf::ZIPS_COMPRESSION;
-    header.zipCompressionLevel() = kZipLevel;
+    if (zip_level == 0) {
+        header.compression() = Imf::NO_COMPRESSION;
+    } else {
+        header.zipCompressionLevel() = zip_level;
+    }
     for (const std::string& name : channels_)
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
     for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));

@@ -52,11 +52,17 @@ using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 // written it whole.
 class ExrWriter {
   public:
+    // Of most files the samples carry 11 significant bits, so a quick look finds the zeros; higher
+    // levels take several times longer for a few per cent.
+    static constexpr int kFastestZip = 1;
+
+    // zip_level: 1 to 9, or 0: not compressed.
     ExrWriter(const std::filesystem::path& file,
               int width_px,
               int height_px,
               std::vector<std::string> channels,
-              const ExrAttributes& attributes);
+              const ExrAttributes& attributes,
+              int zip_level = kFastestZip);
     ~ExrWriter();
     ExrWriter(const ExrWriter&) = delete;
     ExrWriter& operator=(const ExrWriter&) = delete;

@@ -65,11 +65,12 @@ constexpr std::array<std::array<double, 2>, 5> kCornersAndMiddle{
     {{0.0, 0.0}, {-0.5, -0.5}, {-0.5, 0.5}, {0.5, -0.5}, {0.5, 0.5}}};
 
 // In shares of its sides from its middle. The emitter's own frame: its normal is the axis; forward,
-// as it lies in its plane.
+// as it lies in its plane, or down within a millionth of a radian of fore and aft (docs/rig.md).
 Vector3d place_on_emitter(const Strobe& strobe, double x, double y) {
     if (!strobe.emitter) return strobe.position_m;
     Vector3d starboard_side = strobe.axis.cross(Vector3d::UnitX());
-    if (starboard_side.norm() < 1e-6) starboard_side = strobe.axis.cross(Vector3d::UnitZ());
+    constexpr double kForeAndAft = 1e-6;
+    if (starboard_side.norm() < kForeAndAft) starboard_side = strobe.axis.cross(Vector3d::UnitZ());
     starboard_side.normalize();
     const Vector3d forward_side = starboard_side.cross(strobe.axis);
     return strobe.position_m + x * strobe.emitter->across_m * starboard_side +

@@ -239,6 +239,32 @@ TEST_F(CorrectCommand, TiffOfSixteenBitsHasThreeChannelsAndTheSourcesWords) {
     EXPECT_EQ(decode_png(read_text_file(path("png/a.png"))).width, kWidth);
 }
 
+// The same pixels, in a file as large as they are, or smaller.
+TEST_F(CorrectCommand, EveryCompressionIsLossless) {
+    take("a.tif", {2.0, 5.0 * kDegree, 0.0});
+    const auto file_of = [&](const std::string& name, const std::vector<std::string>& compression) {
+        const std::string format = name.substr(2) == "tif" ? "tiff" : name.substr(2);
+        const std::string folder = format + (compression.empty() ? "" : "-" + compression.back());
+        std::vector<std::string> options{"--format", format};
+        options.insert(options.end(), compression.begin(), compression.end());
+        EXPECT_EQ(correct(options, folder).status, 0);
+        return folder + "/" + name;
+    };
+    const auto expect_smaller = [&](const std::string& file, const std::string& plain) {
+        EXPECT_LT(fs::file_size(path(file)), fs::file_size(path(plain))) << file;
+        const CommandResult same =
+            run_aphotic(folder_.path(), {"compare", plain, file, "--bound", "0"});
+        EXPECT_EQ(same.status, 0) << same.out << same.err;
+    };
+    for (const char* name : {"a.tif", "a.png", "a.exr"}) {
+        const std::string plain = file_of(name, {"--compression", "none"});
+        const std::uintmax_t sample_bytes = std::string(name) == "a.exr" ? 4 : 2;
+        EXPECT_GE(fs::file_size(path(plain)), kChannels * kPixels * sample_bytes) << name;
+        expect_smaller(file_of(name, {}), plain);
+    }
+    expect_smaller(file_of("a.tif", {"--compression", "small"}), "tiff-none/a.tif");
+}
+
 TEST_F(CorrectCommand, PngOfRgbAndExrOfFloatsAreRead) {
     const Sled sled{2.0, 5.0 * kDegree, 0.0};
     constexpr double kPeak = 250.0;
@@ -716,6 +742,7 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     refused(with({"raw", "raw/a.tif", "-o", "out"}), "would both become out/a");
     refused(with({"raw", "-o", "out", "--bayer", "RGB"}), "--bayer: found 'RGB'");
     refused(with({"raw", "-o", "out", "--gain", "1,2"}), "--gain: found 2 numbers");
+    refused(with({"raw", "-o", "out", "--compression", "lzw"}), "--compression");
     refused(with({"raw", "-o", "out", "--altitudes-m", "4,1"}), "--altitudes-m: found 4,1");
     refused(with({"raw/a.tif", "-o", "raw"}), "would be overwritten by the result");
     write_file(path("raw/a.mask.png"), "an image of the user's");

@@ -4,6 +4,7 @@
 // which has its own geometry.
 #include "lightmap/cone_edge.h"
 
+#include "lightmap/lightmap.h"
 #include "scene_gen/rig_reader.h"
 #include "spectral/atomic_file.h"
 #include "validation/tracer.h"
@@ -93,6 +94,26 @@ TEST(ConeEdge, MarksWhatTheReferenceMarks) {
         }
         EXPECT_GT(std::ranges::count(wanted, 1), 100) << scene;
         EXPECT_EQ(missed, 0U) << scene;
+    }
+}
+
+// To the pixel: those whose neighbours have other cones in the map's own light.
+TEST(ConeEdge, MarksWhereTheMapsConesChange) {
+    for (const double roll : {-7.0, 0.0, 11.0}) {
+        Rig rig = tilted("habcam.toml");
+        rig.sled.roll_rad = roll * kDegree;
+        const std::vector<double> cones = LightmapMaker(rig, std::nullopt, {}).cones(rig.sled);
+        const auto width = static_cast<std::size_t>(rig.camera.width_px);
+        std::vector<std::uint8_t> wanted(cones.size());
+        const auto compare = [&](std::size_t a, std::size_t b) {
+            if (cones[a] != cones[b]) wanted[a] = wanted[b] = 1;
+        };
+        for (std::size_t i = 0; i < cones.size(); ++i) {
+            if (i % width > 0) compare(i, i - 1);
+            if (i >= width) compare(i, i - width);
+        }
+        EXPECT_EQ(ConeEdges(rig).mask(rig.sled, 1), wanted) << "roll " << roll;
+        EXPECT_GT(std::ranges::count(wanted, 1), 100);
     }
 }
 

@@ -187,6 +187,22 @@ TEST(Lightmap, IsThatOfTheTracerForLampsOfASize) {
     expect_equal(rig, kWithoutPort, "emitters");
 }
 
+// A long emitter that shines level, nearly fore or aft: turned by 90 degrees it would stand
+// upright.
+TEST(Lightmap, IsThatOfTheTracerForEmittersThatShineNearlyForeOrAft) {
+    Rig rig = scene("habcam", 24, 18);
+    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+    rig.strobes[0].position_m = {-0.2, 0.3, 1.5};
+    rig.strobes[0].beam.cones = {{.part = "all", .half_angle_rad = 90.0 * kDegree, .weight = 1.0}};
+    rig.strobes[0].emitter = {.across_m = 0.3, .along_m = 0.01};
+    for (const double end : {1.0, -1.0}) {
+        for (const double off_rad : {0.0, 0.5e-6, 2e-6, 3e-5, 1e-4}) {
+            rig.strobes[0].axis = Eigen::Vector3d(end, 0.6 * off_rad, 0.8 * off_rad).normalized();
+            expect_equal(rig, kWithoutPort, "off by " + std::to_string(end * off_rad));
+        }
+    }
+}
+
 TEST(Lightmap, IsThatOfTheTracerForGlossyFloors) {
     Rig rig = scene("habcam", 96, 72);
     rig.seafloor.phong = 0.7;

@@ -2,15 +2,18 @@
 //
 // plugin/include/aphotic.inc, by real POV-Ray: every macro in a scene, against closed forms; every
 // error provoked.
+#include "scene_gen/geometry.h"
 #include "scene_gen/quick_look.h"
 #include "scene_gen/rig_reader.h"
 #include "support/povray_scene.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 namespace aphotic::aphotic_inc_test {
 namespace {
@@ -131,6 +134,59 @@ TEST_F(AphoticInc, AStrobeIsItsConesFromItsLamps) {
         }
     }
     expect_equal_images(strobe, well(in_band(odd_band(), cones)), kTwoHalfFloats);
+}
+
+// The lamps of an emitter stand where the generator has them, also where it shines so nearly fore
+// or aft that forward in its plane is hardly told from any other way. For the macro that makes
+// them, one that says where they are.
+TEST_F(AphoticInc, AnEmittersLampsAreTheGenerators) {
+    const Emitter emitter{.across_m = 0.2, .along_m = 0.1};
+    std::vector<Eigen::Vector3d> wanted_m;
+    std::string scene =
+        "#macro Aphotic_Light (Position, Axis, Half_Angle, Axial_Intensity, Lamp, Power, Caller)\n"
+        "   #debug concat(\"lamp \", vstr(3, Position, \" \", 0, 15), \"\\n\")\n#end\n"
+        "#declare Beam = array[1][2] {{60, 1}}\n";
+    for (const double end : {1.0, -1.0}) {
+        for (const double off_rad : {0.0, 0.5e-6, 2e-6, 3e-5, 1e-4, 0.3}) {
+            const Eigen::Vector3d axis(end, 0.6 * off_rad, -0.8 * off_rad);
+            const Strobe strobe{.name = "",
+                                .position_m = {0.2, 0.3, 0.1},
+                                .axis = axis.normalized(),
+                                .beam = {},
+                                .spectrum = odd_band().lamps[0].spectrum,
+                                .power = 1.0,
+                                .emitter = emitter};
+            for (const Eigen::Vector3d& lamp_m : lamp_positions_m(strobe, {2, 2})) {
+                wanted_m.push_back(to_povray(lamp_m));
+            }
+            scene += fmt::format(
+                "Aphotic_Strobe (<0.3, 0.2, 0.1>, <{}, {}, {}>, Beam, \"flash\", 1, "
+                "<0.2, 0.1, 2, 2>)\n",
+                axis.y(),
+                axis.x(),
+                axis.z());
+        }
+    }
+    const PovRayRun result =
+        run(in_band(odd_band(), scene + "camera { location 0 } sphere { 9, 1 }\n"));
+    std::vector<Eigen::Vector3d> found_m;
+    std::istringstream words(result.said());
+    for (std::string word; words >> word;) {
+        if (word != "lamp") continue;
+        Eigen::Vector3d& lamp_m = found_m.emplace_back();
+        words >> lamp_m.x() >> lamp_m.y() >> lamp_m.z();
+    }
+    ASSERT_EQ(found_m.size(), wanted_m.size()) << result.said();
+    // A millionth of a radian has ten digits left of a double's sixteen.
+    constexpr double kRounding = 1e-9;
+    // Each strobe has four, in an order of its own.
+    for (std::size_t i = 0; i < found_m.size(); ++i) {
+        double nearest_m = 1.0;
+        for (std::size_t j = i / 4 * 4; j < i / 4 * 4 + 4; ++j) {
+            nearest_m = std::min(nearest_m, (found_m[i] - wanted_m[j]).norm());
+        }
+        EXPECT_LE(nearest_m, kRounding) << "lamp " << i << " at " << found_m[i].transpose();
+    }
 }
 
 TEST_F(AphoticInc, APointStrobeIsAnEmitterOfOneLamp) {

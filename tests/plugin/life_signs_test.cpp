@@ -2,7 +2,9 @@
 #include "plugin/life_signs.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,14 +20,37 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kPoll = std::chrono::milliseconds(5);
 // Far more than any wait here takes.
-constexpr auto kPatience = std::chrono::seconds(20);
+constexpr auto kPatience = std::chrono::seconds(120);
+
+// Leaves this process one processor, which it shares with others that do the same.
+void stay_on_one_processor() {
+    cpu_set_t allowed;
+    ::sched_getaffinity(0, sizeof allowed, &allowed);
+    std::size_t first = 0;
+    while (!CPU_ISSET(first, &allowed)) ++first;
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(first, &one);
+    ::sched_setaffinity(0, sizeof one, &one);
+}
+
+// Gets the processor when nobody else wants it: next to a program that computes, a three-hundredth.
+void come_last() {
+    stay_on_one_processor();
+    const sched_param none{};
+    ::sched_setscheduler(0, SCHED_IDLE, &none);
+}
 
 // A process group that computes, in a child of its leader, or sleeps.
 class Group {
   public:
-    explicit Group(bool computes) : leader_(::fork()) {
+    explicit Group(
+        bool computes, void (*prepare)() = [] {})
+        : leader_(::fork()) {
         if (leader_ == 0) {
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
             ::setpgid(0, 0);
+            prepare();
             if (computes && ::fork() == 0) {
                 while (::getppid() > 0) {
                 }
@@ -59,9 +84,21 @@ bool comes_true(const std::function<bool()>& condition) {
 TEST(LifeSigns, ProcessorTimeIsThatOfTheWholeGroup) {
     const Group computing(true);
     constexpr std::uintmax_t kSomeTicks = 5;
-    EXPECT_TRUE(comes_true([&] { return processor_ticks_of(computing.number()) > kSomeTicks; }));
+    EXPECT_TRUE(
+        comes_true([&] { return processor_use_of(computing.number()).ticks > kSomeTicks; }));
+    EXPECT_TRUE(processor_use_of(computing.number()).is_ready);
     const Group sleeping(false);
-    EXPECT_LE(processor_ticks_of(sleeping.number()), 1U);
+    EXPECT_TRUE(comes_true([&] { return !processor_use_of(sleeping.number()).is_ready; }));
+    EXPECT_LE(processor_use_of(sleeping.number()).ticks, 1U);
+}
+
+TEST(LifeSigns, WaitingForTheProcessorIsToldFromSleeping) {
+    const Group starved(true, come_last);
+    const Group busy(true, stay_on_one_processor);
+    constexpr double kSomeWaiting_s = 0.01;
+    EXPECT_TRUE(
+        comes_true([&] { return processor_use_of(starved.number()).waited_s > kSomeWaiting_s; }));
+    EXPECT_TRUE(processor_use_of(starved.number()).is_ready);
 }
 
 TEST(LifeSigns, AreGoneWhenNothingChanges) {
@@ -71,12 +108,31 @@ TEST(LifeSigns, AreGoneWhenNothingChanges) {
     EXPECT_TRUE(comes_true([&] { return signs.are_gone(7); }));
 }
 
-// Ten times its patience.
+// Five times its patience, in which it gets three hundredths of a second: it prints nothing and
+// uses next to nothing, and would if it could.
+TEST(LifeSigns, AreThereWhileOthersHaveTheProcessor) {
+    const Group starved(true, come_last);
+    const Group busy(true, stay_on_one_processor);
+    LifeSigns signs(starved.number(), 0.2);
+    for (const auto end = Clock::now() + std::chrono::seconds(1); Clock::now() < end;) {
+        ASSERT_FALSE(signs.are_gone(7));
+        std::this_thread::sleep_for(kPoll);
+    }
+}
+
+TEST(LifeSigns, AreGoneOfASleeperWhileOthersHaveTheProcessor) {
+    const Group sleeping(false, come_last);
+    const Group busy(true, stay_on_one_processor);
+    LifeSigns signs(sleeping.number(), 0.2);
+    EXPECT_TRUE(comes_true([&] { return signs.are_gone(7); }));
+}
+
+// Five times its patience.
 TEST(LifeSigns, AreThereWhileSomethingIsWritten) {
     const Group sleeping(false);
     LifeSigns signs(sleeping.number(), 0.2);
     std::uintmax_t written = 0;
-    for (const auto end = Clock::now() + std::chrono::seconds(2); Clock::now() < end;) {
+    for (const auto end = Clock::now() + std::chrono::seconds(1); Clock::now() < end;) {
         EXPECT_FALSE(signs.are_gone(++written));
         std::this_thread::sleep_for(kPoll);
     }

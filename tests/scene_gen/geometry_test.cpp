@@ -298,6 +298,23 @@ TEST(LampPositions, HaveTheMeanAndVarianceOfAGrid) {
     }
 }
 
+// Within a millionth of a radian of fore or aft, along is down; beyond it, forward as the plane
+// sees it: away from where the axis leans, up or aside.
+TEST(LampPositions, TurnToDownWithinAMillionthOfARadianOfForeAndAft) {
+    for (const double end : {1.0, -1.0}) {
+        for (const double off_rad : {0.0, 0.5e-6, 2e-6, 3e-5, 1e-3}) {
+            const Strobe strobe =
+                strobe_with({end, off_rad, 0.0}, Emitter{.across_m = 0.08, .along_m = 0.02});
+            const auto pair = lamp_positions_m(strobe, {.across = 1, .along = 2});
+            const Vector3d wanted =
+                off_rad < 1e-6 ? Vector3d(0.0, 0.0, 0.01) : Vector3d(0.01 * off_rad, 0.01, 0.0);
+            // Of a sideways lean, all but its square is in the direction.
+            const double tolerance = off_rad * off_rad + 1e-9;
+            expect_near((pair[1] - pair[0]).cwiseAbs(), wanted, tolerance);
+        }
+    }
+}
+
 // Straight down: across is starboard, along is forward.
 TEST(LampPositions, LieAcrossStarboardAndAlongForward) {
     const Strobe strobe = strobe_with({0.0, 0.0, 1.0}, Emitter{.across_m = 0.08, .along_m = 0.02});
