@@ -103,13 +103,10 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
                      {.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
                       .library_paths = options.library_paths,
                       .progress = [&](double share) { line.show("looking at the scene", share); },
-                      .stall_s = options.stall_timeout_s}));
-    if (surveyed_scene->has_own_colours) {
-        fmt::print(
-            stderr,
-            "aphotic: {} has colours by numbers: each is another grey in every channel, and no "
-            "spectrum. Aphotic_Pigment gives it one\n",
-            scene.string());
+                      .stall_s = options.stall_timeout_s,
+                      .unchecked = options.unchecked}));
+    for (const std::string& reason : surveyed_scene->no_promise) {
+        fmt::print(stderr, "aphotic: {}: no promise: {}\n", scene.string(), reason);
     }
     return surveyed_scene;
 }
@@ -187,6 +184,10 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
            options.library_paths,
            "where that scene's includes are, beside its own folder and what povray.ini says")
         ->type_name("DIR");
+    app.add_flag("--unchecked",
+                 options.unchecked,
+                 "render that scene also with what no plan can bound, radiosity, photons or media "
+                 "of its own: as POV-Ray makes it, without a promise");
     app.add_option("--antialias",
                    options.antialias,
                    "so many by so many further rays to each pixel: edges are smooth, and no longer "

@@ -28,6 +28,7 @@ struct PlanningOptions {
     bool renders = false;  // otherwise a scene that the rig names is left alone
     std::string scene;
     std::vector<std::string> library_paths;
+    bool unchecked = false;
     int antialias = 0;
     std::vector<std::string> povray_ini;
     std::string povray;

@@ -44,6 +44,10 @@ struct Asked {
     int strobes = 0;
     int lights = 0;      // of ours, as it is called for them
     int all_lights = 0;  // as POV-Ray counts them
+    // Of its statistics.
+    bool has_radiosity = false;
+    bool has_photons = false;
+    bool has_media = false;
 };
 
 // The planes of a frame.
@@ -79,9 +83,11 @@ class Survey {
     [[nodiscard]] std::optional<ProcessEnd> poll(Running& running) const;
     void run_tasks(const std::vector<Task>& tasks);
     [[nodiscard]] Picture picture_of(const Task& task) const;
+    [[nodiscard]] Task plain_task() const;
     [[nodiscard]] Asked read_scene();
     void require_ours(const Asked& asked) const;
     void require_rigs_lamps(const Asked& asked) const;
+    void require_what_is_bounded(const Asked& asked);
     void require_light_of_ours();
     void require_water_in_view(const Picture& through_water, const Picture& bare) const;
     void measure(int strobes);
@@ -148,6 +154,7 @@ UserScene Survey::run() {
     has_water_ = asked.has_water && !rig_.water.is_clear();
     const std::vector<std::string> names(asked.reflectances.begin(), asked.reflectances.end());
     scene_.materials = scene_materials(names, rig_, scene_.file);
+    require_what_is_bounded(asked);
     require_light_of_ours();
     measure(asked.strobes);
     require_unchanged(scene_.file, scene_.files_digest);
@@ -262,8 +269,13 @@ Picture Survey::picture_of(const Task& task) const {
 
 // --- What the scene asks for --------------------------------------------------------------------
 
+// All strobes on, in clear water.
+Survey::Task Survey::plain_task() const {
+    return {.name = "plain", .frame = {.exposure_log2 = exposure_log2_}};
+}
+
 Asked Survey::read_scene() {
-    const Task task{.name = "scene", .frame = {}};
+    const Task task = plain_task();
     run_tasks({task});
     Asked asked;
     for (const std::string& said : statements_in_log(read_log(file_of(task, ".log")))) {
@@ -281,6 +293,12 @@ Asked Survey::read_scene() {
         if (said.starts_with("aphotic: strobes ")) asked.strobes = number();
         if (said.starts_with("aphotic: lights ")) asked.lights = number();
         if (said.starts_with("Light Sources: ")) asked.all_lights = number();
+        const auto counts = [&](std::string_view what) {
+            return said.starts_with(what) && std::atoll(said.c_str() + what.size()) > 0;
+        };
+        asked.has_radiosity |= counts("Radiosity samples calculated:");
+        asked.has_photons |= counts("Number of photons shot:");
+        asked.has_media |= counts("Media Intervals:");
     }
     return asked;
 }
@@ -340,17 +358,35 @@ bool is_lit(float sample) {
     return sample > 0.0F;
 }
 
+// POV-Ray does not reckon with the water on the way from surface to surface, and draws samples
+// where it gathers light.
+void Survey::require_what_is_bounded(const Asked& asked) {
+    const std::array<std::pair<bool, const char*>, 3> found{
+        {{asked.has_radiosity, "radiosity"},
+         {asked.has_photons, "photons"},
+         {asked.has_media, "media of the scene's own"}}};
+    for (const auto& [is_there, what] : found) {
+        if (!is_there) continue;
+        if (!options_.unchecked) {
+            refuse(fmt::format(
+                "found {}; allowed: none, for how far that is from the truth has no bound, or "
+                "--unchecked, for an image without a promise",
+                what));
+        }
+        scene_.no_promise.push_back(fmt::format("{}, which nothing bounds", what));
+    }
+}
+
 // With all strobes off nothing may be bright; without water, channels differ by colours that are
 // numbers; with water on the camera's leg alone, it must dim.
 void Survey::require_light_of_ours() {
     const double K_per_m = attenuation_per_m_;
     const Task dark{.name = "dark", .frame = {.exposure_log2 = exposure_log2_, .only_strobe = -1}};
-    const Task plain{.name = "plain", .frame = {.exposure_log2 = exposure_log2_}};
     const Task seen{.name = "seen",
                     .frame = {.attenuation_per_m = {K_per_m, K_per_m, K_per_m},
                               .exposure_log2 = exposure_log2_,
                               .dims_lamps = false}};
-    run_tasks(has_water_ ? std::vector{dark, plain, seen} : std::vector{dark, plain});
+    run_tasks(has_water_ ? std::vector{dark, seen} : std::vector{dark});
 
     const Picture without = picture_of(dark);
     if (std::ranges::any_of(without.red, is_lit) || std::ranges::any_of(without.green, is_lit) ||
@@ -359,8 +395,12 @@ void Survey::require_light_of_ours() {
             "found light with all strobes off; allowed: none, for such light has no spectrum. Is "
             "there a finish with emission, a light_group, or a medium that glows?");
     }
-    const Picture colours = picture_of(plain);
-    scene_.has_own_colours = colours.red != colours.green || colours.red != colours.blue;
+    const Picture colours = picture_of(plain_task());
+    if (colours.red != colours.green || colours.red != colours.blue) {
+        scene_.no_promise.emplace_back(
+            "colours by numbers, each another grey in every channel and no spectrum; "
+            "Aphotic_Pigment gives it one");
+    }
     if (has_water_ && std::ranges::any_of(colours.green, is_lit)) {
         require_water_in_view(picture_of(seen), colours);
     }

@@ -89,6 +89,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                     .omissions = omissions(rig, request.scene.user_scene != nullptr)};
     // What a shift changes on an object has no bound.
     if (!rig.objects.empty() || request.scene.user_scene) plan.scene.pixel_shift = 0.0;
+    if (request.scene.user_scene) plan.no_promise = request.scene.user_scene->no_promise;
     const RuleFitter fitter(rig.camera.sensor, plan.family, range);
     std::vector<double> lambda_nm;
     if (request.bands) {

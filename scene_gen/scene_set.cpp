@@ -105,6 +105,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.tolerance = plan.tolerance;
     manifest.frame_error = plan.frame_error;
     manifest.quality = plan.rule.quality;
+    manifest.no_promise = plan.no_promise;
     manifest.lamp_signal = lamp_signal(rig, plan.family);
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         const FrameScene& scene = set.scenes[f];

@@ -37,8 +37,7 @@ struct UserScene {
     std::string digest;
     std::vector<NamedSpectrum> materials;  // under the names that the scene gives them
     PathRange paths;
-    // Something has a colour by numbers: a reflectance in each channel, and no spectrum.
-    bool has_own_colours = false;
+    std::vector<std::string> no_promise;   // why its image has none; empty: it has
     std::vector<std::vector<Lit>> pixels;  // by pixel, those strobes that light it
 
     [[nodiscard]] double brightest_radiance(const Rig& rig, double lambda_nm) const;

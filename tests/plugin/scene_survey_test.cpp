@@ -32,8 +32,10 @@ class SceneSurvey : public testing::Test {
     UserScene survey(const std::string& scene, const Rig& rig = habcam()) {
         write_file(folder_.path() / "reef.pov",
                    "#version 3.7;\n#include \"aphotic.inc\"\n" + scene);
-        return survey_scene(
-            find_povray(""), rig, folder_.path() / "reef.pov", {.jobs = 2, .library_paths = {}});
+        return survey_scene(find_povray(""),
+                            rig,
+                            folder_.path() / "reef.pov",
+                            {.jobs = 2, .library_paths = {}, .unchecked = unchecked_});
     }
     std::string refusal(const std::string& scene, const Rig& rig = habcam()) {
         try {
@@ -48,6 +50,7 @@ class SceneSurvey : public testing::Test {
     }
 
     TempFolder folder_;
+    bool unchecked_ = false;
 };
 
 // The rig's own floor, whose paths its geometry tells: the survey's are these, with its room.
@@ -209,14 +212,44 @@ TEST_F(SceneSurvey, RefusesACameraInAnObjectWithoutWater) {
               "no error");
 }
 
-TEST_F(SceneSurvey, NoticesColoursByNumbers) {
-    EXPECT_FALSE(survey(kScene).has_own_colours);
-    EXPECT_FALSE(survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb 0.5 } }\n")
-                     .has_own_colours);
-    EXPECT_TRUE(
+TEST_F(SceneSurvey, ColoursByNumbersVoidThePromise) {
+    EXPECT_TRUE(survey(kScene).no_promise.empty());
+    EXPECT_TRUE(survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb 0.5 } }\n")
+                    .no_promise.empty());
+    EXPECT_EQ(
         survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb <1, 0.5, 0> } }\n")
-            .has_own_colours);
+            .no_promise.size(),
+        1U);
 }
+
+// Light whose error nothing bounds: refused, or rendered without a promise.
+class UnboundedLight : public SceneSurvey,
+                       public testing::WithParamInterface<std::pair<const char*, const char*>> {};
+
+TEST_P(UnboundedLight, IsRefusedOrVoidsThePromise) {
+    const auto& [what, scene] = GetParam();
+    expect_refusal(refusal(std::string(kScene) + scene),
+                   "found " + std::string(what) + "; allowed: ");
+    unchecked_ = true;
+    const UserScene surveyed = survey(std::string(kScene) + scene);
+    ASSERT_EQ(surveyed.no_promise.size(), 1U);
+    EXPECT_TRUE(surveyed.no_promise[0].starts_with(what)) << surveyed.no_promise[0];
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    UnboundedLight,
+    testing::Values(
+        std::pair("radiosity",
+                  "global_settings { radiosity { count 2 pretrace_start 1 pretrace_end 1 } }\n"
+                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgb 1 } }\n"),
+        std::pair("photons",
+                  "global_settings { photons { count 50 } }\n"
+                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } interior { ior 1.2 } hollow "
+                  "photons { target refraction on } }\n"),
+        std::pair("media of the scene's own",
+                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } hollow interior { "
+                  "media { samples 1 scattering { 1, 0.5 } } } }\n")));
 
 // Thirty times deeper than the rig's floor, and a lamp a hand's breadth over it: neither is lost.
 TEST_F(SceneSurvey, MeasuresWhatIsFarFromTheRigsOwnFloor) {
