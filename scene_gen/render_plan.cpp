@@ -113,6 +113,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                                              .most = most_wavelengths(plan.family)})
                                .wavelengths);
     }
+    plan.scene.bailout = kRayShare * (plan.tolerance > 0.0 ? plan.tolerance : plan.frame_error);
     share_frames(rig, fitter, lambda_nm, plan);
     if (plan.tolerance > 0.0 && plan.promise() > plan.tolerance) {
         plan.scene.pixel_shift = 0.0;

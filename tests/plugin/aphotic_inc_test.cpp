@@ -278,6 +278,46 @@ TEST_F(AphoticInc, TheSceneCannotBringBackPovraysOwnLight) {
     expect_equal_images(spoilt, plain, 0.0);
 }
 
+// A dozen sheets that each let half of the light through leave 2^-12 of it, which POV-Ray's own
+// bailout, 1/255, takes for nothing. Two dozen leave less than counts.
+TEST_F(AphoticInc, RaysAreFollowedAsFarAsTheyCount) {
+    const std::string scene =
+        std::string(kCamera) + "Aphotic_Cone (<0.5, 0, 0>, z, 90, 0.25, \"flash\", 1)\n" + kFloor;
+    const auto behind = [&](int sheets) {
+        return well(in_band(odd_band(),
+                            scene + fmt::format("#for (I, 1, {}) plane {{ -z, -1 - I / 50 pigment "
+                                                "{{ rgbt 0.5 }} finish {{ diffuse 0 }} no_shadow "
+                                                "}} #end\n",
+                                                sheets)),
+                    1,
+                    1)
+            .samples[1];
+    };
+    const float bare = well(in_band(odd_band(), scene), 1, 1).samples[1];
+    EXPECT_NEAR(std::ldexp(behind(12), 12) / bare, 1.0, kTwoHalfFloats);
+    EXPECT_EQ(behind(24), 0.0F);
+}
+
+// Down a corridor of perfect mirrors, seen askew: thirty reflections to the wall at its end.
+TEST_F(AphoticInc, MirrorsAreFollowedThirtyTimes) {
+    const Band band = odd_band();
+    const PovRayRun image = well(
+        in_band(
+            band,
+            "#declare Mirror = texture { pigment { rgb 0 } finish { diffuse 0 reflection 1 } }\n"
+            "plane { y, 0.5 texture { Mirror } rotate 45*x }\n"
+            "plane { y, -0.5 texture { Mirror } rotate 45*x }\n"
+            "plane { -z, -30.2 pigment { Aphotic_Pigment (\"light\") } rotate 45*x }\n"
+            "Aphotic_Camera (1, 0.0001)\n"
+            "Aphotic_Cone (vrotate(29.2*z, 45*x), vrotate(z, 45*x), 80, 0.25, \"flash\", 1)\n"),
+        1,
+        1);
+    const double d2_m2 = 1.0 + 0.2 * 0.2;  // to the wall 1 m off, 0.2 m beside the axis
+    const double expected = band.lamps[0].spectrum.at(550.0) * 0.25 / (kPi * d2_m2 * d2_m2) *
+                            band.reflectances[0].spectrum.at(550.0) * band.exposure[1];
+    EXPECT_NEAR(image.samples[1] / expected, 1.0, kHalfFloatError);
+}
+
 // The first word on gamma counts, and it is the library's: POV-Ray itself says so.
 TEST_F(AphoticInc, AnotherGammaIsIgnoredAloud) {
     const std::string scene =
