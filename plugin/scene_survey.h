@@ -6,17 +6,21 @@
 // how bright it is.
 //
 // In such a frame everything is white, all lamps shine alike, and the three channels have the
-// absorption 0, K and -K. So of a pixel that strobe lights over a path l,
+// absorption K / 1024, K and -K. So of a pixel that strobe lights over a path l,
 //
-//   red = G,   green = G exp(-K l),   blue = G exp(K l),   l = ln(blue / green) / (2 K)
+//   red = G exp(-K l / 1024),   green = G exp(-K l),   blue = G exp(K l),   l = ln(blue / green) /
+//   (2 K)
 //
 // exact for light that a surface reflects once; of several paths at once (mirrors, an emitter's
-// lamps) it is a mean of them. A pixel that half floats cannot hold so is measured again, with less
-// light or loss.
+// lamps) it is a mean of them. Where blue is infinite, as over a mirror's endless way into the
+// void, l = ln(red / green) / (K - K / 1024). A pixel that half floats cannot hold so is measured
+// again, with other light or loss.
 //
 // The first frame is without water, so that any medium in it is the scene's own and channels differ
-// by colours that are numbers. Two frames more tell what a plan could not serve: light with all
+// by colours that are numbers. One frame more tells what a plan could not serve: light with all
 // strobes off, a camera in an object that holds no water.
+//
+// A scene that writes files may read them back: of it one POV-Ray runs at a time.
 #pragma once
 
 #include "plugin/povray.h"
@@ -34,6 +38,7 @@ struct SurveyOptions {
     std::vector<std::string> library_paths;  // beside the user's own
     std::function<void(double)> progress{};  // share of the work
     double stall_s = kStall_s;
+    std::vector<std::string> ini_lines{};  // settings of POV-Ray's for the scene, such as its clock
     bool unchecked = false;  // radiosity, photons and media void the promise and are not refused
 };
 

@@ -88,6 +88,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     if (own != nullptr) {
         set.scene_file = own->file;
         set.scene_files_digest = own->files_digest;
+        set.scene_writes_files = own->writes_files;
     }
     const Rig lit = own != nullptr ? rig_of_scene(rig, *own) : rig;
     const std::string around = set.ini + include_text() + (own != nullptr ? own->digest : "");
