@@ -220,6 +220,34 @@ TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
         << validated.err;
 }
 
+TEST_F(UserScenes, HaveAClockForAnimations) {
+    const std::string ball = "sphere { <0, 0, 1.5>, 0.2 pigment { rgb 0.5 } }\n";
+    const std::vector<std::string> wavelengths{"--wavelengths", "470,550,620"};
+    put_scene(kFloor + ball);
+    rendered("still", wavelengths);
+    put_scene(std::string(kFloor) + "#if (clock > 0.5) " + ball + "#end\n");
+    rendered("out", wavelengths);
+    EXPECT_NE(signals("out"), signals("still"));
+    EXPECT_EQ(rendered("out", {"--clock", "0.75", "--wavelengths", "470,550,620"})["frames_kept"],
+              0);
+    EXPECT_EQ(signals("out"), signals("still"));
+    const CommandResult none = aphotic({"plan", "rig.toml", "--clock", "1"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("--clock: found 1 without a scene"), std::string::npos) << none.err;
+}
+
+TEST_F(UserScenes, ThatReadWhatTheyWriteRenderOneAtATime) {
+    put_scene(std::string(kFloor) +
+              "#fopen Out \"ball.inc\" write\n#write (Out, \"sphere { <0, 0, 1.9>, \")\n"
+              "#for (I, 0, 20000) #end\n#write (Out, \"0.1 pigment { rgb 0.5 } }\\n\")\n"
+              "#fclose Out\n#include \"ball.inc\"\n");
+    const auto made = rendered("out", {"--fitted", "6", "--jobs", "2"});
+    EXPECT_EQ(made["frames_rendered"], 2);
+    EXPECT_EQ(made["jobs"], 1);
+    EXPECT_GT(made["survey_s"], 0.0);
+    EXPECT_EQ(rendered("out", {"--fitted", "6", "--jobs", "2"})["frames_kept"], 2);
+}
+
 TEST_F(UserScenes, PromiseNothingOfWhatIsUnchecked) {
     put_scene(std::string(kFloor) +
               "global_settings { radiosity { count 2 pretrace_start 1 pretrace_end 1 } }\n");
