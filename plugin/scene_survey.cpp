@@ -125,7 +125,8 @@ class Survey {
     bool has_water_ = false;
     double attenuation_per_m_ = 1.0;
     int exposure_log2_ = 0;
-    std::string measured_;  // all samples, for the digest
+    std::string measured_;        // all samples, for the digest
+    bool has_radiosity_ = false;  // unchecked
     bool is_any_measured_ = false;
     std::size_t tasks_done_ = 0;
     std::size_t tasks_known_ = 0;  // with those to come, as far as one knows
@@ -437,6 +438,7 @@ void Survey::require_what_is_bounded(const Asked& asked) {
         }
         scene_.no_promise.push_back(fmt::format("{}, which nothing bounds", what));
     }
+    has_radiosity_ = asked.has_radiosity;
 }
 
 // In one frame: with all strobes off, in green and blue, nothing may be bright; with water on the
@@ -449,6 +451,7 @@ void Survey::require_light_of_ours() {
                     .frame = {.attenuation_per_m = {K_per_m, K_per_m, K_per_m},
                               .exposure_log2 = exposure_log2_,
                               .strobes = {1.0, 0.0, 0.0},
+                              .is_coarse_in_radiosity = has_radiosity_,
                               .dims_lamps = false}};
     run_tasks({seen});
 
@@ -575,7 +578,8 @@ void Survey::measure(int strobes) {
                 {.name = fmt::format("strobe_{}_{}", s, attempt),
                  .frame = {.attenuation_per_m = {kLittleLoss * K_per_m, K_per_m, -K_per_m},
                            .exposure_log2 = exposure,
-                           .only_strobe = s}});
+                           .only_strobe = s,
+                           .is_coarse_in_radiosity = has_radiosity_}});
         }
         tasks_known_ = tasks_done_ + tasks.size();
         run_tasks(tasks);

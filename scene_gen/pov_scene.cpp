@@ -398,6 +398,7 @@ std::string survey_sdl(const Rig& rig, const std::string& scene_name, const Surv
     band.attenuation_per_m = frame.attenuation_per_m;
     std::string sdl = "#version 3.7;\n#declare Aphotic_Probe = true;\n";
     if (!frame.dims_lamps) sdl += "#declare Aphotic_No_Lamp_Leg = true;\n";
+    if (frame.is_coarse_in_radiosity) sdl += "#declare Aphotic_Coarse_Radiosity = true;\n";
     if (frame.only_strobe != 0) {
         sdl += fmt::format("#declare Aphotic_Only_Strobe = {};\n", frame.only_strobe);
     }

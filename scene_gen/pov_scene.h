@@ -92,9 +92,10 @@ inline constexpr int kMostLightsInMedia = 1024;
 struct SurveyFrame {
     Channels attenuation_per_m{};
     int exposure_log2 = 0;
-    Channels strobes{1.0, 1.0, 1.0};  // their brightness in each channel
-    int only_strobe = 0;              // counted from 1; 0: all
-    bool dims_lamps = true;           // false: the water dims the camera's leg alone
+    Channels strobes{1.0, 1.0, 1.0};      // their brightness in each channel
+    int only_strobe = 0;                  // counted from 1; 0: all
+    bool is_coarse_in_radiosity = false;  // of a scene that has it: next to none
+    bool dims_lamps = true;               // false: the water dims the camera's leg alone
 };
 [[nodiscard]] std::string survey_sdl(const Rig& rig,
                                      const std::string& scene_name,
