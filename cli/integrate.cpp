@@ -81,8 +81,8 @@ Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest
                  {"frames_of", fs::absolute(options.folder).lexically_normal().string()},
                  {"tolerance", manifest.tolerance},
                  {"frame_error", manifest.frame_error},
-                 {"promise", promises_of(manifest.quality, manifest.frame_error)},
                  {"wavelengths", Json::array()}};
+    put_promises(account, manifest);
     for (const ManifestWavelength& w : manifest.wavelengths) {
         account["wavelengths"].push_back({{"lambda_nm", w.lambda_nm}, {"weight", w.weight}});
     }

@@ -59,14 +59,18 @@ Json outcome_of(const fs::path& folder, const CameraImage& image) {
             {"signal", channels}};
 }
 
-Json promises_of(const std::array<RuleQuality, kChannels>& quality, double frame_error) {
-    Json promises;
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        promises[std::string(kChannelNames[c])] = {{"error", quality[c].error},
-                                                   {"amplification", quality[c].amplification},
-                                                   {"promise", quality[c].promise(frame_error)}};
+void put_promises(Json& json, const Manifest& manifest) {
+    if (!manifest.has_promise()) {
+        json["promise"] = nullptr;
+        json["no_promise"] = manifest.no_promise;
+        return;
     }
-    return promises;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const RuleQuality& quality = manifest.quality[c];
+        json["promise"][std::string(kChannelNames[c])] = {{"error", quality.error},
+                                                          {"amplification", quality.amplification},
+                                                          {"promise", manifest.promise(c)}};
+    }
 }
 
 Json integrate_folder(const fs::path& folder,
@@ -92,7 +96,7 @@ Json integrate_folder(const fs::path& folder,
     outcome["wavelengths"] = manifest.wavelengths.size();
     outcome["frames"] = manifest.frames.size();
     outcome["frame_error"] = manifest.frame_error;
-    outcome["promise"] = promises_of(manifest.quality, manifest.frame_error);
+    put_promises(outcome, manifest);
     outcome["integration_s"] = elapsed.count();
     return outcome;
 }
@@ -105,11 +109,20 @@ void print_outcome(const Json& outcome) {
                counted(outcome["wavelengths"].get<std::size_t>(), "wavelength"),
                counted(outcome["frames"].get<std::size_t>(), "frame"),
                outcome["integration_s"].get<double>());
-    fmt::print("  off the full spectrum by at most {:.3g} (R), {:.3g} (G), {:.3g} (B)\n",
-               outcome["promise"]["R"]["promise"].get<double>(),
-               outcome["promise"]["G"]["promise"].get<double>(),
-               outcome["promise"]["B"]["promise"].get<double>());
+    if (outcome["promise"].is_null()) {
+        print_no_promise(outcome["no_promise"]);
+    } else {
+        fmt::print("  off the full spectrum by at most {:.3g} (R), {:.3g} (G), {:.3g} (B)\n",
+                   outcome["promise"]["R"]["promise"].get<double>(),
+                   outcome["promise"]["G"]["promise"].get<double>(),
+                   outcome["promise"]["B"]["promise"].get<double>());
+    }
     print_signals(outcome);
+}
+
+void print_no_promise(const std::vector<std::string>& reasons) {
+    fmt::print("  no promise how far it is off the full spectrum:\n");
+    for (const std::string& reason : reasons) fmt::print("    {}\n", reason);
 }
 
 void print_signals(const Json& outcome) {

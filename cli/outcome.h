@@ -32,9 +32,12 @@ void add_preview_options(CLI::App& app, PreviewOptions& options);
                                                       const PreviewOptions& preview,
                                                       const std::filesystem::path& images);
 
-// What a plan or a manifest promises, per channel: error, amplification and promise.
-[[nodiscard]] nlohmann::ordered_json promises_of(const std::array<RuleQuality, kChannels>& quality,
-                                                 double frame_error);
+// What a plan or a manifest promises, per channel: error, amplification and promise. Null where a
+// scene of the user's voids it; no_promise in the JSON then says why.
+void put_promises(nlohmann::ordered_json& json, const Manifest& manifest);
+
+// Why there is no promise, for people.
+void print_no_promise(const std::vector<std::string>& reasons);
 
 // The same for people: of a whole integration, or of its images alone.
 void print_outcome(const nlohmann::ordered_json& outcome);

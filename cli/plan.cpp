@@ -137,11 +137,11 @@ void print_json(const PlannedRender& planned, const SceneSet& scenes) {
               {"paths_m", {plan.family.shortest_path_m, plan.family.longest_path_m}},
               {"sources", plan.family.sources.size()},
               {"frame_error", plan.frame_error},
-              {"promise", promises_of(plan.rule.quality, plan.frame_error)},
               {"frames", manifest.frames.size()},
               {"wavelengths", wavelengths_of(manifest)},
               {"omissions", Json::array()},
               {"needs", json_of(planned_needs(scenes))}};
+    put_promises(json, manifest);
     if (planned.rig.camera.port) {
         const PortCost cost = port_cost(planned);
         json["port"] = {{"spread_px", cost.spread_px},
@@ -156,6 +156,11 @@ void print_json(const PlannedRender& planned, const SceneSet& scenes) {
 }
 
 void print_promise(const RenderPlan& plan) {
+    if (!plan.no_promise.empty()) {
+        print_no_promise(plan.no_promise);
+        fmt::print("\n");
+        return;
+    }
     fmt::print("{:>9}  {:>12}  {:>13}  {:>8}\n", "channel", "error", "amplification", "promise");
     for (std::size_t c = 0; c < kChannels; ++c) {
         const RuleQuality& q = plan.rule.quality[c];

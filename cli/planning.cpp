@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <chrono>
 #include <memory>
 #include <thread>
 
@@ -52,6 +53,10 @@ std::string ini_line(const std::string& setting) {
     return setting + "\n";
 }
 
+std::string clock_line(double clock) {
+    return fmt::format("; The scene's own.\nClock={}\n", clock);
+}
+
 PlanRequest request_of(const PlanningOptions& options) {
     PlanRequest request{.tolerance = options.tolerance,
                         .fitted = std::nullopt,
@@ -65,6 +70,7 @@ PlanRequest request_of(const PlanningOptions& options) {
     for (const std::string& setting : options.povray_ini) {
         request.scene.ini_lines.push_back(ini_line(setting));
     }
+    if (options.clock != 0.0) request.scene.ini_lines.push_back(clock_line(options.clock));
     if (options.fitted > 0) request.fitted = options.fitted;
     if (options.bands > 0) request.bands = options.bands;
     if (!options.paths_m.empty()) {
@@ -94,7 +100,13 @@ auto naming_the_file(const PlanningOptions& options, Function function) {
 std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions& options) {
     const std::filesystem::path scene =
         options.scene.empty() ? rig.scene : std::filesystem::path(options.scene);
-    if (!options.renders || scene.empty()) return nullptr;
+    if (!options.renders || scene.empty()) {
+        if (options.clock == 0.0) return nullptr;
+        throw InputError(
+            fmt::format("--clock: found {} without a scene; allowed: with one of your own, by "
+                        "--scene or the rig's `scene`",
+                        options.clock));
+    }
     ProgressLine line;
     auto surveyed_scene = std::make_shared<const UserScene>(
         survey_scene(find_povray(options.povray),
@@ -103,13 +115,12 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
                      {.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
                       .library_paths = options.library_paths,
                       .progress = [&](double share) { line.show("looking at the scene", share); },
-                      .stall_s = options.stall_timeout_s}));
-    if (surveyed_scene->has_own_colours) {
-        fmt::print(
-            stderr,
-            "aphotic: {} has colours by numbers: each is another grey in every channel, and no "
-            "spectrum. Aphotic_Pigment gives it one\n",
-            scene.string());
+                      .stall_s = options.stall_timeout_s,
+                      .ini_lines = options.clock == 0.0 ? std::vector<std::string>{}
+                                                        : std::vector{clock_line(options.clock)},
+                      .unchecked = options.unchecked}));
+    for (const std::string& reason : surveyed_scene->no_promise) {
+        fmt::print(stderr, "aphotic: {}: no promise: {}\n", scene.string(), reason);
     }
     return surveyed_scene;
 }
@@ -175,6 +186,7 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
     constexpr int kMostLamps = 64;
     constexpr int kMostAntialias = 9;
     constexpr double kMostShift_px = 100.0;
+    constexpr double kMostClock = 1e6;
     add_wavelength_options(app, options);
     options.renders = true;
     app.add_option("--scene",
@@ -187,6 +199,16 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
            options.library_paths,
            "where that scene's includes are, beside its own folder and what povray.ini says")
         ->type_name("DIR");
+    app.add_option("--clock",
+                   options.clock,
+                   "what POV-Ray's `clock` is in that scene: one render for each frame of an "
+                   "animation")
+        ->check(in_range(-kMostClock, kMostClock))
+        ->capture_default_str();
+    app.add_flag("--unchecked",
+                 options.unchecked,
+                 "render that scene also with what no plan can bound, radiosity, photons or media "
+                 "of its own: as POV-Ray makes it, without a promise");
     app.add_option("--antialias",
                    options.antialias,
                    "so many by so many further rays to each pixel: edges are smooth, and no longer "
@@ -221,9 +243,11 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
 PlannedRender plan_rig(const PlanningOptions& options) {
     Rig rig = read_rig(options.rig_file);
     PlanRequest request = request_of(options);
+    const auto start = std::chrono::steady_clock::now();
     request.scene.user_scene = surveyed(rig, options);
+    const std::chrono::duration<double> survey = std::chrono::steady_clock::now() - start;
     RenderPlan plan = naming_the_file(options, [&] { return plan_render(rig, request); });
-    return {.rig = std::move(rig), .plan = std::move(plan)};
+    return {.rig = std::move(rig), .plan = std::move(plan), .survey_s = survey.count()};
 }
 
 SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options) {

@@ -28,6 +28,8 @@ struct PlanningOptions {
     bool renders = false;  // otherwise a scene that the rig names is left alone
     std::string scene;
     std::vector<std::string> library_paths;
+    bool unchecked = false;
+    double clock = 0.0;
     int antialias = 0;
     std::vector<std::string> povray_ini;
     std::string povray;
@@ -47,6 +49,7 @@ void add_planning_options(CLI::App& app, PlanningOptions& options);
 struct PlannedRender {
     Rig rig;
     RenderPlan plan;
+    double survey_s = 0.0;  // that the look at the user's own scene took
 };
 
 // Reads the rig, surveys the user's own scene where there is one, and plans. Messages name the

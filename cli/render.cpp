@@ -45,25 +45,30 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
                                                  .library_paths = options.planning.library_paths,
                                                  .stall_s = options.planning.stall_timeout_s});
     const RenderResult& result = frames.result;
+    const int jobs = scenes.scene_writes_files ? 1 : options.jobs;
 
     auto outcome =
         integrate_folder(options.folder, result.manifest, options.preview, options.folder);
     outcome["title"] = planned.rig.title;
     outcome["povray_version"] = povray.version;
-    outcome["jobs"] = options.jobs;
+    outcome["jobs"] = jobs;
     outcome["frames_rendered"] = result.rendered;
     outcome["frames_kept"] = result.kept;
     outcome["povray_s"] = frames.povray_s;
+    if (planned.plan.scene.user_scene) outcome["survey_s"] = planned.survey_s;
     if (options.json) {
         fmt::print("{}\n", dumped(outcome));
         return kDone;
     }
-    fmt::print("POV-Ray {}: {} rendered, {} kept, in {:.1f} s with {}\n",
+    fmt::print("POV-Ray {}: {} rendered, {} kept, in {:.1f} s with {}{}\n",
                povray.version,
                counted(result.rendered, "frame"),
                result.kept,
                frames.povray_s,
-               counted(static_cast<std::size_t>(options.jobs), "job"));
+               counted(static_cast<std::size_t>(jobs), "job"),
+               planned.plan.scene.user_scene
+                   ? fmt::format(", after {:.1f} s of looking at the scene", planned.survey_s)
+                   : "");
     print_outcome(outcome);
     return kDone;
 }

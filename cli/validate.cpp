@@ -19,6 +19,7 @@
 #include "spectral/exr.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <memory>
@@ -60,10 +61,19 @@ Rendering render_here(const ValidateCommandOptions& options,
     return rendering;
 }
 
+void require_promise(const std::string& what, const std::vector<std::string>& no_promise) {
+    if (no_promise.empty()) return;
+    throw InputError(fmt::format(
+        "{}: found no promise to hold it to ({}); allowed: a scene whose render makes one",
+        what,
+        fmt::join(no_promise, "; ")));
+}
+
 // Of a render that can be held against the rig's reference.
 Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
     Manifest manifest = read_manifest(folder);
     require_rendered(folder);
+    require_promise(folder, manifest.no_promise);
     if (manifest.width_px == rig.camera.width_px && manifest.height_px == rig.camera.height_px)
         return manifest;
     throw InputError(fmt::format("{}: found images of {} x {} pixels; allowed: the rig's {} x {}",
@@ -153,6 +163,9 @@ void require_place_and_room(const ValidateCommandOptions& options, const Planned
 ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const bool is_rendered = !options.rendered_folder.empty();
+    if (const UserScene* scene = planned.plan.scene.user_scene.get()) {
+        require_promise(scene->file.string(), scene->no_promise);
+    }
     // All that can be refused is refused before there is a folder.
     const PovRay povray =
         is_rendered ? PovRay{} : povray_for(planned, options.planning, options.folder);

@@ -163,7 +163,10 @@ void run_frames(const PovRay& povray,
     if (frames.empty()) return;
     make_folder(folder / "povray" / "logs");
     make_folder(folder / "povray" / "frames");
-    const auto slots = std::min(frames.size(), static_cast<std::size_t>(std::max(1, options.jobs)));
+    const auto slots =
+        options.one_at_a_time
+            ? std::size_t{1}
+            : std::min(frames.size(), static_cast<std::size_t>(std::max(1, options.jobs)));
     const int threads = std::max(1, options.jobs / static_cast<int>(slots));
 
     const InterruptionHold hold;

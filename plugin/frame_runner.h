@@ -38,6 +38,7 @@ struct RunOptions {
     // For a scene of the user's own: its folder, in which POV-Ray runs, and where it looks for
     // includes beside the user's own library_paths.
     std::filesystem::path scene_folder{};
+    bool one_at_a_time = false;  // with all threads: a scene that reads what it writes
     std::vector<std::string> library_paths{};
     double stall_s = kStall_s;
     // Called for each frame, in the order in which they end: with its image when that is whole,

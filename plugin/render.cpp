@@ -129,6 +129,7 @@ RenderResult render(const PovRay& povray,
 
     RunOptions run = options;
     run.scene_folder = set.scene_file.parent_path();
+    run.one_at_a_time = set.scene_writes_files;
     run.checked = [&](const ManifestFrame& frame, const fs::path& image) {
         // A frame of a scene that was edited under way may be of either.
         if (!set.scene_file.empty()) require_unchanged(set.scene_file, set.scene_files_digest);

@@ -22,6 +22,7 @@
 #include <array>
 #include <cmath>
 #include <list>
+#include <map>
 #include <optional>
 #include <set>
 #include <thread>
@@ -44,11 +45,28 @@ struct Asked {
     int strobes = 0;
     int lights = 0;      // of ours, as it is called for them
     int all_lights = 0;  // as POV-Ray counts them
+    // Of its statistics.
+    bool has_radiosity = false;
+    bool has_photons = false;
+    bool has_media = false;
 };
 
 // The planes of a frame.
 struct Picture {
     std::vector<float> red, green, blue;
+};
+
+// Runs of POV-Ray beside those for each strobe.
+constexpr std::size_t kOnceForAll = 2;
+
+// How many pixels of strobes an attempt left without a path or brightness, and why.
+struct Unmeasured {
+    std::size_t too_bright = 0;  // for half floats
+    std::size_t too_far = 0;     // for the loss that was tried
+    std::size_t too_near = 0;    // the loss hardly shows
+    std::size_t too_faint = 0;   // for half floats
+
+    [[nodiscard]] std::size_t count() const { return too_bright + too_far + too_near + too_faint; }
 };
 
 class Survey {
@@ -75,17 +93,22 @@ class Survey {
         return folder_.path() / (task.name + ending);
     }
     [[nodiscard]] ProcessRequest request_for(const Task& task) const;
+    [[nodiscard]] std::string in_users_files(std::string said, const Task& task) const;
     void require_success(const Task& task, const ProcessEnd& end) const;
     [[nodiscard]] std::optional<ProcessEnd> poll(Running& running) const;
     void run_tasks(const std::vector<Task>& tasks);
     [[nodiscard]] Picture picture_of(const Task& task) const;
+    [[nodiscard]] Task plain_task() const;
     [[nodiscard]] Asked read_scene();
     void require_ours(const Asked& asked) const;
     void require_rigs_lamps(const Asked& asked) const;
+    void require_what_is_bounded(const Asked& asked);
     void require_light_of_ours();
     void require_water_in_view(const Picture& through_water, const Picture& bare) const;
+    void require_no_light_under_0(const Picture& bare) const;
+    [[nodiscard]] bool has_own_colours(const Picture& bare, const Picture& through_water) const;
     void measure(int strobes);
-    bool take_in(const Picture& picture, const SurveyFrame& frame, Lit& lit);
+    void take_in(const Picture& picture, const SurveyFrame& frame, Lit& lit, Unmeasured& left);
     void put_together(const std::vector<Lit>& strobes);
 
     [[noreturn]] void refuse(const std::string& what) const {
@@ -100,11 +123,24 @@ class Survey {
     int width_px_ = 1;
     int height_px_ = 1;
     bool has_water_ = false;
-    bool is_too_bright_ = false;  // somewhere, for the exposure tried last
     double attenuation_per_m_ = 1.0;
     int exposure_log2_ = 0;
-    std::string measured_;  // all samples, for the digest
+    std::string measured_;        // all samples, for the digest
+    bool has_radiosity_ = false;  // unchecked
+    bool is_any_measured_ = false;
+    std::size_t tasks_done_ = 0;
+    std::size_t tasks_known_ = 0;  // with those to come, as far as one knows
 };
+
+// The files beside a scene, and when each was written.
+std::map<fs::path, fs::file_time_type> written_files(const fs::path& folder) {
+    std::map<fs::path, fs::file_time_type> files;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        if (entry.is_regular_file(ignored)) files[entry.path()] = entry.last_write_time(ignored);
+    }
+    return files;
+}
 
 // POV-Ray takes no other letters in the name of a file that it is to include.
 bool is_plain_name(const std::string& name) {
@@ -131,7 +167,9 @@ Survey::Survey(const PovRay& povray,
     for (const IncludeFile& file : include_library()) {
         write_text_file(folder_.path() / file.name, std::string(file.text));
     }
-    write_text_file(folder_.path() / "survey.ini", render_ini(rig_));
+    SceneOptions settings;
+    settings.ini_lines = options_.ini_lines;
+    write_text_file(folder_.path() / "survey.ini", render_ini(rig_, settings));
     const int longer = std::max(rig_.camera.width_px, rig_.camera.height_px);
     const auto scaled = [&](int size_px) {
         return std::max(1, std::min(size_px, size_px * kSurveyPixels / longer));
@@ -139,6 +177,7 @@ Survey::Survey(const PovRay& povray,
     width_px_ = scaled(rig_.camera.width_px);
     height_px_ = scaled(rig_.camera.height_px);
     scale_measurement();
+    tasks_known_ = kOnceForAll + rig_.strobes.size();
 }
 
 UserScene Survey::run() {
@@ -148,6 +187,8 @@ UserScene Survey::run() {
     has_water_ = asked.has_water && !rig_.water.is_clear();
     const std::vector<std::string> names(asked.reflectances.begin(), asked.reflectances.end());
     scene_.materials = scene_materials(names, rig_, scene_.file);
+    require_what_is_bounded(asked);
+    tasks_known_ = tasks_done_ + kOnceForAll - 1 + static_cast<std::size_t>(asked.strobes);
     require_light_of_ours();
     measure(asked.strobes);
     require_unchanged(scene_.file, scene_.files_digest);
@@ -198,9 +239,25 @@ ProcessRequest Survey::request_for(const Task& task) const {
             .stall_s = options_.stall_s};
 }
 
+// POV-Ray's words without the files that will be gone: the includes, and the lines around the
+// scene, where it notices what the scene leaves open.
+std::string Survey::in_users_files(std::string said, const Task& task) const {
+    const std::string around = fmt::format("File '{}' line ", file_of(task, ".pov").string());
+    const std::string scene = scene_.file.filename().string();
+    for (auto at = said.find(around); at != std::string::npos; at = said.find(around, at + 1)) {
+        const auto digits = said.find_first_not_of("0123456789", at + around.size());
+        said.replace(at, digits - at, fmt::format("At the end of '{}'", scene));
+    }
+    const std::string folder = folder_.path().string() + "/";
+    for (auto at = said.find(folder); at != std::string::npos; at = said.find(folder, at)) {
+        said.erase(at, folder.size());
+    }
+    return said;
+}
+
 void Survey::require_success(const Task& task, const ProcessEnd& end) const {
     if (end.succeeded()) return;
-    const std::string said = error_in_log(read_log(file_of(task, ".log")));
+    const std::string said = in_users_files(error_in_log(read_log(file_of(task, ".log"))), task);
     const std::string message = fmt::format("POV-Ray cannot read {} ({}){}{}",
                                             scene_.file.string(),
                                             end.words(),
@@ -220,12 +277,13 @@ std::optional<ProcessEnd> Survey::poll(Running& running) const {
 }
 
 void Survey::run_tasks(const std::vector<Task>& tasks) {
+    const std::size_t jobs = scene_.writes_files ? 1 : static_cast<std::size_t>(options_.jobs);
     std::list<Running> running;
     std::size_t started = 0;
     std::size_t done = 0;
     while (done < tasks.size()) {
         throw_if_interrupted();
-        while (started < tasks.size() && running.size() < static_cast<std::size_t>(options_.jobs)) {
+        while (started < tasks.size() && running.size() < jobs) {
             const Task& task = tasks[started++];
             write_text_file(file_of(task, ".pov"),
                             survey_sdl(rig_, scene_.file.filename().string(), task.frame));
@@ -240,8 +298,10 @@ void Survey::run_tasks(const std::vector<Task>& tasks) {
             require_success(at->task, *end);
             at = running.erase(at);
             ++done;
+            ++tasks_done_;
             if (options_.progress) {
-                options_.progress(static_cast<double>(done) / static_cast<double>(tasks.size()));
+                options_.progress(static_cast<double>(tasks_done_) /
+                                  static_cast<double>(std::max(tasks_done_, tasks_known_)));
             }
         }
         std::this_thread::sleep_for(kPollInterval);
@@ -262,9 +322,24 @@ Picture Survey::picture_of(const Task& task) const {
 
 // --- What the scene asks for --------------------------------------------------------------------
 
+// All strobes on, in clear water.
+Survey::Task Survey::plain_task() const {
+    return {.name = "plain", .frame = {.exposure_log2 = exposure_log2_}};
+}
+
 Asked Survey::read_scene() {
-    const Task task{.name = "scene", .frame = {}};
+    const Task task = plain_task();
+    const fs::path folder = scene_.file.parent_path();
+    scene_.writes_files = opens_to_write(scene_.file);
+    const auto before = written_files(folder);
     run_tasks({task});
+    scene_.writes_files |= written_files(folder) != before;
+    const std::string digest = digest_of_scene(scene_.file);
+    if (digest != scene_.files_digest) {
+        // It wrote a file that it names. Now that this is there, it is as it will be.
+        scene_.files_digest = digest;
+        run_tasks({task});
+    }
     Asked asked;
     for (const std::string& said : statements_in_log(read_log(file_of(task, ".log")))) {
         const auto quoted = [&] {
@@ -281,6 +356,12 @@ Asked Survey::read_scene() {
         if (said.starts_with("aphotic: strobes ")) asked.strobes = number();
         if (said.starts_with("aphotic: lights ")) asked.lights = number();
         if (said.starts_with("Light Sources: ")) asked.all_lights = number();
+        const auto counts = [&](std::string_view what) {
+            return said.starts_with(what) && std::atoll(said.c_str() + what.size()) > 0;
+        };
+        asked.has_radiosity |= counts("Radiosity samples calculated:");
+        asked.has_photons |= counts("Number of photons shot:");
+        asked.has_media |= counts("Media Intervals:");
     }
     return asked;
 }
@@ -340,89 +421,170 @@ bool is_lit(float sample) {
     return sample > 0.0F;
 }
 
-// With all strobes off nothing may be bright; without water, channels differ by colours that are
-// numbers; with water on the camera's leg alone, it must dim.
+// POV-Ray does not reckon with the water on the way from surface to surface, and draws samples
+// where it gathers light.
+void Survey::require_what_is_bounded(const Asked& asked) {
+    const std::array<std::pair<bool, const char*>, 3> found{
+        {{asked.has_radiosity, "radiosity"},
+         {asked.has_photons, "photons"},
+         {asked.has_media, "media of the scene's own"}}};
+    for (const auto& [is_there, what] : found) {
+        if (!is_there) continue;
+        if (!options_.unchecked) {
+            refuse(fmt::format(
+                "found {}; allowed: none, for how far that is from the truth has no bound, or "
+                "--unchecked, for an image without a promise",
+                what));
+        }
+        scene_.no_promise.push_back(fmt::format("{}, which nothing bounds", what));
+    }
+    has_radiosity_ = asked.has_radiosity;
+}
+
+// In one frame: with all strobes off, in green and blue, nothing may be bright; with water on the
+// camera's leg alone, in red, it must dim. So little of it that nothing is lost but what lies
+// beyond all water, as a sky.
 void Survey::require_light_of_ours() {
-    const double K_per_m = attenuation_per_m_;
-    const Task dark{.name = "dark", .frame = {.exposure_log2 = exposure_log2_, .only_strobe = -1}};
-    const Task plain{.name = "plain", .frame = {.exposure_log2 = exposure_log2_}};
+    constexpr double kLittle = 0x1p-4;
+    const double K_per_m = has_water_ ? kLittle * attenuation_per_m_ : 0.0;
     const Task seen{.name = "seen",
                     .frame = {.attenuation_per_m = {K_per_m, K_per_m, K_per_m},
                               .exposure_log2 = exposure_log2_,
+                              .strobes = {1.0, 0.0, 0.0},
+                              .is_coarse_in_radiosity = has_radiosity_,
                               .dims_lamps = false}};
-    run_tasks(has_water_ ? std::vector{dark, plain, seen} : std::vector{dark, plain});
+    run_tasks({seen});
 
-    const Picture without = picture_of(dark);
-    if (std::ranges::any_of(without.red, is_lit) || std::ranges::any_of(without.green, is_lit) ||
-        std::ranges::any_of(without.blue, is_lit)) {
+    const Picture bare = picture_of(plain_task());
+    const Picture through_water = picture_of(seen);
+    if (std::ranges::any_of(through_water.green, is_lit) ||
+        std::ranges::any_of(through_water.blue, is_lit)) {
         refuse(
             "found light with all strobes off; allowed: none, for such light has no spectrum. Is "
             "there a finish with emission, a light_group, or a medium that glows?");
     }
-    const Picture colours = picture_of(plain);
-    scene_.has_own_colours = colours.red != colours.green || colours.red != colours.blue;
-    if (has_water_ && std::ranges::any_of(colours.green, is_lit)) {
-        require_water_in_view(picture_of(seen), colours);
+    if (has_water_ && std::ranges::any_of(bare.red, is_lit)) {
+        require_water_in_view(through_water, bare);
+    }
+    require_no_light_under_0(bare);
+    if (has_own_colours(bare, through_water)) {
+        scene_.no_promise.emplace_back(
+            "colours by numbers, each another grey in every channel and no spectrum; "
+            "Aphotic_Pigment gives it one");
     }
 }
 
 void Survey::require_water_in_view(const Picture& through_water, const Picture& bare) const {
-    for (std::size_t i = 0; i < bare.green.size(); ++i) {
-        if (is_lit(bare.green[i]) && through_water.green[i] < bare.green[i]) return;
+    for (std::size_t i = 0; i < bare.red.size(); ++i) {
+        if (is_lit(bare.red[i]) && through_water.red[i] < bare.red[i]) return;
     }
     refuse(
         "found no water between the camera and what it sees; allowed: a camera outside any object, "
         "or in a hollow one");
 }
 
-// Fills in what is not known yet of each pixel. Whether something is still to be known.
-bool Survey::take_in(const Picture& picture, const SurveyFrame& frame, Lit& lit) {
-    const double any_path_m = has_water_ ? 0.0 : path_range(rig_).shortest_m;
-    bool is_missing = false;
+void Survey::require_no_light_under_0(const Picture& bare) const {
+    for (const auto* plane : {&bare.red, &bare.green, &bare.blue}) {
+        const auto least = std::ranges::min_element(*plane);
+        if (!(*least < 0.0F)) continue;
+        const auto pixel = static_cast<int>(least - plane->begin());
+        refuse(fmt::format(
+            "found light of {:.3g}, where the brightest is {:.3g}, at column {}, row {} "
+            "of {} x {}; allowed: 0 and more. Is there a colour under 0?",
+            *least,
+            *std::ranges::max_element(*plane),
+            pixel % width_px_,
+            pixel / width_px_,
+            width_px_,
+            height_px_));
+    }
+}
+
+// Without water, channels differ by colours that are numbers; those of a sky are behind it.
+bool Survey::has_own_colours(const Picture& bare, const Picture& through_water) const {
+    for (std::size_t i = 0; i < bare.red.size(); ++i) {
+        const bool is_beyond = has_water_ && through_water.red[i] == 0.0F;
+        const bool is_grey = bare.red[i] == bare.green[i] && bare.red[i] == bare.blue[i];
+        if (!is_beyond && !is_grey) return true;
+    }
+    return false;
+}
+
+// Fills in what is not known yet of each pixel, and counts what it leaves.
+void Survey::take_in(const Picture& picture, const SurveyFrame& frame, Lit& lit, Unmeasured& left) {
+    constexpr double kLeastNormal = 0x1p-14;      // of half floats: under it they lose digits
+    constexpr double kLeastThatCounts = 0x1p-20;  // 1e-8 of the peak that is aimed at
+    constexpr double kLeastLoss = 0x1p-5;         // tells the path to 3 % by half floats
+    const auto& [little_per_m, loss_per_m, gain_per_m] = frame.attenuation_per_m;
     for (std::size_t i = 0; i < lit.size(); ++i) {
         const double bare = picture.red[i];
         const double dimmed = picture.green[i];
         const double raised = picture.blue[i];
-        if (!(bare > 0.0)) continue;  // unlit, or behind everything
         UserScene::Lit& pixel = lit[i];
-        is_too_bright_ |= !std::isfinite(bare);
-        if (std::isfinite(bare) && pixel.radiance_per_flux == 0.0) {
-            pixel.radiance_per_flux = std::ldexp(bare, -frame.exposure_log2);
+        if (pixel.path_m > 0.0 || !(bare > 0.0)) continue;  // known; or unlit, or behind everything
+        if (!std::isfinite(bare)) {
+            ++left.too_bright;
+            continue;
         }
-        if (pixel.path_m == 0.0) {
-            const bool is_within = dimmed > 0.0 && std::isfinite(raised) && raised > dimmed;
-            pixel.path_m = is_within ? measured_path_m(dimmed, raised, frame.attenuation_per_m[1])
-                                     : any_path_m;
+        if (has_water_) {
+            if (bare < 2.0 * kLeastNormal) {
+                left.too_faint += bare < kLeastThatCounts && is_any_measured_ ? 0 : 1;
+                continue;
+            }
+            if (dimmed < kLeastNormal) {
+                ++left.too_far;
+                continue;
+            }
+            // What a mirror shows of the void, the gain over endless water makes infinite.
+            const double path_m = std::isfinite(raised)
+                                      ? measured_path_m(dimmed, raised, loss_per_m - gain_per_m)
+                                      : measured_path_m(dimmed, bare, loss_per_m - little_per_m);
+            if (!(path_m * loss_per_m >= kLeastLoss)) {
+                ++left.too_near;
+                continue;
+            }
+            pixel.path_m = path_m;
+        } else {
+            pixel.path_m = path_range(rig_).shortest_m;
         }
-        is_missing |= pixel.path_m == 0.0 || pixel.radiance_per_flux == 0.0;
+        pixel.radiance_per_flux =
+            std::ldexp(bare * std::exp(little_per_m * pixel.path_m), -frame.exposure_log2);
+        is_any_measured_ = true;
     }
-    return is_missing;
 }
 
-// A strobe is measured again where pixels were brighter than half floats hold, with less light, or
-// their paths too long for the loss that was tried, with less loss.
+// A strobe is measured again where pixels were brighter or fainter than half floats hold, with less
+// or more light, or their paths too long or short for the loss that was tried.
 void Survey::measure(int strobes) {
-    constexpr int kMostTries = 6;
+    constexpr int kMostTries = 8;
     constexpr double kLessLoss = 8.0;
+    constexpr double kMoreLoss = 32.0;
     constexpr int kLessLightLog2 = 10;
+    // Dims what is in view by nothing that half floats show, and puts out what is behind all water.
+    constexpr double kLittleLoss = 0x1p-10;
     std::vector<Lit> lit(
         static_cast<std::size_t>(strobes),
         Lit(static_cast<std::size_t>(width_px_) * static_cast<std::size_t>(height_px_)));
     std::vector<int> open;
     for (int s = 1; s <= strobes; ++s) open.push_back(s);
     double K_per_m = attenuation_per_m_;
+    double K_largest_per_m = attenuation_per_m_;
     int exposure = exposure_log2_;
+    Unmeasured left;
     for (int attempt = 0; attempt < kMostTries && !open.empty(); ++attempt) {
         std::vector<Task> tasks;
         for (const int s : open) {
-            tasks.push_back({.name = fmt::format("strobe_{}_{}", s, attempt),
-                             .frame = {.attenuation_per_m = {0.0, K_per_m, -K_per_m},
-                                       .exposure_log2 = exposure,
-                                       .only_strobe = s}});
+            tasks.push_back(
+                {.name = fmt::format("strobe_{}_{}", s, attempt),
+                 .frame = {.attenuation_per_m = {kLittleLoss * K_per_m, K_per_m, -K_per_m},
+                           .exposure_log2 = exposure,
+                           .only_strobe = s,
+                           .is_coarse_in_radiosity = has_radiosity_}});
         }
+        tasks_known_ = tasks_done_ + tasks.size();
         run_tasks(tasks);
         std::vector<int> still_open;
-        is_too_bright_ = false;
+        left = {};
         for (const Task& task : tasks) {
             const Picture picture = picture_of(task);
             for (const auto* plane : {&picture.red, &picture.green, &picture.blue}) {
@@ -430,37 +592,46 @@ void Survey::measure(int strobes) {
                                  plane->size() * sizeof(float));
             }
             const int s = task.frame.only_strobe;
-            if (take_in(picture, task.frame, lit[static_cast<std::size_t>(s - 1)])) {
-                still_open.push_back(s);
-            }
+            const std::size_t before = left.count();
+            take_in(picture, task.frame, lit[static_cast<std::size_t>(s - 1)], left);
+            if (left.count() > before) still_open.push_back(s);
         }
         open = std::move(still_open);
-        if (is_too_bright_) {
+        if (left.too_bright > 0) {
             exposure -= kLessLightLog2;
-        } else {
+        } else if (left.too_far > 0) {
             K_per_m /= kLessLoss;
+        } else if (left.too_near > 0) {
+            K_largest_per_m *= kMoreLoss;
+            K_per_m = K_largest_per_m;
+        } else {
+            exposure += kLessLightLog2;
+            K_per_m = attenuation_per_m_;
         }
+    }
+    // Of what is made as POV-Ray makes it nobody asks for a path.
+    if (left.count() > left.too_faint && scene_.no_promise.empty()) {
+        refuse(fmt::format(
+            "found light that no water dims, in {} of {} pixels; allowed: water on its way. Are "
+            "camera and strobes inside an object that is not hollow?",
+            left.count() - left.too_faint,
+            width_px_ * height_px_));
     }
     put_together(lit);
 }
 
 void Survey::put_together(const std::vector<Lit>& strobes) {
-    bool is_any_lit = false;
     scene_.pixels.resize(strobes.front().size());
     for (const Lit& lit : strobes) {
         for (std::size_t i = 0; i < lit.size(); ++i) {
-            is_any_lit |= lit[i].radiance_per_flux > 0.0;
             if (lit[i].path_m > 0.0) scene_.pixels[i].push_back(lit[i]);
         }
     }
     scene_.paths = paths_of(scene_.pixels);
     if (scene_.paths.longest_m > 0.0) return;
     refuse(
-        is_any_lit
-            ? "found light that no water dims; allowed: water on its way. Are camera and strobes "
-              "inside an object that is not hollow?"
-            : "found nothing in view that a strobe lights; allowed: a scene with something to see. "
-              "Is the camera where it should be? plain povray shows it");
+        "found nothing in view that a strobe lights; allowed: a scene with something to see. Is "
+        "the camera where it should be? plain povray shows it");
 }
 
 }  // namespace

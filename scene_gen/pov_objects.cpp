@@ -35,6 +35,11 @@ struct ShapeText {
 
 std::string pov_objects(const Rig& rig, std::span<const NamedSpectrum> reflectances) {
     std::string text = "#macro Aphotic_Rig_Objects ()\n";
+    if (!rig.objects.empty()) {
+        text +=
+            "   Aphotic_Require_Unit (\"Aphotic_Rig_Objects\")\n"
+            "   Aphotic_Require_Sled (\"Aphotic_Rig_Objects\")\n";
+    }
     for (const Object& object : rig.objects) {
         text += fmt::format("// Object: {}\n", sdl_comment(object.name));
         text += std::visit(ShapeText{}, object.shape);

@@ -292,6 +292,9 @@ std::string body_sdl(const Band& band,
         sdl += fmt::format("#declare Aphotic_Unit = {};\n", sdl_number(parts.unit_m));
     }
     sdl += fmt::format("#declare Aphotic_Fade_Distance = {};\n", sdl_number(parts.fade_m));
+    if (options.user_scene) {
+        sdl += fmt::format("#declare Aphotic_Bailout = {};\n", sdl_number(options.bailout));
+    }
     if (!options.omit) sdl += "#declare Aphotic_Everything = true;\n";
     sdl += "#include \"aphotic.inc\"\n\n" + parts.rig + "\n";
     sdl += own_scene.empty() ? "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\nAphotic_Rig_Objects ()\n"
@@ -381,16 +384,21 @@ std::string survey_sdl(const Rig& rig, const std::string& scene_name, const Surv
     SceneOptions options;
     options.emitter_lamps = LampGrid{.across = 1, .along = 1};
     options.user_scene = std::make_shared<UserScene>();
+    // Of paths that are told to a hundredth.
+    options.bailout = kRayShare * 1e-1;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
     const Parts parts = parts_of(rig, options);
     Band band =
         band_of(rig,
                 parts,
                 {.name = "", .wavelengths = {{middle_nm, 0}}, .index_nm = middle_nm, .sdl = ""});
-    band.exposure.fill(std::ldexp(1.0, frame.exposure_log2));
+    for (std::size_t c = 0; c < band.exposure.size(); ++c) {
+        band.exposure[c] = std::ldexp(frame.strobes[c], frame.exposure_log2);
+    }
     band.attenuation_per_m = frame.attenuation_per_m;
     std::string sdl = "#version 3.7;\n#declare Aphotic_Probe = true;\n";
     if (!frame.dims_lamps) sdl += "#declare Aphotic_No_Lamp_Leg = true;\n";
+    if (frame.is_coarse_in_radiosity) sdl += "#declare Aphotic_Coarse_Radiosity = true;\n";
     if (frame.only_strobe != 0) {
         sdl += fmt::format("#declare Aphotic_Only_Strobe = {};\n", frame.only_strobe);
     }

@@ -48,6 +48,10 @@ struct FrameScene {
     std::string sdl;
 };
 
+// A ray that is not followed counts for a thousandth of the error that is allowed, by then.
+inline constexpr double kRayShare = 0x1p-10;
+inline constexpr double kTargetError = 1e-3;
+
 struct SceneOptions {
     int wavelengths_per_frame = 3;          // 1 to 3
     double pixel_shift = kPixelShift;       // how far a shared frame may shift one behind a port
@@ -59,8 +63,11 @@ struct SceneOptions {
     // seen from the floor below it, to the other.
     bool soft_edges = false;
     std::shared_ptr<const UserScene> user_scene{};  // none: the rig's own floor
+    // The share of a pixel's light under which rays between a user's mirrors and glasses end.
+    double bailout = kRayShare * kTargetError;
     int antialias = 0;  // n x n rays to a pixel, beside the one through its centre
-    // Lines for POV-Ray's INI file, of keys that change how fast it is and no pixel.
+    // Lines for POV-Ray's INI file: of keys that change how fast it is and no pixel, and a scene's
+    // clock.
     std::vector<std::string> ini_lines{};
 };
 
@@ -85,8 +92,10 @@ inline constexpr int kMostLightsInMedia = 1024;
 struct SurveyFrame {
     Channels attenuation_per_m{};
     int exposure_log2 = 0;
-    int only_strobe = 0;     // counted from 1; 0: all, -1: none
-    bool dims_lamps = true;  // false: the water dims the camera's leg alone
+    Channels strobes{1.0, 1.0, 1.0};      // their brightness in each channel
+    int only_strobe = 0;                  // counted from 1; 0: all
+    bool is_coarse_in_radiosity = false;  // of a scene that has it: next to none
+    bool dims_lamps = true;               // false: the water dims the camera's leg alone
 };
 [[nodiscard]] std::string survey_sdl(const Rig& rig,
                                      const std::string& scene_name,

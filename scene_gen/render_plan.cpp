@@ -88,6 +88,7 @@ void plan_to_tolerance(const Rig& rig,
                       .step = wavelengths_per_step(rig, request.scene),
                       .most = most_wavelengths(plan.family)};
     plan.tolerance = request.tolerance;
+    plan.scene.bailout = kRayShare * plan.tolerance;
     double least = std::numeric_limits<double>::infinity();
     std::size_t least_wavelengths = 0;
     for (int trial = 0; trial < kMostTrials; ++trial) {
@@ -153,6 +154,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                     .frames = {},
                     .omissions = omissions(rig, request.scene.user_scene != nullptr)};
     plan.scene.pixel_shift = pixel_shift(rig, request.scene);
+    if (request.scene.user_scene) plan.no_promise = request.scene.user_scene->no_promise;
     const RuleFitter fitter(rig.camera.sensor, plan.family, range);
     std::vector<double> lambda_nm;
     if (request.bands) {
@@ -169,6 +171,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
         plan_to_tolerance(rig, fitter, request, plan);
         return plan;
     }
+    plan.scene.bailout = kRayShare * plan.frame_error;
     share_frames(rig, fitter, lambda_nm, plan);
     return plan;
 }

@@ -9,7 +9,8 @@
 //
 // (spectral/rule_fitter.h). frame_error is kFrameError, and kLampError more where point lamps
 // stand for an emitter. It holds for every pixel off the edges of cones and objects that is
-// brighter than black (1e-8 of the brightest), relative to its own signal.
+// brighter than black (1e-8 of the brightest), relative to its own signal. A scene of the user's
+// may hold what voids it: no_promise says what.
 #pragma once
 
 #include "scene_gen/light_paths.h"
@@ -47,6 +48,7 @@ struct RenderPlan {
     SceneOptions scene;
     std::vector<FrameGroup> frames;
     std::vector<Omission> omissions;
+    std::vector<std::string> no_promise{};  // why what the scene shows has none; empty: it has
 
     [[nodiscard]] double promise() const { return rule.promise(frame_error); }
 };

@@ -88,6 +88,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     if (own != nullptr) {
         set.scene_file = own->file;
         set.scene_files_digest = own->files_digest;
+        set.scene_writes_files = own->writes_files;
     }
     const Rig lit = own != nullptr ? rig_of_scene(rig, *own) : rig;
     const std::string around = set.ini + include_text() + (own != nullptr ? own->digest : "");
@@ -105,6 +106,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.tolerance = plan.tolerance;
     manifest.frame_error = plan.frame_error;
     manifest.quality = plan.rule.quality;
+    manifest.no_promise = plan.no_promise;
     manifest.lamp_signal = lamp_signal(rig, plan.family);
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         const FrameScene& scene = set.scenes[f];

@@ -25,6 +25,7 @@ struct SceneSet {
     std::string ini;                     // less the paths, which change no pixel
     std::filesystem::path scene_file{};  // of the user's own, absolute; none: the rig's floor
     std::string scene_files_digest{};    // of the user's own, as it was planned for
+    bool scene_writes_files = false;     // the user's own
 };
 
 // Throws InputError where a wavelength counts whose light is fainter than frames hold.

@@ -37,8 +37,8 @@ double UserScene::brightest_radiance(const Rig& rig, double lambda_nm) const {
     return flux * brightest;
 }
 
-double measured_path_m(double dimmed, double raised, double loss_per_m) {
-    return std::log(raised / dimmed) / (2.0 * loss_per_m);
+double measured_path_m(double dimmer, double brighter, double difference_per_m) {
+    return std::log(brighter / dimmer) / difference_per_m;
 }
 
 PathRange paths_of(const std::vector<std::vector<UserScene::Lit>>& pixels) {
@@ -120,37 +120,59 @@ std::vector<std::string> quoted_in(const std::string& text) {
     return all;
 }
 
-}  // namespace
-
-std::string digest_of_scene(const fs::path& scene_file) {
+bool is_language(const fs::path& file) {
     constexpr std::array kLanguage{".pov", ".inc", ".mac", ".mcr"};
+    return std::ranges::find(kLanguage, file.extension().string()) != kLanguage.end();
+}
+
+// The scene, and what it or a file so found names that is there.
+std::set<fs::path> files_of(const fs::path& scene_file) {
     std::set<fs::path> seen;
     std::vector<fs::path> open{fs::absolute(scene_file).lexically_normal()};
     const fs::path folder = open.front().parent_path();
-    std::map<std::string, std::string> digests;  // in an order that no listing changes
     while (!open.empty()) {
         const fs::path file = open.back();
         open.pop_back();
-        if (!seen.insert(file).second) continue;
-        digests[file.lexically_relative(folder).generic_string()] = sha256_of_file(file);
-        if (std::ranges::find(kLanguage, file.extension().string()) == kLanguage.end()) continue;
+        if (!seen.insert(file).second || !is_language(file)) continue;
         for (const std::string& name : quoted_in(read_text_file(file))) {
             const fs::path named = (folder / name).lexically_normal();
             std::error_code ignored;
             if (fs::is_regular_file(named, ignored)) open.push_back(named);
         }
     }
+    return seen;
+}
+
+}  // namespace
+
+std::string digest_of_scene(const fs::path& scene_file) {
+    const fs::path folder = fs::absolute(scene_file).lexically_normal().parent_path();
+    std::map<std::string, std::string> digests;  // in an order that no listing changes
+    for (const fs::path& file : files_of(scene_file)) {
+        digests[file.lexically_relative(folder).generic_string()] = sha256_of_file(file);
+    }
     std::string all;
     for (const auto& [name, digest] : digests) all += name + ' ' + digest + '\n';
     return sha256_of_text(all);
 }
 
+bool opens_to_write(const fs::path& scene_file) {
+    const auto opens = [](const fs::path& file) {
+        if (!is_language(file)) return false;
+        const std::string text = read_text_file(file);
+        const auto has = [&](const char* word) { return text.find(word) != std::string::npos; };
+        return has("fopen") && (has("write") || has("append"));
+    };
+    return std::ranges::any_of(files_of(scene_file), opens);
+}
+
 void require_unchanged(const fs::path& scene_file, const std::string& files_digest) {
     if (digest_of_scene(scene_file) == files_digest) return;
-    throw RunError(
-        fmt::format("{}: it, or a file that it names, was changed while it was worked on; say the "
-                    "same command again, for the scene as it is now",
-                    scene_file.string()));
+    throw RunError(fmt::format(
+        "{}: it, or a file that it names, was changed while it was worked on; say the "
+        "same command again, for the scene as it is now{}",
+        scene_file.string(),
+        opens_to_write(scene_file) ? ". What it writes itself must be the same each time" : ""));
 }
 
 Rig rig_of_scene(Rig rig, const UserScene& scene) {

@@ -37,16 +37,16 @@ struct UserScene {
     std::string digest;
     std::vector<NamedSpectrum> materials;  // under the names that the scene gives them
     PathRange paths;
-    // Something has a colour by numbers: a reflectance in each channel, and no spectrum.
-    bool has_own_colours = false;
+    bool writes_files = false;             // that it may read back: one POV-Ray at a time
+    std::vector<std::string> no_promise;   // why its image has none; empty: it has
     std::vector<std::vector<Lit>> pixels;  // by pixel, those strobes that light it
 
     [[nodiscard]] double brightest_radiance(const Rig& rig, double lambda_nm) const;
 };
 
-// The path l of light that a loss of K dims to G exp(-K l), and one of -K raises to G exp(K l):
-// ln(raised / dimmed) / (2 K).
-[[nodiscard]] double measured_path_m(double dimmed, double raised, double loss_per_m);
+// The path l of light that one loss dims to G exp(-K l), and another that is less by D to G exp(-(K
+// - D) l): ln(brighter / dimmer) / D.
+[[nodiscard]] double measured_path_m(double dimmer, double brighter, double difference_per_m);
 
 // Room on both sides of the measured paths, for what lies between the survey's pixels.
 inline constexpr double kSurveyRoom = 1.05;
@@ -65,6 +65,9 @@ inline constexpr double kSurveyRoom = 1.05;
 // there, beside the scene: its includes, pictures and meshes. Names that the scene puts together
 // are not seen.
 [[nodiscard]] std::string digest_of_scene(const std::filesystem::path& scene_file);
+
+// Whether it, or a file that it names and that is there, opens a file to write: #fopen ... write.
+[[nodiscard]] bool opens_to_write(const std::filesystem::path& scene_file);
 
 // A scene that is edited while it is looked at or rendered would be half one scene, half another:
 // throws RunError when the files are no longer those of files_digest.

@@ -116,13 +116,21 @@ void require_noted_frames(const fs::path& folder, const Manifest& manifest) {
     }
 }
 
+std::string promise_in_words(const Manifest& manifest) {
+    if (!manifest.has_promise()) {
+        return fmt::format("none: {}", fmt::join(manifest.no_promise, "; "));
+    }
+    return fmt::format("{} {} {}", manifest.promise(0), manifest.promise(1), manifest.promise(2));
+}
+
 ExrAttributes attributes_of(const Manifest& manifest) {
     std::vector<double> lambda_nm;
     for (const ManifestWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
     return {{"aphotic:version", manifest.aphotic_version},
             {"aphotic:rig_title", manifest.rig_title},
             {"aphotic:rig_sha256", manifest.rig_sha256},
-            {"aphotic:wavelengths_nm", fmt::format("{}", fmt::join(lambda_nm, " "))}};
+            {"aphotic:wavelengths_nm", fmt::format("{}", fmt::join(lambda_nm, " "))},
+            {"aphotic:promise", promise_in_words(manifest)}};
 }
 
 void integrate_into(const fs::path& folder,

@@ -251,11 +251,15 @@ void write_manifest(const fs::path& folder, const Manifest& manifest) {
     json["method"] = manifest.method;
     json["tolerance"] = manifest.tolerance;
     json["frame_error"] = manifest.frame_error;
-    json["error"] = OrderedJson::array();
-    json["amplification"] = OrderedJson::array();
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        json["error"].push_back(manifest.quality[c].error);
-        json["amplification"].push_back(manifest.quality[c].amplification);
+    if (manifest.no_promise.empty()) {
+        json["error"] = OrderedJson::array();
+        json["amplification"] = OrderedJson::array();
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            json["error"].push_back(manifest.quality[c].error);
+            json["amplification"].push_back(manifest.quality[c].amplification);
+        }
+    } else {
+        json["no_promise"] = manifest.no_promise;
     }
     json["geometry"] = manifest.geometry;
     if (manifest.scene) {
@@ -320,10 +324,15 @@ Manifest parse_manifest(const std::string& file_name, std::string_view text) {
     manifest.method = reader.text("method");
     manifest.tolerance = reader.number("tolerance");
     manifest.frame_error = reader.number("frame_error");
-    const auto error = reader.channels("error");
-    const auto amplification = reader.channels("amplification");
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        manifest.quality[c] = {.error = error[c], .amplification = amplification[c]};
+    if (reader.has("no_promise")) {
+        manifest.no_promise = reader.list_of_texts("no_promise");
+        if (manifest.no_promise.empty()) reader.fail("no_promise", "at least one reason");
+    } else {
+        const auto error = reader.channels("error");
+        const auto amplification = reader.channels("amplification");
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            manifest.quality[c] = {.error = error[c], .amplification = amplification[c]};
+        }
     }
     manifest.geometry = reader.texts("geometry");
     if (reader.has("scene")) manifest.scene = scene_of(reader.object("scene"));

@@ -79,12 +79,16 @@ struct Manifest {
     // error: together the promise (spectral/rule_fitter.h).
     std::array<RuleQuality, kChannels> quality{};
     double frame_error = 0.0;
+    // Why the image has no promise, for a scene of the user's that voids it; empty: it has. Quality
+    // is then that of the spectra which the scene names, and not written.
+    std::vector<std::string> no_promise{};
     // The rig's geometry in words and numbers: frames serve another rig when it is equal.
     std::map<std::string, std::string> geometry;
     std::optional<ManifestScene> scene{};         // none: the rig's own floor
     std::vector<ManifestWavelength> wavelengths;  // increasing
     std::vector<ManifestFrame> frames;
 
+    [[nodiscard]] bool has_promise() const { return no_promise.empty(); }
     [[nodiscard]] double promise(std::size_t channel) const {
         return quality[channel].promise(frame_error);
     }

@@ -175,6 +175,91 @@ TEST_F(UserScenes, ErrorsNameTheUsersFile) {
     EXPECT_NE(none.err.find("wreck.pov: found no such file"), std::string::npos) << none.err;
 }
 
+// Where colours are numbers nobody knows how far the image is off: nothing says otherwise.
+TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
+    put_scene(std::string(kFloor) + "sphere { <0, 0, 1.9>, 0.2 pigment { rgb <1, 0.5, 0> } }\n");
+    const std::vector<std::string> scene{"rig.toml", "--scene", "reef.pov", "--fitted", "3"};
+    const auto with = [&](std::vector<std::string> words) {
+        words.insert(words.begin() + 1, scene.begin(), scene.end());
+        const CommandResult run = aphotic(words);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return run;
+    };
+    const CommandResult words = with({"render", "-o", "out"});
+    EXPECT_NE(words.err.find("reef.pov: no promise: colours by numbers"), std::string::npos);
+    EXPECT_NE(words.out.find("no promise how far"), std::string::npos) << words.out;
+    EXPECT_EQ(words.out.find("at most"), std::string::npos) << words.out;
+    const CommandResult planned = with({"plan"});
+    EXPECT_NE(planned.out.find("no promise how far"), std::string::npos) << planned.out;
+    EXPECT_EQ(planned.out.find("No pixel's signal"), std::string::npos) << planned.out;
+
+    const auto expect_none = [](const nlohmann::json& json) {
+        EXPECT_TRUE(json.at("promise").is_null());
+        EXPECT_EQ(json.at("no_promise").size(), 1U);
+    };
+    expect_none(nlohmann::json::parse(with({"plan", "--json"}).out));
+    expect_none(nlohmann::json::parse(with({"render", "-o", "out", "--json"}).out));
+    const CommandResult integrated =
+        aphotic({"integrate", "out", "--rig", "rig.toml", "--tolerance", "0.9", "--json"});
+    ASSERT_EQ(integrated.status, 0) << integrated.err;
+    expect_none(nlohmann::json::parse(integrated.out));
+    expect_none(
+        nlohmann::json::parse(read_text_file(home_ / "out" / "as-rig" / "integration.json")));
+
+    const auto manifest = nlohmann::json::parse(read_text_file(home_ / "out" / "manifest.json"));
+    EXPECT_FALSE(manifest.contains("error"));
+    EXPECT_EQ(manifest.at("no_promise").size(), 1U);
+    for (const char* image : {"image.exr", "spectral.exr", "as-rig/image.exr"}) {
+        const std::string promise = ExrReader(home_ / "out" / image).attribute("aphotic:promise");
+        EXPECT_TRUE(promise.starts_with("none: colours by numbers")) << image << ": " << promise;
+    }
+    const CommandResult validated =
+        aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "check"});
+    EXPECT_EQ(validated.status, 2);
+    EXPECT_NE(validated.err.find("found no promise to hold it to"), std::string::npos)
+        << validated.err;
+}
+
+TEST_F(UserScenes, HaveAClockForAnimations) {
+    const std::string ball = "sphere { <0, 0, 1.5>, 0.2 pigment { rgb 0.5 } }\n";
+    const std::vector<std::string> wavelengths{"--wavelengths", "470,550,620"};
+    put_scene(kFloor + ball);
+    rendered("still", wavelengths);
+    put_scene(std::string(kFloor) + "#if (clock > 0.5) " + ball + "#end\n");
+    rendered("out", wavelengths);
+    EXPECT_NE(signals("out"), signals("still"));
+    EXPECT_EQ(rendered("out", {"--clock", "0.75", "--wavelengths", "470,550,620"})["frames_kept"],
+              0);
+    EXPECT_EQ(signals("out"), signals("still"));
+    const CommandResult none = aphotic({"plan", "rig.toml", "--clock", "1"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("--clock: found 1 without a scene"), std::string::npos) << none.err;
+}
+
+TEST_F(UserScenes, ThatReadWhatTheyWriteRenderOneAtATime) {
+    put_scene(std::string(kFloor) +
+              "#fopen Out \"ball.inc\" write\n#write (Out, \"sphere { <0, 0, 1.9>, \")\n"
+              "#for (I, 0, 20000) #end\n#write (Out, \"0.1 pigment { rgb 0.5 } }\\n\")\n"
+              "#fclose Out\n#include \"ball.inc\"\n");
+    const auto made = rendered("out", {"--fitted", "6", "--jobs", "2"});
+    EXPECT_EQ(made["frames_rendered"], 2);
+    EXPECT_EQ(made["jobs"], 1);
+    EXPECT_GT(made["survey_s"], 0.0);
+    EXPECT_EQ(rendered("out", {"--fitted", "6", "--jobs", "2"})["frames_kept"], 2);
+}
+
+TEST_F(UserScenes, PromiseNothingOfWhatIsUnchecked) {
+    put_scene(std::string(kFloor) +
+              "global_settings { radiosity { count 2 pretrace_start 1 pretrace_end 1 } }\n");
+    const std::vector<std::string> words{
+        "render", "rig.toml", "--scene", "reef.pov", "-o", "out", "--fitted", "3"};
+    const CommandResult refused = aphotic(words);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find("reef.pov: found radiosity; allowed: "), std::string::npos)
+        << refused.err;
+    EXPECT_TRUE(rendered("out", {"--fitted", "3", "--unchecked"})["promise"].is_null());
+}
+
 // POV-Ray cannot write there; a study is of what the reference knows.
 TEST_F(UserScenes, AreRefusedWhereTheyCannotServe) {
     put_scene(kFloor);

@@ -334,6 +334,46 @@ TEST_F(AphoticInc, TheSceneCannotBringBackPovraysOwnLight) {
     expect_equal_images(spoilt, plain, 0.0);
 }
 
+// A dozen sheets that each let half of the light through leave 2^-12 of it, which POV-Ray's own
+// bailout, 1/255, takes for nothing. Two dozen leave less than counts.
+TEST_F(AphoticInc, RaysAreFollowedAsFarAsTheyCount) {
+    const std::string scene =
+        std::string(kCamera) + "Aphotic_Cone (<0.5, 0, 0>, z, 90, 0.25, \"flash\", 1)\n" + kFloor;
+    const auto behind = [&](int sheets) {
+        return well(in_band(odd_band(),
+                            scene + fmt::format("#for (I, 1, {}) plane {{ -z, -1 - I / 50 pigment "
+                                                "{{ rgbt 0.5 }} finish {{ diffuse 0 }} no_shadow "
+                                                "}} #end\n",
+                                                sheets)),
+                    1,
+                    1)
+            .samples[1];
+    };
+    const float bare = well(in_band(odd_band(), scene), 1, 1).samples[1];
+    EXPECT_NEAR(std::ldexp(behind(12), 12) / bare, 1.0, kTwoHalfFloats);
+    EXPECT_EQ(behind(24), 0.0F);
+}
+
+// Down a corridor of perfect mirrors, seen askew: thirty reflections to the wall at its end.
+TEST_F(AphoticInc, MirrorsAreFollowedThirtyTimes) {
+    const Band band = odd_band();
+    const PovRayRun image = well(
+        in_band(
+            band,
+            "#declare Mirror = texture { pigment { rgb 0 } finish { diffuse 0 reflection 1 } }\n"
+            "plane { y, 0.5 texture { Mirror } rotate 45*x }\n"
+            "plane { y, -0.5 texture { Mirror } rotate 45*x }\n"
+            "plane { -z, -30.2 pigment { Aphotic_Pigment (\"light\") } rotate 45*x }\n"
+            "Aphotic_Camera (1, 0.0001)\n"
+            "Aphotic_Cone (vrotate(29.2*z, 45*x), vrotate(z, 45*x), 80, 0.25, \"flash\", 1)\n"),
+        1,
+        1);
+    const double d2_m2 = 1.0 + 0.2 * 0.2;  // to the wall 1 m off, 0.2 m beside the axis
+    const double expected = band.lamps[0].spectrum.at(550.0) * 0.25 / (kPi * d2_m2 * d2_m2) *
+                            band.reflectances[0].spectrum.at(550.0) * band.exposure[1];
+    EXPECT_NEAR(image.samples[1] / expected, 1.0, kHalfFloatError);
+}
+
 // The first word on gamma counts, and it is the library's: POV-Ray itself says so.
 TEST_F(AphoticInc, AnotherGammaIsIgnoredAloud) {
     const std::string scene =
@@ -435,6 +475,25 @@ const std::vector<Misuse> kMisuses{
     {"NoUnit",
      "#declare Aphotic_Unit = 0; Aphotic_Cone (0, z, 90, 1, \"arc\", 1)",
      "Aphotic_Cone: found Aphotic_Unit 0"},
+    {"UnitAfterTheStrobes",
+     "Aphotic_Cone (0, z, 90, 1, \"arc\", 1)\n#declare Aphotic_Unit = 0.01;\nAphotic_Water ()",
+     "Aphotic_Water: found Aphotic_Unit 0.010000, declared after macros that took it for "
+     "1.000000;"},
+    {"SledAfterTheCamera",
+     "Aphotic_Camera (1, 1)\n#declare Aphotic_Sled = transform { translate x }\n"
+     "Aphotic_Cone (0, z, 90, 1, \"arc\", 1)",
+     "Aphotic_Cone: found Aphotic_Sled declared after Aphotic_Camera;"},
+    {"SledThatScales",
+     "#declare Aphotic_Sled = transform { scale 2 }\nAphotic_Camera (1, 1)",
+     "Aphotic_Camera: found an Aphotic_Sled that makes x, y and z 2.000000, 2.000000 and 2.000000 "
+     "long"},
+    {"SoftEdgeAfterTheStrobes",
+     "Aphotic_Cone (0, z, 60, 1, \"arc\", 1)\n#declare Aphotic_Soft_Edge = 2;\nAphotic_End ()",
+     "Aphotic_End: found Aphotic_Soft_Edge 2.000000, declared after the macros that it is for;"},
+    {"FinishAfterTheSeafloor",
+     "Aphotic_Seafloor (2, 0, 0, \"light\")\n"
+     "#declare Aphotic_Seafloor_Finish = finish { phong 1 }\nAphotic_End ()",
+     "Aphotic_End: found Aphotic_Seafloor_Finish, declared after Aphotic_Seafloor;"},
     {"WaterTwice", "Aphotic_Water () Aphotic_Water ()", "Aphotic_Water: called twice"},
     {"WaterInAContainer",
      "sphere { 0, 9 hollow pigment { rgbt 1 } interior { Aphotic_Water () } }",
@@ -522,6 +581,40 @@ INSTANTIATE_TEST_SUITE_P(All,
                          AphoticIncMisuse,
                          testing::ValuesIn(kMisuses),
                          [](const auto& misuse) { return std::string(misuse.param.name); });
+
+// What comes too late for any macro the end tells; so does a sled that comes after all of them, one
+// that skews, and a floor in another unit than the strobes.
+TEST_F(AphoticInc, SettingsThatComeTooLateAreErrors) {
+    const std::string rig =
+        "Aphotic_Camera (1, 1)\nAphotic_Cone (<0.5, 0, 0>, z, 90, 0.25, \"flash\", 1)\n";
+    const auto said = [&](const std::string& scene) {
+        return run(in_band(odd_band(), scene)).said();
+    };
+    const auto expect = [&](const std::string& scene, const std::string& message) {
+        const std::string words = said(scene);
+        EXPECT_NE(words.find(message), std::string::npos) << words;
+    };
+    expect(rig + "#declare Aphotic_Unit = 0.01;\nAphotic_End ()\n",
+           "Aphotic_End: found Aphotic_Unit 0.010000, declared after macros that took it for "
+           "1.000000;");
+    expect("Aphotic_Seafloor (2, 0, 0, \"light\")\n#declare Aphotic_Unit = 0.01;\n" + rig,
+           "Aphotic_Cone: found Aphotic_Unit 0.01");
+    expect(rig + "#declare Aphotic_Sled = transform { translate x }\nAphotic_End ()\n",
+           "Aphotic_End: found Aphotic_Sled declared after Aphotic_C");
+    expect("#declare Aphotic_Sled = transform { matrix <1, 0, 0, 0.5, 1, 0, 0, 0, 1, 0, 0, 0> }\n" +
+               rig,
+           "or skews them");
+    expect(rig + "#declare Aphotic_Fade_Distance = 1;\nAphotic_End ()\n",
+           "Aphotic_End: found Aphotic_Fade_Distance 1.000000,");
+    // Each strobe may have its own edge, and a sled may lie anywhere, turned by any angle.
+    well(in_band(odd_band(),
+                 "#declare Aphotic_Sled = transform { rotate <12.3, 45.6, 78.9> "
+                 "translate <1e4, -2e4, 3e4> }\n" +
+                     rig +
+                     "#declare Aphotic_Soft_Edge = 2;\n"
+                     "Aphotic_Cone (<0.5, 0, 0>, z, 60, 0.25, \"flash\", 1)\n"
+                     "Aphotic_Seafloor (2, 0, 0, \"light\")\nAphotic_End ()\nAphotic_End ()\n"));
+}
 
 // One that is added wants an entry above. Each entry provokes one of its own but for three: too
 // wide and too narrow share theirs, so do intensity and power, and of water in a container POV-Ray

@@ -32,8 +32,13 @@ class SceneSurvey : public testing::Test {
     UserScene survey(const std::string& scene, const Rig& rig = habcam()) {
         write_file(folder_.path() / "reef.pov",
                    "#version 3.7;\n#include \"aphotic.inc\"\n" + scene);
-        return survey_scene(
-            find_povray(""), rig, folder_.path() / "reef.pov", {.jobs = 2, .library_paths = {}});
+        return survey_scene(find_povray(""),
+                            rig,
+                            folder_.path() / "reef.pov",
+                            {.jobs = 2,
+                             .library_paths = {},
+                             .progress = [this](double share) { shares_.push_back(share); },
+                             .unchecked = unchecked_});
     }
     std::string refusal(const std::string& scene, const Rig& rig = habcam()) {
         try {
@@ -48,6 +53,8 @@ class SceneSurvey : public testing::Test {
     }
 
     TempFolder folder_;
+    bool unchecked_ = false;
+    std::vector<double> shares_;  // of the work, as they were reported
 };
 
 // The rig's own floor, whose paths its geometry tells: the survey's are these, with its room.
@@ -103,6 +110,99 @@ TEST_F(SceneSurvey, FindsTheSpectraWhereverTheyAreAskedFor) {
     for (const NamedSpectrum& material : scene.materials) names.push_back(material.name);
     EXPECT_EQ(names, (std::vector<std::string>{"green-algae", "mud.csv", "sand"}));
     EXPECT_EQ(scene.materials[1].spectrum.at(580.0), 0.2);
+}
+
+// What a mirror shows of the void is dark, and hides nothing of what it shows beside.
+TEST_F(SceneSurvey, AReflectionIntoTheVoidHidesNoPath) {
+    const auto floor = [&](const std::string& finish) {
+        return survey("Aphotic_Rig ()\n#declare Aphotic_Seafloor_Finish = finish { " + finish +
+                      " }\nAphotic_Seafloor (2, 5, 0, \"sand\")\n");
+    };
+    const UserScene dull = floor("diffuse 1");
+    const UserScene mirror = floor("diffuse 1 reflection 0.1");
+    ASSERT_EQ(mirror.pixels.size(), dull.pixels.size());
+    for (std::size_t i = 0; i < dull.pixels.size(); ++i) {
+        ASSERT_EQ(mirror.pixels[i].size(), dull.pixels[i].size()) << i;
+        for (std::size_t s = 0; s < dull.pixels[i].size(); ++s) {
+            const auto& [radiance, path_m] = mirror.pixels[i][s];
+            // Half floats tell a path from its loss alone half as well as from loss and gain.
+            ASSERT_NEAR(path_m / dull.pixels[i][s].path_m, 1.0, 2.0 * kPathError) << i;
+            ASSERT_NEAR(radiance / dull.pixels[i][s].radiance_per_flux, 1.0, kPathError) << i;
+        }
+    }
+}
+
+TEST_F(SceneSurvey, AMirroringBallHidesNoPixel) {
+    const auto lit = [&](const std::string& finish) {
+        const UserScene scene = survey(
+            "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\nsphere { <0, 0, 1.7>, 0.25 pigment { "
+            "rgb 1 } finish { " +
+            finish + " } }\n");
+        std::vector<std::size_t> strobes;
+        for (const auto& pixel : scene.pixels) strobes.push_back(pixel.size());
+        return strobes;
+    };
+    // A strobe that lights no point of a pixel may yet be seen in the mirror.
+    const std::vector<std::size_t> dull = lit("diffuse 1");
+    const std::vector<std::size_t> mirror = lit("diffuse 1 reflection 0.2");
+    for (std::size_t i = 0; i < dull.size(); ++i) ASSERT_GE(mirror[i], dull[i]) << i;
+}
+
+// Behind an endless way through the water.
+TEST_F(SceneSurvey, ASkyIsNotSeen) {
+    const UserScene scene = survey(
+        "Aphotic_Rig ()\nsky_sphere { pigment { rgb <0.2, 0.5, 1> } }\n"
+        "box { <-0.3, -0.3, 1.9>, <0.2, 0.2, 2> pigment { rgb 0.5 } }\n");
+    EXPECT_TRUE(scene.no_promise.empty());
+    EXPECT_LT(scene.paths.longest_m, 5.0);
+}
+
+// A hand's breadth from camera and lamp, a fiftieth of the paths for which the survey sets out.
+TEST_F(SceneSurvey, MeasuresWhatIsNear) {
+    Rig rig = habcam();
+    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+    const UserScene scene = survey(
+        "Aphotic_Camera (1, 0.01)\nAphotic_Water ()\n"
+        "Aphotic_Cone (0, z, 90, 0.25, \"xenon-flash\", 1)\n"
+        "plane { -z, -0.05 pigment { rgb 0.5 } }\n",
+        rig);
+    constexpr double kNearPathError = 0.016;  // half floats at a loss of 1/32
+    EXPECT_NEAR(scene.paths.shortest_m * kSurveyRoom / 0.1, 1.0, kNearPathError);
+    EXPECT_NEAR(scene.paths.longest_m / kSurveyRoom / 0.1, 1.0, kNearPathError);
+}
+
+// One run for what the scene is, one for what must not be, one a strobe.
+TEST_F(SceneSurvey, RunsPovrayOnceForEachAnswerAndTellsItsProgress) {
+    static_cast<void>(survey("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"));
+    EXPECT_EQ(shares_.size(), 2U + habcam().strobes.size());
+    EXPECT_TRUE(std::ranges::is_sorted(shares_));
+    EXPECT_EQ(shares_.back(), 1.0);
+}
+
+// As one that opens its file to write and is long about it: another would read the half of it.
+constexpr const char* kWrites =
+    "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n#fopen Out \"ball.inc\" write\n"
+    "#write (Out, \"sphere { <0, 0, 1.9>, \")\n#for (I, 0, 20000) #end\n"
+    "#write (Out, \"0.1 pigment { rgb 0.5 } }\\n\")\n#fclose Out\n#include \"ball.inc\"\n";
+
+TEST_F(SceneSurvey, OneThatReadsWhatItWritesIsLookedAtOneAtATime) {
+    const UserScene first = survey(kWrites);
+    EXPECT_TRUE(first.writes_files);
+    EXPECT_EQ(survey(kWrites).digest, first.digest) << "also where the file is there already";
+    EXPECT_FALSE(survey("Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n").writes_files);
+}
+
+TEST_F(SceneSurvey, OneThatWritesSomethingElseEachTimeIsNamed) {
+    try {
+        static_cast<void>(
+            survey("#fopen Log \"log.txt\" append\n#write (Log, \"again\")\n#fclose Log\n"
+                   "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"));
+        FAIL() << "no error";
+    } catch (const RunError& error) {
+        EXPECT_NE(std::string(error.what()).find("What it writes itself must be the same"),
+                  std::string::npos)
+            << error.what();
+    }
 }
 
 // --- Refusals -----------------------------------------------------------------------------------
@@ -209,14 +309,44 @@ TEST_F(SceneSurvey, RefusesACameraInAnObjectWithoutWater) {
               "no error");
 }
 
-TEST_F(SceneSurvey, NoticesColoursByNumbers) {
-    EXPECT_FALSE(survey(kScene).has_own_colours);
-    EXPECT_FALSE(survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb 0.5 } }\n")
-                     .has_own_colours);
-    EXPECT_TRUE(
+TEST_F(SceneSurvey, ColoursByNumbersVoidThePromise) {
+    EXPECT_TRUE(survey(kScene).no_promise.empty());
+    EXPECT_TRUE(survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb 0.5 } }\n")
+                    .no_promise.empty());
+    EXPECT_EQ(
         survey(std::string(kScene) + "sphere { <0, 0, 1.9>, 0.1 pigment { rgb <1, 0.5, 0> } }\n")
-            .has_own_colours);
+            .no_promise.size(),
+        1U);
 }
+
+// Light whose error nothing bounds: refused, or rendered without a promise.
+class UnboundedLight : public SceneSurvey,
+                       public testing::WithParamInterface<std::pair<const char*, const char*>> {};
+
+TEST_P(UnboundedLight, IsRefusedOrVoidsThePromise) {
+    const auto& [what, scene] = GetParam();
+    expect_refusal(refusal(std::string(kScene) + scene),
+                   "found " + std::string(what) + "; allowed: ");
+    unchecked_ = true;
+    const UserScene surveyed = survey(std::string(kScene) + scene);
+    ASSERT_EQ(surveyed.no_promise.size(), 1U);
+    EXPECT_TRUE(surveyed.no_promise[0].starts_with(what)) << surveyed.no_promise[0];
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All,
+    UnboundedLight,
+    testing::Values(
+        std::pair("radiosity",
+                  "global_settings { radiosity { count 2 pretrace_start 1 pretrace_end 1 } }\n"
+                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgb 1 } }\n"),
+        std::pair("photons",
+                  "global_settings { photons { count 50 } }\n"
+                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } interior { ior 1.2 } hollow "
+                  "photons { target refraction on } }\n"),
+        std::pair("media of the scene's own",
+                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } hollow interior { "
+                  "media { samples 1 scattering { 1, 0.5 } } } }\n")));
 
 // Thirty times deeper than the rig's floor, and a lamp a hand's breadth over it: neither is lost.
 TEST_F(SceneSurvey, MeasuresWhatIsFarFromTheRigsOwnFloor) {
@@ -251,6 +381,31 @@ TEST_F(SceneSurvey, ParseErrorsComeWithTheUsersFileAndLine) {
     write_file(folder_.path() / "things.inc", "\n\nsphere { nonsense }\n");
     expect_refusal(refusal(std::string(kScene) + "#include \"things.inc\"\n"),
                    "File 'things.inc' line 3: Parse Error");
+}
+
+// The scratch folder is gone when the message is read.
+TEST_F(SceneSurvey, ErrorsNameNoFileThatIsGone) {
+    const std::string twice = refusal(std::string(kScene) + "Aphotic_Water ()\n");
+    expect_refusal(twice, "\nFile 'aphotic.inc' line ");
+    const std::string open = refusal(std::string(kScene) + "#if (true)\n");
+    expect_refusal(open, "\nAt the end of 'reef.pov': Parse Error: End of file reached");
+    for (const std::string& message : {twice, open}) {
+        EXPECT_EQ(message.find('/', message.find('\n')), std::string::npos) << message;
+    }
+}
+
+TEST_F(SceneSurvey, RefusesLightUnderNought) {
+    expect_refusal(
+        refusal(std::string(kScene) + "sphere { <0, 0, 1.8>, 0.2 pigment { rgb -0.5 } }\n"),
+        "allowed: 0 and more. Is there a colour under 0?");
+}
+
+// The camera looks out of a block without water, in which a lamp lights a part of the floor.
+TEST_F(SceneSurvey, RefusesWhatNoWaterDimsInAPartOfTheImage) {
+    expect_refusal(refusal(std::string(kScene) +
+                           "box { <-0.3, -0.3, -1>, <0.3, 0.3, 2.5> pigment { rgbt 1 } }\n"
+                           "Aphotic_Cone (0, z, 60, 1, \"xenon-flash\", 1)\n"),
+                   "found light that no water dims, in ");
 }
 
 TEST_F(SceneSurvey, LeavesTheUsersFolderAsItWas) {

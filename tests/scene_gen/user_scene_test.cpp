@@ -16,9 +16,9 @@ Rig habcam() {
     return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
 }
 
-TEST(UserScene, APathIsToldByWhatALossAndItsOppositeLeave) {
+TEST(UserScene, APathIsToldByWhatTwoLossesLeave) {
     constexpr double kRounding = 1e-14;
-    EXPECT_NEAR(measured_path_m(7.0 * std::exp(-0.2 * 3.5), 7.0 * std::exp(0.2 * 3.5), 0.2),
+    EXPECT_NEAR(measured_path_m(7.0 * std::exp(-0.2 * 3.5), 7.0 * std::exp(0.2 * 3.5), 0.4),
                 3.5,
                 kRounding);
 }
@@ -121,6 +121,15 @@ TEST_F(SceneDigest, TakesAMebibyteInQuotes) {
     const std::string was = digest();
     std::ofstream(folder_.path() / "bark.png", std::ios::app) << " ";
     EXPECT_NE(digest(), was) << "what stands behind it counts";
+}
+
+TEST_F(SceneDigest, TellsWhetherTheSceneOpensAFileToWrite) {
+    const std::filesystem::path scene = folder_.path() / "reef.pov";
+    EXPECT_FALSE(opens_to_write(scene));
+    put("things.inc", "#fopen In \"a.txt\" read\n");
+    EXPECT_FALSE(opens_to_write(scene));
+    put("things.inc", "#fopen Out\n  \"a.txt\"\n  append\n");
+    EXPECT_TRUE(opens_to_write(scene));
 }
 
 TEST_F(SceneDigest, EndsWhereFilesNameEachOther) {

@@ -153,6 +153,20 @@ TEST(Manifest, ComesBackWithItsScene) {
     EXPECT_EQ(read.scene->longest_path_m, written.scene->longest_path_m);
 }
 
+TEST(Manifest, ComesBackWithoutAPromise) {
+    const TempFolder folder;
+    Manifest manifest = of_a_user_scene();
+    manifest.no_promise = {"colours by numbers", "radiosity"};
+    write_manifest(folder.path(), manifest);
+    const Manifest read = read_manifest(folder.path());
+    EXPECT_EQ(read.no_promise, manifest.no_promise);
+    EXPECT_FALSE(read.has_promise());
+    EXPECT_TRUE(some_manifest().has_promise());
+    const std::string error = error_after([](Json& json) { json["no_promise"] = Json::array(); });
+    EXPECT_NE(error.find("no_promise: found []; allowed: at least one reason"), std::string::npos)
+        << error;
+}
+
 TEST(Manifest, RefusesASceneWithoutPaths) {
     const auto error_of = [](const Json& paths, const Json& materials) {
         return error_after([&](Json& json) {
