@@ -350,7 +350,7 @@ double RuleFitter::quick_cost(std::span<const Column* const> columns,
 
 std::vector<double> RuleFitter::places_of_light(int count) const {
     const Index nodes = grid_lambda_nm_.size();
-    ArrayXd most = ArrayXd::Zero(nodes);  // share of a signal, of the member that has most
+    std::vector<ArrayXd> shares;  // what each node adds to a signal, by member and channel
     const Index paths = fitting_.path_m.size();
     Index row = 0;
     for (Index s = 0; s < grid_sources_.cols(); ++s) {
@@ -364,11 +364,13 @@ std::vector<double> RuleFitter::places_of_light(int count) const {
                         .exp();
                 for (Index c = 0; c < kChannels; ++c) {
                     const double signal = fitting_.signals(row, c);
-                    if (signal > 0.0) most = most.max(light * grid_weights_.col(c) / signal);
+                    if (signal > 0.0) shares.push_back(light * grid_weights_.col(c) / signal);
                 }
             }
         }
     }
+    ArrayXd most = ArrayXd::Zero(nodes);  // of the member that has most
+    for (const ArrayXd& share : shares) most = most.max(share);
     // Density sqrt(share / width) over a width: sqrt(share width).
     ArrayXd cumulative(nodes);
     double sum = 0.0;
@@ -378,14 +380,24 @@ std::vector<double> RuleFitter::places_of_light(int count) const {
         sum += std::sqrt(most(i) * width_nm);
         cumulative(i) = sum;
     }
-    std::vector<double> places;
+    std::vector<Index> places;
     Index node = 0;
     for (int k = 0; k < count && sum > 0.0; ++k) {
         while (node + 1 < nodes && cumulative(node) < sum * (k + 0.5) / count) ++node;
-        const double lambda_nm = grid_lambda_nm_(node);
-        if (places.empty() || places.back() < lambda_nm) places.push_back(lambda_nm);
+        if (places.empty() || places.back() < node) places.push_back(node);
     }
-    return places;
+    // A line may be too narrow for that.
+    constexpr double kSeen = 0.01;
+    for (const ArrayXd& share : shares) {
+        Index brightest = 0;
+        const double largest = share.maxCoeff(&brightest);
+        const auto shows_it = [&](Index i) { return share(i) >= kSeen * largest; };
+        if (std::ranges::none_of(places, shows_it)) places.push_back(brightest);
+    }
+    std::ranges::sort(places);
+    std::vector<double> lambda_nm;
+    for (const Index i : places) lambda_nm.push_back(grid_lambda_nm_(i));
+    return lambda_nm;
 }
 
 std::vector<RuleFitter::PathError> RuleFitter::errors_over_path(const FittedRule& rule,

@@ -105,10 +105,11 @@ class RuleFitter {
                                              const Column& candidates,
                                              const Hint& hint) const;
 
-    // At most `count` wavelengths where the light is that matters: nodes of the reference grid,
+    // Some `count` wavelengths where the light is that matters: nodes of the reference grid,
     // spread so that equal shares lie between them of the root of what each adds to the signal of
     // the member that has most of it. The root spreads them: nearly all the light of a long path
-    // may be in a few nm.
+    // may be in a few nm. Where none of them shows a channel a member's light, as of a lamp that
+    // is a single line, the wavelength that shows most of it is one more.
     [[nodiscard]] std::vector<double> places_of_light(int count) const;
 
     // The error against path length, of source and channel: for plots.
