@@ -185,7 +185,7 @@ RuleFitter::View RuleFitter::view_of(const MatrixXd& light,
     const double best = response.size() > 0 ? response.maxCoeff() : 0.0;
     std::vector<Index> seen;
     View view{.relative = {},
-              .whole_response = best * grid_width_nm_.sum(),
+              .whole_response = grid_weights_.col(channel).sum(),
               .unseen = ArrayXd::Zero(light.cols()),
               .is_usable = {}};
     for (Index i = 0; i < response.size(); ++i) {
@@ -348,6 +348,40 @@ double RuleFitter::quick_cost(std::span<const Column* const> columns,
     return worst;
 }
 
+namespace {
+
+// Lines may be too narrow to be found by their shares: every stretch of light has kLeastPlaces, as
+// far as it has nodes, at even shares of its light.
+void add_places_in_lines(const ArrayXd& share, std::vector<Index>& places) {
+    constexpr int kLeastPlaces = 3;
+    constexpr double kNoLight = 1e-6;
+    constexpr double kMuch = 0.01;
+    const double largest = share.maxCoeff();
+    for (Index first = 0; first < share.size(); ++first) {
+        if (!(share(first) > kNoLight * largest)) continue;
+        Index end = first;
+        while (end < share.size() && share(end) > kNoLight * largest) ++end;
+        const auto stretch = share.segment(first, end - first);
+        const auto shows_much = [&](Index i) {
+            return i >= first && i < end && share(i) >= kMuch * stretch.maxCoeff();
+        };
+        if (stretch.maxCoeff() >= kMuch * largest &&
+            std::ranges::count_if(places, shows_much) < kLeastPlaces) {
+            double sum = 0.0;
+            int next = 0;
+            for (Index i = first; i < end; ++i) {
+                sum += share(i);
+                if (sum < stretch.sum() * (next + 0.5) / kLeastPlaces) continue;
+                ++next;
+                if (std::ranges::find(places, i) == places.end()) places.push_back(i);
+            }
+        }
+        first = end;
+    }
+}
+
+}  // namespace
+
 std::vector<double> RuleFitter::places_of_light(int count) const {
     const Index nodes = grid_lambda_nm_.size();
     std::vector<ArrayXd> shares;  // what each node adds to a signal, by member and channel
@@ -386,14 +420,7 @@ std::vector<double> RuleFitter::places_of_light(int count) const {
         while (node + 1 < nodes && cumulative(node) < sum * (k + 0.5) / count) ++node;
         if (places.empty() || places.back() < node) places.push_back(node);
     }
-    // A line may be too narrow for that.
-    constexpr double kSeen = 0.01;
-    for (const ArrayXd& share : shares) {
-        Index brightest = 0;
-        const double largest = share.maxCoeff(&brightest);
-        const auto shows_it = [&](Index i) { return share(i) >= kSeen * largest; };
-        if (std::ranges::none_of(places, shows_it)) places.push_back(brightest);
-    }
+    for (const ArrayXd& share : shares) add_places_in_lines(share, places);
     std::ranges::sort(places);
     std::vector<double> lambda_nm;
     for (const Index i : places) lambda_nm.push_back(grid_lambda_nm_(i));

@@ -108,8 +108,8 @@ class RuleFitter {
     // Some `count` wavelengths where the light is that matters: nodes of the reference grid,
     // spread so that equal shares lie between them of the root of what each adds to the signal of
     // the member that has most of it. The root spreads them: nearly all the light of a long path
-    // may be in a few nm. Where none of them shows a channel a member's light, as of a lamp that
-    // is a single line, the wavelength that shows most of it is one more.
+    // may be in a few nm. A line too narrow for that, of a lamp or of what a channel sees of it,
+    // has three more.
     [[nodiscard]] std::vector<double> places_of_light(int count) const;
 
     // The error against path length, of source and channel: for plots.
@@ -144,7 +144,7 @@ class RuleFitter {
     // it sees of them, and which of the frames it may use.
     struct View {
         Eigen::MatrixXd relative;
-        double whole_response = 0.0;  // to the member that it sees best, over the range
+        double whole_response = 0.0;  // int Q_c dlambda
         // By frame: its light over the range, relative to all of a member's that the channel is
         // blind to, the largest.
         Eigen::ArrayXd unseen;

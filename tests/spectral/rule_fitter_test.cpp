@@ -39,6 +39,10 @@ Spectrum line(double first, double last) {
     return {"line", {400.0, 700.0}, {first, last}};
 }
 
+Spectrum table(std::vector<double> lambda_nm, std::vector<double> values) {
+    return {"table", std::move(lambda_nm), std::move(values)};
+}
+
 Spectrum times(const Spectrum& curve, double factor) {
     std::vector<double> values(curve.values().begin(), curve.values().end());
     for (double& value : values) value *= factor;
@@ -906,10 +910,6 @@ TEST(RuleFitter, KnowsTheTiltOfAFrameFromItsOwnIndices) {
 
 // --- Light that a channel does not see -----------------------------------------------------------
 
-Spectrum table(std::vector<double> lambda_nm, std::vector<double> values) {
-    return {"table", std::move(lambda_nm), std::move(values)};
-}
-
 // Red sees nothing under 600 nm, so nothing of the second lamp. At 450 nm both shine: a weight
 // there would be no error to the first lamp, and show red the second, which may be brighter by any
 // factor.
@@ -1242,6 +1242,34 @@ TEST(RuleFitter, LooksForTheLightOfEverySource) {
     const auto red = std::ranges::count_if(places, [](double nm) { return nm > 500.0; });
     EXPECT_GT(blue, 0);
     EXPECT_EQ(blue, red);
+}
+
+// Two lines of a thousandth of a nanometre beside a lamp that shines everywhere.
+TEST(RuleFitter, LooksForLightInLinesTooNarrowToHaveAShare) {
+    const Spectrum lines = table({400.0, 450.0, 450.001, 450.002, 620.0, 620.001, 620.002, 700.0},
+                                 {0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0});
+    const RuleFitter fitter(
+        flat_sensor(), family_of({{flat(1.0)}, {lines}}, pure_water(), 1.0, 5.0), kRange);
+    const auto places = fitter.places_of_light(64);
+    for (const double line_nm : {450.001, 620.001}) {
+        EXPECT_TRUE(std::ranges::any_of(places, [&](double nm) {
+            return std::abs(nm - line_nm) < 0.001;
+        })) << line_nm;
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(places));
+}
+
+// Blue sees a lamp where it is down to 1e-60 of its brightest. Its weights are as large as any.
+TEST(RuleFitter, FitsAChannelToLightHoweverFaint) {
+    const Spectrum blue = table({400.0, 600.0, 601.0, 700.0}, {0.0, 0.0, 1.0, 1.0});
+    const Spectrum lamp = table({400.0, 500.0, 501.0, 700.0}, {1.0, 1.0, 1e-60, 1e-60});
+    const RuleFitter fitter({{flat(1.0), flat(1.0), blue}, ResponseKind::Energy},
+                            family_of({{lamp}}, pure_water(), 1.0, 2.0),
+                            kRange);
+    const FittedRule rule =
+        fitter.fit(frames_at(fitter, {450.0, 480.0, 620.0, 650.0, 680.0}), kFrameError);
+    EXPECT_LT(rule.quality[2].error, 1e-2);
+    EXPECT_GT(rule.wavelengths[3].weight[2], 1.0);
 }
 
 // One wavelength in the middle, K a line: x / sinh(x) of what is right, as above.
