@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,7 @@ constexpr int kSide = 17;
 // Over these points of the range light is a straight line: dispersion bends it by some per cent.
 constexpr int kGeometryPoints = 65;
 constexpr double kBlackShare = 1e-8;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Node {
     std::size_t point = 0;  // of the geometry, and the share of the way to the next
@@ -170,7 +172,8 @@ std::array<double, kChannels> port_error(const Rig& rig,
         for (const Signals& pixel : image) {
             if (!(pixel.right[c] > kBlackShare * brightest)) continue;
             const double off = std::abs(pixel.found[c] / pixel.right[c] - 1.0);
-            error[c] = std::max(error[c], kBetweenPixels * off);
+            // What is no number is the largest of errors.
+            error[c] = std::isnan(off) ? kInfinite : std::max(error[c], kBetweenPixels * off);
         }
     }
     return error;

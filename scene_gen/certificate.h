@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a fitted rule is held to before anything is rendered, by integrals that share nothing with
-// the fit (spectral/panel_quadrature.h): first over the whole family of light
+// What a fitted rule is held to before anything is rendered, by integrals over wavelength that
+// share nothing with the fit's (spectral/panel_quadrature.h): first over the whole family of light
 // (spectral/rule_certificate.h), then behind a port over the image.
 //
 // Behind a port every wavelength shows a point of the floor of its own, and a pixel's light changes

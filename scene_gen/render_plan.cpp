@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <utility>
 
 namespace aphotic {
@@ -72,25 +72,29 @@ void share_frames(const Rig& rig,
         }
     }
     certify(rig, fitter, frames, in_view, plan.rule);
+    if (!std::isfinite(plan.promise())) {
+        throw InputError(
+            "found weights that show a channel light it is blind to, so that nothing can be "
+            "promised; allowed: fitted wavelengths, without --bands");
+    }
 }
 
 // The fewest wavelengths that keep the tolerance, and keep it by the certificate too: where only
 // the fit finds them good enough, the fit is asked for more. Where sharing frames behind a port
-// breaks the tolerance, none is shared.
-void plan_to_tolerance(const Rig& rig,
-                       const RuleFitter& fitter,
-                       const PlanRequest& request,
-                       RenderPlan& plan) {
+// breaks the tolerance, none is shared. False when no such plan is found.
+bool keeps(double tolerance,
+           const Rig& rig,
+           const RuleFitter& fitter,
+           const PlanRequest& request,
+           RenderPlan& plan) {
     constexpr int kMostTrials = 4;
     constexpr double kStricter = 0.7;
-    PlanTarget target{.tolerance = request.tolerance,
+    PlanTarget target{.tolerance = tolerance,
                       .frame_error = plan.frame_error,
                       .step = wavelengths_per_step(rig, request.scene),
                       .most = most_wavelengths(plan.family)};
-    plan.tolerance = request.tolerance;
-    plan.scene.bailout = kRayShare * plan.tolerance;
-    double least = std::numeric_limits<double>::infinity();
-    std::size_t least_wavelengths = 0;
+    plan.tolerance = tolerance;
+    plan.scene.bailout = kRayShare * tolerance;
     for (int trial = 0; trial < kMostTrials; ++trial) {
         std::vector<double> lambda_nm;
         try {
@@ -98,28 +102,35 @@ void plan_to_tolerance(const Rig& rig,
                 wavelengths_of(plan_wavelengths(fitter, rig.camera.range, target).wavelengths);
         } catch (const InputError&) {
             if (trial == 0) throw;
-            break;
+            return false;
         }
         plan.scene.pixel_shift = pixel_shift(rig, request.scene);
         share_frames(rig, fitter, lambda_nm, plan);
-        if (plan.promise() > plan.tolerance && plan.scene.pixel_shift > 0.0) {
+        if (plan.promise() > tolerance && plan.scene.pixel_shift > 0.0) {
             plan.scene.pixel_shift = 0.0;
             share_frames(rig, fitter, lambda_nm, plan);
         }
-        if (plan.promise() <= plan.tolerance) return;
-        if (plan.promise() < least) {
-            least = plan.promise();
-            least_wavelengths = lambda_nm.size();
-        }
-        const double allowed = request.tolerance - plan.frame_error;
+        if (plan.promise() <= tolerance) return true;
+        const double allowed = tolerance - plan.frame_error;
         target.tolerance = plan.frame_error + kStricter * (target.tolerance - plan.frame_error) *
                                                   allowed / (plan.promise() - plan.frame_error);
     }
+    return false;
+}
+
+void plan_to_tolerance(const Rig& rig,
+                       const RuleFitter& fitter,
+                       const PlanRequest& request,
+                       RenderPlan& plan) {
+    if (keeps(request.tolerance, rig, fitter, request, plan)) return;
+    constexpr double kNext = 1.3;
+    double kept = kNext * request.tolerance;
+    while (kept < 1.0 && !keeps(kept, rig, fitter, request, plan)) kept *= kNext;
     throw InputError(
         fmt::format("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
                     request.tolerance,
-                    tolerance_to_ask_for(least),
-                    least_wavelengths));
+                    tolerance_to_ask_for(kept),
+                    plan.rule.wavelengths.size()));
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ using Index = Eigen::Index;
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 using Array = Eigen::Array<Real, Eigen::Dynamic, 1>;
 
+constexpr Real kInfinite = std::numeric_limits<Real>::infinity();
+
 Real source_at(const std::vector<Spectrum>& source, double lambda_nm) {
     Real value = 1.0L;
     for (const Spectrum& factor : source) value *= factor.at(lambda_nm);
@@ -157,10 +159,12 @@ std::array<RuleQuality, kChannels> certified_quality(const Sensor& sensor,
         for (Index i = 0; i < response.size(); ++i) {
             const Real right = members.signals(i, c);
             if (response(i) > kBlind * best) {
-                error = std::max(error, std::abs(members.found(i, c) / right - 1.0L));
+                const Real off = std::abs(members.found(i, c) / right - 1.0L);
+                // What is no number is the largest of errors.
+                error = std::isnan(off) ? kInfinite : std::max(error, off);
                 amplification = std::max(amplification, members.amplified(i, c) / right);
             } else if (members.amplified(i, c) > kLeak * best * light(i)) {
-                error = std::numeric_limits<Real>::infinity();
+                error = kInfinite;
             }
         }
         quality[static_cast<std::size_t>(c)] = {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/full_spectrum.h"
 
-#include "spectral/panel_quadrature.h"
-
 #include <Eigen/Core>
 #include <boost/math/quadrature/gauss.hpp>
 
@@ -36,9 +34,10 @@ std::vector<GaussPoint> gauss_rule() {
     return rule;
 }
 
-// The last is what the others are held to.
-const std::array<std::vector<GaussPoint>, 7>& gauss_rules() {
-    static const std::array<std::vector<GaussPoint>, 7> kRules{gauss_rule<1>(),
+// From none, which does where all light is spent; the last is what the others are held to.
+const std::array<std::vector<GaussPoint>, 8>& gauss_rules() {
+    static const std::array<std::vector<GaussPoint>, 8> kRules{std::vector<GaussPoint>{},
+                                                               gauss_rule<1>(),
                                                                gauss_rule<2>(),
                                                                gauss_rule<3>(),
                                                                gauss_rule<4>(),
@@ -108,16 +107,28 @@ class Signals {
     double least_loss_per_m_;
 };
 
+// Between neighbouring knots of all tables, cut where the longest path's light falls by kPanelFall.
 std::vector<WavelengthRange> panels_of(const Sensor& sensor,
                                        const LightFamily& lights,
                                        WavelengthRange range) {
+    constexpr double kPanelFall = 4.0;
     std::vector<const Spectrum*> tables = sensor.curves();
     for (const auto& source : lights.sources) {
         for (const Spectrum& factor : source) tables.push_back(&factor);
     }
-    std::vector<WavelengthRange> panels =
-        light_panels(tables, lights.water, lights.longest_path_m, nullptr, range);
-    std::ranges::sort(panels, {}, &WavelengthRange::first_nm);
+    if (lights.water.multiple != 0.0) tables.push_back(&lights.water.absorption_per_m);
+    const std::vector<double> knots_nm = union_of_knots(tables, range);
+    std::vector<WavelengthRange> panels;
+    for (std::size_t i = 0; i + 1 < knots_nm.size(); ++i) {
+        const double rise_per_m = lights.water.attenuation_per_m(knots_nm[i + 1]) -
+                                  lights.water.attenuation_per_m(knots_nm[i]);
+        const double fall = std::abs(rise_per_m) * lights.longest_path_m;
+        const int pieces = std::max(1, static_cast<int>(std::ceil(fall / kPanelFall)));
+        const auto cut_nm = [&](int k) {
+            return std::lerp(knots_nm[i], knots_nm[i + 1], static_cast<double>(k) / pieces);
+        };
+        for (int k = 0; k < pieces; ++k) panels.push_back({cut_nm(k), cut_nm(k + 1)});
+    }
     return panels;
 }
 
@@ -152,6 +163,7 @@ std::vector<WeightedWavelength> full_spectrum(const Sensor& sensor,
         }
         spectrum.insert(spectrum.end(), wavelengths.begin(), wavelengths.end());
     }
+    if (spectrum.empty()) return signals.on(panels.front(), gauss_rules()[1]);  // no light at all
     return spectrum;
 }
 

@@ -5,10 +5,12 @@
 //
 //   S_c = int L Q_c dlambda ~ sum_j w_cj L(lambda_j)
 //
-// Each panel (spectral/panel_quadrature.h), on which ten points would be right to 1e-10, gets the
-// fewest of Gauss's points by which no channel's signal of any of the lights is off what ten points
-// make of it by more than the panel's share of `error`. Lights: every source, over kPaths paths in
-// even ratios from the shortest to the longest.
+// Between neighbouring knots of all tables each factor of L Q_c is a straight line, but for the
+// water's exponential, and ten of Gauss's points are right to 1e-10 where that falls by e^-4 at
+// most: an interval over which it falls farther is cut. Each panel gets the fewest points by which
+// no channel's signal of any of the lights is off what ten make of it by more than the panel's
+// share of `error`; a spent one gets none. Lights: every source, over kPaths paths in even ratios
+// from the shortest to the longest.
 #pragma once
 
 #include "spectral/bands.h"
