@@ -3,10 +3,11 @@
 // What `aphotic correct` takes of a survey from disk to disk, beside what reading the same raw
 // images and writing the same corrected ones takes by itself, by the same library, in as many
 // threads and with the same compression. Both in turn, three times; the least counts, of the clock
-// and of processor time. HabCam's mosaics, and 5 MP behind a port. The gain is taken from one
-// image: of a survey of thousands the sixteen of the default count for nothing.
+// and of processor time. HabCam's mosaics, and 5 MP behind a port. The gain is taken
+// from as many images as by default, 16, each of which is read and mapped once more; of a survey of
+// thousands they count for nothing, as of 1.
 //
-//   survey_bench [IMAGES [JOBS]]     48 and 2 by default; of 5 MP half as many
+//   survey_bench [IMAGES [JOBS [GAIN_IMAGES]]]     48, 2 and 16 by default; of 5 MP half as many
 //
 // (Goals: HabCam's six mosaics a second on two cores; at most twice as long as reading and
 // writing.)
@@ -105,6 +106,7 @@ struct Survey {
     fs::path folder;
     std::size_t images;
     std::size_t jobs;
+    std::size_t gain_images;
 
     [[nodiscard]] fs::path raw(std::size_t i) const {
         return folder / "raw" / fmt::format("{:04}.tif", i);
@@ -163,7 +165,7 @@ Cost correct(const Survey& survey) {
                                              "--white-level",
                                              "4095",
                                              "--gain-images",
-                                             "1",
+                                             std::to_string(survey.gain_images),
                                              "--jobs",
                                              jobs,
                                              "-o",
@@ -216,7 +218,11 @@ void compare(const std::string& name, const Survey& survey) {
         }
         take_least(copied, read_and_write(survey, images));
     }
-    fmt::print("{}, {} images, {} jobs\n", name, survey.images, survey.jobs);
+    fmt::print("{}, {} images, {} jobs, gain from {}\n",
+               name,
+               survey.images,
+               survey.jobs,
+               std::min(survey.gain_images, survey.images));
     print("correct", corrected, survey.images);
     fmt::print(", {:.0f} MiB in all\n", corrected.memory_MiB);
     print("read and write", copied, survey.images);
@@ -230,16 +236,19 @@ std::string with(const std::string& key, const std::string& value, const std::st
         text, std::regex("\n" + key + " *= [^\n]*"), "\n" + key + " = " + value);
 }
 
-void run(std::size_t images, std::size_t jobs) {
+void run(std::size_t images, std::size_t jobs, std::size_t gain_images) {
     const fs::path scenes = APHOTIC_SOURCE_DIR "/scenes";
     const fs::path folder =
         fs::temp_directory_path() / ("aphotic-survey-bench-" + std::to_string(::getpid()));
     for (const char* name : {"habcam", "port"}) fs::create_directories(folder / name);
-    const Survey habcam{.folder = folder / "habcam", .images = images, .jobs = jobs};
+    const Survey habcam{
+        .folder = folder / "habcam", .images = images, .jobs = jobs, .gain_images = gain_images};
     write_text_file(habcam.folder / "rig.toml", read_text_file(scenes / "habcam.toml"));
     compare("HabCam, 1360 x 1024", habcam);
-    const Survey port{
-        .folder = folder / "port", .images = std::max(kDistinct, images / 2), .jobs = jobs};
+    const Survey port{.folder = folder / "port",
+                      .images = std::max(kDistinct, images / 2),
+                      .jobs = jobs,
+                      .gain_images = gain_images};
     write_text_file(port.folder / "rig.toml",
                     with("resolution",
                          "[2448, 2048]",
@@ -253,9 +262,11 @@ void run(std::size_t images, std::size_t jobs) {
 
 int main(int argc, char** argv) {
     constexpr std::size_t kImages = 48;
+    constexpr std::size_t kGainImages = 16;
     const auto number = [&](int i, std::size_t otherwise) {
         return argc > i ? std::stoul(argv[i]) : otherwise;
     };
-    aphotic::run(std::max(aphotic::kDistinct, number(1, kImages)), number(2, 2));
+    aphotic::run(
+        std::max(aphotic::kDistinct, number(1, kImages)), number(2, 2), number(3, kGainImages));
     return 0;
 }

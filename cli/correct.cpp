@@ -18,9 +18,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -184,6 +188,16 @@ void print_summary(const Json& summary, const CorrectCommandOptions& options) {
     }
 }
 
+// The planes of one image have the sizes of those of the next: their memory is kept for them. Given
+// back to the system, each of its pages would be cleared anew, a tenth of the processor's time.
+void keep_memory() {
+#ifdef __GLIBC__
+    ::mallopt(M_ARENA_MAX, 1);  // those of threads hold no large planes
+    ::mallopt(M_MMAP_MAX, 0);
+    ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
+}
+
 Survey survey_of(const CorrectCommandOptions& options) {
     if (options.rig.empty() == options.map.empty()) {
         throw InputError("--rig with --nav, or --map: one of them is needed");
@@ -215,6 +229,7 @@ Survey survey_of(const CorrectCommandOptions& options) {
 
 ExitStatus correct(const CorrectCommandOptions& options) {
     const auto start = std::chrono::steady_clock::now();
+    keep_memory();
     const Survey survey = survey_of(options);
     const FolderLock lock = claim_tree(options.result.folder);
     set_exr_threads(0);  // the images themselves are spread over the threads

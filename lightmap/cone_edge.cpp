@@ -148,9 +148,12 @@ void spread(std::vector<std::uint8_t>& mask, int width_px, int within_px) {
         take_in(before.data(), mask.size() - width, mask.data() + width);
         take_in(before.data() + width, mask.size() - width, mask.data());
         before = mask;
+        // By pointers: in rows of one pixel, the last has nothing to its right.
         for (std::size_t start = 0; start < mask.size(); start += width) {
-            take_in(&before[start], width - 1, &mask[start + 1]);
-            take_in(&before[start + 1], width - 1, &mask[start]);
+            const std::uint8_t* const from = before.data() + start;
+            std::uint8_t* const to = mask.data() + start;
+            take_in(from, width - 1, to + 1);
+            take_in(from + 1, width - 1, to);
         }
     }
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace aphotic {
 
@@ -278,8 +279,10 @@ std::array<double, 4> site_medians(const RawImage& raw, float black) {
 PerChannel means_of(const Lightmap& map) {
     PerChannel means{};
     const std::size_t pixels = map.samples.size() / size_of(kChannels);
-    for (std::size_t i = 0; i < map.samples.size(); ++i) {
-        means[i / pixels] += static_cast<double>(map.samples[i]) / static_cast<double>(pixels);
+    const float* sample = map.samples.data();
+    for (double& mean : means) {
+        mean = std::accumulate(sample, sample + pixels, 0.0) / static_cast<double>(pixels);
+        sample += pixels;
     }
     return means;
 }

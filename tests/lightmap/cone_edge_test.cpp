@@ -177,5 +177,31 @@ TEST(ConeEdge, SpreadingKeepsBitsAndRowsApart) {
     EXPECT_EQ(mask[kWidth], 0);
 }
 
+TEST(ConeEdge, ImagesOfOneRowOrColumnAreMarkedAndSpreadAlongIt) {
+    const std::vector<std::uint8_t> line{0, 0, 0, 1, 0, 0, 2};
+    for (const int width : {1, 7}) {
+        std::vector<std::uint8_t> mask = line;
+        spread(mask, width, 2);
+        EXPECT_EQ(mask, (std::vector<std::uint8_t>{0, 1, 1, 1, 3, 3, 2})) << width;
+    }
+    // The middle row and column of an image with an odd number of both.
+    Rig rig = tilted("habcam.toml");
+    constexpr int kSide = 101;
+    rig.camera.width_px = rig.camera.height_px = kSide;
+    for (const int within : {1, 3}) {
+        rig.camera.width_px = rig.camera.height_px = 1;
+        EXPECT_EQ(ConeEdges(rig).mask(rig.sled, within).size(), 1U);
+        rig.camera.height_px = kSide;
+        const std::vector<std::uint8_t> column = ConeEdges(rig).mask(rig.sled, within);
+        std::swap(rig.camera.width_px, rig.camera.height_px);
+        const std::vector<std::uint8_t> row = ConeEdges(rig).mask(rig.sled, within);
+        for (const auto& found : {row, column}) {
+            ASSERT_EQ(found.size(), 101U);
+            EXPECT_GT(std::ranges::count(found, 1), 0);
+            EXPECT_LT(std::ranges::count(found, 1), kSide);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace aphotic::cone_edge_test

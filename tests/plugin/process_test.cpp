@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <thread>
 #include <utility>
@@ -281,32 +282,58 @@ TEST(Process, ThatEndedLeavesNothingRunning) {
 // Short, so that the test is; the looks are an eighth of it apart.
 constexpr double kShortStallS = 0.4;
 
-TEST(Process, WithoutASignOfLifeIsStopped) {
-    Script script("echo $$ > pid; trap '' TERM INT; exec sleep 60");
+Clock::time_point after_twice_the_stall() {
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                              std::chrono::duration<double>(2.0 * kShortStallS));
+}
+
+// Polls the script, once it runs, until it is stopped: what was said then.
+std::string why_stopped(Script& script) {
     script.request().stall_s = kShortStallS;
-    EXPECT_EQ(run_error([&] { script.run(); }),
+    Process process(script.request());
+    const pid_t pid = pid_in(script.file("pid"));
+    EXPECT_GT(pid, 0);
+    const std::string why =
+        run_error([&] { comes_true([&] { return process.poll().has_value(); }); });
+    EXPECT_TRUE(pid > 0 && is_gone(pid));
+    return why;
+}
+
+TEST(Process, WithoutASignOfLifeIsStopped) {
+    Script script("trap '' TERM INT; echo $$ > pid; exec sleep 60");
+    EXPECT_EQ(why_stopped(script),
               "/bin/sh was stopped: for 0.4 s it neither printed anything nor used the processor\n"
               "Its log: " +
                   script.request().log.string());
-    EXPECT_TRUE(is_gone(pid_in(script.file("pid"))));
 }
 
 TEST(Process, PutToSleepIsStopped) {
     Script script("echo $$ > pid; kill -STOP $$");
-    script.request().stall_s = kShortStallS;
-    EXPECT_NE(run_error([&] { script.run(); }).find("was stopped: for 0.4 s"), std::string::npos);
-    EXPECT_TRUE(is_gone(pid_in(script.file("pid"))));
+    EXPECT_NE(why_stopped(script).find("was stopped: for 0.4 s"), std::string::npos);
 }
 
-// Twice its patience, and it works all the while.
-TEST(Process, ThatPrintsOrComputesIsLeftAlone) {
-    Script printing("for i in 1 2 3 4 5 6 7 8 9 10; do echo $i; sleep 0.2; done");
-    printing.request().stall_s = 1.0;
-    EXPECT_TRUE(printing.run().succeeded());
-    // The child computes, the program itself waits.
-    Script computing("timeout --foreground 2 sh -c 'while :; do :; done'; exit 0");
-    computing.request().stall_s = 1.0;
-    EXPECT_TRUE(computing.run().succeeded());
+// Twice its patience. However slow the machine is: the log is longer at each look.
+TEST(Process, ThatPrintsIsLeftAlone) {
+    Script script("exec sleep 60");
+    script.request().stall_s = kShortStallS;
+    Process process(script.request());
+    for (const auto end = after_twice_the_stall(); Clock::now() < end;) {
+        std::ofstream(script.request().log, std::ios::app) << "more\n";
+        ASSERT_NO_THROW(EXPECT_FALSE(process.poll().has_value()));
+        std::this_thread::sleep_for(kPoll);
+    }
+}
+
+// Nor does it have to get the processor: it wants it. The child computes, the program itself waits.
+TEST(Process, ThatComputesIsLeftAlone) {
+    Script script("(echo 1 > started; while :; do :; done) & wait");
+    script.request().stall_s = kShortStallS;
+    Process process(script.request());
+    ASSERT_GT(pid_in(script.file("started")), 0);
+    for (const auto end = after_twice_the_stall(); Clock::now() < end;) {
+        ASSERT_NO_THROW(EXPECT_FALSE(process.poll().has_value()));
+        std::this_thread::sleep_for(kPoll);
+    }
 }
 
 TEST(Process, ThatPrintsWithoutEndIsStopped) {
