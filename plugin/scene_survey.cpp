@@ -436,12 +436,12 @@ void Survey::require_what_is_bounded(const Asked& asked) {
     for (const auto& [is_there, what] : found) {
         if (!is_there) continue;
         if (!options_.unchecked) {
-            refuse(fmt::format(
-                "found {}; allowed: none, for how far that is from the truth has no bound, or "
-                "--unchecked, for an image without a promise",
-                what));
+            refuse(
+                fmt::format("found {}; not supported: its error cannot be bounded; use --unchecked "
+                            "to render without a promise",
+                            what));
         }
-        scene_.no_promise.push_back(fmt::format("{}, which nothing bounds", what));
+        scene_.no_promise.push_back(fmt::format("{}: its error cannot be bounded", what));
     }
     has_radiosity_ = asked.has_radiosity;
 }
@@ -473,9 +473,7 @@ void Survey::require_light_of_ours() {
     }
     require_no_light_under_0(bare);
     if (has_own_colours(through_water)) {
-        scene_.no_promise.emplace_back(
-            "colours by numbers, each another grey in every channel and no spectrum; "
-            "Aphotic_Pigment gives it one");
+        scene_.no_promise.emplace_back("numeric colours have no spectrum; use Aphotic_Pigment");
     }
 }
 

@@ -339,7 +339,7 @@ class UnboundedLight : public SceneSurvey,
 TEST_P(UnboundedLight, IsRefusedOrVoidsThePromise) {
     const auto& [what, scene] = GetParam();
     expect_refusal(refusal(std::string(kScene) + scene),
-                   "found " + std::string(what) + "; allowed: ");
+                   "found " + std::string(what) + "; not supported: ");
     unchecked_ = true;
     const UserScene surveyed = survey(std::string(kScene) + scene);
     ASSERT_EQ(surveyed.no_promise.size(), 1U);
