@@ -121,7 +121,7 @@ void print_outcome(const Json& outcome) {
 }
 
 void print_no_promise(const std::vector<std::string>& reasons) {
-    fmt::print("  no promise how far it is off the full spectrum:\n");
+    fmt::print("  no bound on the error against the full spectrum:\n");
     for (const std::string& reason : reasons) fmt::print("    {}\n", reason);
 }
 

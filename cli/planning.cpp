@@ -114,7 +114,7 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
                      scene,
                      {.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
                       .library_paths = options.library_paths,
-                      .progress = [&](double share) { line.show("looking at the scene", share); },
+                      .progress = [&](double share) { line.show("probing the scene", share); },
                       .stall_s = options.stall_timeout_s,
                       .ini_lines = options.clock == 0.0 ? std::vector<std::string>{}
                                                         : std::vector{clock_line(options.clock)},
@@ -201,14 +201,13 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
         ->type_name("DIR");
     app.add_option("--clock",
                    options.clock,
-                   "what POV-Ray's `clock` is in that scene: one render for each frame of an "
-                   "animation")
+                   "value of POV-Ray's clock in the scene; run once per animation frame")
         ->check(in_range(-kMostClock, kMostClock))
         ->capture_default_str();
     app.add_flag("--unchecked",
                  options.unchecked,
-                 "render that scene also with what no plan can bound, radiosity, photons or media "
-                 "of its own: as POV-Ray makes it, without a promise");
+                 "render a scene with radiosity, photons or its own media anyway; the result has "
+                 "no error bound");
     app.add_option("--antialias",
                    options.antialias,
                    "so many by so many further rays to each pixel: edges are smooth, and no longer "
@@ -245,9 +244,9 @@ PlannedRender plan_rig(const PlanningOptions& options) {
     PlanRequest request = request_of(options);
     const auto start = std::chrono::steady_clock::now();
     request.scene.user_scene = surveyed(rig, options);
-    const std::chrono::duration<double> survey = std::chrono::steady_clock::now() - start;
+    const std::chrono::duration<double> probe = std::chrono::steady_clock::now() - start;
     RenderPlan plan = naming_the_file(options, [&] { return plan_render(rig, request); });
-    return {.rig = std::move(rig), .plan = std::move(plan), .survey_s = survey.count()};
+    return {.rig = std::move(rig), .plan = std::move(plan), .probe_s = probe.count()};
 }
 
 SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options) {

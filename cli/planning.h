@@ -49,7 +49,7 @@ void add_planning_options(CLI::App& app, PlanningOptions& options);
 struct PlannedRender {
     Rig rig;
     RenderPlan plan;
-    double survey_s = 0.0;  // that the look at the user's own scene took
+    double probe_s = 0.0;  // that the probe of the user's own scene took
 };
 
 // Reads the rig, surveys the user's own scene where there is one, and plans. Messages name the

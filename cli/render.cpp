@@ -55,7 +55,7 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
     outcome["frames_rendered"] = result.rendered;
     outcome["frames_kept"] = result.kept;
     outcome["povray_s"] = frames.povray_s;
-    if (planned.plan.scene.user_scene) outcome["survey_s"] = planned.survey_s;
+    if (planned.plan.scene.user_scene) outcome["probe_s"] = planned.probe_s;
     if (options.json) {
         fmt::print("{}\n", dumped(outcome));
         return kDone;
@@ -67,7 +67,7 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
                frames.povray_s,
                counted(static_cast<std::size_t>(jobs), "job"),
                planned.plan.scene.user_scene
-                   ? fmt::format(", after {:.1f} s of looking at the scene", planned.survey_s)
+                   ? fmt::format(", after a {:.1f} s scene probe", planned.probe_s)
                    : "");
     print_outcome(outcome);
     return kDone;

@@ -64,7 +64,7 @@ Rendering render_here(const ValidateCommandOptions& options,
 void require_promise(const std::string& what, const std::vector<std::string>& no_promise) {
     if (no_promise.empty()) return;
     throw InputError(fmt::format(
-        "{}: found no promise to hold it to ({}); allowed: a scene whose render makes one",
+        "{}: has no error bound to validate against ({}); allowed: a scene whose render has one",
         what,
         fmt::join(no_promise, "; ")));
 }

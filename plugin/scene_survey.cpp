@@ -59,6 +59,10 @@ struct Picture {
 // Runs of POV-Ray beside those for each strobe.
 constexpr std::size_t kOnceForAll = 2;
 
+// What half floats cannot hold is looked at again with so much less light.
+constexpr int kMostTries = 8;
+constexpr int kLessLightLog2 = 10;
+
 // How many pixels of strobes an attempt left without a path or brightness, and why.
 struct Unmeasured {
     std::size_t too_bright = 0;  // for half floats
@@ -106,8 +110,9 @@ class Survey {
     void require_light_of_ours();
     void require_water_in_view(const Picture& through_water, const Picture& bare) const;
     void require_no_light_under_0(const Picture& bare) const;
-    [[nodiscard]] bool has_own_colours(const Picture& bare, const Picture& through_water) const;
+    [[nodiscard]] bool has_own_colours(const Picture& through_water);
     void measure(int strobes);
+    void require_no_dry_light(std::size_t pixels);
     void take_in(const Picture& picture, const SurveyFrame& frame, Lit& lit, Unmeasured& left);
     void put_together(const std::vector<Lit>& strobes);
 
@@ -431,12 +436,12 @@ void Survey::require_what_is_bounded(const Asked& asked) {
     for (const auto& [is_there, what] : found) {
         if (!is_there) continue;
         if (!options_.unchecked) {
-            refuse(fmt::format(
-                "found {}; allowed: none, for how far that is from the truth has no bound, or "
-                "--unchecked, for an image without a promise",
-                what));
+            refuse(
+                fmt::format("found {}; not supported: its error cannot be bounded; use --unchecked "
+                            "to render without a promise",
+                            what));
         }
-        scene_.no_promise.push_back(fmt::format("{}, which nothing bounds", what));
+        scene_.no_promise.push_back(fmt::format("{}: its error cannot be bounded", what));
     }
     has_radiosity_ = asked.has_radiosity;
 }
@@ -467,10 +472,8 @@ void Survey::require_light_of_ours() {
         require_water_in_view(through_water, bare);
     }
     require_no_light_under_0(bare);
-    if (has_own_colours(bare, through_water)) {
-        scene_.no_promise.emplace_back(
-            "colours by numbers, each another grey in every channel and no spectrum; "
-            "Aphotic_Pigment gives it one");
+    if (has_own_colours(through_water)) {
+        scene_.no_promise.emplace_back("numeric colours have no spectrum; use Aphotic_Pigment");
     }
 }
 
@@ -500,14 +503,30 @@ void Survey::require_no_light_under_0(const Picture& bare) const {
     }
 }
 
-// Without water, channels differ by colours that are numbers; those of a sky are behind it.
-bool Survey::has_own_colours(const Picture& bare, const Picture& through_water) const {
-    for (std::size_t i = 0; i < bare.red.size(); ++i) {
-        const bool is_beyond = has_water_ && through_water.red[i] == 0.0F;
-        const bool is_grey = bare.red[i] == bare.green[i] && bare.red[i] == bare.blue[i];
-        if (!is_beyond && !is_grey) return true;
+// Without water, channels differ by colours that are numbers; those of a sky are behind it. Where
+// all three are more than half floats hold, they are compared by less light.
+bool Survey::has_own_colours(const Picture& through_water) {
+    Task task = plain_task();
+    for (int attempt = 0; attempt < kMostTries; ++attempt) {
+        if (attempt > 0) {
+            task.name = fmt::format("plain_{}", attempt);
+            task.frame.exposure_log2 -= kLessLightLog2;
+            task.frame.is_coarse_in_radiosity = has_radiosity_;
+            run_tasks({task});
+        }
+        const Picture bare = picture_of(task);
+        bool is_known = true;
+        for (std::size_t i = 0; i < bare.red.size(); ++i) {
+            if (has_water_ && through_water.red[i] == 0.0F) continue;
+            if (bare.red[i] == bare.green[i] && bare.red[i] == bare.blue[i]) {
+                is_known &= std::isfinite(bare.red[i]);
+            } else {
+                return true;
+            }
+        }
+        if (is_known) return false;
     }
-    return false;
+    return true;
 }
 
 // Fills in what is not known yet of each pixel, and counts what it leaves.
@@ -556,10 +575,8 @@ void Survey::take_in(const Picture& picture, const SurveyFrame& frame, Lit& lit,
 // A strobe is measured again where pixels were brighter or fainter than half floats hold, with less
 // or more light, or their paths too long or short for the loss that was tried.
 void Survey::measure(int strobes) {
-    constexpr int kMostTries = 8;
     constexpr double kLessLoss = 8.0;
     constexpr double kMoreLoss = 32.0;
-    constexpr int kLessLightLog2 = 10;
     // Dims what is in view by nothing that half floats show, and puts out what is behind all water.
     constexpr double kLittleLoss = 0x1p-10;
     std::vector<Lit> lit(
@@ -609,15 +626,21 @@ void Survey::measure(int strobes) {
             K_per_m = attenuation_per_m_;
         }
     }
-    // Of what is made as POV-Ray makes it nobody asks for a path.
-    if (left.count() > left.too_faint && scene_.no_promise.empty()) {
-        refuse(fmt::format(
-            "found light that no water dims, in {} of {} pixels; allowed: water on its way. Are "
-            "camera and strobes inside an object that is not hollow?",
-            left.count() - left.too_faint,
-            width_px_ * height_px_));
-    }
+    if (const std::size_t dry = left.count() - left.too_faint; dry > 0) require_no_dry_light(dry);
     put_together(lit);
+}
+
+// Of what has no promise anyway it voids the promise too.
+void Survey::require_no_dry_light(std::size_t pixels) {
+    const std::string what =
+        fmt::format("light that no water dims, in {} of {} pixels", pixels, width_px_ * height_px_);
+    if (scene_.no_promise.empty()) {
+        refuse(fmt::format(
+            "found {}; allowed: water on its way. Are camera and strobes inside an object that is "
+            "not hollow?",
+            what));
+    }
+    scene_.no_promise.push_back(what);
 }
 
 void Survey::put_together(const std::vector<Lit>& strobes) {

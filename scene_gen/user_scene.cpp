@@ -169,7 +169,7 @@ bool opens_to_write(const fs::path& scene_file) {
 void require_unchanged(const fs::path& scene_file, const std::string& files_digest) {
     if (digest_of_scene(scene_file) == files_digest) return;
     throw RunError(fmt::format(
-        "{}: it, or a file that it names, was changed while it was worked on; say the "
+        "{}: it, or a file that it names, was changed while it was worked on; run the "
         "same command again, for the scene as it is now{}",
         scene_file.string(),
         opens_to_write(scene_file) ? ". What it writes itself must be the same each time" : ""));

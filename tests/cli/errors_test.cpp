@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <regex>
+#include <set>
 
 namespace aphotic::errors_test {
 namespace {
@@ -15,6 +16,22 @@ namespace fs = std::filesystem;
 
 constexpr int kBadInput = 2;
 constexpr int kRunFailed = 3;
+
+const std::vector<std::string> kCommands{"render",
+                                         "plan",
+                                         "generate",
+                                         "integrate",
+                                         "trace",
+                                         "lightmap",
+                                         "atlas",
+                                         "validate",
+                                         "study",
+                                         "stress",
+                                         "correct",
+                                         "observe",
+                                         "baseline",
+                                         "compare",
+                                         "data"};
 
 class CommandErrors : public testing::Test {
   protected:
@@ -161,25 +178,45 @@ TEST_F(CommandErrors, NoResultTakesThePlaceOfWhatItIsMadeFrom) {
 }
 
 TEST_F(CommandErrors, HelpAndVersionAreNoErrors) {
-    const std::string manual = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/docs/aphotic.1");
-    for (const char* command : {"render",
-                                "plan",
-                                "generate",
-                                "integrate",
-                                "trace",
-                                "validate",
-                                "observe",
-                                "baseline",
-                                "compare",
-                                "data"}) {
+    for (const std::string& command : kCommands) {
         const CommandResult run = run_aphotic(folder_.path(), {command, "--help"});
         EXPECT_EQ(run.status, 0);
         EXPECT_NE(run.out.find("--json"), std::string::npos) << command;
         EXPECT_EQ(run.err, "");
-        EXPECT_NE(manual.find(std::string(".SY aphotic\\ ") + command + "\n"), std::string::npos)
-            << command << " is not in the man page";
     }
     EXPECT_TRUE(run_aphotic(folder_.path(), {"--version"}).out.starts_with("aphotic "));
+}
+
+TEST_F(CommandErrors, TheManPageHasEveryCommandAndOption) {
+    const std::regex option("--[a-z][a-z0-9-]*");
+    const auto options_of = [&](const std::string& text) {
+        std::set<std::string> names;
+        for (std::sregex_iterator at(text.begin(), text.end(), option), end; at != end; ++at) {
+            names.insert(at->str());
+        }
+        return names;
+    };
+    const std::string manual =
+        std::regex_replace(read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/docs/aphotic.1"),
+                           std::regex(R"(\\-)"),
+                           "-");
+    const std::set<std::string> described = options_of(manual);
+    const std::string all = run_aphotic(folder_.path(), {"--help"}).out;
+    const std::regex subcommand("\n  ([a-z]+) {2,}");
+    std::set<std::string> commands;
+    for (std::sregex_iterator at(all.begin(), all.end(), subcommand), end; at != end; ++at) {
+        commands.insert((*at)[1].str());
+    }
+    EXPECT_EQ(commands, std::set<std::string>(kCommands.begin(), kCommands.end()));
+    for (const std::string& command : commands) {
+        EXPECT_NE(manual.find(".SY aphotic\\ " + command + "\n"), std::string::npos)
+            << command << " is not in the man page";
+        for (const std::string& name :
+             options_of(run_aphotic(folder_.path(), {command, "--help"}).out)) {
+            EXPECT_TRUE(described.contains(name))
+                << command << ": " << name << " is not in the man page";
+        }
+    }
 }
 
 TEST_F(CommandErrors, MissingPovRay) {

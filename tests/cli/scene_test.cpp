@@ -186,11 +186,11 @@ TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
         return run;
     };
     const CommandResult words = with({"render", "-o", "out"});
-    EXPECT_NE(words.err.find("reef.pov: no promise: colours by numbers"), std::string::npos);
-    EXPECT_NE(words.out.find("no promise how far"), std::string::npos) << words.out;
+    EXPECT_NE(words.err.find("reef.pov: no promise: numeric colours"), std::string::npos);
+    EXPECT_NE(words.out.find("no bound on the error"), std::string::npos) << words.out;
     EXPECT_EQ(words.out.find("at most"), std::string::npos) << words.out;
     const CommandResult planned = with({"plan"});
-    EXPECT_NE(planned.out.find("no promise how far"), std::string::npos) << planned.out;
+    EXPECT_NE(planned.out.find("no bound on the error"), std::string::npos) << planned.out;
     EXPECT_EQ(planned.out.find("No pixel's signal"), std::string::npos) << planned.out;
 
     const auto expect_none = [](const nlohmann::json& json) {
@@ -211,12 +211,12 @@ TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
     EXPECT_EQ(manifest.at("no_promise").size(), 1U);
     for (const char* image : {"image.exr", "spectral.exr", "as-rig/image.exr"}) {
         const std::string promise = ExrReader(home_ / "out" / image).attribute("aphotic:promise");
-        EXPECT_TRUE(promise.starts_with("none: colours by numbers")) << image << ": " << promise;
+        EXPECT_TRUE(promise.starts_with("none: numeric colours")) << image << ": " << promise;
     }
     const CommandResult validated =
         aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "check"});
     EXPECT_EQ(validated.status, 2);
-    EXPECT_NE(validated.err.find("found no promise to hold it to"), std::string::npos)
+    EXPECT_NE(validated.err.find("has no error bound to validate against"), std::string::npos)
         << validated.err;
 }
 
@@ -244,7 +244,7 @@ TEST_F(UserScenes, ThatReadWhatTheyWriteRenderOneAtATime) {
     const auto made = rendered("out", {"--fitted", "6", "--jobs", "2"});
     EXPECT_EQ(made["frames_rendered"], 2);
     EXPECT_EQ(made["jobs"], 1);
-    EXPECT_GT(made["survey_s"], 0.0);
+    EXPECT_GT(made["probe_s"], 0.0);
     EXPECT_EQ(rendered("out", {"--fitted", "6", "--jobs", "2"})["frames_kept"], 2);
 }
 
@@ -255,7 +255,7 @@ TEST_F(UserScenes, PromiseNothingOfWhatIsUnchecked) {
         "render", "rig.toml", "--scene", "reef.pov", "-o", "out", "--fitted", "3"};
     const CommandResult refused = aphotic(words);
     EXPECT_EQ(refused.status, 2);
-    EXPECT_NE(refused.err.find("reef.pov: found radiosity; allowed: "), std::string::npos)
+    EXPECT_NE(refused.err.find("reef.pov: found radiosity; not supported: "), std::string::npos)
         << refused.err;
     EXPECT_TRUE(rendered("out", {"--fitted", "3", "--unchecked"})["promise"].is_null());
 }
@@ -271,6 +271,12 @@ TEST_F(UserScenes, AreRefusedWhereTheyCannotServe) {
     const CommandResult study = aphotic({"study", "own.toml", "-o", "study"});
     EXPECT_EQ(study.status, 2);
     EXPECT_NE(study.err.find("own.toml: scene: found"), std::string::npos) << study.err;
+    // Nor can it be given one beside the rig: what has no promise enters no study.
+    const CommandResult option =
+        aphotic({"study", "rig.toml", "--scene", "reef.pov", "-o", "study"});
+    EXPECT_EQ(option.status, 2);
+    EXPECT_NE(option.err.find("--scene"), std::string::npos) << option.err;
+    EXPECT_FALSE(fs::exists(home_ / "study"));
 }
 
 TEST_F(UserScenes, PassOnOnlyWhatChangesSpeed) {

@@ -482,7 +482,7 @@ const std::vector<Misuse> kMisuses{
     {"SledAfterTheCamera",
      "Aphotic_Camera (1, 1)\n#declare Aphotic_Sled = transform { translate x }\n"
      "Aphotic_Cone (0, z, 90, 1, \"arc\", 1)",
-     "Aphotic_Cone: found Aphotic_Sled declared after Aphotic_Camera;"},
+     "Aphotic_Cone: found Aphotic_Sled declared or changed after Aphotic_Camera;"},
     {"SledThatScales",
      "#declare Aphotic_Sled = transform { scale 2 }\nAphotic_Camera (1, 1)",
      "Aphotic_Camera: found an Aphotic_Sled that makes x, y and z 2.000000, 2.000000 and 2.000000 "
@@ -600,10 +600,19 @@ TEST_F(AphoticInc, SettingsThatComeTooLateAreErrors) {
     expect("Aphotic_Seafloor (2, 0, 0, \"light\")\n#declare Aphotic_Unit = 0.01;\n" + rig,
            "Aphotic_Cone: found Aphotic_Unit 0.01");
     expect(rig + "#declare Aphotic_Sled = transform { translate x }\nAphotic_End ()\n",
-           "Aphotic_End: found Aphotic_Sled declared after Aphotic_C");
+           "Aphotic_End: found Aphotic_Sled declared or changed after Aphotic_C");
+    // Another for a part of the scene, or none.
+    const std::string sled = "#declare Aphotic_Sled = transform { translate x }\n";
+    expect(sled +
+               "Aphotic_Camera (1, 1)\n#declare Aphotic_Sled = transform { translate y }\n"
+               "Aphotic_Cone (0, z, 90, 1, \"flash\", 1)\n",
+           "Aphotic_Cone: found Aphotic_Sled declared or changed after Aphotic_Camera");
+    expect(sled + rig + "#undef Aphotic_Sled\nAphotic_Seafloor (2, 0, 0, \"light\")\n",
+           "Aphotic_Seafloor: found Aphotic_Sled declared or changed after Aphotic_Camera");
+    expect("#declare Aphotic_Sled = transform { scale <-1, 1, 1> }\n" + rig, "or mirrors them");
     expect("#declare Aphotic_Sled = transform { matrix <1, 0, 0, 0.5, 1, 0, 0, 0, 1, 0, 0, 0> }\n" +
                rig,
-           "or skews them");
+           "or skews or mirrors them");
     expect(rig + "#declare Aphotic_Fade_Distance = 1;\nAphotic_End ()\n",
            "Aphotic_End: found Aphotic_Fade_Distance 1.000000,");
     // Each strobe may have its own edge, and a sled may lie anywhere, turned by any angle.
@@ -611,6 +620,7 @@ TEST_F(AphoticInc, SettingsThatComeTooLateAreErrors) {
                  "#declare Aphotic_Sled = transform { rotate <12.3, 45.6, 78.9> "
                  "translate <1e4, -2e4, 3e4> }\n" +
                      rig +
+                     "#declare Aphotic_Sled = transform { Aphotic_Sled }\n"
                      "#declare Aphotic_Soft_Edge = 2;\n"
                      "Aphotic_Cone (<0.5, 0, 0>, z, 60, 0.25, \"flash\", 1)\n"
                      "Aphotic_Seafloor (2, 0, 0, \"light\")\nAphotic_End ()\nAphotic_End ()\n"));

@@ -319,6 +319,19 @@ TEST_F(SceneSurvey, ColoursByNumbersVoidThePromise) {
         1U);
 }
 
+// A disc 5 cm under a lamp, where all three channels are more than half floats hold.
+TEST_F(SceneSurvey, ColoursByNumbersVoidThePromiseWhereTheyAreBrightToo) {
+    const auto reasons = [&](const std::string& colour) {
+        return survey(std::string(kScene) +
+                      "Aphotic_Cone (<0, 0, 1.9>, z, 80, 30000, \"xenon-flash\", 1)\n"
+                      "disc { <0, 0, 1.95>, z, 0.1 pigment { rgb " +
+                      colour + " } }\n")
+            .no_promise.size();
+    };
+    EXPECT_EQ(reasons("<1, 0.5, 0.25>"), 1U);
+    EXPECT_EQ(reasons("0.5"), 0U);
+}
+
 // Light whose error nothing bounds: refused, or rendered without a promise.
 class UnboundedLight : public SceneSurvey,
                        public testing::WithParamInterface<std::pair<const char*, const char*>> {};
@@ -326,7 +339,7 @@ class UnboundedLight : public SceneSurvey,
 TEST_P(UnboundedLight, IsRefusedOrVoidsThePromise) {
     const auto& [what, scene] = GetParam();
     expect_refusal(refusal(std::string(kScene) + scene),
-                   "found " + std::string(what) + "; allowed: ");
+                   "found " + std::string(what) + "; not supported: ");
     unchecked_ = true;
     const UserScene surveyed = survey(std::string(kScene) + scene);
     ASSERT_EQ(surveyed.no_promise.size(), 1U);
@@ -402,10 +415,15 @@ TEST_F(SceneSurvey, RefusesLightUnderNought) {
 
 // The camera looks out of a block without water, in which a lamp lights a part of the floor.
 TEST_F(SceneSurvey, RefusesWhatNoWaterDimsInAPartOfTheImage) {
-    expect_refusal(refusal(std::string(kScene) +
-                           "box { <-0.3, -0.3, -1>, <0.3, 0.3, 2.5> pigment { rgbt 1 } }\n"
-                           "Aphotic_Cone (0, z, 60, 1, \"xenon-flash\", 1)\n"),
-                   "found light that no water dims, in ");
+    const std::string dry = std::string(kScene) +
+                            "box { <-0.3, -0.3, -1>, <0.3, 0.3, 2.5> pigment { rgbt 1 } }\n"
+                            "Aphotic_Cone (0, z, 60, 1, \"xenon-flash\", 1)\n";
+    expect_refusal(refusal(dry), "found light that no water dims, in ");
+    // Where the promise is void by another fault, this one is named too.
+    const std::vector<std::string> reasons =
+        survey(dry + "sphere { <0.6, 0, 1.9>, 0.1 pigment { rgb <1, 0.5, 0> } }\n").no_promise;
+    ASSERT_EQ(reasons.size(), 2U);
+    EXPECT_TRUE(reasons[1].starts_with("light that no water dims, in ")) << reasons[1];
 }
 
 TEST_F(SceneSurvey, LeavesTheUsersFolderAsItWas) {
