@@ -117,9 +117,6 @@ std::shared_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
     return input;
 }
 
-// What libjpeg says of bytes after the last pixel, which some cameras write.
-constexpr std::string_view kPadding = "extraneous bytes before marker 0xd9";
-
 // The channels from `first` up to, and without, `end`. OpenImageIO takes what it can get of a file
 // that is damaged, and leaves an error behind.
 std::vector<float> pixels_in(OIIO::ImageInput& input,
@@ -130,8 +127,7 @@ std::vector<float> pixels_in(OIIO::ImageInput& input,
     std::vector<float> pixels(spec.image_pixels() * static_cast<std::size_t>(end - first));
     const bool is_read = input.read_image(0, 0, first, end, OIIO::TypeDesc::FLOAT, pixels.data());
     const std::string fault = input.geterror();
-    const bool is_harmless = fault.empty() || fault.find(kPadding) != std::string::npos;
-    if (!is_read || !is_harmless) refuse(file, fault);
+    if (!is_read || !fault.empty()) refuse(file, fault);
     return pixels;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Which channels of two images are compared, and what becomes of the others: none is passed over in
-// silence. Partners have one name, or are one quantity at one wavelength however it is spelt
+// silence. Partners have one name, or are one quantity at one wavelength whatever its spelling
 // (spectral/channel_wavelength.h). A channel that the other image lacks has no partner, unless it
 // is one of these, which are left aside: opacity (A, alpha), and what `aphotic observe` says of its
 // averages (count.NAME, stderr.NAME).

@@ -300,7 +300,7 @@ Action configure_compare(CLI::App& app) {
         ->type_name("FILE.html");
     app.add_flag("--json", options->json, "print the numbers as JSON");
     app.footer(
-        "Spectral channels are paired by wavelength, however it is spelt.\n"
+        "Spectral channels are paired by wavelength, whatever the spelling.\n"
         "For every channel, e = (a - b) / max(|b|, black). Exit status 0 when all |e| are within\n"
         "the bound and every channel is in both images, 1 when not. Opacity and what aphotic "
         "observe\n"

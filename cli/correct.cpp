@@ -112,23 +112,27 @@ SurveyGain given_gain(const Survey& survey, const CorrectCommandOptions& options
 struct FirstLook {
     SurveyGain gain;
     std::vector<Suspicion> suspicions;
+    std::string not_checked;  // and why; or empty
 };
 
+// A gain that is kept is not taken again, but the survey is looked at: it may have other images and
+// another navigation by now.
 FirstLook first_look(const Survey& survey,
                      const CorrectCommandOptions& options,
                      const std::string& settings_sha256) {
-    const auto noted = noted_gain(options, settings_sha256);
-    if (noted) return {options.gain.empty() ? *noted : given_gain(survey, options), {}};
+    std::optional<SurveyGain> gain = noted_gain(options, settings_sha256);
+    if (!options.gain.empty()) gain = given_gain(survey, options);
     try {
         const SurveyLook look = look_at(survey,
-                                        {.most_images = options.gain_images,
+                                        {.gain_images = gain ? 0 : options.gain_images,
                                          .least_light = options.result.limit.share,
                                          .jobs = options.result.jobs});
-        std::vector<Suspicion> found = suspicions(look.images, survey.camera.mosaic);
+        const std::vector<ImageLook> looks = look.looks();
+        std::vector<Suspicion> found = suspicions(looks, survey.camera.mosaic);
         tell(found, options.strict);
-        return {options.gain.empty() ? measured_gain(look, wanted_middle(survey, options))
-                                     : given_gain(survey, options),
-                std::move(found)};
+        return {gain ? *gain : measured_gain(look, wanted_middle(survey, options)),
+                std::move(found),
+                not_checked(looks)};
     } catch (const InputError&) {
         // Refused before anything is written: no folder is left either, unless it holds something.
         std::error_code ignored;
@@ -181,7 +185,10 @@ void print_summary(const Json& summary, const CorrectCommandOptions& options) {
         constexpr double kPercent = 100.0;
         fmt::print(" {} {:.3g} %", name, kPercent * share.get<double>());
     }
-    fmt::print("\n  {}\n", notes_of(options).string());
+    fmt::print("\n");
+    const auto unchecked = summary["not_checked"].get<std::string>();
+    if (!unchecked.empty()) fmt::print("  not checked: {}\n", unchecked);
+    fmt::print("  {}\n", notes_of(options).string());
     for (const auto& one : summary["skipped"]) {
         fmt::print(
             "  skipped: {}: {}\n", one["image"].get<std::string>(), one["why"].get<std::string>());
@@ -235,12 +242,13 @@ ExitStatus correct(const CorrectCommandOptions& options) {
     set_exr_threads(0);  // the images themselves are spread over the threads
     const Json settings = settings_of(survey, options);
     const std::string settings_sha256 = sha256_of_text(settings.dump());
-    const auto [gain, looks_wrong] = first_look(survey, options, settings_sha256);
+    const auto [gain, looks_wrong, unchecked] = first_look(survey, options, settings_sha256);
     Json notes{{"settings", settings},
                {"settings_sha256", settings_sha256},
                {"gain", gain.gain},
                {"gain_from", gain.images},
-               {"looks_wrong", suspicions_json(looks_wrong)}};
+               {"looks_wrong", suspicions_json(looks_wrong)},
+               {"not_checked", unchecked}};
     write_text_file(notes_of(options), dumped(notes) + "\n");
 
     Journal journal(options.result.folder / "corrected.jsonl");
@@ -340,10 +348,11 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
                    "tiff or png, of 16 bits with 65535 for white, or exr, of floats")
         ->check(CLI::IsMember({"tiff", "png", "exr"}))
         ->capture_default_str();
-    app.add_option("--compression",
-                   options.result.compression,
-                   "of the files, always lossless: none; fast; or small, a few per cent less in "
-                   "half as much time again")
+    app.add_option(
+           "--compression",
+           options.result.compression,
+           "of the files, always lossless: none, fast, or small (a few per cent smaller, about "
+           "1.5 times slower)")
         ->transform(CLI::CheckedTransformer(kCompressions).description(""))
         ->type_name("none|fast|small")
         ->default_str("fast");

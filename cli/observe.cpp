@@ -409,7 +409,7 @@ Action configure_observe(CLI::App& app) {
     app.footer(
         "MAP.exr holds the average in R, G, B, the number of images in count.R ..., the standard\n"
         "error in stderr.R ...; what was never observed is NaN. An image that cannot be used is\n"
-        "told and skipped; the exit status is then 1.");
+        "reported and skipped; the exit status is then 1.");
     return [options] { return observe(*options); };
 }
 

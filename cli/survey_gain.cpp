@@ -27,10 +27,11 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     }
     SurveyGain gain{.gain = {}, .middle = middle, .images = {}};
     std::array<std::vector<double>, kChannels> quotients;
-    for (std::size_t i = 0; i < look.images.size(); ++i) {
-        const PerChannel& quotient = look.images[i].quotient;
+    for (const SeenImage& seen : look.images) {
+        const PerChannel& quotient = seen.look.quotient;
+        if (!seen.is_for_gain) continue;
         if (!std::ranges::all_of(quotient, [](double q) { return q > 0.0; })) continue;
-        gain.images.push_back(look.names[i]);
+        gain.images.push_back(seen.name);
         for (std::size_t c = 0; c < kChannels; ++c) quotients[c].push_back(quotient[c]);
     }
     if (gain.images.empty()) {

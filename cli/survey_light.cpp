@@ -123,6 +123,7 @@ SurveyLight light_of_rig(const std::string& rig_file,
     }();
     return {.digest = rig.digest,
             .size = {rig.camera.width_px, rig.camera.height_px},
+            .has_poses = true,
             .pose =
                 [light, altitudes_m](const std::filesystem::path& image) {
                     const Sled sled = light->navigation.pose_of(image).sled;
@@ -160,6 +161,7 @@ SurveyLight light_of_map(const std::string& map_file) {
     const auto pixels = map.samples.size() / kNames.size();
     return {.digest = sha256_of_file(map_file),
             .size = {map.width_px, map.height_px},
+            .has_poses = false,
             .pose = [](const std::filesystem::path&) { return Sled{}; },
             .map = [map](const Sled&) { return map; },
             .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); },

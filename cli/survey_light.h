@@ -21,6 +21,7 @@ namespace aphotic::cli {
 struct SurveyLight {
     std::string digest;  // of all that the maps depend on, the pose aside
     PlaneSize size;
+    bool has_poses = true;  // else one map for all images, and a pose that means nothing
     // An InputError when the image has none that can be corrected.
     std::function<Sled(const std::filesystem::path& image)> pose;
     // These are called from several threads.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A first look at some images of a survey, spread evenly over it: what the gain is taken from
-// (survey_gain.h), and what looks wrong (lightmap/survey_check.h).
+// (survey_gain.h), and what looks wrong (lightmap/survey_check.h). How many the gain takes is no
+// matter to the check, which needs kEnoughImages.
 #pragma once
 
 #include "cli/survey_files.h"
@@ -26,15 +27,24 @@ struct Survey {
 
 struct LookRequest {
     std::size_t most_images = 16;
+    std::size_t gain_images =
+        0;                     // that the gain is taken from, whether or not they are among these
     double least_light = 0.0;  // of the map's brightest: darker pixels do not count
     std::size_t jobs = 1;
 };
 
+struct SeenImage {
+    std::string name;
+    ImageLook look;
+    bool is_for_gain = false;
+};
+
 struct SurveyLook {
-    std::vector<ImageLook> images;   // those that can be used
-    std::vector<std::string> names;  // theirs
-    std::size_t count = 0;           // that were looked at
-    std::string first_why;           // why one of them cannot be used, and which; or empty
+    std::vector<SeenImage> images;  // those that can be used
+    std::size_t count = 0;          // that were looked at
+    std::string first_why;          // why the first of the others cannot, and which; or empty
+
+    [[nodiscard]] std::vector<ImageLook> looks() const;
 };
 
 [[nodiscard]] SurveyLook look_at(const Survey& survey, const LookRequest& request);

@@ -4,8 +4,10 @@
 // rows of one that was cut short as zeros.
 //
 // TIFF 6.0 and BigTIFF. The first directory tells where each strip or tile begins and how many
-// bytes it has: offsets (tags 273, 324) and byte counts (279, 325). Whole is the file when each
-// ends within it and none is empty. What the bytes mean is left to libtiff.
+// bytes it has: offsets (tags 273, 324) and byte counts (279, 325). The file is whole when it has
+// as many of both as its pixels need, by width, height, rows a strip or the tiles' sizes, and
+// separate planes; when each ends within the file and none is empty. What the bytes mean is left to
+// libtiff.
 #pragma once
 
 #include <filesystem>

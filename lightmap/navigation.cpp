@@ -139,45 +139,41 @@ bool is_unknown(std::string_view field) {
     return std::ranges::find(kUnknown, lower(std::string(field))) != kUnknown.end();
 }
 
-// NaN when there is none.
-double number_of(const std::string& name,
-                 std::size_t line,
-                 std::string_view column,
-                 std::string_view field) {
-    if (is_unknown(field)) return std::numeric_limits<double>::quiet_NaN();
+// NaN when there is none; what is neither is a fault of the pose.
+double number_in(ImagePose& pose, std::string_view column, std::string_view field) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    if (is_unknown(field)) return kNone;
+    const std::string_view digits = field.starts_with('+') ? field.substr(1) : field;
     double number = 0.0;
-    if (field.starts_with('+')) field.remove_prefix(1);
-    const char* end = field.data() + field.size();
-    const auto [stop, error] = std::from_chars(field.data(), end, number);
-    if (error != std::errc() || stop != end) {
-        fail_at_line(name, line, fmt::format("{}: found '{}'; allowed: a number", column, field));
+    const char* end = digits.data() + digits.size();
+    const auto [stop, error] = std::from_chars(digits.data(), end, number);
+    if (error == std::errc() && stop == end) return number;
+    if (pose.fault.empty()) {
+        pose.fault = fmt::format("{}: found '{}'; allowed: a number", column, field);
     }
-    return number;
+    return kNone;
 }
 
-ImagePose pose_in(const std::string& name,
-                  std::size_t line,
+ImagePose pose_in(std::size_t line,
                   const ColumnLayout& layout,
                   const std::vector<std::string_view>& fields,
                   const Sled& rig_sled) {
+    ImagePose pose{.image = {}, .line = line, .sled = rig_sled, .fault = {}};
+    if (layout.image < fields.size()) pose.image = std::string(fields[layout.image]);
     if (fields.size() != layout.fields) {
-        fail_at_line(
-            name,
-            line,
+        pose.fault =
             fmt::format("found {} fields; allowed: {}",
                         fields.size(),
                         layout.has_commas ? fmt::format("{}, as in the header row", layout.fields)
-                                          : "4: image, altitude, pitch, roll"));
+                                          : "4: image, altitude, pitch, roll");
+        return pose;
     }
-    ImagePose pose{.image = std::string(fields[layout.image]), .line = line, .sled = rig_sled};
-    if (pose.image.empty()) fail_at_line(name, line, "found no image's name");
-    pose.sled.altitude_m = number_of(name, line, kAltitude, fields[layout.altitude]);
+    pose.sled.altitude_m = number_in(pose, kAltitude, fields[layout.altitude]);
     if (layout.pitch) {
-        pose.sled.pitch_rad =
-            number_of(name, line, kPitch, fields[*layout.pitch]) * kRadiansPerDegree;
+        pose.sled.pitch_rad = number_in(pose, kPitch, fields[*layout.pitch]) * kRadiansPerDegree;
     }
     if (layout.roll) {
-        pose.sled.roll_rad = number_of(name, line, kRoll, fields[*layout.roll]) * kRadiansPerDegree;
+        pose.sled.roll_rad = number_in(pose, kRoll, fields[*layout.roll]) * kRadiansPerDegree;
     }
     return pose;
 }
@@ -209,12 +205,31 @@ void require(const std::string& name,
 
 const ImagePose& Navigation::pose_of(const fs::path& image) const {
     const auto found = poses_.find(key_of(image.string()));
-    if (found == poses_.end()) throw InputError(fmt::format("{} has no line for it", name_));
+    if (found == poses_.end()) {
+        throw InputError(fmt::format(
+            "{} has no line for it{}",
+            name_,
+            nameless_line_ > 0 ? fmt::format("; line {} has no image's name", nameless_line_)
+                               : ""));
+    }
     const ImagePose& pose = found->second;
+    if (!pose.fault.empty()) fail_at_line(name_, pose.line, pose.fault);
     require(name_, pose, kAltitude, pose.sled.altitude_m, kAltitude_m);
     require(name_, pose, kPitch, pose.sled.pitch_rad / kRadiansPerDegree, kTilt_deg);
     require(name_, pose, kRoll, pose.sled.roll_rad / kRadiansPerDegree, kTilt_deg);
     return pose;
+}
+
+void Navigation::add(ImagePose pose) {
+    if (pose.image.empty()) {
+        if (nameless_line_ == 0) nameless_line_ = pose.line;
+        return;
+    }
+    const std::string key = key_of(pose.image);
+    const auto [first, is_new] = poses_.try_emplace(key, pose);
+    if (is_new) return;
+    first->second.fault =
+        fmt::format("the image '{}' stands twice, also on line {}", key, pose.line);
 }
 
 Navigation parse_navigation(const std::string& name, std::string_view text, const Sled& rig_sled) {
@@ -239,20 +254,10 @@ Navigation parse_navigation(const std::string& name, std::string_view text, cons
             continue;
         }
         if (!layout) layout = ColumnLayout{};
-        ImagePose pose = pose_in(name,
-                                 line,
-                                 *layout,
-                                 layout->has_commas ? comma_fields(content) : blank_fields(content),
-                                 rig_sled);
-        const std::string key = key_of(pose.image);
-        const auto [other, is_new] = navigation.poses_.try_emplace(key, std::move(pose));
-        if (!is_new) {
-            fail_at_line(
-                name,
-                line,
-                fmt::format(
-                    "the image '{}' stands twice, first on line {}", key, other->second.line));
-        }
+        navigation.add(pose_in(line,
+                               *layout,
+                               layout->has_commas ? comma_fields(content) : blank_fields(content),
+                               rig_sled));
     }
     if (navigation.poses_.empty())
         fail_at_line(name, line + 1, "the file ends without a line of an image");

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -29,7 +30,12 @@ constexpr double kPileLeast = 16.0;  // samples: in a small image one is a large
 constexpr double kGreen = 0.1;
 constexpr double kOtherSites = 0.25;
 
-constexpr std::size_t kEnough = 12;  // images, for a line through them
+// Altitudes that vary less are one altitude: an altimeter's own noise is some centimetres, and a
+// slope over noise is 0.
+constexpr double kSpread_m = 0.05;
+// Of logarithms, as a standard deviation: maps that vary less are alike. Rounding is far below, and
+// floors vary by more.
+constexpr double kSpread = 0.01;
 constexpr double kSlope = 0.5;
 constexpr double kTurned = 1.0;  // a slope of 1 - kTurned has turned round
 constexpr double kStandardErrors = 5.0;
@@ -72,11 +78,12 @@ Sums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
     return sums;
 }
 
-// y = slope x + const by least squares; no line of fewer than kEnough points.
+// y = slope x + const by least squares; no line of too few points, or of points too near each
+// other.
 Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
-    if (x.size() < kEnough) return {};
+    if (x.size() < kEnoughImages) return {};
     const Sums sums = sums_of(x, y);
-    if (!(sums.xx > 0.0)) return {};
+    if (!(sums.xx > kSpread * kSpread * static_cast<double>(x.size()))) return {};
     const double slope = sums.xy / sums.xx;
     const auto freedom = static_cast<double>(x.size() - 2);
     return {slope, std::sqrt(std::max(0.0, sums.yy - slope * sums.xy) / freedom / sums.xx)};
@@ -88,7 +95,26 @@ bool has_light(const ImageLook& look) {
            std::ranges::all_of(look.map_mean, is_light);
 }
 
-double spread_of(const std::vector<double>& logarithms) {
+// Those with light in every channel, of which lines are laid.
+std::vector<ImageLook> lit(std::span<const ImageLook> looks) {
+    std::vector<ImageLook> lit;
+    std::ranges::copy_if(looks, std::back_inserter(lit), has_light);
+    return lit;
+}
+
+bool has_altitudes(std::span<const ImageLook> looks) {
+    return std::ranges::all_of(looks,
+                               [](const ImageLook& look) { return look.altitude_m.has_value(); });
+}
+
+bool is_one_altitude(std::span<const ImageLook> looks) {
+    std::vector<double> altitudes_m;
+    for (const ImageLook& look : looks) altitudes_m.push_back(look.altitude_m.value_or(0.0));
+    const auto count = static_cast<double>(looks.size());
+    return sums_of(altitudes_m, altitudes_m).xx <= kSpread_m * kSpread_m * count;
+}
+
+double fold_of(const std::vector<double>& logarithms) {
     const auto [least, most] = std::ranges::minmax_element(logarithms);
     return std::exp(*most - *least);
 }
@@ -152,12 +178,10 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
                          is_green_beside ? "GRBG or GBRG" : "RGGB or BGGR")});
 }
 
-// The images with light in every channel, and the logarithms that lines are laid through.
 void check_colour(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<Suspicion>& found) {
     std::vector<double> maps;
     std::vector<double> images;
     for (const ImageLook& look : looks) {
-        if (!has_light(look)) continue;
         maps.push_back(std::log(look.map_mean[kRed] / look.map_mean[kBlue]));
         images.push_back(maps.back() + std::log(look.quotient[kRed] / look.quotient[kBlue]));
     }
@@ -166,57 +190,61 @@ void check_colour(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
     found.push_back(
         {.about = "bayer",
          .what = fmt::format(
-             "red over blue changes {:.3g}-fold over the images' altitudes, where the maps' "
-             "changes {:.3g}-fold the other way: red and blue are changed for each other{}",
-             spread_of(images),
-             spread_of(maps),
+             "red over blue varies {:.3g}-fold over the images' altitudes where the maps' varies "
+             "{:.3g}-fold the other way: red and blue are swapped{}",
+             fold_of(images),
+             fold_of(maps),
              mosaic == Mosaic::None ? "" : fmt::format("; --bayer is {}", mosaic_name(mosaic)))});
+}
+
+std::string range_of(std::span<const ImageLook> looks) {
+    const auto [lowest, highest] = std::ranges::minmax(looks, {}, &ImageLook::altitude_m);
+    return fmt::format("{:g} to {:g} m", *lowest.altitude_m, *highest.altitude_m);
 }
 
 void check_altitude(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
     std::vector<double> maps;
     std::vector<double> images;
-    std::array<std::vector<float>, kChannels> quotients;
-    double lowest_m = std::numeric_limits<double>::infinity();
-    double highest_m = 0.0;
     for (const ImageLook& look : looks) {
-        if (!has_light(look)) continue;
-        lowest_m = std::min(lowest_m, look.altitude_m);
-        highest_m = std::max(highest_m, look.altitude_m);
         maps.push_back(std::log(look.map_mean[kGreenChannel]));
         images.push_back(maps.back() + std::log(look.quotient[kGreenChannel]));
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            quotients[c].push_back(static_cast<float>(std::log(look.quotient[c])));
-        }
     }
-    if (maps.empty()) return;
-    const std::string range = fmt::format("{:g} to {:g} m", lowest_m, highest_m);
     const Line line = line_through(maps, images);
-    if (std::abs(line.slope - 1.0) >= std::max(kSlope, kStandardErrors * line.error)) {
-        found.push_back({.about = "altitude",
-                         .what = fmt::format("the images' brightness changes {:.3g}-fold, as the "
-                                             "power {:.2g} of the maps', which "
-                                             "changes {:.3g}-fold from {}: these are not their "
-                                             "altitudes, or the exposure is not "
-                                             "one",
-                                             spread_of(images),
-                                             line.slope,
-                                             spread_of(maps),
-                                             range)});
-    }
-    PerChannel gain{};
-    for (std::size_t c = 0; c < kChannels; ++c) gain[c] = std::exp(-median_of(quotients[c]));
-    const auto [least, most] = std::ranges::minmax(gain);
-    if (most <= kGains * least) return;
+    if (std::abs(line.slope - 1.0) < std::max(kSlope, kStandardErrors * line.error)) return;
     found.push_back(
         {.about = "altitude",
-         .what = fmt::format("the maps at {} have another colour than the images: R, G and B "
-                             "need gains of {:.3g}, {:.3g} and {:.3g}. Altitudes, water or "
-                             "the camera's response are not theirs",
-                             range,
-                             1.0,
-                             gain[kGreenChannel] / gain[kRed],
-                             gain[kBlue] / gain[kRed])});
+         .what = fmt::format("brightness varies {:.3g}-fold where the maps vary {:.3g}-fold ({}; "
+                             "slope {:.2g}, expected 1). Wrong altitude column, or exposure not "
+                             "constant?",
+                             fold_of(images),
+                             fold_of(maps),
+                             range_of(looks),
+                             line.slope)});
+}
+
+void check_gains(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
+    if (looks.empty()) return;
+    PerChannel gain{};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        std::vector<float> quotients;
+        for (const ImageLook& look : looks) {
+            quotients.push_back(static_cast<float>(std::log(look.quotient[c])));
+        }
+        gain[c] = std::exp(-median_of(quotients));
+    }
+    const auto [least, most] = std::ranges::minmax(gain);
+    if (most <= kGains * least) return;
+    const bool has_poses = has_altitudes(looks);
+    found.push_back(
+        {.about = has_poses ? "altitude" : "map",
+         .what = fmt::format(
+             "{} and the images differ in colour: R, G and B need gains of {:.3g}, {:.3g} and "
+             "{:.3g}. Wrong {}water or camera response?",
+             has_poses ? fmt::format("the maps at {}", range_of(looks)) : "the map",
+             1.0,
+             gain[kGreenChannel] / gain[kRed],
+             gain[kBlue] / gain[kRed],
+             has_poses ? "altitude column, " : "")});
 }
 
 void check_attitude(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
@@ -228,7 +256,7 @@ void check_attitude(std::span<const ImageLook> looks, std::vector<Suspicion>& fo
         xy += look.as_radians.xy;
         if (look.as_radians.xx > 0.0) ++count;
     }
-    if (count < kEnough) return;
+    if (count < kEnoughImages) return;
     const double slope = xy / xx;
     double squares = 0.0;
     for (const ImageLook& look : looks) {
@@ -237,8 +265,8 @@ void check_attitude(std::span<const ImageLook> looks, std::vector<Suspicion>& fo
     if (slope < std::max(kLikeness, kStandardErrors * std::sqrt(squares) / xx)) return;
     found.push_back(
         {.about = "attitude",
-         .what = fmt::format("pitch and roll are all within {} degrees, and the images show "
-                             "{:.2g} of the difference that it makes to take them as radians",
+         .what = fmt::format("pitch and roll are all within {} degrees, and the images match the "
+                             "angles read as radians ({:.2g}; 0 for degrees). Are they in radians?",
                              kSmall_deg,
                              slope)});
 }
@@ -323,6 +351,7 @@ Likeness likeness(const RawImage& raw,
         y.push_back(std::log(block.image / block.map));
     }
     const Sums sums = sums_of(x, y);
+    if (!(sums.xx > kSpread * kSpread * static_cast<double>(x.size()))) return {};
     return {.xx = sums.xx, .xy = sums.xy};
 }
 
@@ -330,12 +359,30 @@ std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosai
     std::vector<Suspicion> found;
     check_white(looks, found);
     if (mosaic != Mosaic::None) check_greens(looks, mosaic, found);
-    // At other altitudes colours change otherwise, too.
+    const std::vector<ImageLook> lit_looks = lit(looks);
     const std::size_t before = found.size();
-    check_altitude(looks, found);
-    if (found.size() == before) check_colour(looks, mosaic, found);
+    const bool has_line = has_altitudes(lit_looks) && !is_one_altitude(lit_looks);
+    if (has_line) check_altitude(lit_looks, found);
+    check_gains(lit_looks, found);
+    // At other altitudes colours change otherwise, too.
+    if (has_line && found.size() == before) check_colour(lit_looks, mosaic, found);
     check_attitude(looks, found);
     return found;
+}
+
+std::string not_checked(std::span<const ImageLook> looks) {
+    const std::vector<ImageLook> lit_looks = lit(looks);
+    if (!has_altitudes(lit_looks)) return {};
+    if (lit_looks.size() < kEnoughImages) {
+        return fmt::format("altitudes, red for blue, radians: {} image{} with light; needed: {}",
+                           lit_looks.size(),
+                           lit_looks.size() == 1 ? "" : "s",
+                           kEnoughImages);
+    }
+    if (!is_one_altitude(lit_looks)) return {};
+    return fmt::format("altitudes, red for blue: {} images, all of one altitude ({})",
+                       lit_looks.size(),
+                       range_of(lit_looks));
 }
 
 }  // namespace aphotic

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What looks wrong about a survey, by a few of its images: numbers that were given and that the
-// images gainsay. Each is told only where no right survey does the same, so silence proves nothing.
+// images contradict. Each is told only where no right survey does the same, so silence proves
+// nothing.
 //
 // white level  Light has no largest number, a sensor has. Where the largest number of all, under
-// the
-//              white level, holds a pile of samples, kPile times as many as a number just below it
-//              and kPileShare of all, the sensor is saturated there.
+//              the white level, holds a pile of samples, kPile times as many as a number just below
+//              it and kPileShare of all, the sensor is saturated there.
 // bayer        Both green sites see one light, so their medians agree. Where those that the pattern
 //              makes green differ by over kGreen, and the other two by under a fourth of that, the
-//              pattern is another. Red and blue that are changed for each other:
-//              log(red / blue) of the images falls over altitude where that of the maps rises.
+//              pattern is another. Red and blue that are swapped: log(red / blue) of the images
+//              falls over altitude where that of the maps rises.
 // altitude     Over the images, log(image) = s log(map) + const with s = 1 whatever the floor's
 //              mean, in the green channel. Told where s is off by over kSlope and by five of its
-//              standard errors, of kEnough images and more. Where maps are of light that has
-//              travelled another way, their colour is another too: told where the gains of two
-//              channels differ by over kGains.
+//              standard errors, of kEnoughImages and more at altitudes that differ.
+// map          Where maps are of light that has travelled another way, their colour is another too:
+//              told where the gains of two channels differ by over kGains; as "altitude" where
+//              images have one.
 // attitude     Tilts that are all under kSmall_deg may be radians. Where maps of these, taken as
 //              radians, differ from those of degrees, b = sum x y / sum x x is 1 or 0: over blocks
 //              of pixels, x the logarithm of one map over the other, y that of the image over the
@@ -23,7 +24,7 @@
 //              and five of its standard errors from 0.
 //
 // Slopes are least squares over the images, with the standard error that their residuals give:
-// floors that differ from image to image widen it.
+// floors that differ from image to image widen it. Of maps that are alike there is no slope.
 #pragma once
 
 #include "lightmap/correction.h"
@@ -67,20 +68,26 @@ struct ImageLook {
     float white = 0.0F;
     std::optional<std::array<double, 4>> sites;
     // Of images with a map.
-    double altitude_m = 0.0;
-    PerChannel quotient{};  // middle_quotient()
+    std::optional<double> altitude_m;  // none: one map for all
+    PerChannel quotient{};             // middle_quotient()
     PerChannel map_mean{};
-    Likeness as_radians;  // of its map to that of the tilts as radians; 0: surely degrees
+    Likeness as_radians;  // of its map to that of the tilts as radians; 0: surely degrees, or alike
 };
 [[nodiscard]] PerChannel means_of(const Lightmap& map);
 
 // Whether tilts [degrees] are such as radians would be.
 inline constexpr double kSmall_deg = 0.6;
 
+// Images with light, for a line through them.
+inline constexpr std::size_t kEnoughImages = 12;
+
 struct Suspicion {
-    std::string about;  // "white-level", "bayer", "altitude", "attitude"
+    std::string about;  // "white-level", "bayer", "altitude", "map", "attitude"
     std::string what;   // with the number that shows it
 };
 [[nodiscard]] std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic);
+
+// What no line through images with altitudes can tell of these, and why; or empty.
+[[nodiscard]] std::string not_checked(std::span<const ImageLook> looks);
 
 }  // namespace aphotic

@@ -167,21 +167,38 @@ TEST(AnyImage, WhatIsCutAnywhereIsRefusedOrHasAllItsPixels) {
     }
 }
 
-// A disk that filled up can leave zeros in place of the rest, in a file of its full size.
-TEST(AnyImage, ZerosInPlaceOfTheRestAreRefused) {
+// A disk that filled up can leave zeros in place of the rest, in a file of its full size. Where
+// numbers stand as they are, zeros are black pixels, and nobody can tell.
+TEST(AnyImage, ZerosInPlaceOfTheRestAreRefusedWhereTheyAreNoPixels) {
     const TempFolder folder;
-    for (const char* compression : {"zip", "lzw"}) {
-        const Format format{.file = "a.tif",
-                            .channels = 1,
-                            .type = OIIO::TypeDesc::UINT16,
-                            .words = {{"compression", compression}}};
+    const auto is_refused = [&](const Format& format) {
         std::string bytes = bytes_of(format, folder.path());
         const std::size_t half = bytes.size() / 2;
         bytes.replace(half, bytes.size() - half, bytes.size() - half, '\0');
-        write_file(folder.path() / "a.tif", bytes);
-        EXPECT_THROW(static_cast<void>(planes_in(folder.path() / "a.tif")), InputError)
-            << compression;
+        write_file(folder.path() / format.file, bytes);
+        try {
+            static_cast<void>(planes_in(folder.path() / format.file));
+        } catch (const InputError&) {
+            return true;
+        }
+        return false;
+    };
+    const auto tiff = [](const std::string& compression) {
+        const bool is_jpeg = compression == "jpeg";
+        return Format{.file = "a.tif",
+                      .channels = is_jpeg ? 3 : 1,
+                      .type = is_jpeg ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16,
+                      .words = {{"compression", compression}}};
+    };
+    for (const char* compression : {"zip", "lzw", "packbits"}) {
+        EXPECT_TRUE(is_refused(tiff(compression))) << compression;
     }
+    EXPECT_TRUE(is_refused({.file = "a.png"}));
+    // Zeros are a code of JPEG's, too; docs/lightmaps.md says so.
+    for (const char* compression : {"none", "jpeg"}) {
+        EXPECT_FALSE(is_refused(tiff(compression))) << compression;
+    }
+    EXPECT_FALSE(is_refused({.file = "a.jpg"}));
 }
 
 // 8 bits, 3 x 2, without compression; numbers of the most significant byte first.
@@ -227,7 +244,7 @@ TEST(AnyImage, ATiffIsHeldAgainstItsOwnDirectoryInEitherOrderOfBytes) {
                           whole.size() - 1,
                           whole.size()));
     EXPECT_EQ(fault(big_endian_tiff(0)),
-              ": cannot be read: it is not whole: of 1 parts of the image, number 1 is empty");
+              ": cannot be read: it is not whole: strip or tile 1 of 1 is empty");
 }
 
 // Some cameras fill their JPEG files up before the end marker.
@@ -239,6 +256,43 @@ TEST(AnyImage, BytesAfterTheLastPixelOfAJpegAreNoFault) {
     bytes.insert(bytes.size() - 2, "padding");
     write_file(file, bytes);
     EXPECT_EQ(planes_in(file), whole);
+}
+
+// The decoder of a progressive JPEG that lost its place has bytes left before the end marker, and
+// these are no camera's padding: whatever they are taken for, pixels differ.
+TEST(AnyImage, BytesThatADamagedJpegLeavesAreAFault) {
+    const TempFolder folder;
+    const std::filesystem::path file = folder.path() / "a.jpg";
+    const std::string bytes =
+        bytes_of({.file = "a.jpg", .words = {{"jpeg:progressive", "1"}}}, folder.path());
+    ASSERT_NE(bytes.find("\xFF\xC2"), std::string::npos) << "it is not progressive";
+    EXPECT_NO_THROW(static_cast<void>(planes_in(file)));
+    const auto is_refused = [&](const std::string& damaged) {
+        write_file(file, damaged);
+        try {
+            static_cast<void>(planes_in(file));
+        } catch (const InputError&) {
+            return true;
+        }
+        return false;
+    };
+    for (const std::size_t left : {7U, 16U, 200U}) {
+        std::string longer = bytes;
+        longer.insert(bytes.size() - 2, left, 'x');
+        EXPECT_TRUE(is_refused(longer)) << left;
+    }
+    constexpr std::size_t kSpan = 50;
+    std::string shorter = bytes;
+    shorter.erase(bytes.size() - 3 * kSpan, kSpan);
+    EXPECT_TRUE(is_refused(shorter)) << "a span in the middle of the last scan is gone";
+    std::string flipped = bytes;
+    std::size_t refused = 0;
+    for (std::size_t at = bytes.size() / 2; at < bytes.size() - 3 * kSpan; at += kSpan) {
+        flipped[at] = static_cast<char>(~flipped[at]);
+        if (is_refused(flipped)) ++refused;
+        flipped[at] = bytes[at];
+    }
+    EXPECT_GT(refused, 0U);
 }
 
 // Whether a file of these is whole, nobody can tell.

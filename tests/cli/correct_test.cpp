@@ -371,9 +371,10 @@ TEST_F(CorrectCommand, AnImageWithoutAnAltitudeIsSkippedHoweverItIsWritten) {
     }
 }
 
-// Numbers that the images gainsay: a word, with --strict an end, and no gain that outlives them.
+// Numbers that the images contradict: a warning, with --strict an error, and no gain that outlives
+// them.
 TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
-    constexpr int kImages = 12;
+    constexpr int kImages = 14;  // one of them level, which tells nothing of its angles
     for (int i = 0; i < kImages; ++i) {
         take(fmt::format("{:02}.tif", i),
              {1.5 + 0.1 * i, (i % 5 - 1) * 2.0 * kDegree, (i % 3 - 1) * 3.0 * kDegree});
@@ -407,12 +408,20 @@ TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
     write_file(path("nav.eic"), high);
     const CommandResult refused = correct({"--strict"});
     EXPECT_EQ(refused.status, kBadInput);
-    EXPECT_NE(refused.err.find("looks wrong, by --strict: altitude: "), std::string::npos)
+    EXPECT_NE(refused.err.find("--strict: suspicious survey: altitude: "), std::string::npos)
         << refused.err;
     EXPECT_FALSE(fs::exists(path("out")));
 
     EXPECT_EQ(told(high, {}), "altitude");
     EXPECT_EQ(told(right, {"--strict"}), "") << "the gain is taken anew";
+
+    // Given again, with a gain that is kept.
+    const std::string notes = read_text_file(path("out/correction.json"));
+    write_file(path("nav.eic"), high);
+    EXPECT_EQ(correct({"--strict"}).status, kBadInput);
+    EXPECT_EQ(read_text_file(path("out/correction.json")), notes);
+    EXPECT_EQ(told(high, {}), "altitude");
+    EXPECT_EQ(told(high, {"--gain-images", "3"}), "altitude");
     EXPECT_EQ(told(changed(0.0, kDegree), {"--middle", "0.3"}), "attitude");
     EXPECT_EQ(told(right, {"--bayer", "RGGB"}), "bayer");
     EXPECT_EQ(told(right, {"--gain", "1", "--bayer", "GBRG"}), "bayer");
@@ -420,6 +429,38 @@ TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
     take("low.tif", {1.2, 0.0, 0.0});
     EXPECT_EQ(told(lines_, {"--strict"}), "");
     EXPECT_EQ(told(lines_, {"--white-level", "65535"}), "white-level");
+}
+
+// Whichever thread comes first.
+TEST_F(CorrectCommand, TheFirstImageThatCannotBeReadIsNamed) {
+    constexpr int kImages = 16;
+    for (int i = 0; i < kImages; ++i) {
+        const std::string name = fmt::format("{:02}.tif", i);
+        // The first takes longest: it has a directory to be read.
+        write_file(path("raw/" + name),
+                   i == 0 ? tiff_of(std::vector<std::uint16_t>(1U << 20U), 1U << 10U, 1U << 10U, "")
+                          : "no image");
+        note(name, {2.0, 0.0, 0.0});
+    }
+    const CommandResult run = correct({"--jobs", "8"});
+    EXPECT_EQ(run.status, kBadInput);
+    EXPECT_NE(run.err.find("none of the 16 images looked at can be corrected; 00: found 1024 x "
+                           "1024 pixels"),
+              std::string::npos)
+        << run.err;
+}
+
+// The gain of a few images is the gain of these, whatever else is looked at.
+TEST_F(CorrectCommand, TheGainTakesItsOwnImagesAlone) {
+    take_survey();
+    const CommandResult few = correct({"--json", "--gain-images", "2"});
+    ASSERT_EQ(few.status, 0) << few.err;
+    const Json notes = Json::parse(few.out);
+    EXPECT_EQ(notes["gain_from"], (Json{"0", "2"}));
+    EXPECT_EQ(notes["not_checked"],
+              "altitudes, red for blue, radians: 4 images with light; needed: 12");
+    EXPECT_NE(correct({}).out.find("  not checked: altitudes, red for blue, radians: 4 images"),
+              std::string::npos);
 }
 
 TEST_F(CorrectCommand, GivenAgainItDoesWhatIsNewAlone) {

@@ -122,31 +122,54 @@ TEST(Navigation, ACellWithoutANumberCostsItsOwnImageAlone) {
     EXPECT_EQ(parsed("image,altitude_m\na.tif,2\n,\n,,\n").size(), 1U);
 }
 
-TEST(Navigation, FaultsNameFileAndLine) {
+// Of a line that cannot be understood the other images know nothing.
+TEST(Navigation, ALineThatCannotBeUnderstoodCostsItsOwnImageAlone) {
+    const auto fault_of_a = [](const std::string& text) {
+        const Navigation nav = parsed(text);
+        EXPECT_EQ(nav.pose_of("z.tif").sled.altitude_m, 2.0) << text;
+        return fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); });
+    };
+    const std::string header = "image,altitude_m,pitch_deg,roll_deg\nz.tif,2,0,0\n";
+    for (const std::string cell : {"--", "---", "2 m", "?", "ERR", "1.5.2", "0x2", "2;0"}) {
+        EXPECT_EQ(fault_of_a(header + "a.tif," + cell + ",0,0\n"),
+                  "nav.csv:3: altitude_m: found '" + cell + "'; allowed: a number");
+    }
+    EXPECT_EQ(fault_of_a(header + "a.tif,2,--,0\n"),
+              "nav.csv:3: pitch_deg: found '--'; allowed: a number");
+    EXPECT_EQ(fault_of_a(header + "a.tif,2,0,--\n"),
+              "nav.csv:3: roll_deg: found '--'; allowed: a number");
+    EXPECT_EQ(fault_of_a(header + "a.tif,2\n"),
+              "nav.csv:3: found 2 fields; allowed: 4, as in the header row");
+    EXPECT_EQ(fault_of_a(header + "a.tif,2,0,0,0\n"),
+              "nav.csv:3: found 5 fields; allowed: 4, as in the header row");
+    EXPECT_EQ(fault_of_a("z 2 0 0\na.tif 2 0\n"),
+              "nav.csv:2: found 3 fields; allowed: 4: image, altitude, pitch, roll");
+    EXPECT_EQ(fault_of_a("x/a.tif 2 0 0\nz 2 0 0\ny/a.png 2 0 0\na 2 0 0\n"),
+              "nav.csv:1: the image 'a' stands twice, also on line 4");
+    EXPECT_EQ(fault_of_a(header + ",2,0,0\n"),
+              "nav.csv has no line for it; line 3 has no image's name");
+    EXPECT_EQ(fault_of_a("altitude_m,image\n2,z\n2\n"),
+              "nav.csv has no line for it; line 3 has no image's name");
+}
+
+TEST(Navigation, FaultsOfTheHeaderNameFileAndLine) {
     EXPECT_EQ(fault_in("image,altitude\na.tif,2\n"),
               "nav.csv:1: found the columns image,altitude; needed: 'altitude_m' (is it "
               "'altitude'?); allowed besides: pitch_deg, roll_deg");
-    EXPECT_EQ(fault_in("image,altitude_m\na.tif,2 m\n"),
-              "nav.csv:2: altitude_m: found '2 m'; allowed: a number");
-    EXPECT_EQ(fault_in("image,altitude_m\na.tif,2,3\n"),
-              "nav.csv:2: found 3 fields; allowed: 2, as in the header row");
-    EXPECT_EQ(fault_in("a.tif 2 0\n"),
-              "nav.csv:1: found 3 fields; allowed: 4: image, altitude, pitch, roll");
-    EXPECT_EQ(fault_in("x/a.tif 2 0 0\nb.tif 2 0 0\ny/a.png 2 0 0\n"),
-              "nav.csv:3: the image 'a' stands twice, first on line 1");
     EXPECT_EQ(fault_in("image,altitude_m,altitude_m\n"),
               "nav.csv:1: the column 'altitude_m' stands twice");
-    EXPECT_EQ(fault_in("image,altitude_m\n,2\n"), "nav.csv:2: found no image's name");
     EXPECT_EQ(fault_in("# nothing\n"), "nav.csv:2: the file ends without a line of an image");
+    EXPECT_EQ(fault_in("image,altitude_m\n,2\n"),
+              "nav.csv:3: the file ends without a line of an image");
 }
 
 TEST(Navigation, FilesAreReadAndNamed) {
     const TempFolder folder;
-    const auto file = folder.path() / "nav.eic";
-    write_file(file, "a.tif 2 0\n");
+    const auto file = folder.path() / "nav.csv";
+    write_file(file, "image,altitude\n");
     EXPECT_TRUE(fault_of([&] {
                     static_cast<void>(read_navigation(file, kRigSled));
-                }).starts_with(file.string() + ":1: found 3 fields"));
+                }).starts_with(file.string() + ":1: found the columns"));
     write_file(file, "a.tif 2 0 0\n");
     EXPECT_EQ(read_navigation(file, kRigSled).size(), 1U);
 }

@@ -41,7 +41,7 @@ std::vector<ImageLook> survey(std::uint32_t seed, std::size_t images, const Told
     for (ImageLook& look : looks) {
         const double altitude_m = altitude(random);
         look.altitude_m = told(altitude_m);
-        look.map_mean = light_at(look.altitude_m);
+        look.map_mean = light_at(*look.altitude_m);
         look.white = 4095.0F;
         const PerChannel light = light_at(altitude_m);
         const double brightness = kBrightness * normal(random);
@@ -77,6 +77,69 @@ TEST(SurveyCheck, ARightSurveyLooksRight) {
     }
 }
 
+// As of a sled that stands, or hovers: rounding and the altimeter's noise are no slope.
+TEST(SurveyCheck, ImagesOfOneAltitudeLookRight) {
+    for (const double altitude_m : {0.3, 2.0, 2.1, 2.3, 51.7}) {
+        ImageLook look;
+        look.altitude_m = altitude_m;
+        look.map_mean = light_at(altitude_m);
+        look.quotient = {731.3, 997.1, 1013.7};
+        const std::vector<ImageLook> looks(16, look);
+        EXPECT_EQ(told_of(looks), kNothing) << altitude_m;
+        EXPECT_NE(not_checked(looks).find("16 images, all of one altitude"), std::string::npos);
+    }
+    constexpr double kAltimeter_m = 0.02;
+    for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> noise(0.0, kAltimeter_m);
+        std::vector<ImageLook> looks(16);
+        for (ImageLook& look : looks) {
+            look.altitude_m = 2.0 + noise(random);
+            look.map_mean = light_at(*look.altitude_m);
+            for (std::size_t c = 0; c < 3; ++c) {
+                look.quotient[c] = 1000.0 * light_at(2.0)[c] / look.map_mean[c];
+            }
+        }
+        EXPECT_EQ(told_of(looks), kNothing) << seed;
+    }
+}
+
+// As in air: red over blue is the same at every altitude, but for rounding.
+TEST(SurveyCheck, MapsOfOneColourTellNothingOfRedAndBlue) {
+    std::vector<ImageLook> looks(16);
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        const double altitude_m = 1.5 + 0.1 * static_cast<double>(i);
+        const double light = 1.0 / (altitude_m * altitude_m);
+        looks[i].altitude_m = altitude_m;
+        looks[i].map_mean = {0.7 * light, 0.9 * light, 1.1 * light};
+        looks[i].quotient = {731.3, 997.1, 1013.7};
+    }
+    EXPECT_EQ(told_of(looks), kNothing);
+}
+
+TEST(SurveyCheck, FewImagesAreSaidToBeUnchecked) {
+    const auto right = [](double h) { return h; };
+    EXPECT_EQ(not_checked(survey(1, 16, right)), "");
+    EXPECT_EQ(not_checked(survey(1, 11, right)),
+              "altitudes, red for blue, radians: 11 images with light; needed: 12");
+}
+
+// One map for all images has no altitude to speak of.
+TEST(SurveyCheck, AMapOfAnotherColourIsToldWithoutAltitudes) {
+    std::vector<ImageLook> looks(16);
+    for (ImageLook& look : looks) {
+        look.map_mean = {1.0, 1.0, 1.0};
+        look.quotient = {1.0, 10.0, 1000.0};
+    }
+    const std::vector<Suspicion> found = suspicions(looks, Mosaic::None);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].about, "map");
+    EXPECT_EQ(found[0].what,
+              "the map and the images differ in colour: R, G and B need gains of 1, 0.1 and 0.001. "
+              "Wrong water or camera response?");
+    EXPECT_EQ(not_checked(looks), "");
+}
+
 TEST(SurveyCheck, AltitudesOfAnotherColumnAreToldFrom) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> heading(1.0, 360.0);
@@ -91,7 +154,7 @@ TEST(SurveyCheck, AltitudesOfAnotherColumnAreToldFrom) {
     }
 }
 
-TEST(SurveyCheck, RedAndBlueThatAreChangedAreTold) {
+TEST(SurveyCheck, RedAndBlueThatAreSwappedAreTold) {
     const auto changed = [](std::uint32_t seed) {
         std::vector<ImageLook> looks = survey(seed, 16, [](double h) { return h; });
         for (ImageLook& look : looks) {
