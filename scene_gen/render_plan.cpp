@@ -129,7 +129,7 @@ void plan_to_tolerance(const Rig& rig,
     throw InputError(
         fmt::format("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
                     request.tolerance,
-                    tolerance_to_ask_for(kept),
+                    tolerance_to_ask_for(std::min(kept, 1.0)),
                     plan.rule.wavelengths.size()));
 }
 

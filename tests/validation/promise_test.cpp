@@ -65,7 +65,7 @@ const double kTolerance = PlanRequest{}.tolerance;
 constexpr double kLooseTolerance = 1e-2;
 constexpr double kRareShare = 0.01;
 // The worst tables ask for more wavelengths than there may be now and then.
-constexpr double kNastyRefusals = 0.02;
+constexpr double kNastyRefusals = 0.01;
 
 // Promises are to be worth something: on half of the rigs no more than so many times the error.
 constexpr double kMedianRatio = 5.0;
