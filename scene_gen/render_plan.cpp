@@ -2,6 +2,7 @@
 #include "scene_gen/render_plan.h"
 
 #include "scene_gen/certificate.h"
+#include "spectral/degrees.h"
 #include "spectral/error.h"
 #include "spectral/planner.h"
 
@@ -133,6 +134,25 @@ void plan_to_tolerance(const Rig& rig,
                     plan.rule.wavelengths.size()));
 }
 
+// A slipped point in the focal length is the likelier cause of paths that no plan serves: no lens
+// without distortion sees more than 135 degrees.
+[[noreturn]] void refuse(const Rig& rig, const std::string& why) {
+    constexpr double kMostView_rad = 150.0 * kRadiansPerDegree;
+    constexpr double kMillimetresPerMetre = 1e3;
+    const Camera& camera = rig.camera;
+    const double half_m =
+        0.5 * camera.pixel_pitch_m * std::hypot(camera.width_px, camera.height_px);
+    const double view_rad = 2.0 * std::atan(half_m / camera.focal_length_m);
+    if (view_rad <= kMostView_rad) throw InputError(why);
+    throw InputError(fmt::format(
+        "camera.focal_length_mm: found {:.6g}, a view of {:.1f} degrees from corner to corner; "
+        "allowed: {:.3g} and more for 150 degrees, or another {}",
+        kMillimetresPerMetre * camera.focal_length_m,
+        view_rad / kRadiansPerDegree,
+        kMillimetresPerMetre * half_m / std::tan(0.5 * kMostView_rad),
+        why));
+}
+
 }  // namespace
 
 double frame_error(const Rig& rig) {
@@ -179,7 +199,11 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
     } else if (request.fitted) {
         lambda_nm = best_wavelengths(fitter, range, *request.fitted, plan.frame_error);
     } else {
-        plan_to_tolerance(rig, fitter, request, plan);
+        try {
+            plan_to_tolerance(rig, fitter, request, plan);
+        } catch (const InputError& error) {
+            refuse(rig, error.what());
+        }
         return plan;
     }
     plan.scene.bailout = kRayShare * plan.frame_error;

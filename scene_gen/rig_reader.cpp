@@ -59,9 +59,6 @@ constexpr Bounds kTiltDeg{-89.9, 89.9};
 constexpr Bounds kResolutionPx{1.0, kLargestImagePx};
 constexpr Bounds kPixelPitchUm{0.01, 10000.0};
 constexpr Bounds kFocalLengthMm{0.01, 100000.0};
-// From corner to corner. No lens without distortion sees more than 135 degrees, and what a slipped
-// point makes of a focal length does.
-constexpr double kMostView_deg = 150.0;
 constexpr Bounds kWavelengthNm{100.0, 10000.0};
 constexpr Bounds kPortDistanceMm{1.0, 10000.0};
 constexpr Bounds kPortThicknessMm{1.0, 1000.0};
@@ -433,24 +430,6 @@ Sensor RigReader::read_response(Section& camera) {
     return camera.at_key("response", [&] { return builtin_sensor(name); });
 }
 
-void require_view(const Section& section, const Camera& camera) {
-    const double half_m =
-        0.5 * camera.pixel_pitch_m * std::hypot(camera.width_px, camera.height_px);
-    const double view_deg = 2.0 * std::atan(half_m / camera.focal_length_m) / kRadiansPerDegree;
-    if (view_deg <= kMostView_deg) return;
-    section.found_but(
-        "focal_length_mm",
-        fmt::format(
-            "{:.3g} and more, for a view of at most {} degrees from corner to corner; with "
-            "{} x {} pixels of {:.6g} um it is {:.1f}",
-            half_m / std::tan(0.5 * kMostView_deg * kRadiansPerDegree) / kMetresPerMillimetre,
-            kMostView_deg,
-            camera.width_px,
-            camera.height_px,
-            camera.pixel_pitch_m / kMetresPerMicrometre,
-            view_deg));
-}
-
 Camera RigReader::read_camera(Section section) {
     const auto resolution = section.numbers<2>("resolution", kResolutionPx);
     for (const double size : resolution) {
@@ -473,7 +452,6 @@ Camera RigReader::read_camera(Section section) {
         .range = range,
         .sensor = std::move(sensor),
         .port = std::nullopt};
-    require_view(section, camera);
     if (section.has("port")) camera.port = read_port(section.section("port", "a table"));
     section.refuse_unknown_keys();
     return camera;

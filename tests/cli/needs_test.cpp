@@ -43,16 +43,12 @@ int cores() {
 }
 
 fs::path rig_of(const fs::path& folder, int width_px, int height_px) {
-    constexpr double kMostChip_um = 16384.0;  // wider would be no lens's view
-    std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/one-lamp.toml");
-    text = std::regex_replace(text,
-                              std::regex(R"(resolution\s*=\s*\[[^\]]*\])"),
-                              fmt::format("resolution = [{}, {}]", width_px, height_px));
-    text = std::regex_replace(
-        text,
-        std::regex(R"(pixel_pitch_um\s*=\s*[0-9.]+)"),
-        fmt::format("pixel_pitch_um = {}", std::min(12.9, kMostChip_um / width_px)));
-    write_file(folder / "rig.toml", text);
+    const std::string text =
+        read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/one-lamp.toml");
+    write_file(folder / "rig.toml",
+               std::regex_replace(text,
+                                  std::regex(R"(resolution\s*=\s*\[[^\]]*\])"),
+                                  fmt::format("resolution = [{}, {}]", width_px, height_px)));
     return folder / "rig.toml";
 }
 

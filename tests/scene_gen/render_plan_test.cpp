@@ -551,6 +551,23 @@ TEST(RenderPlan, RefusesATooSmallToleranceAndNamesOneThatItKeeps) {
 }
 
 // What three wavelengths keep is not given to more, however near it is to the frames' own error.
+// The chip's half diagonal is 0.5 * 6.45 um * hypot(1360, 1024) = 5.490 mm: behind 0.6628 mm that
+// is 2 atan(8.283) = 166.2 degrees, and 75 degrees to either side are 1.471 mm.
+TEST(RenderPlan, NamesAFocalLengthThatNoLensHasWhereItCannotKeepATolerance) {
+    Rig rig = habcam();
+    rig.camera.focal_length_m = 0.6628e-3;
+    PlanRequest request;
+    request.tolerance = 4.95e-4;
+    const std::string error = error_of(rig, request);
+    EXPECT_TRUE(error.starts_with(
+        "camera.focal_length_mm: found 0.6628, a view of 166.2 degrees from corner to corner; "
+        "allowed: 1.47 and more for 150 degrees, or another tolerance: found 0.000495; allowed: "))
+        << error;
+    rig.camera.focal_length_m = 12e-3;
+    request.tolerance = 4e-4;
+    EXPECT_TRUE(error_of(rig, request).starts_with("tolerance: found 0.0004; allowed: "));
+}
+
 TEST(RenderPlan, TakesNoMoreWavelengthsThanATightToleranceNeeds) {
     const RenderPlan three = plan_render(habcam(), {});
     for (const double room : {1.05, 1.1, 1.2}) {
