@@ -26,7 +26,7 @@ function(aphotic_tests label)
         set(label unit)
         set(optimisation -O2)
     elseif(label STREQUAL "povray")
-        set(limits TIMEOUT 300 PROCESSORS 2)
+        set(limits TIMEOUT 600 PROCESSORS 2)  # the whole table of extremes takes 220 s
     elseif(label STREQUAL "povray_of_few_pixels")
         set(label povray)
     elseif(label STREQUAL "slow")

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ostream>
 
 namespace aphotic::scene_survey_test {
 namespace {
@@ -333,8 +334,16 @@ TEST_F(SceneSurvey, ColoursByNumbersVoidThePromiseWhereTheyAreBrightToo) {
 }
 
 // Light whose error nothing bounds: refused, or rendered without a promise.
-class UnboundedLight : public SceneSurvey,
-                       public testing::WithParamInterface<std::pair<const char*, const char*>> {};
+struct OwnLight {
+    const char* what;
+    const char* scene;
+
+    friend std::ostream& operator<<(std::ostream& out, const OwnLight& light) {
+        return out << light.what;
+    }
+};
+
+class UnboundedLight : public SceneSurvey, public testing::WithParamInterface<OwnLight> {};
 
 TEST_P(UnboundedLight, IsRefusedOrVoidsThePromise) {
     const auto& [what, scene] = GetParam();
@@ -350,16 +359,16 @@ INSTANTIATE_TEST_SUITE_P(
     All,
     UnboundedLight,
     testing::Values(
-        std::pair("radiosity",
-                  "global_settings { radiosity { count 2 pretrace_start 1 pretrace_end 1 } }\n"
-                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgb 1 } }\n"),
-        std::pair("photons",
-                  "global_settings { photons { count 50 } }\n"
-                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } interior { ior 1.2 } hollow "
-                  "photons { target refraction on } }\n"),
-        std::pair("media of the scene's own",
-                  "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } hollow interior { "
-                  "media { samples 1 scattering { 1, 0.5 } } } }\n")));
+        OwnLight{"radiosity",
+                 "global_settings { radiosity { count 2 pretrace_start 1 pretrace_end 1 } }\n"
+                 "sphere { <0, 0, 1.8>, 0.2 pigment { rgb 1 } }\n"},
+        OwnLight{"photons",
+                 "global_settings { photons { count 50 } }\n"
+                 "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } interior { ior 1.2 } hollow "
+                 "photons { target refraction on } }\n"},
+        OwnLight{"media of the scene's own",
+                 "sphere { <0, 0, 1.8>, 0.2 pigment { rgbt 1 } hollow interior { "
+                 "media { samples 1 scattering { 1, 0.5 } } } }\n"}));
 
 // Thirty times deeper than the rig's floor, and a lamp a hand's breadth over it: neither is lost.
 TEST_F(SceneSurvey, MeasuresWhatIsFarFromTheRigsOwnFloor) {
