@@ -50,8 +50,8 @@ std::vector<Node> nodes_of(const Rig& rig) {
     tables.push_back(&rig.seafloor.reflectance);
     for (const Strobe& strobe : rig.strobes) tables.push_back(&strobe.spectrum);
     std::vector<Node> nodes;
-    for (const auto& [lambda_nm, width_nm] :
-         panel_quadrature(light_panels(tables, rig.water, longest_path_m(rig), nullptr, range))) {
+    for (const auto& [lambda_nm, width_nm] : panel_quadrature(
+             light_panels(tables, rig.water, 0.0, longest_path_m(rig), nullptr, range))) {
         const double at =
             (lambda_nm - range.first_nm) / (range.last_nm - range.first_nm) * (kGeometryPoints - 1);
         const double point = std::min(std::floor(at), kGeometryPoints - 2.0);

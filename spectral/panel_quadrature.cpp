@@ -13,13 +13,14 @@ constexpr unsigned kPanelPoints = 10;
 constexpr double kPanelFall = 4.0;
 constexpr double kSpent = 50.0;
 
-// An interval over which the longest path's light falls by `fall`.
+// An interval over which the longest path's light falls by `fall`, the shortest's by `least_fall`.
 void add_interval(double bright_nm,
                   double dark_nm,
                   double fall,
+                  double least_fall,
                   std::vector<WavelengthRange>& panels) {
     double from = 0.0;  // a share of the interval
-    while (from < 1.0) {
+    while (from < 1.0 && least_fall * from < kSpent) {
         const double step = kPanelFall * std::max(1.0, fall * from / kSpent) / fall;
         const double to = std::min(1.0, from + step);
         const double a_nm = std::lerp(bright_nm, dark_nm, from);
@@ -33,6 +34,7 @@ void add_interval(double bright_nm,
 
 std::vector<WavelengthRange> light_panels(std::span<const Spectrum* const> tables,
                                           const Water& water,
+                                          double shortest_path_m,
                                           double longest_path_m,
                                           const Spectrum* tilt,
                                           WavelengthRange range) {
@@ -45,12 +47,13 @@ std::vector<WavelengthRange> light_panels(std::span<const Spectrum* const> table
         const double a_nm = knots_nm[i];
         const double b_nm = knots_nm[i + 1];
         const double rise_per_m = water.attenuation_per_m(b_nm) - water.attenuation_per_m(a_nm);
+        const double least_fall = std::abs(rise_per_m) * shortest_path_m;
         double fall = std::abs(rise_per_m) * longest_path_m;
         if (tilt != nullptr) fall += std::abs(tilt->at(b_nm) - tilt->at(a_nm));
         if (rise_per_m >= 0.0) {
-            add_interval(a_nm, b_nm, fall, panels);
+            add_interval(a_nm, b_nm, fall, least_fall, panels);
         } else {
-            add_interval(b_nm, a_nm, fall, panels);
+            add_interval(b_nm, a_nm, fall, least_fall, panels);
         }
     }
     return panels;

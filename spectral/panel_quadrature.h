@@ -13,7 +13,8 @@
 // lines leave 1e-10.
 //
 // Nearest to the bright end of an interval panels are so short for the longest path. Farther off,
-// where that path has lost e^-50, they are for shorter paths, and grow with the distance.
+// where that path has lost e^-50, they are for shorter paths, and grow with the distance. They end
+// where the shortest path has lost as much.
 #pragma once
 
 #include "spectral/spectrum.h"
@@ -29,10 +30,11 @@ struct QuadratureNode {
     double width_nm = 0.0;
 };
 
-// tables: all but the water's, which light goes through for longest_path_m at most.
+// tables: all but the water's, which light goes through for shortest_path_m to longest_path_m.
 // tilt: a further exponent, or null.
 [[nodiscard]] std::vector<WavelengthRange> light_panels(std::span<const Spectrum* const> tables,
                                                         const Water& water,
+                                                        double shortest_path_m,
                                                         double longest_path_m,
                                                         const Spectrum* tilt,
                                                         WavelengthRange range);

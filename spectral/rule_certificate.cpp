@@ -41,8 +41,12 @@ std::vector<QuadratureNode> quadrature_of(const Sensor& sensor,
     for (const auto& source : family.sources) {
         for (const Spectrum& factor : source) tables.push_back(&factor);
     }
-    return panel_quadrature(light_panels(
-        tables, family.water, family.longest_path_m, family.tilt ? &*family.tilt : nullptr, range));
+    return panel_quadrature(light_panels(tables,
+                                         family.water,
+                                         family.shortest_path_m,
+                                         family.longest_path_m,
+                                         family.tilt ? &*family.tilt : nullptr,
+                                         range));
 }
 
 Nodes nodes_of(const Sensor& sensor, const LightFamily& family, WavelengthRange range) {

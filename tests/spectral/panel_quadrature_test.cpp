@@ -31,7 +31,7 @@ const Water kClear{.absorption_per_m = line(1.0, 1.0), .multiple = 0.0};
 std::vector<QuadratureNode> nodes_of(const std::vector<const Spectrum*>& tables,
                                      const Water& water,
                                      double longest_path_m) {
-    return panel_quadrature(light_panels(tables, water, longest_path_m, nullptr, kRange));
+    return panel_quadrature(light_panels(tables, water, 0.0, longest_path_m, nullptr, kRange));
 }
 
 // By the nodes, of exp(-K l).
@@ -61,6 +61,18 @@ TEST(PanelQuadrature, IsTheClosedFormOfFallingLightOnEveryPathUpToTheLongest) {
             }
         }
     }
+}
+
+// In water that leaves nothing of the dark half, most of the interval needs no panel.
+TEST(PanelQuadrature, EndsWhereTheShortestPathsLightIsSpent) {
+    const Water water = water_of(0.0, 1e4);
+    const auto panels = light_panels({}, water, 1.0, 1.2, nullptr, kRange);
+    EXPECT_LT(panels.back().last_nm, 410.0);
+    double sum = 0.0;
+    for (const auto& [lambda_nm, width_nm] : panel_quadrature(panels)) {
+        sum += width_nm * std::exp(-water.attenuation_per_m(lambda_nm));
+    }
+    EXPECT_NEAR(sum / (kWidth_nm / 1e4), 1.0, kPanelError);
 }
 
 TEST(PanelQuadrature, IsExactForAProductOfSixLines) {
@@ -115,7 +127,7 @@ TEST(PanelQuadrature, FollowsATilt) {
     const Spectrum tilt = line(-3.0, 3.0);
     double sum = 0.0;
     for (const auto& [lambda_nm, width_nm] :
-         panel_quadrature(light_panels({}, kClear, 1.0, &tilt, kRange))) {
+         panel_quadrature(light_panels({}, kClear, 1.0, 1.0, &tilt, kRange))) {
         sum += width_nm * std::exp(tilt.at(lambda_nm));
     }
     const double right = kWidth_nm * std::sinh(3.0) / 3.0;
