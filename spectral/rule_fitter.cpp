@@ -132,6 +132,8 @@ RuleFitter::Sample RuleFitter::sample(ArrayXd paths_m, std::vector<double> tilts
     const Index members = sources * static_cast<Index>(sample.tilts.size()) * paths;
     sample.signals.resize(members, kChannels);
     sample.light.resize(members);
+    sample.response.resize(members, kChannels);
+    if (members == 0) return sample;
     Index row = 0;
     for (Index s = 0; s < sources; ++s) {
         const MatrixXd weighted = grid_weights_.colwise() * grid_sources_.col(s);
@@ -147,7 +149,7 @@ RuleFitter::Sample RuleFitter::sample(ArrayXd paths_m, std::vector<double> tilts
         }
     }
     // Members by sources: where a column is dark beside the brightest, it is black.
-    const Index each = members / std::max<Index>(1, sources);
+    const Index each = members / sources;
     const ArrayXd brightest = sample.light.reshaped(each, sources).rowwise().maxCoeff();
     for (Index i = 0; i < members; ++i) {
         if (sample.light(i) > kDarkness * brightest(i % each)) continue;
@@ -191,13 +193,13 @@ RuleFitter::View RuleFitter::view_of(const MatrixXd& light,
     for (Index i = 0; i < response.size(); ++i) {
         if (response(i) > kBlind * best) {
             seen.push_back(i);
-        } else if (sample.light(i) > 0.0) {
+        } else if (light.cols() > 0 && sample.light(i) > 0.0) {  // Eigen's rows would step off null
             view.unseen = view.unseen.max(light.row(i).transpose().array() / sample.light(i) *
                                           grid_width_nm_.sum());
         }
     }
     view.relative.resize(static_cast<Index>(seen.size()), light.cols());
-    if (light.cols() == 0) return view;  // Eigen's rows would step off a null pointer
+    if (light.cols() == 0) return view;
     for (Index row = 0; row < view.relative.rows(); ++row) {
         const Index i = seen[static_cast<std::size_t>(row)];
         view.relative.row(row) = light.row(i) / sample.signals(i, channel);
