@@ -4,8 +4,8 @@
 // reading and writing it: each image is worked on by one thread, so the time of two cores an image
 // is half of this.
 #include "lightmap/cone_edge.h"
-#include "lightmap/correction.h"
-#include "scene_gen/rig_reader.h"
+#include "rig/rig_reader.h"
+#include "survey/correction.h"
 
 #include <benchmark/benchmark.h>
 

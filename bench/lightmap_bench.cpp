@@ -6,7 +6,7 @@
 // at least 300 times as fast as the tracer, at most 15 times as long as the filling, under the
 // 166 ms between two frames of the camera.)
 #include "lightmap/lightmap.h"
-#include "scene_gen/rig_reader.h"
+#include "rig/rig_reader.h"
 #include "validation/tracer.h"
 
 #include <benchmark/benchmark.h>

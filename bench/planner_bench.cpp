@@ -2,9 +2,9 @@
 //
 // How long a plan takes: HabCam's, that of all its altitudes, and of ten materials over forty
 // metres of paths. (Goals: under 0.2 s for HabCam, under 2 s for the ten.)
+#include "rig/rig_reader.h"
 #include "scene_gen/render_plan.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/builtin.h"
+#include "spectral/curve_loader.h"
 
 #include <benchmark/benchmark.h>
 

@@ -11,11 +11,11 @@
 //
 // (Goals: HabCam's six mosaics a second on two cores; at most twice as long as reading and
 // writing.)
+#include "base/atomic_file.h"
+#include "base/parallel.h"
 #include "bench/survey/raw_camera.h"
 #include "lightmap/lightmap.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/atomic_file.h"
-#include "spectral/parallel.h"
+#include "rig/rig_reader.h"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>

@@ -3,20 +3,20 @@
 // aphotic atlas RIG --altitude 1:4:0.1 -o ATLAS: maps over altitude, attitude and water.
 #include "lightmap/atlas.h"
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "cli/atlas_axes.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
-#include "cli/progress.h"
-#include "cli/words.h"
+#include "image/exr.h"
 #include "lightmap/altitude_fit.h"
 #include "lightmap/atlas_export.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
+#include "rig/rig_reader.h"
 
 #include <fmt/format.h>
 

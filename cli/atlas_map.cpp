@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/atlas_map.h"
 
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/words.h"
 #include "cli/outcome.h"
-#include "cli/words.h"
+#include "image/exr.h"
 #include "lightmap/atlas.h"
 #include "lightmap/planes.h"
-#include "spectral/degrees.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "cli/command.h"
-#include "spectral/preview.h"
+#include "image/preview.h"
 
 #include <optional>
 #include <string>

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic baseline NAME IMAGES... -o DIR: images corrected without a model of the lamps.
-#include "lightmap/baseline.h"
+#include "survey/baseline.h"
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/in_order.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "cli/command.h"
-#include "cli/in_order.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
-#include "cli/progress.h"
-#include "cli/survey_files.h"
-#include "cli/survey_image.h"
-#include "cli/survey_look.h"
-#include "cli/words.h"
-#include "lightmap/navigation.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
+#include "image/exr.h"
+#include "survey/navigation.h"
+#include "survey/survey_files.h"
+#include "survey/survey_image.h"
+#include "survey/survey_look.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/channel_pairs.h"
 
+#include "base/error.h"
 #include "spectral/channel_wavelength.h"
-#include "spectral/error.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

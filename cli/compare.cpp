@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic compare A B: how far image A is from the reference B, channel by channel.
-#include "cli/any_image.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/words.h"
 #include "cli/channel_pairs.h"
 #include "cli/command.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
-#include "cli/words.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
+#include "image/any_image.h"
 #include "validation/comparison_page.h"
 #include "validation/scaling.h"
 

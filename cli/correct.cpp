@@ -2,19 +2,19 @@
 //
 // aphotic correct IMAGES... --rig RIG --nav FILE -o DIR: survey images divided by the map of their
 // own altitude and attitude.
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/sha256.h"
+#include "base/words.h"
 #include "cli/command.h"
-#include "cli/journal.h"
-#include "cli/kept_gain.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
-#include "cli/survey_correction.h"
-#include "cli/survey_gain.h"
-#include "cli/words.h"
-#include "spectral/atomic_file.h"
-#include "spectral/digest.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
+#include "image/exr.h"
+#include "survey/journal.h"
+#include "survey/kept_gain.h"
+#include "survey/survey_correction.h"
+#include "survey/survey_gain.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,12 +2,12 @@
 //
 // aphotic data [NAME]: list the built-in tables, or show, plot or hand on one of them, or check
 // a table of the user's own, or make tables of POV-Ray's splines.
+#include "base/error.h"
 #include "cli/command.h"
 #include "cli/spline_tables.h"
-#include "spectral/builtin.h"
-#include "spectral/error.h"
-#include "spectral/plot.h"
-#include "spectral/refraction.h"
+#include "report/plot.h"
+#include "spectral/curve_loader.h"
+#include "spectral/refractive_index.h"
 #include "spectral/table.h"
 
 #include <fmt/format.h>

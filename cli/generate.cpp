@@ -2,17 +2,17 @@
 //
 // aphotic generate RIG -o DIR: the scenes alone, for plain POV-Ray; `aphotic integrate DIR` takes
 // it from there.
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "cli/words.h"
 #include "plugin/render.h"
+#include "rig/rig_reader.h"
 #include "scene_gen/quick_look.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -2,15 +2,15 @@
 //
 // aphotic integrate DIR: the frames of a folder to images, wherever they were rendered; with --rig,
 // to those of a rig of other water, lamps, materials or sensor.
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
-#include "scene_gen/reintegration.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
+#include "rig/rig_reader.h"
+#include "scene_gen/reweighting.h"
 
 #include <fmt/format.h>
 

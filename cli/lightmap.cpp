@@ -4,19 +4,19 @@
 // of an atlas, from its bins (atlas_map.h).
 #include "lightmap/lightmap.h"
 
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/words.h"
 #include "cli/atlas_map.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
-#include "cli/words.h"
+#include "image/exr.h"
+#include "image/preview.h"
 #include "lightmap/planes.h"
-#include "scene_gen/rig_reader.h"
+#include "rig/rig_reader.h"
 #include "scene_gen/scene_set.h"
-#include "spectral/degrees.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
-#include "spectral/preview.h"
 
 #include <fmt/format.h>
 

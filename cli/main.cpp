@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The `aphotic` command: a table of subcommands, and what each kind of failure exits with.
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/printable.h"
 #include "cli/command.h"
 #include "cli/option_checks.h"
 #include "plugin/interruption.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
-#include "spectral/printable.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/needs_check.h"
 
+#include "base/disk_space.h"
+#include "base/error.h"
 #include "scene_gen/include_library.h"
-#include "spectral/error.h"
-#include "spectral/free_room.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Before any work: whether the machine has the disk and the memory that it will take
-// (scene_gen/needs.h). What cannot be told beforehand, it does not refuse.
+// (scene_gen/resource_estimate.h). What cannot be told beforehand, it does not refuse.
 #pragma once
 
-#include "scene_gen/needs.h"
+#include "scene_gen/resource_estimate.h"
 #include "scene_gen/scene_set.h"
 
 #include <CLI/CLI.hpp>

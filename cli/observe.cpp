@@ -2,19 +2,19 @@
 //
 // aphotic observe IMAGES... --nav FILE -o MAP.exr: the images of one altitude averaged into the
 // pattern of light that they share.
+#include "base/error.h"
+#include "base/in_order.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "cli/command.h"
-#include "cli/in_order.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
-#include "cli/progress.h"
-#include "cli/survey_files.h"
-#include "cli/survey_image.h"
-#include "cli/survey_look.h"
-#include "cli/words.h"
-#include "lightmap/navigation.h"
-#include "lightmap/observation.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
+#include "image/exr.h"
+#include "survey/navigation.h"
+#include "survey/observation.h"
+#include "survey/survey_files.h"
+#include "survey/survey_image.h"
+#include "survey/survey_look.h"
 
 #include <fmt/format.h>
 

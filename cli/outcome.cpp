@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/outcome.h"
 
+#include "base/progress.h"
+#include "base/words.h"
 #include "cli/option_checks.h"
-#include "cli/progress.h"
-#include "cli/words.h"
+#include "image/exr.h"
 #include "plugin/interruption.h"
-#include "spectral/exr.h"
 #include "spectral/integrator.h"
 
 #include <fmt/format.h>

@@ -3,9 +3,9 @@
 // From finished frames to pictures, and what is said about them.
 #pragma once
 
+#include "image/preview.h"
 #include "spectral/manifest.h"
-#include "spectral/preview.h"
-#include "spectral/rule_fitter.h"
+#include "spectral/quadrature_fit.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

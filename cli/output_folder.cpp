@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/output_folder.h"
 
-#include "spectral/atomic_file.h"
+#include "base/atomic_file.h"
 
 #include <system_error>
 

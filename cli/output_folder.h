@@ -3,7 +3,7 @@
 // The folder that a command writes to: made, locked, and rid of what killed runs left half written.
 #pragma once
 
-#include "plugin/folder_lock.h"
+#include "base/folder_lock.h"
 
 #include <filesystem>
 #include <vector>

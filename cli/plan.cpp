@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic plan RIG: what a render would take and what it promises, before anything is rendered.
+#include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/outcome.h"
 #include "cli/plan_plot.h"
 #include "cli/planning.h"
-#include "cli/words.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

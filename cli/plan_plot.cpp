@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/plan_plot.h"
 
-#include "spectral/plot.h"
+#include "report/plot.h"
 
 #include <fmt/format.h>
 
@@ -58,7 +58,7 @@ Plot light_panel(const Rig& rig, const RenderPlan& plan) {
     return panel;
 }
 
-double largest_error(const std::vector<RuleFitter::PathError>& errors) {
+double largest_error(const std::vector<QuadratureFitter::PathError>& errors) {
     double largest = 0.0;
     for (const auto& at : errors) {
         for (const double e : at.error) largest = std::max(largest, std::abs(e));
@@ -67,12 +67,12 @@ double largest_error(const std::vector<RuleFitter::PathError>& errors) {
 }
 
 Plot error_panel(const Rig& rig, const RenderPlan& plan) {
-    const RuleFitter fitter(rig.camera.sensor, plan.family, rig.camera.range);
+    const QuadratureFitter fitter(rig.camera.sensor, plan.family, rig.camera.range);
     std::vector<double> lambda_nm;
     for (const WeightedWavelength& w : plan.rule.wavelengths) lambda_nm.push_back(w.lambda_nm);
     const std::vector<FrameLight> frames = frames_light(fitter, lambda_nm, plan.frames);
 
-    std::vector<RuleFitter::PathError> worst;
+    std::vector<QuadratureFitter::PathError> worst;
     std::size_t of_source = 0;
     for (std::size_t s = 0; s < plan.family.sources.size(); ++s) {
         auto errors = fitter.errors_over_path(plan.rule, frames, s);

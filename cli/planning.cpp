@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/planning.h"
 
+#include "base/error.h"
+#include "base/progress.h"
 #include "cli/option_checks.h"
-#include "cli/progress.h"
-#include "plugin/scene_survey.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/error.h"
+#include "plugin/probe.h"
+#include "rig/rig_reader.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

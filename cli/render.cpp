@@ -2,6 +2,7 @@
 //
 // aphotic render RIG -o DIR: the main job, from a rig file to a camera image through POV-Ray.
 #include "plugin/render.h"
+#include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/option_checks.h"
@@ -9,7 +10,6 @@
 #include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/rendering.h"
-#include "cli/words.h"
 
 #include <fmt/format.h>
 

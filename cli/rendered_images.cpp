@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/rendered_images.h"
 
-#include "scene_gen/reintegration.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
+#include "base/error.h"
+#include "image/exr.h"
+#include "image/traced_image.h"
+#include "scene_gen/reweighting.h"
 #include "spectral/integrator.h"
-#include "spectral/traced_image.h"
 
 #include <fmt/format.h>
 

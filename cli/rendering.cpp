@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/rendering.h"
 
-#include "cli/progress.h"
-#include "cli/words.h"
-#include "spectral/error.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/words.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/spline_tables.h"
 
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "spectral/spline_import.h"
 
 #include <fmt/format.h>

@@ -3,20 +3,20 @@
 // aphotic stress -o DIR: both renderers at the extremes, against an answer in long double.
 #include "validation/stress.h"
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "cli/command.h"
 #include "cli/option_checks.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "cli/progress.h"
 #include "cli/rendered_images.h"
-#include "cli/words.h"
 #include "plugin/render.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
 #include "spectral/integrator.h"
-#include "spectral/parallel.h"
 
 #include <fmt/format.h>
 

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic trace RIG -o DIR: the same images by the reference tracer, without POV-Ray.
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "cli/progress.h"
-#include "cli/words.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
+#include "image/output_images.h"
+#include "image/row_blocks.h"
+#include "image/traced_image.h"
 #include "spectral/manifest.h"
-#include "spectral/output_images.h"
-#include "spectral/row_blocks.h"
-#include "spectral/traced_image.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>

@@ -3,20 +3,20 @@
 // aphotic validate RIG -o DIR: the rig through POV-Ray and through the reference, compared.
 #include "validation/validation.h"
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
 #include "cli/option_checks.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "cli/progress.h"
 #include "cli/rendered_images.h"
 #include "cli/rendering.h"
-#include "cli/words.h"
+#include "image/exr.h"
 #include "plugin/render.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

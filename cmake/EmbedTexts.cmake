@@ -2,7 +2,7 @@
 #
 # Writes a C++ file that holds the texts of files, in the order given:
 #
-#   cmake -DOUTPUT=builtin_tables.cpp -DHEADER=spectral/builtin.h -DFUNCTION=builtin_tables
+#   cmake -DOUTPUT=builtin_tables.cpp -DHEADER=spectral/curve_loader.h -DFUNCTION=builtin_tables
 #         -DTYPE=BuiltinTable -DNAME=NAME_WLE "-DFILES=a.csv;b.csv" -P EmbedTexts.cmake
 #
 # makes  std::span<const TYPE> FUNCTION(),  each a name and a text. NAME says what of a file's path

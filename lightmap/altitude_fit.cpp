@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/altitude_fit.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <boost/math/tools/minima.hpp>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/atlas.h"
 
-#include "spectral/atomic_file.h"
-#include "spectral/degrees.h"
-#include "spectral/digest.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
-#include "spectral/image_size.h"
-#include "spectral/json_text.h"
-#include "spectral/printable.h"
+#include "base/atomic_file.h"
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/json_text.h"
+#include "base/printable.h"
+#include "base/sha256.h"
+#include "image/exr.h"
+#include "image/image_size.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/atlas_export.h"
 
+#include "base/atomic_file.h"
+#include "base/parallel.h"
+#include "image/exr.h"
 #include "lightmap/altitude_fit.h"
 #include "lightmap/atlas_plan.h"
-#include "spectral/atomic_file.h"
-#include "spectral/exr.h"
-#include "spectral/parallel.h"
 
 #include <fmt/format.h>
 

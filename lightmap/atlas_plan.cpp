@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/atlas_plan.h"
 
-#include "scene_gen/geometry.h"
-#include "spectral/parallel.h"
+#include "base/parallel.h"
+#include "rig/geometry.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/cone_edge.h"
 
-#include "scene_gen/geometry.h"
-#include "spectral/image_size.h"
+#include "image/image_size.h"
+#include "rig/geometry.h"
 
 #include <algorithm>
 #include <cmath>

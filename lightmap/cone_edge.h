@@ -11,7 +11,7 @@
 #pragma once
 
 #include "lightmap/row_light.h"
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/lightmap.h"
 
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/parallel.h"
 #include "lightmap/row_light.h"
-#include "scene_gen/geometry.h"
-#include "spectral/degrees.h"
-#include "spectral/error.h"
+#include "rig/geometry.h"
 #include "spectral/light_family.h"
-#include "spectral/parallel.h"
-#include "spectral/refraction.h"
+#include "spectral/refractive_index.h"
 
 #include <fmt/format.h>
 

@@ -18,14 +18,15 @@
 // kIndexNodes - 1 in n over the range. A cone's edge, which dispersion spreads over several pixels,
 // is sharp here and stands where the middle index has it.
 //
-// An emitter of a size is the grid of lamps of scene_gen/geometry.h. Where the image sees no floor,
+// An emitter of a size is the grid of lamps of rig/geometry.h. Where the image sees no floor,
 // the map is black; and so it is beyond the longest path when the paths have a horizon, that is
 // when all that lies beyond is darker than kDarkShare of the brightest.
 #pragma once
 
 #include "lightmap/path_table.h"
-#include "scene_gen/light_paths.h"
-#include "scene_gen/rig.h"
+#include "rig/path_range.h"
+#include "rig/rig.h"
+#include "spectral/bands.h"
 
 #include <array>
 #include <optional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/map_axes.h"
 
-#include "spectral/degrees.h"
-#include "spectral/error.h"
+#include "base/degrees.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 

@@ -14,7 +14,7 @@
 #pragma once
 
 #include "lightmap/lightmap.h"
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 
 #include <span>
 #include <string>

@@ -18,7 +18,7 @@
 // number and one step serves. With K = 0.5/m and an error of 1e-6, h is 0.28 m.
 #pragma once
 
-#include "scene_gen/light_paths.h"
+#include "rig/path_range.h"
 #include "spectral/sensor.h"
 
 #include <Eigen/Core>

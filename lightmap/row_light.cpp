@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/row_light.h"
 
-#include "spectral/refraction.h"
+#include "spectral/refractive_index.h"
 
 #include <algorithm>
 #include <cmath>

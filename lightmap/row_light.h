@@ -32,8 +32,8 @@
 #pragma once
 
 #include "lightmap/path_table.h"
-#include "scene_gen/geometry.h"
-#include "scene_gen/rig.h"
+#include "rig/geometry.h"
+#include "rig/rig.h"
 
 #include <Eigen/Core>
 

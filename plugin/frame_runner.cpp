@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/frame_runner.h"
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "image/frame_check.h"
 #include "plugin/full_disk.h"
 #include "plugin/interruption.h"
 #include "plugin/library_paths.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
-#include "spectral/frame_check.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 //
 // POV-Ray runs inside DIR/povray, so that its restrictions on files never bite, or in the folder of
 // the user's own scene, so that it finds what that includes; with our render.ini as its only
-// settings file. Each frame is rendered beside its place, checked (spectral/frame_check.h) and then
+// settings file. Each frame is rendered beside its place, checked (image/frame_check.h) and then
 // renamed into it. POV-Ray's own words go to DIR/povray/logs/NAME.log.
 //
 // Frames are files, not an animation of one scene: a process costs 0.45 s more than a further

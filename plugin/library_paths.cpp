@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/library_paths.h"
 
-#include "spectral/atomic_file.h"
+#include "base/atomic_file.h"
 
 #include <cstdlib>
 #include <optional>

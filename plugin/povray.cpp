@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray.h"
 
+#include "base/error.h"
 #include "plugin/full_disk.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
 #include "plugin/scratch_folder.h"
-#include "spectral/error.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

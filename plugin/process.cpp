@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/process.h"
 
+#include "base/error.h"
 #include "plugin/interruption.h"
 #include "plugin/life_signs.h"
-#include "spectral/error.h"
 
 #include <fmt/format.h>
 #include <sys/prctl.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/render.h"
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/sha256.h"
+#include "image/frame_check.h"
+#include "image/traced_image.h"
 #include "scene_gen/user_scene.h"
-#include "spectral/atomic_file.h"
-#include "spectral/digest.h"
-#include "spectral/error.h"
-#include "spectral/frame_check.h"
-#include "spectral/traced_image.h"
 
 #include <fmt/format.h>
 

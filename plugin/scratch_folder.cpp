@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/scratch_folder.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 #include <stdlib.h>  // mkdtemp

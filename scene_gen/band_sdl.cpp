@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/band_sdl.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include "scene_gen/floor_light.h"
 #include "spectral/panel_quadrature.h"
-#include "spectral/rule_certificate.h"
+#include "spectral/quadrature_certificate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -180,7 +180,7 @@ std::array<double, kChannels> port_error(const Rig& rig,
 }
 
 void certify(const Rig& rig,
-             const RuleFitter& fitter,
+             const QuadratureFitter& fitter,
              std::span<const FrameLight> frames,
              std::span<const FloorFrame> in_view,
              FittedRule& rule) {

@@ -2,7 +2,7 @@
 //
 // What a fitted rule is held to before anything is rendered, by integrals over wavelength that
 // share nothing with the fit's (spectral/panel_quadrature.h): first over the whole family of light
-// (spectral/rule_certificate.h), then behind a port over the image.
+// (spectral/quadrature_certificate.h), then behind a port over the image.
 //
 // Behind a port every wavelength shows a point of the floor of its own, and a pixel's light changes
 // over wavelength along a curve of its own, of which the family's tilt is an envelope. So the rule
@@ -16,8 +16,8 @@
 // tilt is stated, not measured (scene_gen/light_paths.h).
 #pragma once
 
-#include "scene_gen/rig.h"
-#include "spectral/rule_fitter.h"
+#include "rig/rig.h"
+#include "spectral/quadrature_fit.h"
 
 #include <array>
 #include <span>
@@ -46,7 +46,7 @@ struct FloorFrame {
 
 // Raises the rule's quality to what is found. in_view: of a user's own scene, none.
 void certify(const Rig& rig,
-             const RuleFitter& fitter,
+             const QuadratureFitter& fitter,
              std::span<const FrameLight> frames,
              std::span<const FloorFrame> in_view,
              FittedRule& rule);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/exposure.h"
 
-#include "scene_gen/geometry.h"
-#include "scene_gen/solid.h"
+#include "rig/geometry.h"
+#include "rig/solid.h"
 #include "spectral/manifest.h"
 
 #include <Eigen/Geometry>

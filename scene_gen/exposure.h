@@ -21,7 +21,7 @@
 // The factor of four between 2^kTargetLog2 and the largest half float is the grid's margin.
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 
 #include <vector>
 

@@ -11,8 +11,8 @@
 // with the letters of docs/physics.md. The strobe is a point.
 #pragma once
 
-#include "scene_gen/geometry.h"
-#include "scene_gen/rig.h"
+#include "rig/geometry.h"
+#include "rig/rig.h"
 
 namespace aphotic {
 

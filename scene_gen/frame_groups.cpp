@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/frame_groups.h"
 
-#include "scene_gen/geometry.h"
+#include "rig/geometry.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,7 @@
 // against each other by no more than a bound; it is rendered at the wavelength halfway.
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 
 #include <cstddef>
 #include <span>

@@ -7,8 +7,8 @@
 // the lit point or of the lamp.
 #pragma once
 
+#include "rig/rig.h"
 #include "scene_gen/band_sdl.h"
-#include "scene_gen/rig.h"
 
 #include <span>
 #include <string>

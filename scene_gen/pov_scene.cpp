@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/pov_scene.h"
 
+#include "base/error.h"
+#include "rig/solid.h"
 #include "scene_gen/band_sdl.h"
-#include "scene_gen/omissions.h"
+#include "scene_gen/light_culling.h"
 #include "scene_gen/rig_sdl.h"
-#include "scene_gen/solid.h"
-#include "spectral/error.h"
-#include "spectral/refraction.h"
+#include "spectral/refractive_index.h"
 
 #include <fmt/format.h>
 

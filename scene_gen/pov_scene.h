@@ -21,10 +21,10 @@
 // That holds for a rig's floor and for a scene of the user's own alike.
 #pragma once
 
+#include "rig/geometry.h"
+#include "rig/rig.h"
 #include "scene_gen/exposure.h"
 #include "scene_gen/frame_groups.h"
-#include "scene_gen/geometry.h"
-#include "scene_gen/rig.h"
 #include "scene_gen/user_scene.h"
 
 #include <memory>
@@ -88,7 +88,7 @@ inline constexpr double kLeastInMetres_m = 0x1p-6;
 // POV-Ray gives up inside a medium when it meets more lights than this.
 inline constexpr int kMostLightsInMedia = 1024;
 
-// A frame by which a scene is measured (plugin/scene_survey.h): everything white, all lamps alike.
+// A frame by which a scene is measured (plugin/probe.h): everything white, all lamps alike.
 struct SurveyFrame {
     Channels attenuation_per_m{};
     int exposure_log2 = 0;

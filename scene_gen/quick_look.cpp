@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/quick_look.h"
 
+#include "base/error.h"
 #include "scene_gen/exposure.h"
 #include "scene_gen/light_paths.h"
 #include "scene_gen/rig_sdl.h"
-#include "spectral/builtin.h"
-#include "spectral/error.h"
-#include "spectral/refraction.h"
+#include "spectral/curve_loader.h"
+#include "spectral/refractive_index.h"
 
 #include <fmt/format.h>
 

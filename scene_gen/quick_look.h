@@ -8,7 +8,7 @@
 // brightest.
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 #include "scene_gen/sdl.h"
 
 #include <filesystem>

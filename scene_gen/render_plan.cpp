@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/render_plan.h"
 
+#include "base/degrees.h"
+#include "base/error.h"
 #include "scene_gen/certificate.h"
-#include "spectral/degrees.h"
-#include "spectral/error.h"
-#include "spectral/planner.h"
+#include "spectral/wavelength_search.h"
 
 #include <fmt/format.h>
 
@@ -54,7 +54,7 @@ int most_wavelengths(const LightFamily& family) {
 
 // Puts the wavelengths into frames, and fits or judges the weights with what these hold.
 void share_frames(const Rig& rig,
-                  const RuleFitter& fitter,
+                  const QuadratureFitter& fitter,
                   std::span<const double> lambda_nm,
                   RenderPlan& plan) {
     plan.frames =
@@ -85,7 +85,7 @@ void share_frames(const Rig& rig,
 // breaks the tolerance, none is shared. False when no such plan is found.
 bool keeps(double tolerance,
            const Rig& rig,
-           const RuleFitter& fitter,
+           const QuadratureFitter& fitter,
            const PlanRequest& request,
            RenderPlan& plan) {
     constexpr int kMostTrials = 4;
@@ -120,7 +120,7 @@ bool keeps(double tolerance,
 }
 
 void plan_to_tolerance(const Rig& rig,
-                       const RuleFitter& fitter,
+                       const QuadratureFitter& fitter,
                        const PlanRequest& request,
                        RenderPlan& plan) {
     if (keeps(request.tolerance, rig, fitter, request, plan)) return;
@@ -161,7 +161,7 @@ double frame_error(const Rig& rig) {
     return kFrameError + (has_emitter ? kLampError : 0.0);
 }
 
-std::vector<FrameLight> frames_light(const RuleFitter& fitter,
+std::vector<FrameLight> frames_light(const QuadratureFitter& fitter,
                                      std::span<const double> lambda_nm,
                                      std::span<const FrameGroup> groups) {
     std::vector<FrameLight> frames;
@@ -186,7 +186,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                     .omissions = omissions(rig, request.scene.user_scene != nullptr)};
     plan.scene.pixel_shift = pixel_shift(rig, request.scene);
     if (request.scene.user_scene) plan.no_promise = request.scene.user_scene->no_promise;
-    const RuleFitter fitter(rig.camera.sensor, plan.family, range);
+    const QuadratureFitter fitter(rig.camera.sensor, plan.family, range);
     std::vector<double> lambda_nm;
     if (request.bands) {
         plan.method = PlanMethod::EqualBands;

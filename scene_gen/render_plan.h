@@ -7,16 +7,16 @@
 //
 //   promise = error + amplification frame_error
 //
-// (spectral/rule_fitter.h). frame_error is kFrameError, and kLampError more where point lamps
+// (spectral/quadrature_fit.h). frame_error is kFrameError, and kLampError more where point lamps
 // stand for an emitter. It holds for every pixel off the edges of cones and objects that is
 // brighter than black (1e-8 of the brightest), relative to its own signal. A scene of the user's
 // may hold what voids it: no_promise says what.
 #pragma once
 
+#include "scene_gen/light_culling.h"
 #include "scene_gen/light_paths.h"
-#include "scene_gen/omissions.h"
 #include "scene_gen/pov_scene.h"
-#include "spectral/rule_fitter.h"
+#include "spectral/quadrature_fit.h"
 
 #include <array>
 #include <optional>
@@ -60,7 +60,7 @@ struct RenderPlan {
 [[nodiscard]] RenderPlan plan_render(const Rig& rig, const PlanRequest& request);
 
 // What each wavelength's frame knows of light.
-[[nodiscard]] std::vector<FrameLight> frames_light(const RuleFitter& fitter,
+[[nodiscard]] std::vector<FrameLight> frames_light(const QuadratureFitter& fitter,
                                                    std::span<const double> lambda_nm,
                                                    std::span<const FrameGroup> groups);
 

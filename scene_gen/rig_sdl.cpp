@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/rig_sdl.h"
 
+#include "base/degrees.h"
 #include "scene_gen/pov_objects.h"
-#include "spectral/degrees.h"
 
 #include <fmt/format.h>
 

@@ -11,9 +11,9 @@
 // in the sled's frame, in the scene's unit.
 #pragma once
 
+#include "rig/geometry.h"
+#include "rig/rig.h"
 #include "scene_gen/band_sdl.h"
-#include "scene_gen/geometry.h"
-#include "scene_gen/rig.h"
 
 #include <optional>
 #include <span>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/scene_set.h"
 
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/sha256.h"
+#include "scene_gen/half_underflow.h"
 #include "scene_gen/include_library.h"
-#include "scene_gen/lost_light.h"
-#include "scene_gen/reintegration.h"
-#include "spectral/atomic_file.h"
-#include "spectral/digest.h"
-#include "spectral/error.h"
+#include "scene_gen/reweighting.h"
 
 #include <fmt/format.h>
 

@@ -7,9 +7,9 @@
 //   DIR/povray/render.ini, DIR/povray/band_*.pov, DIR/povray/*.inc, DIR/povray/frames/
 #pragma once
 
+#include "rig/rig.h"
 #include "scene_gen/pov_scene.h"
 #include "scene_gen/render_plan.h"
-#include "scene_gen/rig.h"
 #include "spectral/bands.h"
 #include "spectral/manifest.h"
 

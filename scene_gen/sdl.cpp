@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/sdl.h"
 
-#include "scene_gen/geometry.h"
+#include "rig/geometry.h"
 
 #include <fmt/format.h>
 

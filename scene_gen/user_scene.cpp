@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/user_scene.h"
 
-#include "spectral/atomic_file.h"
-#include "spectral/builtin.h"
-#include "spectral/digest.h"
-#include "spectral/error.h"
-#include "spectral/nearest.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/nearest.h"
+#include "base/sha256.h"
+#include "spectral/curve_loader.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

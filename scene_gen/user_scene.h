@@ -9,13 +9,13 @@
 // G_s  radiance of the scene, all white, by strobe s at lamp flux 1 [1/(m^2 sr)]
 // l_s  path of that light, lamp to surface to camera [m]
 //
-// G_s and l_s are measured by rendering the scene small (plugin/scene_survey.h): what is smaller
+// G_s and l_s are measured by rendering the scene small (plugin/probe.h): what is smaller
 // than one of those pixels is not seen.
 #pragma once
 
+#include "rig/rig.h"
 #include "scene_gen/band_sdl.h"
 #include "scene_gen/light_paths.h"
-#include "scene_gen/rig.h"
 
 #include <filesystem>
 #include <span>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/integrator.h"
 
-#include "spectral/digest.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
-#include "spectral/frame_check.h"
-#include "spectral/row_blocks.h"
+#include "base/error.h"
+#include "base/sha256.h"
+#include "image/exr.h"
+#include "image/frame_check.h"
+#include "image/row_blocks.h"
 
 #include <fmt/format.h>
 

@@ -15,8 +15,8 @@
 // whatever the number of wavelengths.
 #pragma once
 
+#include "image/output_images.h"
 #include "spectral/manifest.h"
-#include "spectral/output_images.h"
 
 #include <filesystem>
 #include <functional>

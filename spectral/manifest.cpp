@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/manifest.h"
 
-#include "spectral/atomic_file.h"
-#include "spectral/digest.h"
-#include "spectral/error.h"
-#include "spectral/frame_check.h"
-#include "spectral/image_size.h"
-#include "spectral/json_text.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/json_text.h"
+#include "base/sha256.h"
+#include "image/frame_check.h"
+#include "image/image_size.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -15,7 +15,7 @@
 // whose checksum stands beside it.
 #pragma once
 
-#include "spectral/rule_fitter.h"
+#include "spectral/quadrature_fit.h"
 #include "spectral/sensor.h"
 
 #include <array>
@@ -76,7 +76,7 @@ struct Manifest {
     std::string method;
     double tolerance = 0.0;  // asked of a fitted choice; else 0
     // The error that the wavelengths and their weights make, and how they amplify the frames' own
-    // error: together the promise (spectral/rule_fitter.h).
+    // error: together the promise (spectral/quadrature_fit.h).
     std::array<RuleQuality, kChannels> quality{};
     double frame_error = 0.0;
     // Why the image has no promise, for a scene of the user's that voids it; empty: it has. Quality

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/sensor.h"
 
-#include "spectral/builtin.h"
-#include "spectral/error.h"
+#include "base/error.h"
+#include "spectral/curve_loader.h"
 
 #include <fmt/format.h>
 

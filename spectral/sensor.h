@@ -20,17 +20,14 @@
 // Nothing else scales S. Linear sensors only: no saturation, no noise.
 #pragma once
 
+#include "image/camera_image.h"
 #include "spectral/spectrum.h"
 
-#include <array>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 namespace aphotic {
-
-inline constexpr int kChannels = 3;
-inline constexpr std::array<std::string_view, kChannels> kChannelNames{"R", "G", "B"};
 
 enum class ResponseKind { Energy, Quantum };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/spline_import.h"
 
-#include "spectral/error.h"
-#include "spectral/printable.h"
+#include "base/error.h"
+#include "base/printable.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/comparison_page.h"
 
-#include "spectral/preview.h"
+#include "image/preview.h"
+#include "report/html.h"
+#include "report/page_style.h"
+#include "report/svg.h"
 #include "validation/error_view.h"
-#include "validation/html.h"
 #include "validation/report_pictures.h"
-#include "validation/report_style.h"
-#include "validation/svg.h"
 
 #include <fmt/format.h>
 

@@ -22,8 +22,8 @@
 // Limits: point lamps, no objects, a flat floor. Q_c is taken in double, for its table is double.
 #pragma once
 
-#include "scene_gen/rig.h"
-#include "spectral/refraction.h"
+#include "rig/rig.h"
+#include "spectral/refractive_index.h"
 #include "spectral/sensor.h"
 
 #include <boost/math/constants/constants.hpp>

@@ -4,7 +4,7 @@
 // that needs no other file, no script and no network).
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 #include "spectral/integrator.h"
 #include "validation/comparison.h"
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The page is well-formed XML too, so that a strict reader finds what a browser would forgive.
-#include "spectral/atomic_file.h"
-#include "spectral/preview.h"
+#include "base/atomic_file.h"
+#include "image/preview.h"
+#include "report/html.h"
+#include "report/page_style.h"
+#include "report/svg.h"
 #include "validation/error_view.h"
-#include "validation/html.h"
 #include "validation/report.h"
 #include "validation/report_pictures.h"
 #include "validation/report_plots.h"
-#include "validation/report_style.h"
 #include "validation/report_words.h"
-#include "validation/svg.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

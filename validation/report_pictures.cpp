@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/report_pictures.h"
 
-#include "spectral/preview.h"
+#include "image/preview.h"
 
 #include <openssl/evp.h>
 

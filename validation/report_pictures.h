@@ -11,7 +11,7 @@
 // edges, black when any sample in it is not finite.
 #pragma once
 
-#include "spectral/output_images.h"
+#include "image/output_images.h"
 
 #include <array>
 #include <cstdint>

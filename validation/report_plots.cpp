@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/report_plots.h"
 
-#include "validation/html.h"
+#include "report/html.h"
+#include "report/svg.h"
 #include "validation/report_pictures.h"
-#include "validation/svg.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/report_words.h"
 
-#include "spectral/refraction.h"
-#include "validation/html.h"
+#include "report/html.h"
+#include "spectral/refractive_index.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

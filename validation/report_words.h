@@ -5,7 +5,7 @@
 //   Sled    2 m above the floor, bow up by 5°, level athwartships.
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 
 #include <string>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/saved_measure.h"
 
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
-#include "spectral/image_size.h"
-#include "spectral/json_text.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/json_text.h"
+#include "image/image_size.h"
 
 #include <nlohmann/json.hpp>
 

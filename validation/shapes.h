@@ -14,7 +14,7 @@
 // left at d + R.
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 
 #include <Eigen/Geometry>
 #include <unsupported/Eigen/BVH>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/stress.h"
 
-#include "scene_gen/rig_reader.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
-#include "spectral/frame_check.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "image/frame_check.h"
+#include "rig/rig_reader.h"
 #include "validation/comparison.h"
 #include "validation/exact_light.h"
 #include "validation/stress_sheet.h"

@@ -12,7 +12,7 @@
 // expected of it. A case is as expected, or the table is wrong: there is no third way.
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 #include "validation/validation.h"
 
 #include <filesystem>

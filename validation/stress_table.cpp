@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "spectral/atomic_file.h"
+#include "base/atomic_file.h"
 #include "validation/stress.h"
 
 #include <fmt/format.h>

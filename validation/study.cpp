@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/study.h"
 
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
-#include "spectral/json_text.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/json_text.h"
 #include "spectral/sensor.h"
 #include "validation/saved_measure.h"
 #include "validation/study_page.h"

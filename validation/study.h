@@ -18,8 +18,8 @@
 // divide, that setting is left out.
 #pragma once
 
-#include "scene_gen/rig.h"
-#include "spectral/output_images.h"
+#include "image/output_images.h"
+#include "rig/rig.h"
 #include "validation/comparison.h"
 
 #include <array>

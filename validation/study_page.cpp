@@ -3,8 +3,8 @@
 // The page is well-formed XML too, as report.html is.
 #include "validation/study_page.h"
 
-#include "validation/html.h"
-#include "validation/report_style.h"
+#include "report/html.h"
+#include "report/page_style.h"
 #include "validation/study_plot.h"
 #include "validation/study_style.h"
 

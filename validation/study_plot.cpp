@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/study_plot.h"
 
-#include "validation/html.h"
-#include "validation/label_place.h"
-#include "validation/svg.h"
+#include "report/html.h"
+#include "report/label_place.h"
+#include "report/svg.h"
 
 #include <fmt/format.h>
 

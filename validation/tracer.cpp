@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/tracer.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
+#include "base/parallel.h"
 #include "spectral/light_family.h"
-#include "spectral/parallel.h"
-#include "spectral/refraction.h"
+#include "spectral/refractive_index.h"
 #include "validation/full_spectrum.h"
 
 #include <fmt/format.h>

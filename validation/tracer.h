@@ -25,7 +25,7 @@
 // sum has the same sign, so a sum of n terms is right to n 1.1e-16.
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 #include "spectral/bands.h"
 #include "validation/shapes.h"
 

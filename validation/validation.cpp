@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/validation.h"
 
-#include "spectral/frame_check.h"
+#include "image/frame_check.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>

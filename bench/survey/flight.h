@@ -8,7 +8,7 @@
 // it says is what was flown.
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 
 #include <cstdint>
 #include <string>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/survey/image_file.h"
 
-#include "cli/any_image.h"
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "image/any_image.h"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -12,8 +12,7 @@
 #include <vector>
 
 // Linked here, not loaded when it is asked for.
-extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
-                                       aphotic::cli::AnyImage& image);
+extern "C" void aphotic_open_any_image(const std::filesystem::path& file, aphotic::AnyImage& image);
 
 namespace aphotic::survey {
 
@@ -62,7 +61,7 @@ void write_picture(const std::filesystem::path& file,
 }
 
 CameraImage read_image(const std::filesystem::path& file) {
-    cli::AnyImage any;
+    AnyImage any;
     aphotic_open_any_image(file, any);
     if (any.channels.size() < kChannels) {
         throw InputError(fmt::format(

@@ -3,7 +3,7 @@
 // Images in the formats of surveys, by OpenImageIO.
 #pragma once
 
-#include "spectral/output_images.h"
+#include "image/output_images.h"
 
 #include <cstdint>
 #include <filesystem>

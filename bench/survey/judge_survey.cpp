@@ -9,11 +9,11 @@
 // --picture FILE puts the images of --show side by side: a row for each of them, a column for
 // each NAME. Every column has one exposure and one white balance, which show the light tiles of its
 // images grey in the mean: what differs within a column differs in the corrected images.
+#include "base/error.h"
 #include "bench/survey/chart.h"
 #include "bench/survey/flight.h"
 #include "bench/survey/image_file.h"
-#include "spectral/error.h"
-#include "spectral/preview.h"
+#include "image/preview.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -14,14 +14,14 @@
 // Nothing of lightmap/ takes part. Given again it goes on where it stopped, and with more images
 // it goes on from those that are there; with fewer, the navigation tells the first of them. With
 // other settings it is refused.
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/sha256.h"
 #include "bench/survey/image_file.h"
 #include "bench/survey/raw_camera.h"
 #include "bench/survey/render.h"
-#include "cli/progress.h"
 #include "plugin/process.h"
-#include "spectral/atomic_file.h"
-#include "spectral/digest.h"
-#include "spectral/error.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -165,7 +165,7 @@ void make_survey(const Options& options) {
     const std::vector<Leg> legs = flight(options.seed, options.images);
     std::vector<Picture> pictures = pictures_of(legs, folder);
     pictures.insert(pictures.begin(), gain_picture(folder));
-    cli::ProgressLine line;
+    ProgressLine line;
     const RunOptions run{
         .jobs = options.jobs,
         .report =

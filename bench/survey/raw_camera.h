@@ -13,7 +13,7 @@
 // black.
 #pragma once
 
-#include "spectral/output_images.h"
+#include "image/output_images.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic atlas, as a user runs it.
-#include "spectral/exr.h"
+#include "image/exr.h"
 #include "support/run_command.h"
 
 #include <gtest/gtest.h>

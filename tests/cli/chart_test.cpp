@@ -2,10 +2,10 @@
 //
 // The 24 patches of scenes/user/chart, in air, against their own integration by hand: the signal of
 // a patch is int Phi rho Q dlambda times what the geometry makes of a white one.
-#include "scene_gen/rig_reader.h"
-#include "spectral/builtin.h"
+#include "image/output_images.h"
+#include "rig/rig_reader.h"
+#include "spectral/curve_loader.h"
 #include "spectral/manifest.h"
-#include "spectral/output_images.h"
 #include "support/closed_form.h"
 #include "support/run_command.h"
 

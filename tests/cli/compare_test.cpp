@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic compare with --scale and --report, as a user runs it.
-#include "spectral/exr.h"
+#include "image/exr.h"
 #include "support/page.h"
 #include "support/run_command.h"
 

@@ -2,12 +2,12 @@
 //
 // The correction of surveys as a user runs it. The images are made of the reference tracer's light,
 // which shares no geometry and no light with the maps that they are divided by.
-#include "lightmap/correction.h"
+#include "survey/correction.h"
 
+#include "image/exr.h"
+#include "image/preview.h"
 #include "lightmap/cone_edge.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/exr.h"
-#include "spectral/preview.h"
+#include "rig/rig_reader.h"
 #include "support/png.h"
 #include "support/run_command.h"
 #include "support/tiff.h"

@@ -2,11 +2,11 @@
 //
 // What breaks while a command runs, or between two runs (docs/faults.md): disks, folders, frames,
 // manifests, POV-Ray, and users who edit their scene too early.
-#include "plugin/folder_lock.h"
-#include "spectral/digest.h"
-#include "spectral/exr.h"
+#include "base/folder_lock.h"
+#include "base/sha256.h"
+#include "image/exr.h"
+#include "image/output_images.h"
 #include "spectral/manifest.h"
-#include "spectral/output_images.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
 

@@ -3,7 +3,7 @@
 // Rigs and folders that were made to do harm: their texts stay texts, for POV-Ray, for its settings
 // and for a shell. tests/scene_gen/rig_reader_test.cpp has what is refused when a rig is read,
 // tests/validation/*_browser_test.cpp what a browser makes of such names.
-#include "spectral/exr.h"
+#include "image/exr.h"
 #include "support/run_command.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 // Every command that writes, but for render and correct, which have tests of their own, struck at
 // random moments by SIGINT, SIGTERM and SIGKILL. Nothing is left half written or running, and the
 // same command given again ends in the same files.
-#include "spectral/digest.h"
+#include "base/sha256.h"
 #include "support/command_under_way.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"

@@ -5,8 +5,8 @@
 // happens, saying the same command again ends in the same image, bit for bit.
 //
 // Several lanes run side by side, each in a folder of its own, for POV-Ray mostly sleeps.
-#include "spectral/digest.h"
-#include "spectral/exr.h"
+#include "base/sha256.h"
+#include "image/exr.h"
 #include "spectral/manifest.h"
 #include "support/command_under_way.h"
 #include "support/run_command.h"

@@ -2,10 +2,10 @@
 //
 // What the commands take, as the kernel counts it, against what is foretold; and that they refuse
 // before they begin where there is too little.
-#include "scene_gen/needs.h"
+#include "scene_gen/resource_estimate.h"
 
-#include "scene_gen/rig_reader.h"
-#include "spectral/exr.h"
+#include "image/exr.h"
+#include "rig/rig_reader.h"
 #include "spectral/manifest.h"
 #include "support/run_command.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic observe and aphotic baseline on small surveys, as a user runs them.
-#include "lightmap/raw_image.h"
-#include "spectral/exr.h"
+#include "image/exr.h"
 #include "support/run_command.h"
 #include "support/tiff.h"
+#include "survey/raw_image.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The main job as a user runs it.
-#include "spectral/exr.h"
+#include "image/exr.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Scenes of the user's own through the command, from a folder with a blank in its name.
+#include "image/exr.h"
+#include "image/output_images.h"
 #include "plugin/povray.h"
-#include "spectral/exr.h"
 #include "spectral/manifest.h"
-#include "spectral/output_images.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
 

@@ -3,7 +3,7 @@
 // A frame from any bytes, checked as the frames of POV-Ray are. OpenEXR takes a file by its name,
 // so the bytes go through one that has no place on a disk. A bad frame is a RunError.
 #include "fuzz.h"
-#include "spectral/frame_check.h"
+#include "image/frame_check.h"
 
 #include <fmt/format.h>
 #include <sys/mman.h>

@@ -8,7 +8,7 @@
 // that the suite holds every build to what was ever found.
 #pragma once
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <cstddef>
 #include <cstdint>

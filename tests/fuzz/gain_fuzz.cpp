@@ -2,13 +2,13 @@
 //
 // The gain in the notes of a corrected survey, from any text: what is not ours tells of none, so
 // every text is taken. A gain that comes of it is one to multiply with.
-#include "cli/kept_gain.h"
 #include "fuzz.h"
+#include "survey/kept_gain.h"
 
 #include <cmath>
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto kept = aphotic::cli::kept_gain(aphotic::text_of(data, size), "digest");
+    const auto kept = aphotic::kept_gain(aphotic::text_of(data, size), "digest");
     if (!kept) return 0;
     for (const double gain : kept->gain) {
         if (!std::isfinite(gain) || gain <= 0.0) std::abort();

@@ -2,10 +2,10 @@
 //
 // The journal of a corrected survey from any text: what is not ours is passed over, so every text
 // is taken.
-#include "cli/journal.h"
 #include "fuzz.h"
+#include "survey/journal.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static_cast<void>(aphotic::cli::parse_journal(aphotic::text_of(data, size)));
+    static_cast<void>(aphotic::parse_journal(aphotic::text_of(data, size)));
     return 0;
 }

@@ -2,7 +2,7 @@
 //
 // A navigation file from any text, and the pose of an image that may be in it.
 #include "fuzz.h"
-#include "lightmap/navigation.h"
+#include "survey/navigation.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     aphotic::expect_result_or_placed_error("survey.csv", [&] {

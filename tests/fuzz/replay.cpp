@@ -2,8 +2,8 @@
 //
 // NAME_replay FILE|FOLDER...: calls the target with the bytes of every file, once. A fault ends the
 // program, with the file's name as the last that was said.
+#include "base/atomic_file.h"
 #include "fuzz.h"
-#include "spectral/atomic_file.h"
 
 #include <filesystem>
 #include <vector>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/atlas_plan.h"
 
-#include "scene_gen/rig_reader.h"
-#include "spectral/builtin.h"
+#include "rig/rig_reader.h"
+#include "spectral/curve_loader.h"
 #include "support/effort.h"
 #include "support/random_rig.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/atlas.h"
 
+#include "base/error.h"
+#include "image/exr.h"
 #include "lightmap/atlas_export.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
+#include "rig/rig_reader.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>

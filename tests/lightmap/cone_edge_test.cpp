@@ -4,9 +4,9 @@
 // which has its own geometry.
 #include "lightmap/cone_edge.h"
 
+#include "base/atomic_file.h"
 #include "lightmap/lightmap.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/atomic_file.h"
+#include "rig/rig_reader.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>

@@ -4,10 +4,10 @@
 // geometry or light.
 #include "lightmap/lightmap.h"
 
-#include "scene_gen/geometry.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/builtin.h"
-#include "spectral/error.h"
+#include "base/error.h"
+#include "rig/geometry.h"
+#include "rig/rig_reader.h"
+#include "spectral/curve_loader.h"
 #include "support/effort.h"
 #include "validation/tracer.h"
 

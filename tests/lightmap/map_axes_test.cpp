@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/map_axes.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 //
 // plugin/include/aphotic.inc, by real POV-Ray: every macro in a scene, against closed forms; every
 // error provoked.
-#include "scene_gen/geometry.h"
+#include "rig/geometry.h"
+#include "rig/rig_reader.h"
 #include "scene_gen/quick_look.h"
-#include "scene_gen/rig_reader.h"
 #include "support/povray_scene.h"
 
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 // What becomes of a run when POV-Ray does not do as it should, and when it does.
 #include "plugin/frame_runner.h"
 
-#include "spectral/digest.h"
-#include "spectral/error.h"
+#include "base/error.h"
+#include "base/sha256.h"
 #include "support/rendered.h"
 #include "support/run_command.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray_log.h"
 
+#include "base/error.h"
 #include "plugin/process.h"
-#include "spectral/error.h"
 #include "tests/support/temp_folder.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
 #include "support/run_command.h"
 #include "support/temp_folder.h"
 

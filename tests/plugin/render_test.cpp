@@ -3,8 +3,8 @@
 // Renders that are repeated, interrupted, changed, or run with another number of jobs.
 #include "plugin/render.h"
 
-#include "spectral/digest.h"
-#include "spectral/error.h"
+#include "base/error.h"
+#include "base/sha256.h"
 #include "spectral/integrator.h"
 #include "support/rendered.h"
 #include "support/run_command.h"

@@ -3,9 +3,9 @@
 // POV-Ray's own word on the splines that are imported.
 #include "spectral/spline_import.h"
 
+#include "base/atomic_file.h"
 #include "plugin/povray.h"
 #include "plugin/process.h"
-#include "spectral/atomic_file.h"
 #include "support/temp_folder.h"
 
 #include <fmt/format.h>

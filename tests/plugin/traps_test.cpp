@@ -8,7 +8,7 @@
 // frames that peak near 2^13 a tenth of the floor's reflectance is under the rounding.
 #include "support/rendered.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 namespace aphotic::traps_test {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/band_sdl.h"
 
+#include "base/error.h"
 #include "scene_gen/sdl.h"
-#include "spectral/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/certificate.h"
 
+#include "rig/rig_reader.h"
 #include "scene_gen/render_plan.h"
-#include "scene_gen/rig_reader.h"
 #include "support/random_rig.h"
 #include "validation/tracer.h"
 

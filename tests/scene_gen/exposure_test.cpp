@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/exposure.h"
 
-#include "scene_gen/geometry.h"
+#include "rig/geometry.h"
 
-#include "scene_gen/rig_reader.h"
+#include "rig/rig_reader.h"
 #include "spectral/manifest.h"
 #include "tests/support/closed_form.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/frame_groups.h"
 
-#include "scene_gen/geometry.h"
-#include "scene_gen/rig_reader.h"
+#include "rig/geometry.h"
+#include "rig/rig_reader.h"
 
 #include <gtest/gtest.h>
 

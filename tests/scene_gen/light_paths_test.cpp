@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/light_paths.h"
 
-#include "scene_gen/geometry.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/builtin.h"
+#include "rig/geometry.h"
+#include "rig/rig_reader.h"
+#include "spectral/curve_loader.h"
 
 #include <gtest/gtest.h>
 

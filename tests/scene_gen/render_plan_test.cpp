@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/render_plan.h"
 
-#include "scene_gen/rig_reader.h"
-#include "spectral/builtin.h"
-#include "spectral/error.h"
+#include "base/error.h"
+#include "rig/rig_reader.h"
+#include "spectral/curve_loader.h"
 #include "tests/support/closed_form.h"
 
 #include <gtest/gtest.h>
@@ -681,7 +681,7 @@ TEST(RenderPlan, BehindAPortGivesUpSharingForTheTolerance) {
 TEST(RenderPlan, FramesLightHasTheFramesIndices) {
     const Rig rig = rig_of("port.toml");
     const LightFamily family = light_family(rig);
-    const RuleFitter fitter(rig.camera.sensor, family, rig.camera.range);
+    const QuadratureFitter fitter(rig.camera.sensor, family, rig.camera.range);
     const std::vector<double> lambda_nm{450.0, 470.0, 600.0};
     const std::vector<FrameGroup> groups{{.first = 0, .count = 2, .index_nm = 460.0},
                                          {.first = 2, .count = 1, .index_nm = 600.0}};

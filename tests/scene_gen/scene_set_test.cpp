@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/scene_set.h"
 
-#include "scene_gen/rig_reader.h"
-#include "spectral/error.h"
+#include "base/error.h"
+#include "rig/rig_reader.h"
 
 #include <gtest/gtest.h>
 

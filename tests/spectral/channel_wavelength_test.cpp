@@ -3,7 +3,7 @@
 // Names of channels as the writers of spectral images spell them.
 #include "spectral/channel_wavelength.h"
 
-#include "spectral/output_images.h"
+#include "image/output_images.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/integrator.h"
 
-#include "spectral/digest.h"
-#include "spectral/error.h"
-#include "spectral/exr.h"
+#include "base/error.h"
+#include "base/sha256.h"
+#include "image/exr.h"
 #include "tests/support/temp_folder.h"
 
 #include <ImfArray.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/light_family.h"
 
-#include "spectral/builtin.h"
+#include "spectral/curve_loader.h"
 
 #include <gtest/gtest.h>
 

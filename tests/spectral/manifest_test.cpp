@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/manifest.h"
 
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "tests/support/temp_folder.h"
 
 #include <fmt/format.h>

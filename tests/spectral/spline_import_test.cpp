@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/spline_import.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
 
 #include <gtest/gtest.h>
 

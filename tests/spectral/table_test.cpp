@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/table.h"
 
-#include "spectral/error.h"
+#include "base/error.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // A box as a mesh of twelve triangles.
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 
 namespace aphotic {
 

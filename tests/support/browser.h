@@ -3,8 +3,8 @@
 // A page in a real browser, Debian's Chromium without a window, and what it says of it.
 #pragma once
 
+#include "base/atomic_file.h"
 #include "plugin/process.h"
-#include "spectral/atomic_file.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>

@@ -7,8 +7,8 @@
 //         (rho cos(i) + phong max(0, r.l)^size) / pi  exp(-K (d + r))
 #pragma once
 
-#include "scene_gen/rig.h"
-#include "spectral/refraction.h"
+#include "rig/rig.h"
+#include "spectral/refractive_index.h"
 
 #include <array>
 #include <cmath>

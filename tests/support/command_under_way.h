@@ -3,7 +3,7 @@
 // The aphotic command while it runs: what tests that interrupt it need to watch and to strike.
 #pragma once
 
-#include "spectral/atomic_file.h"
+#include "base/atomic_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

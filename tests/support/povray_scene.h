@@ -4,13 +4,13 @@
 // stock settings, no command of ours.
 #pragma once
 
+#include "base/atomic_file.h"
+#include "image/exr.h"
 #include "plugin/povray.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
 #include "scene_gen/band_sdl.h"
 #include "scene_gen/include_library.h"
-#include "spectral/atomic_file.h"
-#include "spectral/exr.h"
 #include "support/temp_folder.h"
 
 #include <fmt/format.h>

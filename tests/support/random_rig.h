@@ -15,10 +15,10 @@
 // tries that rig and no other.
 #pragma once
 
-#include "scene_gen/geometry.h"
-#include "scene_gen/rig.h"
-#include "scene_gen/solid.h"
-#include "spectral/builtin.h"
+#include "rig/geometry.h"
+#include "rig/rig.h"
+#include "rig/solid.h"
+#include "spectral/curve_loader.h"
 #include "support/box_mesh.h"
 
 #include <fmt/format.h>

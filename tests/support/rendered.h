@@ -4,14 +4,14 @@
 // the closed form, per pixel and per wavelength.
 #pragma once
 
+#include "base/atomic_file.h"
+#include "image/exr.h"
 #include "plugin/render.h"
+#include "rig/rig_reader.h"
 #include "scene_gen/exposure.h"
 #include "scene_gen/include_library.h"
-#include "scene_gen/rig_reader.h"
 #include "scene_gen/scene_set.h"
-#include "spectral/atomic_file.h"
-#include "spectral/builtin.h"
-#include "spectral/exr.h"
+#include "spectral/curve_loader.h"
 #include "support/closed_form.h"
 #include "support/temp_folder.h"
 

@@ -13,7 +13,7 @@
 //   with_power   every strobe's power times a factor: so is every sample
 #pragma once
 
-#include "scene_gen/rig.h"
+#include "rig/rig.h"
 
 #include <Eigen/Geometry>
 

@@ -3,8 +3,8 @@
 // The aphotic command as a user runs it: arguments in, exit status and both streams out.
 #pragma once
 
+#include "base/atomic_file.h"
 #include "plugin/process.h"
-#include "spectral/atomic_file.h"
 #include "support/temp_folder.h"
 
 #include <fstream>

@@ -4,7 +4,7 @@
 // numbers, and errors that are set by hand.
 #pragma once
 
-#include "scene_gen/rig_reader.h"
+#include "rig/rig_reader.h"
 #include "validation/report.h"
 
 #include <cstddef>

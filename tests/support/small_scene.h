@@ -3,7 +3,7 @@
 // The project's scenes with few pixels over the same field of view.
 #pragma once
 
-#include "spectral/atomic_file.h"
+#include "base/atomic_file.h"
 #include "support/temp_folder.h"
 
 #include <fmt/format.h>

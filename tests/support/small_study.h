@@ -4,7 +4,7 @@
 // cores, with times and errors of the size that they have.
 #pragma once
 
-#include "scene_gen/rig_reader.h"
+#include "rig/rig_reader.h"
 #include "validation/study.h"
 
 #include <cmath>

@@ -4,9 +4,9 @@
 // with fewer pixels, and the program `survey` run on them.
 #pragma once
 
+#include "base/atomic_file.h"
 #include "bench/survey/flight.h"
 #include "plugin/process.h"
-#include "spectral/atomic_file.h"
 #include "support/temp_folder.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/comparison_page.h"
 
+#include "report/html.h"
 #include "support/page.h"
-#include "validation/html.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 // double is worth where doubles end.
 #include "validation/exact_light.h"
 
-#include "scene_gen/rig_reader.h"
+#include "rig/rig_reader.h"
 #include "support/closed_form.h"
 
 #include <gtest/gtest.h>

@@ -6,11 +6,11 @@
 // rule's weights make signals of them; what these should be is the reference's full spectrum.
 //
 // POV-Ray itself, its single-precision colours and its way to the inverse square law, is not in
-// it: kFrameError keeps 2e-6 for these (spectral/rule_fitter.h).
+// it: kFrameError keeps 2e-6 for these (spectral/quadrature_fit.h).
+#include "base/error.h"
+#include "rig/rig_reader.h"
 #include "scene_gen/render_plan.h"
-#include "scene_gen/rig_reader.h"
 #include "scene_gen/scene_set.h"
-#include "spectral/error.h"
 #include "support/random_rig.h"
 #include "validation/comparison.h"
 #include "validation/tracer.h"

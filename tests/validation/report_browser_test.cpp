@@ -2,7 +2,7 @@
 //
 // The report in a real browser, Debian's Chromium without a window: nothing on its console, every
 // picture shown, nothing cut off or wider than the page.
-#include "spectral/atomic_file.h"
+#include "base/atomic_file.h"
 #include "support/browser.h"
 #include "support/small_report.h"
 #include "support/temp_folder.h"

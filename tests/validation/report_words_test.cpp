@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/report_words.h"
 
-#include "scene_gen/rig_reader.h"
+#include "rig/rig_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/saved_measure.h"
 
-#include "scene_gen/rig_reader.h"
-#include "spectral/atomic_file.h"
+#include "base/atomic_file.h"
+#include "rig/rig_reader.h"
 #include "support/small_study.h"
 #include "support/temp_folder.h"
 

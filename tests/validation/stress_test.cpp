@@ -3,8 +3,8 @@
 // What a case of `aphotic stress` is called, with renders of the tests' own in POV-Ray's place.
 #include "validation/stress.h"
 
-#include "spectral/atomic_file.h"
-#include "spectral/error.h"
+#include "base/atomic_file.h"
+#include "base/error.h"
 #include "support/temp_folder.h"
 #include "validation/exact_light.h"
 #include "validation/tracer.h"

@@ -2,9 +2,9 @@
 //
 // A study's page in a real browser, as wide as on a desk and as narrow as on a phone: nothing on
 // its console, nothing wider than the page, no label cut off or over another.
+#include "report/html.h"
 #include "support/browser.h"
 #include "support/small_study.h"
-#include "validation/html.h"
 #include "validation/study_page.h"
 
 #include <fmt/format.h>

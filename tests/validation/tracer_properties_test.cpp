@@ -5,8 +5,8 @@
 // come from the formula at the head of validation/tracer.h, and need no expected image.
 //
 // The exposures of POV-Ray's frames are held against the same images at the end.
+#include "image/frame_check.h"
 #include "scene_gen/pov_scene.h"
-#include "spectral/frame_check.h"
 #include "support/effort.h"
 #include "support/random_rig.h"
 #include "support/rig_changes.h"

@@ -5,10 +5,10 @@
 // tables. Lamps, floors and waters are flat over wavelength unless a test says otherwise.
 #include "validation/tracer.h"
 
+#include "base/error.h"
+#include "rig/rig_reader.h"
 #include "scene_gen/light_paths.h"
-#include "scene_gen/rig_reader.h"
-#include "spectral/builtin.h"
-#include "spectral/error.h"
+#include "spectral/curve_loader.h"
 #include "spectral/light_family.h"
 #include "support/box_mesh.h"
 #include "support/closed_form.h"

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/atomic_file.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <signal.h>  // kill
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <regex>
+#include <system_error>
+#include <vector>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_gone(pid_t process) {
+    return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+// Temporaries whose name, less that of their process, is allowed.
+template <typename IsAllowed>
+void remove_abandoned(const fs::path& folder, IsAllowed is_allowed) {
+    static const std::regex kTemporary(R"(\.(.*)\.(\d{1,9})\.part(\..*)?)");
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        std::smatch found;
+        if (!std::regex_match(name, found, kTemporary)) continue;
+        if (!is_allowed(found.str(1) + found.str(3)) || !is_gone(std::stoi(found[2]))) continue;
+        fs::remove(entry.path(), ignored);
+    }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path)) {
+    // The extension stays last: some writers choose their format by it.
+    temporary_ = final_path_;
+    temporary_.replace_filename(fmt::format(".{}.{}.part{}",
+                                            final_path_.stem().string(),
+                                            ::getpid(),
+                                            final_path_.extension().string()));
+}
+
+AtomicFile::~AtomicFile() {
+    std::error_code ignored;
+    if (!committed_) fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+    std::error_code error;
+    fs::rename(temporary_, final_path_, error);
+    if (error) {
+        throw RunError(
+            fmt::format("{}: cannot be written: {}", final_path_.string(), error.message()));
+    }
+    committed_ = true;
+}
+
+void remove_abandoned_files(const fs::path& folder) {
+    remove_abandoned(folder, [](const std::string&) { return true; });
+}
+
+void remove_abandoned_of(const fs::path& file) {
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    remove_abandoned(folder, [&](const std::string& name) { return name == file.filename(); });
+}
+
+void write_text_file(const fs::path& path, std::string_view text) {
+    AtomicFile file(path);
+    std::ofstream out(file.temporary(), std::ios::binary);
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    out.close();
+    if (!out) {
+        throw RunError(
+            fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+    }
+    file.commit();
+}
+
+std::string read_text_file(const fs::path& path, std::size_t most_bytes) {
+    std::ifstream in(path, std::ios::binary);
+    if (!in || fs::is_directory(path)) {
+        throw InputError(fmt::format(
+            "{}: cannot be read: {}", path.string(), in ? "it is a folder" : std::strerror(errno)));
+    }
+    const auto require_room = [&](std::uintmax_t bytes) {
+        if (bytes <= most_bytes) return;
+        throw InputError(fmt::format("{0}: found more than {1} MiB; allowed: {1} MiB or less",
+                                     path.string(),
+                                     most_bytes / kMebibyte));
+    };
+    if (fs::is_regular_file(path)) require_room(fs::file_size(path));
+    // Counted while reading too: a pipe or a device does not say its size.
+    std::string text;
+    std::vector<char> chunk(1U << 16U);
+    while (in.read(chunk.data(), std::ssize(chunk)), in.gcount() > 0) {
+        text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
+        require_room(text.size());
+    }
+    if (in.bad()) throw InputError(fmt::format("{}: cannot be read", path.string()));
+    return text;
+}
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) {
+        throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    }
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+        throw RunError(
+            fmt::format("{}: cannot be written to: {}", folder.string(), std::strerror(errno)));
+    }
+}
+
+}  // namespace aphotic

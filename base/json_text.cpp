@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/json_text.h"
+
+#include "base/error.h"
+#include "base/printable.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace aphotic {
+namespace {
+
+// The library's own way to look at each value as it begins walks through all values of a list
+// whenever one of them ends.
+int depth_of(std::string_view text) {
+    int depth = 0;
+    int deepest = 0;
+    bool is_in_text = false;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (c == '"') is_in_text = !is_in_text;
+        if (is_in_text) {
+            if (c == '\\') ++at;
+        } else if (c == '[' || c == '{') {
+            deepest = std::max(deepest, ++depth);
+        } else if (c == ']' || c == '}') {
+            --depth;
+        }
+    }
+    return deepest;
+}
+
+}  // namespace
+
+nlohmann::json parse_json(std::string_view text, const std::string& what) {
+    if (const int depth = depth_of(text); depth > kMostJsonDepth) {
+        throw InputError(fmt::format("{}: found values nested in {} levels; allowed: up to {}",
+                                     what,
+                                     depth,
+                                     kMostJsonDepth));
+    }
+    nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    if (json.is_discarded()) throw InputError(what + ": is not JSON");
+    return json;
+}
+
+std::string json_text(const nlohmann::ordered_json& json) {
+    constexpr int kIndent = 2;
+    return json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+bool is_whole_number(const nlohmann::json& value, std::int64_t least, std::int64_t most) {
+    if (!value.is_number_integer()) return false;
+    const auto number = value.get<double>();
+    return number >= static_cast<double>(least) && number <= static_cast<double>(most);
+}
+
+std::int64_t whole_number_at(const nlohmann::json& object,
+                             const std::string& key,
+                             std::int64_t least,
+                             std::int64_t most) {
+    const nlohmann::json& value = object.at(key);
+    if (is_whole_number(value, least, most)) return value.get<std::int64_t>();
+    throw InputError(fmt::format("{}: found {}; allowed: a whole number from {} to {}",
+                                 key,
+                                 printable(value.dump()),
+                                 least,
+                                 most));
+}
+
+}  // namespace aphotic

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/any_image.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+namespace aphotic {
+
+namespace {
+
+template <typename Function>
+Function from_part(const char* name) {
+    // Through the program's own run path, else where it was installed; stays loaded, for the images
+    // hold on to it.
+    static void* const kPart = [] {
+        void* part = ::dlopen("aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
+        return part != nullptr
+                   ? part
+                   : ::dlopen(APHOTIC_PARTS "/aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
+    }();
+    if (kPart == nullptr) {
+        throw RunError(fmt::format("the part that reads images cannot be loaded: {}", ::dlerror()));
+    }
+    const auto function = reinterpret_cast<Function>(::dlsym(kPart, name));
+    if (function == nullptr) throw RunError("aphotic_any_image.so is not of this version");
+    return function;
+}
+
+}  // namespace
+
+AnyImage open_any_image(const std::filesystem::path& file) {
+    using Open = void (*)(const std::filesystem::path&, AnyImage&);
+    AnyImage image;
+    from_part<Open>("aphotic_open_any_image")(file, image);
+    return image;
+}
+
+void write_any_image(const std::filesystem::path& file, const WrittenImage& image) {
+    using Write = void (*)(const std::filesystem::path&, const WrittenImage&);
+    AtomicFile destination(file);
+    from_part<Write>("aphotic_write_any_image")(destination.temporary(), image);
+    destination.commit();
+}
+
+std::vector<float> resized(std::vector<float> plane,
+                           PlaneSize from,
+                           PlaneSize to,
+                           const std::string& filter) {
+    using Resize = void (*)(std::vector<float>&, PlaneSize, PlaneSize, const std::string&);
+    from_part<Resize>("aphotic_resize")(plane, from, to, filter);
+    return plane;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The part of the command that links OpenImageIO; see any_image.h.
+#include "base/error.h"
+#include "image/any_image.h"
+#include "image/whole_tiff.h"
+
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+// A 12-bit camera's numbers come scaled to the 16 bits that hold them, when the file says so.
+double full_scale_of(const OIIO::ImageSpec& spec) {
+    if (spec.format.is_floating_point()) return 0.0;
+    const int bits =
+        spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+    return std::exp2(bits) - 1.0;
+}
+
+// Of pixels with their channels side by side.
+std::vector<float> planes_of(std::vector<float> pixels, std::size_t channels) {
+    if (channels == 1) return pixels;
+    const std::size_t count = pixels.size() / channels;
+    std::vector<float> planes(pixels.size());
+    for (std::size_t c = 0; c < channels; ++c) {
+        for (std::size_t i = 0; i < count; ++i) planes[c * count + i] = pixels[i * channels + c];
+    }
+    return planes;
+}
+
+// Halves away from 0, as the library rounds; what is no number is 0.
+template <typename Integer>
+Integer rounded(float sample) {
+    constexpr auto kMost = static_cast<float>(std::numeric_limits<Integer>::max());
+    constexpr float kHalf = 0.5F;
+    float number = sample * kMost;
+    number = number > 0.0F ? number : 0.0F;
+    number = number < kMost ? number : kMost;
+    const int whole = static_cast<int>(number);
+    return static_cast<Integer>(whole + (number - static_cast<float>(whole) >= kHalf ? 1 : 0));
+}
+
+// The channels of a pixel side by side, as the file has them: the library would first make as many
+// floats of them.
+template <typename Integer>
+bool write_as(OIIO::ImageOutput& output, const aphotic::WrittenImage& image) {
+    const std::size_t channels = image.channels.size();
+    const std::size_t count = image.planes.size() / channels;
+    std::vector<Integer> pixels(image.planes.size());
+    for (std::size_t c = 0; c < channels; ++c) {
+        const float* const plane = image.planes.data() + c * count;
+        Integer* const to = pixels.data() + c;
+        for (std::size_t i = 0; i < count; ++i) to[i * channels] = rounded<Integer>(plane[i]);
+    }
+    return output.write_image(output.spec().format, pixels.data());
+}
+
+void compress(OIIO::ImageSpec& spec, aphotic::Compression compression) {
+    using aphotic::Compression;
+    constexpr int kFastest = 1;
+    constexpr int kUsual = 6;
+    const bool is_packed = compression != Compression::None;
+    const int level = compression == Compression::Small ? kUsual : kFastest;
+    spec.attribute("compression", is_packed ? "zip" : "none");
+    spec.attribute("tiff:zipquality", level);
+    spec.attribute("png:compressionLevel", is_packed ? level : 0);
+}
+
+// Formats of which a file that was cut short is known as such: the tests cut each of them.
+constexpr std::array<std::string_view, 13> kFormats{"bmp",
+                                                    "dpx",
+                                                    "fits",
+                                                    "hdr",
+                                                    "jpeg",
+                                                    "jpeg2000",
+                                                    "openexr",
+                                                    "png",
+                                                    "pnm",
+                                                    "sgi",
+                                                    "targa",
+                                                    "tiff",
+                                                    "webp"};
+
+// The first of several lines names the cause.
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reasons) {
+    const std::string why = reasons.substr(0, reasons.find('\n'));
+    throw aphotic::InputError(fmt::format("{}: cannot be read: {}", file.string(), why));
+}
+
+std::shared_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
+    std::shared_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
+    if (!input) refuse(file, OIIO::geterror());
+    const std::string_view format = input->format_name();
+    if (std::ranges::find(kFormats, format) == kFormats.end()) {
+        refuse(file,
+               fmt::format("found the format {}; allowed: {}", format, fmt::join(kFormats, ", ")));
+    }
+    if (format != "tiff") return input;
+    try {
+        aphotic::require_whole_tiff(file);
+    } catch (const aphotic::InputError& error) {
+        refuse(file, error.what());
+    }
+    return input;
+}
+
+// The channels from `first` up to, and without, `end`. OpenImageIO takes what it can get of a file
+// that is damaged, and leaves an error behind.
+std::vector<float> pixels_in(OIIO::ImageInput& input,
+                             const std::filesystem::path& file,
+                             int first,
+                             int end) {
+    const OIIO::ImageSpec& spec = input.spec();
+    std::vector<float> pixels(spec.image_pixels() * static_cast<std::size_t>(end - first));
+    const bool is_read = input.read_image(0, 0, first, end, OIIO::TypeDesc::FLOAT, pixels.data());
+    const std::string fault = input.geterror();
+    if (!is_read || !fault.empty()) refuse(file, fault);
+    return pixels;
+}
+
+}  // namespace
+
+extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
+                                       aphotic::AnyImage& image) {
+    // Opened directly: an image cache could hand back the pixels of a file that was since replaced.
+    const std::shared_ptr<OIIO::ImageInput> input = opened(file);
+    const OIIO::ImageSpec& spec = input->spec();
+    image.width_px = spec.width;
+    image.height_px = spec.height;
+    image.channels = spec.channelnames;
+    image.samples = [input, file](std::size_t channel) {
+        const auto c = static_cast<int>(channel);
+        return pixels_in(*input, file, c, c + 1);
+    };
+    image.planes = [input, file] {
+        const int channels = input->spec().nchannels;
+        return planes_of(pixels_in(*input, file, 0, channels), static_cast<std::size_t>(channels));
+    };
+    image.full_scale = full_scale_of(spec);
+    image.description = spec.get_string_attribute("ImageDescription");
+    image.date_time = spec.get_string_attribute("DateTime");
+}
+
+extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
+                                        const aphotic::WrittenImage& image) {
+    const auto fail = [&](const std::string& why) {
+        throw aphotic::RunError(fmt::format("{}: cannot be written: {}", file.string(), why));
+    };
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(file.string());
+    if (!output) fail(OIIO::geterror());
+    const bool is_bytes = image.type == aphotic::SampleType::Bits8;
+    OIIO::ImageSpec spec(image.width_px,
+                         image.height_px,
+                         static_cast<int>(image.channels.size()),
+                         is_bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
+    compress(spec, image.compression);
+    spec.channelnames = image.channels;
+    if (!image.description.empty()) spec.attribute("ImageDescription", image.description);
+    // Exif's words for a time that is not known; without any, TIFF gets the time of writing.
+    constexpr const char* kUnknown = "    :  :     :  :  ";
+    const bool is_dated = !image.date_time.empty();
+    if (is_dated || std::string_view(output->format_name()) == "tiff") {
+        spec.attribute("DateTime", is_dated ? image.date_time : kUnknown);
+    }
+    output->threads(1);  // images are spread over threads, not their rows
+    const bool is_whole = output->open(file.string(), spec) &&
+                          (is_bytes ? write_as<std::uint8_t>(*output, image)
+                                    : write_as<std::uint16_t>(*output, image)) &&
+                          output->close();
+    if (!is_whole) fail(output->geterror());
+}
+
+extern "C" void aphotic_resize(std::vector<float>& plane,
+                               aphotic::PlaneSize from,
+                               aphotic::PlaneSize to,
+                               const std::string& filter) {
+    const OIIO::ImageBuf image(
+        OIIO::ImageSpec(from.width_px, from.height_px, 1, OIIO::TypeDesc::FLOAT), plane.data());
+    // A width of 0 lets the filter choose its own.
+    const OIIO::ImageBuf result = OIIO::ImageBufAlgo::resize(
+        image, filter, 0.0F, OIIO::ROI(0, to.width_px, 0, to.height_px, 0, 1, 0, 1));
+    std::vector<float> samples(result.spec().image_pixels());
+    if (result.has_error() ||
+        !result.get_pixels(result.roi(), OIIO::TypeDesc::FLOAT, samples.data())) {
+        throw aphotic::InputError(fmt::format("resizing: {}", result.geterror()));
+    }
+    plane = std::move(samples);
+}

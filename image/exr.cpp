@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/exr.h"
+
+#include "base/error.h"
+#include "image/exr_header.h"
+#include "image/row_blocks.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <ImfThreading.h>
+#include <fmt/format.h>
+
+#include <cassert>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A frame buffer over planar rows, of which the first is first_row of the file.
+Imf::FrameBuffer planar_rows(std::span<const std::string> channels,
+                             int width_px,
+                             int first_column,
+                             int first_row,
+                             int rows,
+                             char* samples) {
+    const auto x_stride = static_cast<std::ptrdiff_t>(sizeof(float));
+    const std::ptrdiff_t y_stride = x_stride * width_px;
+    Imf::FrameBuffer buffer;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        char* plane = samples + static_cast<std::ptrdiff_t>(c) * y_stride * rows;
+        // OpenEXR addresses from pixel (0, 0) of the file.
+        char* origin = plane - first_row * y_stride - first_column * x_stride;
+        buffer.insert(channels[c],
+                      Imf::Slice(Imf::FLOAT,
+                                 origin,
+                                 static_cast<std::size_t>(x_stride),
+                                 static_cast<std::size_t>(y_stride)));
+    }
+    return buffer;
+}
+
+[[noreturn]] void fail(const fs::path& path, std::string_view what, const std::exception& why) {
+    throw RunError(fmt::format("{}: {}: {}", path.string(), what, why.what()));
+}
+
+}  // namespace
+
+// Far beyond any camera's; OpenEXR sets up tables of this many rows before it reads the first.
+constexpr int kMostSide_px = 65536;
+
+const char* sound_header(const fs::path& path) {
+    require_sound_exr_header(path);
+    Imf::Header::setMaxImageSize(kMostSide_px, kMostSide_px);
+    return path.c_str();
+}
+
+struct ExrReader::File {
+    explicit File(const fs::path& path)
+        : in(sound_header(path)), window(in.header().dataWindow()) {}
+
+    Imf::InputFile in;
+    Imath::Box2i window;
+};
+
+ExrReader::ExrReader(const fs::path& file) : path_(file) {
+    try {
+        file_ = std::make_unique<File>(file);
+    } catch (const std::exception& error) {
+        fail(path_, "is no readable OpenEXR image", error);
+    }
+}
+
+ExrReader::~ExrReader() = default;
+
+int ExrReader::width_px() const {
+    return file_->window.max.x - file_->window.min.x + 1;
+}
+
+int ExrReader::height_px() const {
+    return file_->window.max.y - file_->window.min.y + 1;
+}
+
+std::vector<std::string> ExrReader::channels() const {
+    std::vector<std::string> names;
+    const Imf::ChannelList& list = file_->in.header().channels();
+    for (auto channel = list.begin(); channel != list.end(); ++channel) {
+        names.emplace_back(channel.name());
+    }
+    return names;
+}
+
+std::string ExrReader::attribute(const std::string& name) const {
+    const auto* text = file_->in.header().findTypedAttribute<Imf::StringAttribute>(name);
+    return text == nullptr ? "" : text->value();
+}
+
+void ExrReader::read_rows(int first_row,
+                          int rows,
+                          std::span<const std::string> channels,
+                          std::span<float> samples) {
+    assert(samples.size() ==
+           channels.size() * static_cast<std::size_t>(rows) * static_cast<std::size_t>(width_px()));
+    for (const std::string& name : channels) {
+        if (file_->in.header().channels().findChannel(name) == nullptr) {
+            throw RunError(fmt::format("{}: has no channel {}", path_.string(), name));
+        }
+    }
+    const int first = file_->window.min.y + first_row;
+    try {
+        file_->in.setFrameBuffer(planar_rows(channels,
+                                             width_px(),
+                                             file_->window.min.x,
+                                             first,
+                                             rows,
+                                             reinterpret_cast<char*>(samples.data())));
+        file_->in.readPixels(first, first + rows - 1);
+    } catch (const std::exception& error) {
+        fail(path_, "cannot be read", error);
+    }
+}
+
+struct ExrWriter::File {
+    File(const fs::path& path, const Imf::Header& header) : out(path.c_str(), header) {}
+
+    Imf::OutputFile out;
+};
+
+ExrWriter::ExrWriter(const fs::path& file,
+                     int width_px,
+                     int height_px,
+                     std::vector<std::string> channels,
+                     const ExrAttributes& attributes,
+                     int zip_level)
+    : destination_(file),
+      channels_(std::move(channels)),
+      width_px_(width_px),
+      height_px_(height_px) {
+    Imf::Header header(width_px, height_px);
+    header.compression() = rows_compressed_together(width_px, channels_.size()) == kRowsOfZip
+                               ? Imf::ZIP_COMPRESSION
+                               : Imf::ZIPS_COMPRESSION;
+    if (zip_level == 0) {
+        header.compression() = Imf::NO_COMPRESSION;
+    } else {
+        header.zipCompressionLevel() = zip_level;
+    }
+    for (const std::string& name : channels_)
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));
+    try {
+        file_ = std::make_unique<File>(destination_.temporary(), header);
+    } catch (const std::exception& error) {
+        fail(file, "cannot be written", error);
+    }
+}
+
+ExrWriter::~ExrWriter() = default;
+
+void ExrWriter::write_rows(int rows, std::span<const float> samples) {
+    assert(samples.size() ==
+           channels_.size() * static_cast<std::size_t>(rows) * static_cast<std::size_t>(width_px_));
+    try {
+        // OpenEXR takes a mutable pointer for reading and writing alike.
+        auto* bytes = const_cast<char*>(reinterpret_cast<const char*>(samples.data()));
+        file_->out.setFrameBuffer(planar_rows(channels_, width_px_, 0, next_row_, rows, bytes));
+        file_->out.writePixels(rows);
+    } catch (const std::exception& error) {
+        fail(destination_.final_path(), "cannot be written", error);
+    }
+    next_row_ += rows;
+}
+
+void ExrWriter::finish() {
+    assert(next_row_ == height_px_);
+    // Closing writes the table of where each block stands, and says nothing when that fails, as
+    // on a full disk: look whether it is there.
+    file_.reset();
+    try {
+        if (!Imf::InputFile(destination_.temporary().c_str()).isComplete()) {
+            throw std::runtime_error("the file is not whole; is the disk full?");
+        }
+    } catch (const std::exception& error) {
+        fail(destination_.final_path(), "cannot be written", error);
+    }
+    destination_.commit();
+}
+
+void set_exr_threads(int threads) {
+    Imf::setGlobalThreadCount(threads);
+}
+
+}  // namespace aphotic

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The images that a render and a trace both leave in their folder, written block by block:
+//
+//   image.exr     the camera's signal: float R, G, B
+//   spectral.exr  one float channel a wavelength, R, G, B beside; none without wavelengths
+//
+// spectral.exr has the layout of Fichet, Pacanowski and Wilkie, "An OpenEXR layout for spectral
+// images", JCGT 10(3), 2021: a channel S0.<wavelength>nm per wavelength, with six decimals and a
+// decimal comma.
+#pragma once
+
+#include "image/camera_image.h"
+#include "image/exr.h"
+
+#include <filesystem>
+#include <future>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+// The signals of an image.exr or a spectral.exr.
+[[nodiscard]] CameraImage read_signals(const std::filesystem::path& file);
+
+// The channel of a wavelength in spectral.exr, such as S0.550,000000nm.
+[[nodiscard]] std::string spectral_channel(double lambda_nm);
+
+class OutputImages {
+  public:
+    OutputImages(const std::filesystem::path& folder,
+                 int width_px,
+                 int height_px,
+                 std::span<const double> lambda_nm,
+                 const ExrAttributes& attributes);
+
+    // The next rows: planes R, G, B, then one a wavelength. Returns at once; compression goes on
+    // beside whatever comes next.
+    void write_rows(int rows, std::vector<float> samples);
+
+    // Both files stand under their names. Returns the camera's signal.
+    [[nodiscard]] CameraImage finish();
+
+  private:
+    CameraImage image_;
+    int next_row_ = 0;
+    ExrWriter image_file_;
+    std::optional<ExrWriter> spectral_file_;
+    std::future<void> writing_;  // last: its end is awaited before the files go
+};
+
+}  // namespace aphotic

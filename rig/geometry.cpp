@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rig/geometry.h"
+
+#include "base/error.h"
+#include "rig/solid.h"
+#include "spectral/refractive_index.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace aphotic {
+
+using Eigen::Vector3d;
+
+Plane floor_plane(const Sled& sled) {
+    const double sin_pitch = std::sin(sled.pitch_rad);
+    const double cos_pitch = std::cos(sled.pitch_rad);
+    const Vector3d down(
+        -sin_pitch, cos_pitch * std::sin(sled.roll_rad), cos_pitch * std::cos(sled.roll_rad));
+    return {.point_m = {0.0, 0.0, sled.altitude_m}, .normal = -down.normalized()};
+}
+
+double height_above(const Plane& floor, const Vector3d& point_m) {
+    return floor.normal.dot(point_m - floor.point_m);
+}
+
+WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm) {
+    const Camera& camera = rig.camera;
+    const Vector3d toward((0.5 * camera.height_px - row) * camera.pixel_pitch_m,
+                          (column - 0.5 * camera.width_px) * camera.pixel_pitch_m,
+                          camera.focal_length_m);
+    const Vector3d in_air = toward.normalized();
+    if (!camera.port) return {.origin_m = Vector3d::Zero(), .direction = in_air};
+
+    const Eigen::Vector2d sin_air = in_air.head<2>();
+    const double n_glass = camera.port->glass.index(lambda_nm);
+    const double n_water =
+        seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
+    const Eigen::Vector2d sin_glass = sin_air / n_glass;
+    const Eigen::Vector2d sin_water = sin_air / n_water;
+    const double cos_glass = std::sqrt(1.0 - sin_glass.squaredNorm());
+    const double cos_water = std::sqrt(1.0 - sin_water.squaredNorm());
+
+    WaterRay ray;
+    ray.origin_m.head<2>() = camera.port->distance_m * sin_air / in_air.z() +
+                             camera.port->thickness_m * sin_glass / cos_glass;
+    ray.origin_m.z() = camera.port->distance_m + camera.port->thickness_m;
+    ray.direction << sin_water, cos_water;
+    return ray;
+}
+
+std::optional<double> distance_to(const Plane& plane, const WaterRay& ray) {
+    const double approach = -plane.normal.dot(ray.direction);
+    if (approach <= 0.0) return std::nullopt;
+    const double distance_m = height_above(plane, ray.origin_m) / approach;
+    return distance_m > 0.0 ? std::optional(distance_m) : std::nullopt;
+}
+
+std::vector<std::optional<FloorSample>> floor_samples(const Rig& rig, std::size_t side) {
+    const Plane floor = floor_plane(rig.sled);
+    const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
+    const double steps = static_cast<double>(side) - 1.0;
+    std::vector<std::optional<FloorSample>> samples;
+    for (std::size_t j = 0; j < side; ++j) {
+        for (std::size_t i = 0; i < side; ++i) {
+            const double column = rig.camera.width_px * (static_cast<double>(i) / steps);
+            const double row = rig.camera.height_px * (static_cast<double>(j) / steps);
+            const WaterRay ray = pixel_ray(rig, column, row, middle_nm);
+            const auto distance_m = distance_to(floor, ray);
+            samples.emplace_back();
+            if (!distance_m) continue;
+            samples.back() = {.point_m = ray.origin_m + *distance_m * ray.direction,
+                              .camera_leg_m = *distance_m};
+        }
+    }
+    return samples;
+}
+
+double most_attenuation_per_m(const Rig& rig, std::span<const double> lambda_nm) {
+    double most_per_m = 0.0;
+    for (const double nm : lambda_nm) {
+        most_per_m = std::max(most_per_m, rig.water.attenuation_per_m(nm));
+    }
+    return most_per_m;
+}
+
+LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m) {
+    if (!strobe.emitter) return {};
+    const double height_m = height_above(floor_plane(rig.sled), strobe.position_m);
+    const double throw_m = least_throw_m(rig, strobe, strobe.position_m);
+    constexpr double kSecondOrder = 24.0;
+    const auto spacing_for = [](double d_m, double bend) {
+        return d_m * std::sqrt(kSecondOrder * kGridError / bend);
+    };
+    const double k = K_per_m * height_m;
+    double spacing_m =
+        std::min(kLampSpacing * throw_m, spacing_for(height_m, (k + 6.0) * k + 12.0));
+    if (throw_m < height_m) {
+        const double near_k = K_per_m * throw_m;
+        spacing_m = std::min(spacing_m, spacing_for(throw_m, (near_k + 8.0) * near_k + 20.0));
+    }
+    constexpr double kMostLamps = 1e6;  // far more than any scene can hold: it will be refused
+    const auto lamps = [&](double size_m) {
+        return static_cast<int>(std::clamp(std::ceil(size_m / spacing_m), 1.0, kMostLamps));
+    };
+    return {.across = lamps(strobe.emitter->across_m), .along = lamps(strobe.emitter->along_m)};
+}
+
+std::vector<Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid) {
+    if (!strobe.emitter) return {strobe.position_m};
+    const bool is_fore_and_aft = strobe.axis.cross(Vector3d::UnitX()).norm() < kForeAndAftSine;
+    const Vector3d reference = is_fore_and_aft ? Vector3d::UnitZ() : Vector3d::UnitX();
+    const Vector3d along = (reference - reference.dot(strobe.axis) * strobe.axis).normalized();
+    const Vector3d across = strobe.axis.cross(along);
+
+    std::vector<Vector3d> positions_m;
+    for (int i = 0; i < grid.across; ++i) {
+        for (int j = 0; j < grid.along; ++j) {
+            const double u = (i + 0.5) / grid.across - 0.5;
+            const double v = (j + 0.5) / grid.along - 0.5;
+            positions_m.emplace_back(strobe.position_m + u * strobe.emitter->across_m * across +
+                                     v * strobe.emitter->along_m * along);
+        }
+    }
+    return positions_m;
+}
+
+void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid) {
+    const Plane floor = floor_plane(sled);
+    const double height_m = height_above(floor, strobe.position_m);
+    if (height_m < kLeastDistance_m) {
+        throw InputError(fmt::format(
+            "strobe '{}' stands {:.4f} m {} the sea floor; allowed: at least {} m over it",
+            strobe.name,
+            std::abs(height_m),
+            height_m < 0.0 ? "under" : "over",
+            kLeastDistance_m));
+    }
+    for (const Vector3d& lamp_m : lamp_positions_m(strobe, grid)) {
+        if (height_above(floor, lamp_m) > 0.0) continue;
+        throw InputError(
+            fmt::format("strobe '{}' has a lamp at or under the sea floor, {:.4f} m below it",
+                        strobe.name,
+                        -height_above(floor, lamp_m)));
+    }
+}
+
+double axial_intensity(const Cone& cone, ConeWeights weights) {
+    if (weights == ConeWeights::Literal) return cone.weight;
+    const double sin_gamma = std::sin(cone.half_angle_rad);
+    return cone.weight / (std::numbers::pi * sin_gamma * sin_gamma);
+}
+
+double angle_between(const Vector3d& a, const Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+}  // namespace aphotic

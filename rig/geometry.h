@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Geometry of a rig as the scene generator needs it: the floor, the rays that the pixels look
+// along, the lamps that an emitter is made of, and the way into POV-Ray's frame.
+//
+// Sled frame: x forward, y starboard, z down, origin at the entrance pupil, metres. The world's
+// downward direction, seen from a sled with pitch p (bow up) and roll q (starboard down), is
+//
+//   down = (-sin p, cos p sin q, cos p cos q)
+//
+// and the floor is the plane through (0, 0, altitude) perpendicular to it. With p > 0 the floor
+// falls away forward; with q > 0 it rises to starboard.
+//
+// POV-Ray is left-handed: its (x, y, z) is our (starboard, forward, down).
+#pragma once
+
+#include "rig/rig.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+struct Plane {
+    Eigen::Vector3d point_m;
+    Eigen::Vector3d normal;  // unit, on the side of the water
+};
+
+[[nodiscard]] Plane floor_plane(const Sled& sled);
+
+// Height of a point above the floor, measured along its normal [m].
+[[nodiscard]] double height_above(const Plane& floor, const Eigen::Vector3d& point_m);
+
+// Where light enters the water on its way to a pixel, reversed: origin and unit direction.
+struct WaterRay {
+    Eigen::Vector3d origin_m;
+    Eigen::Vector3d direction;
+};
+
+// The ray of the point (column, row) of the image; pixel (0, 0)'s centre is (0.5, 0.5).
+// Without a port it starts at the pupil. Through a flat port it obeys Snell at both faces:
+//
+//   sin(air) = n_glass sin(glass) = n_water sin(water)
+//
+// with both indices relative to air and taken at lambda_nm.
+[[nodiscard]] WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm);
+
+// Distance along the ray to the plane [m], or nothing when the ray does not come down on it.
+[[nodiscard]] std::optional<double> distance_to(const Plane& plane, const WaterRay& ray);
+
+// What the image sees of the floor, on an even grid of `side` x `side` points from corner to
+// corner, row by row; nothing where it sees none.
+struct FloorSample {
+    Eigen::Vector3d point_m;
+    double camera_leg_m;  // in water
+};
+[[nodiscard]] std::vector<std::optional<FloorSample>> floor_samples(const Rig& rig,
+                                                                    std::size_t side);
+
+// How many lamps an emitter is made of, across x along.
+struct LampGrid {
+    int across = 1;
+    int along = 1;
+};
+
+// The coarsest grid that keeps the smooth light right to kGridError where water attenuates by K,
+// and whose lamps are closer together than kLampSpacing times the distance d from the emitter to
+// the floor below it, or to an object that is nearer. A midpoint rule of spacing h errs by h^2
+// f''/24. For f = cos(theta) cos(i) exp(-K d) / d^2, the lamp moving in the emitter's plane, and k
+// = K d,
+//
+//   on the floor, by its height d over it          f''/f <= (k^2 + 6 k + 12) / d^2
+//   on what faces the lamp, by its distance d      f''/f <= (k^2 + 8 k + 20) / d^2
+//
+// so that h^2 = 24 kGridError f/f''. The first is reached straight below a vertical emitter, the
+// second towards the rim of what an emitter lights. In clear water over a floor kLampSpacing is
+// the narrower, up to k = 1.1. Shadows and cone edges turn from one step into as many as lamps;
+// what a highlight bends is not counted.
+[[nodiscard]] LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m);
+inline constexpr double kGridError = 1e-4;
+inline constexpr double kLampSpacing = 0.011;
+// K at the most attenuated of the wavelengths.
+[[nodiscard]] double most_attenuation_per_m(const Rig& rig, std::span<const double> lambda_nm);
+
+// Centres of the grid's cells [m]. `along` is the sled's forward direction as the emitter's
+// plane sees it (down, for a strobe that shines within a millionth of a radian of fore or aft,
+// where forward is all but lost in rounding), `across` completes it. aphotic.inc has the same rule.
+inline constexpr double kForeAndAftSine = 1e-6;
+[[nodiscard]] std::vector<Eigen::Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid);
+
+// How far off what it lights a strobe must stand [m].
+inline constexpr double kLeastDistance_m = 0.001;
+
+// Throws InputError, which names the strobe, unless it stands so high over the floor and all of its
+// lamps are over it: an emitter may reach under it.
+void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid);
+
+// A_k of the cone: its intensity on the axis per unit of lamp power [1/sr].
+//
+//   flux:     A_k = alpha_k / (pi sin^2 gamma_k), so that the cone carries alpha_k of the flux
+//   literal:  A_k = alpha_k, as the source paper prints it
+[[nodiscard]] double axial_intensity(const Cone& cone, ConeWeights weights);
+
+// [rad], of directions of any length.
+[[nodiscard]] double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+[[nodiscard]] inline Eigen::Vector3d to_povray(const Eigen::Vector3d& sled) {
+    return {sled.y(), sled.x(), sled.z()};
+}
+
+}  // namespace aphotic

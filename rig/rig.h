@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The rig: what a rig file says, in SI, every value checked. Plain data, no behaviour.
+//
+// Sled frame, the marine one: x forward, y starboard, z down; the origin is the camera's
+// entrance pupil, and the camera looks along +z with its top row forward and its right column
+// starboard. Metres and radians; wavelengths stay in nanometres.
+//
+// Both renderers start from this struct and share nothing else of geometry or light.
+#pragma once
+
+#include "spectral/refractive_index.h"
+#include "spectral/sensor.h"
+#include "spectral/spectrum.h"
+#include "spectral/water.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace aphotic {
+
+// Attitude and height. The floor is the plane through (0, 0, altitude_m), level in the world,
+// so in the sled frame it is tilted by pitch (positive bow up) and roll (positive starboard
+// down).
+struct Sled {
+    double altitude_m = 0.0;
+    double pitch_rad = 0.0;
+    double roll_rad = 0.0;
+};
+
+// Air inside, glass, water outside; both faces perpendicular to the camera's axis.
+struct FlatPort {
+    double distance_m = 0.0;  // pupil to the inner face
+    double thickness_m = 0.0;
+    Glass glass;
+};
+
+struct Camera {
+    int width_px = 0;
+    int height_px = 0;
+    double pixel_pitch_m = 0.0;
+    double focal_length_m = 0.0;
+    WavelengthRange range;
+    Sensor sensor;
+    std::optional<FlatPort> port;  // none: the pupil is in the water
+};
+
+struct Seafloor {
+    Spectrum reflectance;
+    double phong = 0.0;  // POV-Ray's own Phong highlight; see docs/physics.md
+    double phong_size = 40.0;
+};
+
+// One lobe of a beam: light within half_angle_rad of the strobe's axis, as cos(theta).
+struct Cone {
+    std::string part;
+    double half_angle_rad = 0.0;
+    double weight = 0.0;  // alpha_k
+};
+
+// What a cone's weight means: its share of the lamp's flux, or its intensity on the axis as
+// the source paper prints it.
+enum class ConeWeights { Flux, Literal };
+
+struct Beam {
+    std::string name;
+    ConeWeights weights = ConeWeights::Flux;
+    std::vector<Cone> cones;
+};
+
+// A lit rectangle centred on the strobe's position, perpendicular to its axis.
+struct Emitter {
+    double across_m = 0.0;
+    double along_m = 0.0;
+};
+
+struct Strobe {
+    std::string name;
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector, the way it shines
+    Beam beam;
+    Spectrum spectrum;  // Phi(lambda) at power 1
+    double power = 1.0;
+    std::optional<Emitter> emitter;  // none: a point
+};
+
+struct Sphere {
+    Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+    double radius_m = 0.0;
+};
+
+// Its faces are perpendicular to the sled's axes.
+struct Box {
+    Eigen::Vector3d least_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d most_m = Eigen::Vector3d::Zero();
+};
+
+// Flat triangles, each lit on the side that the camera sees, whichever way round its corners go.
+struct Mesh {
+    std::vector<Eigen::Vector3d> vertices_m;
+    std::vector<std::array<int, 3>> triangles;  // of vertices
+};
+
+using Shape = std::variant<Sphere, Box, Mesh>;
+
+// A solid thing: opaque, it reflects as the floor does and casts shadows.
+struct Object {
+    std::string name;
+    Shape shape;
+    Spectrum reflectance;
+    double phong = 0.0;
+    double phong_size = 40.0;
+};
+
+struct Rig {
+    std::string title;
+    Sled sled;
+    Camera camera;
+    Water water;
+    Seafloor seafloor;
+    std::vector<Strobe> strobes;
+    std::vector<Spectrum> materials{};  // further reflectances that the plan serves
+    std::vector<Object> objects{};
+    std::filesystem::path scene{};  // a POV-Ray scene of the user's own; none: floor and objects
+    std::string digest;  // SHA-256 of the rig file and of the user's tables that it names
+};
+
+}  // namespace aphotic

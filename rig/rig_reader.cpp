@@ -1,0 +1,763 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rig/rig_reader.h"
+
+#include "base/atomic_file.h"
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/file_beside.h"
+#include "base/nearest.h"
+#include "base/printable.h"
+#include "base/sha256.h"
+#include "image/image_size.h"
+#include "rig/geometry.h"
+#include "rig/key_depth.h"
+#include "rig/mesh_reader.h"
+#include "rig/solid.h"
+#include "spectral/curve_loader.h"
+#include "spectral/refractive_index.h"
+#include "spectral/table.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMetresPerMillimetre = 1e-3;
+constexpr double kMetresPerMicrometre = 1e-6;
+
+// A thousand strobes, each written out, are a fiftieth of it.
+constexpr std::size_t kMostRigBytes = 8 * kMebibyte;
+
+// Strobes, beams, cones of a beam, materials, objects: of each. What is done for one is done beside
+// all the others.
+constexpr std::size_t kMostOfAKind = 1024;
+
+// Of all strobes together: what POV-Ray takes where the water is clear (pov_scene.cpp).
+constexpr std::size_t kMostCones = 100'000;
+
+// Any title or file name; and POV-Ray reads a comment of it.
+constexpr std::size_t kMostTextBytes = 1000;
+
+struct Bounds {
+    double least;
+    double most;
+};
+
+// What a rig may hold. Wide enough for any sled, narrow enough to catch a slipped unit.
+constexpr Bounds kAltitudeM{0.001, 10000.0};
+constexpr Bounds kTiltDeg{-89.9, 89.9};
+constexpr Bounds kResolutionPx{1.0, kLargestImagePx};
+constexpr Bounds kPixelPitchUm{0.01, 10000.0};
+constexpr Bounds kFocalLengthMm{0.01, 100000.0};
+constexpr Bounds kWavelengthNm{100.0, 10000.0};
+constexpr Bounds kPortDistanceMm{1.0, 10000.0};
+constexpr Bounds kPortThicknessMm{1.0, 1000.0};
+constexpr Bounds kMultiple{0.0, 1e6};
+constexpr Bounds kLossPerM{0.0, 1e6};
+constexpr Bounds kSalinityPsu{0.0, 40.0};
+constexpr Bounds kTemperatureC{-2.0, 35.0};
+constexpr Bounds kPhong{0.0, 1e6};
+constexpr Bounds kPhongSize{0.0, 1e6};
+constexpr Bounds kHalfAngleDeg{0.001, 90.0};
+constexpr Bounds kConeWeight{0.0, 1e12};
+constexpr Bounds kPositionM{-1000.0, 1000.0};
+constexpr Bounds kDirection{-1e6, 1e6};
+constexpr Bounds kAimTiltDeg{0.0, 180.0};
+constexpr Bounds kPower{0.0, 1e12};
+constexpr Bounds kEmitterMm{0.0, 10000.0};
+// An object's size: POV-Ray passes over blockers within a millimetre of what they shade.
+constexpr Bounds kRadiusM{0.001, 1000.0};
+constexpr double kLeastSideM = 0.001;
+
+// As the user wrote it: 0.1 and not 0.10000000000000001, and on one line.
+std::string shown(const toml::node& node) {
+    if (node.is_table()) return "a table";
+    if (const auto* array = node.as_array()) {
+        std::vector<std::string> items;
+        for (const toml::node& item : *array) items.push_back(shown(item));
+        return fmt::format("[{}]", fmt::join(items, ", "));
+    }
+    if (const auto real = node.value_exact<double>()) return fmt::format("{}", *real);
+    std::ostringstream text;
+    node.visit([&](const auto& leaf) { text << leaf; });
+    return text.str();
+}
+
+std::string allowed_number(Bounds bounds) {
+    return fmt::format("a number from {} to {}", bounds.least, bounds.most);
+}
+
+// One table of the rig file, which knows where it stands and which of its keys were asked for.
+class Section {
+  public:
+    Section(const toml::table& table, std::string path, const std::string& file)
+        : table_(table), path_(std::move(path)), file_(file) {}
+
+    [[noreturn]] void fail(const toml::node& node,
+                           std::string_view key,
+                           const std::string& what) const {
+        throw InputError(fmt::format("{}:{}: {}: {}", file_, line(node), name_of(key), what));
+    }
+
+    [[noreturn]] void found_but(std::string_view key, const std::string& allowed) const {
+        const toml::node& node = *table_.get(key);
+        fail(node, key, fmt::format("found {}; allowed: {}", shown(node), allowed));
+    }
+
+    [[nodiscard]] bool has(std::string_view key) {
+        if (!is_known(key)) known_.emplace_back(key);
+        return table_.contains(key);
+    }
+
+    [[nodiscard]] const toml::node& required(std::string_view key, const std::string& allowed) {
+        if (has(key)) return *table_.get(key);
+        // Most often it is there, misspelt.
+        for (const auto& [name, node] : table_) {
+            if (is_known(name.str())) continue;
+            if (nearest_name(name.str(), std::array{std::string(key)}).empty()) continue;
+            fail(node, name.str(), fmt::format("is no known key; did you mean '{}'?", key));
+        }
+        fail(table_, key, "is missing; allowed: " + allowed);
+    }
+
+    [[nodiscard]] double number(std::string_view key, Bounds bounds) {
+        const toml::node& node = required(key, allowed_number(bounds));
+        if (!is_within(node, bounds)) found_but(key, allowed_number(bounds));
+        return *node.value<double>();
+    }
+
+    [[nodiscard]] double number_or(std::string_view key, Bounds bounds, double absent) {
+        return has(key) ? number(key, bounds) : absent;
+    }
+
+    template <std::size_t n>
+    [[nodiscard]] std::array<double, n> numbers(std::string_view key, Bounds bounds) {
+        const std::string allowed =
+            fmt::format("an array of {} numbers, each from {} to {}", n, bounds.least, bounds.most);
+        const toml::array* array = required(key, allowed).as_array();
+        if (array == nullptr || array->size() != n) found_but(key, allowed);
+        std::array<double, n> values{};
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!is_within((*array)[i], bounds)) found_but(key, allowed);
+            values[i] = *(*array)[i].template value<double>();
+        }
+        return values;
+    }
+
+    [[nodiscard]] std::string text(std::string_view key, const std::string& allowed) {
+        const toml::node& node = required(key, allowed);
+        if (!node.is_string()) found_but(key, allowed);
+        return one_line(node, key);
+    }
+
+    [[nodiscard]] std::string text_or(std::string_view key,
+                                      const std::string& allowed,
+                                      std::string absent) {
+        return has(key) ? text(key, allowed) : absent;
+    }
+
+    [[nodiscard]] std::vector<std::string> texts(std::string_view key, const std::string& allowed) {
+        const toml::array* array = required(key, allowed).as_array();
+        if (array == nullptr) found_but(key, allowed);
+        require_few(key, array->size());
+        std::vector<std::string> all;
+        for (const toml::node& node : *array) {
+            if (!node.is_string()) found_but(key, allowed);
+            all.push_back(one_line(node, key));
+        }
+        return all;
+    }
+
+    void require_few(std::string_view key, std::size_t count) const {
+        if (count <= kMostOfAKind) return;
+        fail(
+            *table_.get(key), key, fmt::format("found {}; allowed: up to {}", count, kMostOfAKind));
+    }
+
+    // One of a few words.
+    [[nodiscard]] std::string word(std::string_view key, const std::vector<std::string>& words) {
+        const std::string allowed = fmt::format("\"{}\"", fmt::join(words, "\" or \""));
+        std::string found = text(key, allowed);
+        if (std::find(words.begin(), words.end(), found) == words.end()) found_but(key, allowed);
+        return found;
+    }
+
+    [[nodiscard]] Section section(std::string_view key, const std::string& allowed) {
+        const toml::node& node = required(key, allowed);
+        if (!node.is_table()) found_but(key, allowed);
+        return {*node.as_table(), name_of(key), file_};
+    }
+
+    // The tables of an array, which may not be empty.
+    [[nodiscard]] std::vector<Section> sections(std::string_view key, const std::string& allowed) {
+        const toml::array* array = required(key, allowed).as_array();
+        if (array == nullptr || array->empty()) found_but(key, allowed);
+        require_few(key, array->size());
+        std::vector<Section> all;
+        for (std::size_t i = 0; i < array->size(); ++i) {
+            const toml::table* table = (*array)[i].as_table();
+            if (table == nullptr) found_but(key, allowed);
+            all.emplace_back(*table, fmt::format("{}[{}]", name_of(key), i), file_);
+        }
+        return all;
+    }
+
+    [[nodiscard]] std::vector<std::string> keys() const {
+        std::vector<std::string> all;
+        for (const auto& [key, node] : table_) all.emplace_back(key.str());
+        return all;
+    }
+
+    // Call when every key that is known has been asked for.
+    void refuse_unknown_keys() const {
+        for (const auto& [key, node] : table_) {
+            const std::string_view name = key.str();
+            if (is_known(name)) continue;
+            const std::string nearest = nearest_name(name, known_);
+            const std::string hint =
+                nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
+            fail(node,
+                 name,
+                 fmt::format("is no known key{} Known here: {}",
+                             hint.empty() ? "." : hint,
+                             fmt::join(known_, ", ")));
+        }
+    }
+
+    // Before any is asked for: where another key stands in place of one that is required, that is
+    // the cause.
+    void refuse_keys_but(const std::vector<std::string>& known) {
+        known_ = known;
+        refuse_unknown_keys();
+    }
+
+    // Runs read(), and puts file, line and key before whatever InputError comes out of it.
+    template <typename Read>
+    [[nodiscard]] auto at_key(std::string_view key, Read read) const {
+        try {
+            return read();
+        } catch (const InputError& error) {
+            const toml::node* node = table_.get(key);
+            fail(node == nullptr ? table_ : *node, key, error.what());
+        }
+    }
+
+    // Texts of a rig stand in scenes, settings, pages and messages, where a line's end or an escape
+    // would be read as more than text.
+    void require_one_line(const toml::node& node,
+                          std::string_view key,
+                          std::string_view text) const {
+        if (has_control_characters(text)) {
+            fail(node,
+                 key,
+                 fmt::format("found '{}'; allowed: a text without control characters",
+                             printable(text.substr(0, kMostTextBytes))));
+        }
+        if (text.size() > kMostTextBytes) {
+            fail(node,
+                 key,
+                 fmt::format(
+                     "found a text of {} bytes; allowed: up to {}", text.size(), kMostTextBytes));
+        }
+    }
+
+  private:
+    [[nodiscard]] std::string one_line(const toml::node& node, std::string_view key) const {
+        std::string text = *node.value<std::string>();
+        require_one_line(node, key, text);
+        return text;
+    }
+
+    static bool is_within(const toml::node& node, Bounds bounds) {
+        if (!node.is_number()) return false;
+        const auto value = node.value<double>();  // nothing: an integer that no double holds
+        return value && *value >= bounds.least && *value <= bounds.most;  // false for NaN
+    }
+
+    [[nodiscard]] bool is_known(std::string_view key) const {
+        return std::find(known_.begin(), known_.end(), key) != known_.end();
+    }
+
+    static std::size_t line(const toml::node& node) {
+        return std::max<std::size_t>(1, node.source().begin.line);
+    }
+
+    [[nodiscard]] std::string name_of(std::string_view key) const {
+        const std::string name = printable(key);
+        return path_.empty() ? name : fmt::format("{}.{}", path_, name);
+    }
+
+    const toml::table& table_;
+    std::string path_;
+    const std::string& file_;
+    std::vector<std::string> known_;
+};
+
+class RigReader {
+  public:
+    RigReader(std::string_view toml, fs::path folder)
+        : folder_(std::move(folder)), digested_(toml) {}
+
+    Rig read(Section top);
+
+  private:
+    static Sled read_sled(Section section);
+    static Emitter read_emitter(Section& strobe);
+    static Beam read_beam(Section section, std::string name);
+    static std::vector<Beam> read_beams(Section& top);
+    static Eigen::Vector3d read_axis(Section& strobe, const Eigen::Vector3d& position_m);
+    static Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m);
+    static FlatPort read_port(Section section);
+    static Glass read_glass(Section& port);
+
+    Camera read_camera(Section section);
+    Sensor read_response(Section& camera);
+    Sensor read_response_table(Section response);
+    Water read_water(Section section);
+    Seafloor read_seafloor(Section section);
+    Strobe read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled);
+    std::vector<Strobe> read_strobes(Section& top,
+                                     const std::vector<Beam>& beams,
+                                     const Sled& sled);
+    Object read_object(Section section, const std::vector<Strobe>& strobes);
+    Shape read_shape(Section& object, std::string_view key);
+    Mesh read_mesh_of(Section& object);
+    std::vector<Object> read_objects(Section& top, const std::vector<Strobe>& strobes);
+    Spectrum curve(Section& section,
+                   std::string_view key,
+                   CurveRole role,
+                   const std::string& absent);
+    std::vector<Spectrum> curves(Section& section, std::string_view key, CurveRole role);
+    std::vector<Spectrum> curves_named(const Section& section,
+                                       std::string_view key,
+                                       const std::string& name,
+                                       CurveRole role);
+    std::vector<Spectrum> read_materials(Section& top);
+
+    fs::path folder_;
+    std::string digested_;
+};
+
+// Curves by built-in name or from a CSV file beside the rig; what a file holds counts in the
+// rig's digest.
+std::vector<Spectrum> RigReader::curves(Section& section, std::string_view key, CurveRole role) {
+    return curves_named(
+        section,
+        key,
+        section.text(key, "a built-in table's name (aphotic data) or a .csv file beside the rig"),
+        role);
+}
+
+std::vector<Spectrum> RigReader::curves_named(const Section& section,
+                                              std::string_view key,
+                                              const std::string& name,
+                                              CurveRole role) {
+    return section.at_key(key, [&] {
+        if (!names_a_file(name)) return load_curves(name, role, folder_);
+        const fs::path file = file_beside(folder_, name);
+        const std::string csv = read_text_file(file, kMostTableBytes);
+        digested_ += sha256_of_text(csv);
+        return curves_of(parse_table(file.string(), csv), role);
+    });
+}
+
+Spectrum RigReader::curve(Section& section,
+                          std::string_view key,
+                          CurveRole role,
+                          const std::string& absent) {
+    if (section.has(key)) return curves(section, key, role).front();
+    return load_curve(absent, role, folder_);
+}
+
+Sled RigReader::read_sled(Section section) {
+    const Sled sled{.altitude_m = section.number("altitude_m", kAltitudeM),
+                    .pitch_rad = section.number_or("pitch_deg", kTiltDeg, 0.0) * kRadiansPerDegree,
+                    .roll_rad = section.number_or("roll_deg", kTiltDeg, 0.0) * kRadiansPerDegree};
+    section.refuse_unknown_keys();
+    return sled;
+}
+
+Glass RigReader::read_glass(Section& port) {
+    const std::string name = port.text("glass", "a built-in glass");
+    return port.at_key("glass", [&] { return builtin_glass(name); });
+}
+
+FlatPort RigReader::read_port(Section section) {
+    (void)section.word("shape", {"flat"});
+    FlatPort port{
+        .distance_m = section.number("distance_mm", kPortDistanceMm) * kMetresPerMillimetre,
+        .thickness_m = section.number("thickness_mm", kPortThicknessMm) * kMetresPerMillimetre,
+        .glass = read_glass(section)};
+    section.refuse_unknown_keys();
+    return port;
+}
+
+Sensor RigReader::read_response_table(Section response) {
+    if (response.has("table")) {
+        std::vector<Spectrum> channels = curves(response, "table", CurveRole::SensorResponse);
+        const bool energy = response.word("kind", {"energy", "quantum"}) == "energy";
+        response.refuse_unknown_keys();
+        return {std::move(channels), energy ? ResponseKind::Energy : ResponseKind::Quantum};
+    }
+    std::vector<Spectrum> filters = curves(response, "filters", CurveRole::FilterTransmittance);
+    std::vector<Spectrum> efficiency =
+        curves(response, "quantum_efficiency", CurveRole::QuantumEfficiency);
+    response.refuse_unknown_keys();
+    return Sensor::filtered(std::move(filters), std::move(efficiency.front()));
+}
+
+Sensor RigReader::read_response(Section& camera) {
+    const std::string allowed =
+        "a built-in response's name, { table = \"rgb.csv\", kind = \"energy\" } (or \"quantum\"), "
+        "or "
+        "{ filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }";
+    if (camera.required("response", allowed).is_table()) {
+        return read_response_table(camera.section("response", allowed));
+    }
+    const std::string name = camera.text("response", allowed);
+    // A file does not say whether it counts energy or photons, so its name alone will not do.
+    if (names_a_file(name)) camera.found_but("response", allowed);
+    return camera.at_key("response", [&] { return builtin_sensor(name); });
+}
+
+Camera RigReader::read_camera(Section section) {
+    const auto resolution = section.numbers<2>("resolution", kResolutionPx);
+    for (const double size : resolution) {
+        if (size != std::floor(size))
+            section.found_but("resolution", "two whole numbers, width and height");
+    }
+    Sensor sensor = read_response(section);
+    WavelengthRange range = sensor.range();
+    if (section.has("range_nm")) {
+        const auto [first_nm, last_nm] = section.numbers<2>("range_nm", kWavelengthNm);
+        if (first_nm >= last_nm)
+            section.found_but("range_nm", "two wavelengths, the shorter one first");
+        range = {first_nm, last_nm};
+    }
+    Camera camera{
+        .width_px = static_cast<int>(resolution[0]),
+        .height_px = static_cast<int>(resolution[1]),
+        .pixel_pitch_m = section.number("pixel_pitch_um", kPixelPitchUm) * kMetresPerMicrometre,
+        .focal_length_m = section.number("focal_length_mm", kFocalLengthMm) * kMetresPerMillimetre,
+        .range = range,
+        .sensor = std::move(sensor),
+        .port = std::nullopt};
+    if (section.has("port")) camera.port = read_port(section.section("port", "a table"));
+    section.refuse_unknown_keys();
+    return camera;
+}
+
+Water RigReader::read_water(Section section) {
+    Water water{.absorption_per_m =
+                    curve(section, "absorption", CurveRole::WaterAbsorption, "pope-fry-1997"),
+                .multiple = section.number_or("multiple", kMultiple, 1.0),
+                .uniform_loss_per_m = section.number_or("uniform_loss_per_m", kLossPerM, 0.0),
+                .salinity_psu = section.number_or("salinity_psu", kSalinityPsu, 35.0),
+                .temperature_c = section.number_or("temperature_c", kTemperatureC, 10.0)};
+    section.refuse_unknown_keys();
+    return water;
+}
+
+Seafloor RigReader::read_seafloor(Section section) {
+    Seafloor floor{.reflectance = curve(section, "reflectance", CurveRole::Reflectance, "sand"),
+                   .phong = section.number_or("phong", kPhong, 0.0),
+                   .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
+    section.refuse_unknown_keys();
+    return floor;
+}
+
+std::vector<Spectrum> RigReader::read_materials(Section& top) {
+    std::vector<Spectrum> materials;
+    if (!top.has("materials")) return materials;
+    const std::string allowed =
+        "an array of built-in reflectances (aphotic data) or .csv files beside the rig";
+    for (const std::string& name : top.texts("materials", allowed)) {
+        materials.push_back(curves_named(top, "materials", name, CurveRole::Reflectance).front());
+    }
+    return materials;
+}
+
+Beam RigReader::read_beam(Section section, std::string name) {
+    Beam beam{.name = std::move(name), .weights = ConeWeights::Flux, .cones = {}};
+    if (section.has("weights") && section.word("weights", {"flux", "literal"}) == "literal") {
+        beam.weights = ConeWeights::Literal;
+    }
+    const std::string allowed = "an array of { part, half_angle_deg, weight }";
+    for (Section& cone : section.sections("cones", allowed)) {
+        beam.cones.push_back(
+            {.part = cone.text("part", "a name in quotes"),
+             .half_angle_rad = cone.number("half_angle_deg", kHalfAngleDeg) * kRadiansPerDegree,
+             .weight = cone.number("weight", kConeWeight)});
+        cone.refuse_unknown_keys();
+    }
+    section.refuse_unknown_keys();
+    return beam;
+}
+
+Eigen::Vector3d RigReader::axis_from_aim(Section aim, const Eigen::Vector3d& position_m) {
+    aim.refuse_keys_but({"tilt_deg", "toward"});
+    const double tilt_rad = aim.number("tilt_deg", kAimTiltDeg) * kRadiansPerDegree;
+    (void)aim.word("toward", {"axis"});
+    const Eigen::Vector3d inward(-position_m.x(), -position_m.y(), 0.0);
+    if (inward.norm() == 0.0) {
+        if (tilt_rad == 0.0) return Eigen::Vector3d::UnitZ();
+        aim.found_but(
+            "toward",
+            "direction = [x, y, z] in place of aim, since this strobe stands on the camera's axis");
+    }
+    return std::cos(tilt_rad) * Eigen::Vector3d::UnitZ() + std::sin(tilt_rad) * inward.normalized();
+}
+
+Eigen::Vector3d RigReader::read_axis(Section& strobe, const Eigen::Vector3d& position_m) {
+    const std::string allowed =
+        "either aim = { tilt_deg = 26.0, toward = \"axis\" } or direction = [x, y, z]";
+    const bool has_direction = strobe.has("direction");
+    if (strobe.has("aim") && has_direction) strobe.found_but("direction", allowed);
+    if (!has_direction) return axis_from_aim(strobe.section("aim", allowed), position_m);
+    const auto [x, y, z] = strobe.numbers<3>("direction", kDirection);
+    const Eigen::Vector3d direction(x, y, z);
+    if (direction.norm() == 0.0) strobe.found_but("direction", "a vector that is not zero");
+    return direction.normalized();
+}
+
+Emitter RigReader::read_emitter(Section& strobe) {
+    const auto [across_mm, along_mm] = strobe.numbers<2>("emitter_mm", kEmitterMm);
+    return {.across_m = across_mm * kMetresPerMillimetre,
+            .along_m = along_mm * kMetresPerMillimetre};
+}
+
+Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled) {
+    const auto [x, y, z] = section.numbers<3>("position_m", kPositionM);
+    if (height_above(floor_plane(sled), {x, y, z}) < kLeastDistance_m) {
+        section.found_but(
+            "position_m",
+            fmt::format("a point at least {} m above the sea floor", kLeastDistance_m));
+    }
+    Strobe strobe{.name = section.text("name", "a name in quotes"),
+                  .position_m = {x, y, z},
+                  .axis = read_axis(section, {x, y, z}),
+                  .beam = {},
+                  .spectrum = curve(section, "spectrum", CurveRole::LampSpectrum, "xenon-flash"),
+                  .power = section.number_or("power", kPower, 1.0),
+                  .emitter = std::nullopt};
+    if (section.has("emitter_mm")) strobe.emitter = read_emitter(section);
+
+    std::vector<std::string> names;
+    for (const Beam& beam : beams) names.push_back(beam.name);
+    const std::string wanted = section.word("beam", names);
+    strobe.beam = *std::find_if(
+        beams.begin(), beams.end(), [&](const Beam& beam) { return beam.name == wanted; });
+    section.refuse_unknown_keys();
+    return strobe;
+}
+
+Box read_box(Section& object) {
+    const auto from_m = object.numbers<3>("from_m", kPositionM);
+    const auto to_m = object.numbers<3>("to_m", kPositionM);
+    const Eigen::Vector3d a(from_m.data());
+    const Eigen::Vector3d b(to_m.data());
+    if ((a - b).cwiseAbs().minCoeff() < kLeastSideM) {
+        object.found_but("to_m",
+                         fmt::format("a corner at least {} m from that of from_m along every axis",
+                                     kLeastSideM));
+    }
+    return {.least_m = a.cwiseMin(b), .most_m = a.cwiseMax(b)};
+}
+
+Mesh RigReader::read_mesh_of(Section& object) {
+    const std::string allowed = "the name of a Wavefront .obj file beside the rig";
+    const std::string name = object.text("file", allowed);
+    if (!name.ends_with(".obj")) object.found_but("file", allowed);
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+    if (object.has("position_m")) {
+        position_m = Eigen::Vector3d(object.numbers<3>("position_m", kPositionM).data());
+    }
+    return object.at_key("file", [&] {
+        const fs::path file = file_beside(folder_, name);
+        const std::string obj = read_text_file(file, kMostMeshBytes);
+        digested_ += sha256_of_text(obj);
+        return parse_mesh(file.string(), obj, position_m);
+    });
+}
+
+// The key says where the object is, and so where a message about that stands.
+constexpr std::string_view place_key(const std::string_view shape) {
+    if (shape == "sphere") return "centre_m";
+    return shape == "box" ? "from_m" : "file";
+}
+
+Shape RigReader::read_shape(Section& object, std::string_view key) {
+    if (key == place_key("box")) return read_box(object);
+    if (key == place_key("mesh")) return read_mesh_of(object);
+    const auto centre_m = object.numbers<3>("centre_m", kPositionM);
+    return Sphere{.centre_m = Eigen::Vector3d(centre_m.data()),
+                  .radius_m = object.number("radius_m", kRadiusM)};
+}
+
+void require_place(const Shape& shape, const std::vector<Strobe>& strobes) {
+    if (holds(shape, Eigen::Vector3d::Zero())) {
+        throw InputError("found the camera's pupil inside of the object; allowed: outside");
+    }
+    for (const Strobe& strobe : strobes) {
+        const double away_m = distance_m(shape, strobe.position_m);
+        if (away_m >= kLeastDistance_m && !holds(shape, strobe.position_m)) continue;
+        throw InputError(
+            fmt::format("found strobe '{}' inside of the object or {:.3g} m off it; allowed: at "
+                        "least {} m off",
+                        strobe.name,
+                        away_m,
+                        kLeastDistance_m));
+    }
+}
+
+Object RigReader::read_object(Section section, const std::vector<Strobe>& strobes) {
+    std::string name = section.text("name", "a name in quotes");
+    const std::string_view key = place_key(section.word("shape", {"sphere", "box", "mesh"}));
+    Object object{.name = std::move(name),
+                  .shape = read_shape(section, key),
+                  .reflectance = curves(section, "reflectance", CurveRole::Reflectance).front(),
+                  .phong = section.number_or("phong", kPhong, 0.0),
+                  .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
+    section.refuse_unknown_keys();
+    (void)section.at_key(key, [&] {
+        require_place(object.shape, strobes);
+        return true;
+    });
+    return object;
+}
+
+std::vector<Object> RigReader::read_objects(Section& top, const std::vector<Strobe>& strobes) {
+    std::vector<Object> objects;
+    std::set<std::string> names;
+    if (!top.has("object")) return objects;
+    for (Section& section : top.sections("object", "one or more tables [[object]]")) {
+        objects.push_back(read_object(section, strobes));
+        if (!names.insert(objects.back().name).second)
+            section.found_but("name", "a name that no other object has");
+    }
+    return objects;
+}
+
+// A refractive index stands in the list as the line between its range's ends: only the range
+// counts there.
+Spectrum range_of_index(const std::string& what, WavelengthRange range) {
+    return {
+        fmt::format("refractive index of {}", what), {range.first_nm, range.last_nm}, {1.0, 1.0}};
+}
+
+// Every curve that the images need, over the range that they integrate.
+void require_tables_to_cover_the_range(const Rig& rig) {
+    std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
+    curves.push_back(&rig.seafloor.reflectance);
+    for (const Spectrum& material : rig.materials) curves.push_back(&material);
+    for (const Object& object : rig.objects) curves.push_back(&object.reflectance);
+    if (rig.water.multiple != 0.0) curves.push_back(&rig.water.absorption_per_m);
+    for (const Strobe& strobe : rig.strobes) curves.push_back(&strobe.spectrum);
+    std::vector<Spectrum> indices;
+    if (rig.camera.port) {
+        const Glass& glass = rig.camera.port->glass;
+        indices.push_back(range_of_index(fmt::format("'{}'", glass.name()), glass.range()));
+        indices.push_back(range_of_index("seawater", kSeawaterIndexRange));
+    }
+    for (const Spectrum& index : indices) curves.push_back(&index);
+    require_cover(curves, rig.camera.range);
+}
+
+std::vector<Beam> RigReader::read_beams(Section& top) {
+    Section sections = top.section("beam", "a table [beam.NAME]");
+    const std::vector<std::string> names = sections.keys();
+    if (names.empty()) top.found_but("beam", "at least one table [beam.NAME]");
+    top.require_few("beam", names.size());
+    std::vector<Beam> beams;
+    for (const std::string& name : names) {
+        sections.require_one_line(sections.required(name, ""), name, name);
+        beams.push_back(read_beam(sections.section(name, "a table"), name));
+    }
+    return beams;
+}
+
+std::vector<Strobe> RigReader::read_strobes(Section& top,
+                                            const std::vector<Beam>& beams,
+                                            const Sled& sled) {
+    std::vector<Strobe> strobes;
+    std::set<std::string> names;
+    std::size_t cones = 0;
+    for (Section& section : top.sections("strobe", "one or more tables [[strobe]]")) {
+        strobes.push_back(read_strobe(section, beams, sled));
+        if (!names.insert(strobes.back().name).second)
+            section.found_but("name", "a name that no other strobe has");
+        cones += strobes.back().beam.cones.size();
+        if (cones <= kMostCones) continue;
+        section.found_but("beam",
+                          fmt::format("up to {} cones of all strobes together", kMostCones));
+    }
+    return strobes;
+}
+
+Rig RigReader::read(Section top) {
+    std::string title = top.text_or("title", "a text in quotes", "");
+    const Sled sled = read_sled(top.section("sled", "a table [sled]"));
+    Camera camera = read_camera(top.section("camera", "a table [camera]"));
+    Water water = read_water(top.section("water", "a table [water]"));
+    Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"));
+
+    const std::vector<Beam> beams = read_beams(top);
+    std::vector<Strobe> strobes = read_strobes(top, beams, sled);
+    std::vector<Spectrum> materials = read_materials(top);
+    std::vector<Object> objects = read_objects(top, strobes);
+    fs::path scene;
+    if (top.has("scene")) {
+        const std::string name = top.text("scene", "a POV-Ray scene beside the rig");
+        scene = top.at_key("scene", [&] { return file_beside(folder_, name); });
+    }
+    top.refuse_unknown_keys();
+
+    Rig rig{.title = std::move(title),
+            .sled = sled,
+            .camera = std::move(camera),
+            .water = std::move(water),
+            .seafloor = std::move(seafloor),
+            .strobes = std::move(strobes),
+            .materials = std::move(materials),
+            .objects = std::move(objects),
+            .scene = std::move(scene),
+            .digest = sha256_of_text(digested_)};
+    const Section camera_section = top.section("camera", "a table [camera]");
+    (void)camera_section.at_key("range_nm", [&] {
+        require_tables_to_cover_the_range(rig);
+        return true;
+    });
+    return rig;
+}
+
+}  // namespace
+
+Rig parse_rig(std::string_view toml, const std::string& file_name, const fs::path& folder) {
+    require_shallow_keys(toml, file_name);
+    toml::table table;
+    try {
+        table = toml::parse(toml, file_name);
+    } catch (const toml::parse_error& error) {
+        throw InputError(fmt::format(
+            "{}:{}: {}", file_name, error.source().begin.line, printable(error.description())));
+    }
+    Rig rig = RigReader(toml, folder).read(Section(table, "", file_name));
+    if (rig.title.empty()) rig.title = fs::path(file_name).stem().string();
+    return rig;
+}
+
+Rig read_rig(const fs::path& file) {
+    return parse_rig(read_text_file(file, kMostRigBytes), file.string(), file.parent_path());
+}
+
+}  // namespace aphotic

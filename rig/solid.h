@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the scene generator concludes from the shape of an object: how far it reaches, how near it
+// comes, and whether it can matter to the image. It follows no light: each answer is a bound on the
+// safe side, from the object's ball and bounds.
+//
+// bounds          the smallest box along the sled's axes that holds the object
+// ball            the sphere about that box; a lamp at d sees it within asin(R/d) of its middle
+// distance        from a point to the nearest of the object, 0 inside of a sphere or a box; of a
+//                 mesh, to its nearest triangle
+#pragma once
+
+#include "rig/geometry.h"
+#include "rig/rig.h"
+
+#include <Eigen/Geometry>
+
+namespace aphotic {
+
+[[nodiscard]] Eigen::AlignedBox3d bounds_m(const Shape& shape);
+
+[[nodiscard]] double distance_m(const Shape& shape, const Eigen::Vector3d& point_m);
+
+// Whether the point is inside. A mesh holds what it surrounds, whichever way its triangles turn: a
+// half line from within leaves it one time more often than it enters. Of an open mesh it is so
+// from some places.
+[[nodiscard]] bool holds(const Shape& shape, const Eigen::Vector3d& point_m);
+
+// A no is sure, a yes may be wrong.
+[[nodiscard]] bool may_be_in_view(const Rig& rig, const Object& object);
+[[nodiscard]] bool may_light(const Strobe& strobe, const Cone& cone, const Object& object);
+
+// From a point of the strobe to the nearest thing in view that it may light, the floor under it
+// among them [m].
+[[nodiscard]] double least_throw_m(const Rig& rig,
+                                   const Strobe& strobe,
+                                   const Eigen::Vector3d& lamp_m);
+
+[[nodiscard]] bool has_highlight(const Rig& rig);
+
+// How far behind the pupil's place, along a ray of the image, the water may begin [m].
+[[nodiscard]] double port_reach_m(const Rig& rig);
+
+}  // namespace aphotic

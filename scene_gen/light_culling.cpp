@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/light_culling.h"
+
+#include "rig/geometry.h"
+#include "rig/solid.h"
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace aphotic {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr std::size_t kGridOfView = 33;
+// How far from where the grid has it another wavelength may see a floor point, as a share of the
+// way through the water.
+constexpr double kPortShift = 0.02;
+// A cell that spans more than this, seen from a lamp close above it, may be widest at no corner.
+constexpr double kWideRad = 1.0;
+
+// The angle off by which other wavelengths' rays and other lamps of an emitter may see a floor
+// point.
+double margin_rad(const Rig& rig, const Strobe& strobe, double distance_m, double camera_leg_m) {
+    double reach_m = rig.camera.port ? kPortShift * camera_leg_m : 0.0;
+    if (strobe.emitter) {
+        reach_m += 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
+    }
+    return reach_m > 0.0 ? std::atan2(reach_m, std::max(0.0, distance_m - reach_m)) : 0.0;
+}
+
+}  // namespace
+
+bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone) {
+    const bool lights_an_object = std::ranges::any_of(rig.objects, [&](const Object& object) {
+        return may_light(strobe, cone, object) && may_be_in_view(rig, object);
+    });
+    if (lights_an_object) return true;
+    const std::vector<std::optional<FloorSample>> samples = floor_samples(rig, kGridOfView);
+    for (std::size_t row = 0; row + 1 < kGridOfView; ++row) {
+        for (std::size_t column = 0; column + 1 < kGridOfView; ++column) {
+            const std::size_t corner = row * kGridOfView + column;
+            const std::array cell{&samples[corner],
+                                  &samples[corner + 1],
+                                  &samples[corner + kGridOfView],
+                                  &samples[corner + kGridOfView + 1]};
+            const auto seen = std::ranges::count_if(cell, [](auto* s) { return s->has_value(); });
+            if (seen == 0) continue;
+            if (seen < 4) return true;  // the horizon runs through it: it reaches far
+            Vector3d middle_m = Vector3d::Zero();
+            for (const auto* sample : cell) middle_m += 0.25 * (*sample)->point_m;
+            const Vector3d towards = middle_m - strobe.position_m;
+            double reach_rad = 0.0;
+            double nearest_m = towards.norm();
+            double camera_leg_m = 0.0;
+            for (const auto* sample : cell) {
+                const Vector3d to_corner = (*sample)->point_m - strobe.position_m;
+                reach_rad = std::max(reach_rad, angle_between(towards, to_corner));
+                nearest_m = std::min(nearest_m, to_corner.norm());
+                camera_leg_m = std::max(camera_leg_m, (*sample)->camera_leg_m);
+            }
+            const double margin = margin_rad(rig, strobe, nearest_m, camera_leg_m);
+            if (reach_rad + margin > kWideRad ||
+                angle_between(strobe.axis, towards) <= cone.half_angle_rad + reach_rad + margin) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+std::vector<Omission> omissions(const Rig& rig, bool is_user_scene) {
+    std::vector<Omission> left_out;
+    if (rig.water.is_clear()) {
+        left_out.push_back({"the water's medium", "clear water takes no light"});
+    }
+    if (!rig.camera.port) {
+        left_out.push_back({"a port", "none is given: the pupil is in the water"});
+    }
+    if (!is_user_scene && rig.seafloor.phong == 0.0) {
+        left_out.push_back({"the floor's highlight", "its strength is 0"});
+    }
+    for (const Object& object : rig.objects) {
+        if (object.phong > 0.0) continue;
+        left_out.push_back(
+            {fmt::format("the highlight of object '{}'", object.name), "its strength is 0"});
+    }
+    for (const Strobe& strobe : rig.strobes) {
+        if (strobe.power == 0.0) {
+            left_out.push_back({fmt::format("strobe '{}'", strobe.name), "its power is 0"});
+            continue;
+        }
+        for (const Cone& cone : strobe.beam.cones) {
+            const std::string what =
+                fmt::format("the {} cone of strobe '{}'", cone.part, strobe.name);
+            if (cone.weight == 0.0) {
+                left_out.push_back({what, "its weight is 0"});
+            } else if (!is_user_scene && !lights_the_view(rig, strobe, cone)) {
+                left_out.push_back({what, "it lights nothing in view"});
+            }
+        }
+    }
+    return left_out;
+}
+
+}  // namespace aphotic

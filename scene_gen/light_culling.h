@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a rig names or might hold and its scenes leave out, because it cannot change a pixel.
+#pragma once
+
+#include "rig/rig.h"
+
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct Omission {
+    std::string what;
+    std::string reason;
+};
+
+// is_user_scene: what stands in the water is not known here, so of strobes only what never shines
+// is left out.
+[[nodiscard]] std::vector<Omission> omissions(const Rig& rig, bool is_user_scene = false);
+
+// Whether the cone's light can fall on floor or on an object that the image sees. The image is
+// looked at in cells of a grid: a cell counts as lit when any of it may be within the cone, so that
+// a yes may be wrong at the cone's edge and a no is not.
+[[nodiscard]] bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone);
+
+}  // namespace aphotic

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How far a rule of wavelengths and weights errs, found without the fit that made it: every member
+// of the family of light (spectral/light_family.h) is integrated anew, by
+// spectral/panel_quadrature.h and in long double, which holds e^-11000.
+//
+//   error_c = max over sources, tilts and paths of |sum_j w_cj f_j / T_c - 1|
+//   T_c     = int f Q_c dlambda
+//
+// A member that the channel is blind to (kBlind of spectral/quadrature_fit.h) must get no weight.
+// Tilts and paths lie between those of the fit and of its own check.
+#pragma once
+
+#include "spectral/light_family.h"
+#include "spectral/quadrature_fit.h"
+
+#include <array>
+#include <span>
+
+namespace aphotic {
+
+inline constexpr int kCertifiedPaths = 200;
+inline constexpr int kCertifiedPathsOfEachTilt = 50;
+
+// By channel: zero for one that sees nothing, an infinite error for one that is shown light it is
+// blind to. frames: what each wavelength's frame holds, in the rule's order.
+[[nodiscard]] std::array<RuleQuality, kChannels> certified_quality(
+    const Sensor& sensor,
+    const LightFamily& family,
+    WavelengthRange range,
+    std::span<const WeightedWavelength> rule,
+    std::span<const FrameLight> frames);
+
+}  // namespace aphotic

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Weights that make a few wavelengths stand for the whole spectrum of a family of light:
+//
+//   S_c = int L Q_c dlambda  ~  sum_j w_cj L_j
+//
+//   error          e_c = max over the family of |sum_j w_cj f_j / T_c - 1|
+//   amplification  a_c = max over the family of sum_j |w_cj| f_j / T_c
+//   promise        e_c + a_c frame_error
+//
+// f_j   what the frame of wavelength j holds of a member of the family (FrameLight)
+// T_c   the member's signal in channel c, integrated exactly (reference_grid)
+// frame_error   the relative error of what a frame holds, for the most part its half floats'
+//
+// A pixel's light is a sum of members with factors that are not negative, so no pixel errs by more
+// than the promise, relative to its own signal. Fitted weights make e_c the least that there is
+// (spectral/minimax.h); where that takes so large weights of either sign that the promise
+// suffers, they are held down.
+//
+// A channel may be blind to a member: it sees less than kBlind of what it sees, light for light, of
+// the member that it sees best. Such light counts for nothing, provided that it gets no weight
+// either: a wavelength at which it shines has none in that channel. Nor has one so dark that it
+// would need a weight of over kMostWeight times the channel's whole response to count.
+//
+// Behind a port pixels change along curves of their own, of which the family's tilt is the largest:
+// kTiltShape of half its span is added to the error for their shapes.
+//
+// The frames need not be of the family's own water, lamps or materials: whatever light they
+// hold, as long as it came by the same geometry, serves as well as it spans the family.
+#pragma once
+
+#include "spectral/light_family.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+// Half floats round by 2^-11 at most; the rest is for single-precision colours and POV-Ray's
+// way to the inverse square law.
+inline constexpr double kFrameError = 0x1p-11 + 2e-6;
+
+struct RuleQuality {
+    double error = 0.0;
+    double amplification = 0.0;
+
+    [[nodiscard]] double promise(double frame_error) const {
+        return error + amplification * frame_error;
+    }
+};
+
+struct FittedRule {
+    std::vector<WeightedWavelength> wavelengths;
+    std::array<RuleQuality, kChannels> quality;  // zero for a channel that sees nothing
+
+    // The worst channel's.
+    [[nodiscard]] double error() const;
+    [[nodiscard]] double promise(double frame_error) const;
+};
+
+// What the frame of one wavelength knows of light.
+struct FrameLight {
+    double lambda_nm = 0.0;
+    double attenuation_per_m = 0.0;
+    std::vector<double> sources;  // in the order of LightFamily::sources
+    double tilt = 0.0;            // LightFamily::tilt at the wavelength whose indices it has
+};
+
+class QuadratureFitter {
+  public:
+    QuadratureFitter(const Sensor& sensor, const LightFamily& family, WavelengthRange range);
+
+    // A frame of the family's own water, lamps and materials.
+    [[nodiscard]] FrameLight frame_at(double lambda_nm) const;
+
+    // The weights, and their error on kCheckPaths paths, apart from those of the fit, and behind a
+    // port on twice as many tilts.
+    [[nodiscard]] FittedRule fit(std::span<const FrameLight> frames, double frame_error) const;
+
+    // The same of weights that are given; the error is infinite where a channel's weights show it
+    // light that it is blind to.
+    [[nodiscard]] std::array<RuleQuality, kChannels> judge(
+        std::span<const WeightedWavelength> rule, std::span<const FrameLight> frames) const;
+
+    // For those who try many frames: what a frame's light is to the members of the fit, relative to
+    // their signals, and how well a fit to such columns can do, in few steps. The cost is the
+    // error; amplification beyond kFreeAmplification counts as what it makes of frame_error. A
+    // cost that is known to be over give_up is returned as infinite. `hint` carries what one
+    // trial learns to the next.
+    struct Column {
+        std::array<Eigen::MatrixXd, kChannels> light;  // of one frame, or of a column each
+    };
+    using Hint = std::array<Eigen::ArrayXd, kChannels>;
+    [[nodiscard]] Column column_of(std::span<const FrameLight> frames) const;
+    [[nodiscard]] double quick_cost(std::span<const Column* const> columns,
+                                    double frame_error,
+                                    double give_up,
+                                    Hint& hint) const;
+
+    // What no fit to these columns and one of the candidates can cost less than.
+    [[nodiscard]] Eigen::ArrayXd least_costs(std::span<const Column* const> columns,
+                                             const Column& candidates,
+                                             const Hint& hint) const;
+
+    // Some `count` wavelengths where the light is that matters: nodes of the reference grid,
+    // spread so that equal shares lie between them of the root of what each adds to the signal of
+    // the member that has most of it. The root spreads them: nearly all the light of a long path
+    // may be in a few nm. A line too narrow for that, of a lamp or of what a channel sees of it,
+    // has three more.
+    [[nodiscard]] std::vector<double> places_of_light(int count) const;
+
+    // The error against path length, of source and channel: for plots.
+    struct PathError {
+        double path_m;
+        std::array<double, kChannels> error;
+    };
+    [[nodiscard]] std::vector<PathError> errors_over_path(const FittedRule& rule,
+                                                          std::span<const FrameLight> frames,
+                                                          std::size_t source) const;
+
+    // What the shapes of pixels' own tilts add to the error; 0 without a port.
+    [[nodiscard]] double tilt_shape_error() const;
+
+    // No member gives any channel a signal.
+    [[nodiscard]] bool is_dark() const;
+
+    [[nodiscard]] const LightFamily& family() const { return family_; }
+
+  private:
+    // Members of the family, and what they signal: for every source, tilt and path, in this
+    // order. All are scaled by exp(K_0 l), K_0 the least loss in the range, so that no path is
+    // too long for a double: only ratios of a member to itself are ever used.
+    struct Sample {
+        Eigen::ArrayXd path_m;
+        std::vector<double> tilts;
+        Eigen::ArrayXXd signals;   // members by channels
+        Eigen::ArrayXXd response;  // the same, relative to all of a member's light; 0: it has none
+        Eigen::ArrayXd light;      // all of a member's, int f dlambda
+    };
+    // What one channel knows of frames: their light to the members that it sees, relative to what
+    // it sees of them, and which of the frames it may use.
+    struct View {
+        Eigen::MatrixXd relative;
+        double whole_response = 0.0;  // int Q_c dlambda
+        // By frame: its light over the range, relative to all of a member's that the channel is
+        // blind to, the largest.
+        Eigen::ArrayXd unseen;
+        std::vector<bool> is_usable;
+
+        // What may not be used is as good as dark.
+        [[nodiscard]] Eigen::MatrixXd usable() const;
+    };
+
+    [[nodiscard]] Sample sample(Eigen::ArrayXd paths_m, std::vector<double> tilts) const;
+    [[nodiscard]] Eigen::MatrixXd light_of(const Sample& sample,
+                                           std::span<const FrameLight> frames) const;
+    [[nodiscard]] View view_of(const Eigen::MatrixXd& light,
+                               const Sample& sample,
+                               Eigen::Index channel) const;
+
+    LightFamily family_;
+    double least_attenuation_per_m_ = 0.0;
+    // The reference grid, tabulated.
+    Eigen::ArrayXd grid_lambda_nm_;
+    Eigen::ArrayXd grid_attenuation_per_m_;
+    Eigen::ArrayXd grid_tilt_;
+    Eigen::ArrayXXd grid_sources_;  // wavelengths by sources
+    Eigen::ArrayXXd grid_weights_;  // wavelengths by channels
+    Eigen::ArrayXd grid_width_nm_;  // of light, not of a channel
+    Sample fitting_;
+    Sample checking_;
+};
+
+inline constexpr int kCheckPaths = 161;
+// Light of a source under kDarkness of the brightest source's on the same path counts for nothing,
+// a channel's response to a member under kBlind of its best counts as none, and weights that come
+// to less than kLeak of its best over all of the range as none to that member.
+inline constexpr double kDarkness = 1e-200;
+inline constexpr double kBlind = 1e-50;
+inline constexpr double kLeak = 1e-40;
+inline constexpr double kMostWeight = 1e20;
+inline constexpr double kTiltShape = 0.01;
+inline constexpr double kFreeAmplification = 1.25;
+
+}  // namespace aphotic

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A raw image divided by the map of its own light.
+//
+//   corrected_c = g_c (raw - black) h / max(map_c, h least_c),    h = min_k min(1, map_k / least_k)
+//
+// g      gain, one number a channel for the whole survey
+// map    the rig's signal at the pixel (lightmap.h), of the image's own altitude and attitude
+// least  where the map is darker in any channel, the gain of all channels is held by one share h:
+//        noise is not blown up there, the pixel keeps its colour, and is marked as doubtful
+//
+// Where the map is bright enough, h = 1 and the pixel is divided by its light. No sample exceeds
+// g_c (raw - black) / least_c. In h only those channels count whose map is over 0: a map of 0 tells
+// nothing, as between the sites of an observed mosaic.
+//
+// Of a floor like the rig's, raw - black = E_c map_c with the camera's exposure E_c, so that
+// corrected_c = g_c E_c at every pixel. Where a thing reflects twice the light of the rig's floor
+// in a channel, twice that. The gain of a survey makes its middle come out as asked:
+// g_c = middle_c / (the median of (raw - black) / map_c).
+//
+// Noise. A sample s = raw - black has the standard deviation sqrt(r^2 + s / e): read noise r, and
+// the shot noise of e electrons a number. Relative to s it is under the limit L from
+//
+//   s >= (q + sqrt(q^2 + 4 L^2 r^2)) / (2 L^2),      q = 1/e, 0 where shot noise is left aside
+//
+// up: r / L where there is no shot noise, 1 / (e L^2) where there is no other. The middle gives
+// s = middle_c map_c / g_c, so that
+//
+//   least_c = max(share of the map's brightest, s g_c / middle_c)
+#pragma once
+
+#include "lightmap/lightmap.h"
+#include "rig/rig.h"
+#include "survey/raw_image.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+using PerChannel = std::array<double, kChannels>;
+
+// Why a pixel is doubtful: bits of its mask.
+inline constexpr std::uint8_t kDark = 1;       // its gain is held
+inline constexpr std::uint8_t kSaturated = 2;  // the sample is at the white level or over it
+inline constexpr std::uint8_t kBlack = 4;      // it is at the black level or under it
+inline constexpr std::uint8_t kEdge = 8;       // the edge of a cone passes near (cone_edge.h)
+inline constexpr std::uint8_t kClipped = 16;  // the corrected sample does not fit the file's format
+
+struct NoiseLimit {
+    double share = 0.01;              // of the map's brightest, in each channel
+    double relative = 0.5;            // L
+    double read_noise = 0.0;          // r, in the camera's numbers
+    double electrons_per_number = 0;  // e; 0: shot noise is left aside
+};
+
+// The least s that is within the limit, in the camera's numbers.
+[[nodiscard]] double least_signal(const NoiseLimit& limit);
+
+struct Correction {
+    PerChannel gain{};
+    PerChannel middle{};
+    SensorLevels levels;
+    NoiseLimit limit;
+};
+
+struct CorrectedImage {
+    RawImage image;                    // laid out as the raw one; linear, 1 is white
+    std::vector<std::uint8_t> doubts;  // by pixel
+};
+
+// Throws InputError when raw and map are not of one size, when a sample is not finite, or when it
+// does not stay so under the gain.
+[[nodiscard]] CorrectedImage corrected(RawImage raw,
+                                       const Lightmap& map,
+                                       const Correction& correction);
+
+// The same with R, G and B at every pixel, and a pixel as doubtful as those that it is made of.
+[[nodiscard]] CorrectedImage demosaiced(const CorrectedImage& corrected);
+
+// The median of (raw - black) / map_c over the pixels that are neither saturated nor black, nor
+// under the share of the map's brightest. NaN where a channel has none.
+[[nodiscard]] PerChannel middle_quotient(const RawImage& raw,
+                                         const Lightmap& map,
+                                         const SensorLevels& levels,
+                                         double share);
+
+// Of the rig's floor: how much of the lamps' own light, without water, it gives back to each
+// channel:  int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.
+[[nodiscard]] PerChannel floor_colour(const Rig& rig);
+
+}  // namespace aphotic

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/raw_image.h"
+
+#include "image/image_size.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <utility>
+
+namespace aphotic {
+
+namespace {
+
+struct MosaicSites {
+    std::string_view name;
+    std::array<int, 4> channels;  // top left, top right, bottom left, bottom right
+};
+// In the order of Mosaic.
+constexpr std::array<MosaicSites, 5> kSitesOfMosaics{{{"none", {}},
+                                                      {"RGGB", {0, 1, 1, 2}},
+                                                      {"BGGR", {2, 1, 1, 0}},
+                                                      {"GRBG", {1, 0, 2, 1}},
+                                                      {"GBRG", {1, 2, 0, 1}}}};
+
+const MosaicSites& sites_of(Mosaic mosaic) {
+    return kSitesOfMosaics[static_cast<std::size_t>(mosaic)];
+}
+
+// The plane with one more pixel all around, mirrored about the outermost ones.
+std::vector<float> with_mirrored_rim(std::span<const float> plane, int width_px, int height_px) {
+    const auto mirrored = [](int i, int count) {
+        return i < 0 ? -i : (i < count ? i : 2 * (count - 1) - i);
+    };
+    std::vector<float> padded;
+    padded.reserve(size_of(width_px + 2) * size_of(height_px + 2));
+    for (int row = -1; row <= height_px; ++row) {
+        const auto line =
+            plane.subspan(size_of(mirrored(row, height_px)) * size_of(width_px), size_of(width_px));
+        padded.push_back(line[1]);
+        padded.insert(padded.end(), line.begin(), line.end());
+        padded.push_back(line[size_of(width_px - 2)]);
+    }
+    return padded;
+}
+
+// Where a site finds a channel: four neighbours of equal weight, which repeat where there are two
+// or one.
+using Neighbours = std::array<std::ptrdiff_t, 4>;
+
+Neighbours neighbours_of(Mosaic mosaic, int column, int row, int channel, std::ptrdiff_t stride) {
+    if (channel_at(mosaic, column, row) == channel) return {0, 0, 0, 0};
+    const bool is_beside = channel_at(mosaic, column + 1, row) == channel;
+    const bool is_below = channel_at(mosaic, column, row + 1) == channel;
+    if (is_beside && is_below) return {-1, 1, -stride, stride};
+    if (is_beside) return {-1, 1, -1, 1};
+    if (is_below) return {-stride, stride, -stride, stride};
+    return {-stride - 1, -stride + 1, stride - 1, stride + 1};
+}
+
+}  // namespace
+
+std::optional<Mosaic> mosaic_named(std::string_view name) {
+    const auto is_same = [](char a, char b) { return (a & ~0x20) == b; };  // ASCII's upper case
+    for (const Mosaic mosaic : {Mosaic::Rggb, Mosaic::Bggr, Mosaic::Grbg, Mosaic::Gbrg}) {
+        if (std::ranges::equal(name, mosaic_name(mosaic), is_same)) return mosaic;
+    }
+    return std::nullopt;
+}
+
+std::string_view mosaic_name(Mosaic mosaic) {
+    return sites_of(mosaic).name;
+}
+
+int channel_at(Mosaic mosaic, int column, int row) {
+    return sites_of(mosaic).channels[size_of((row & 1) * 2 + (column & 1))];
+}
+
+std::vector<float> demosaiced(std::span<const float> plane,
+                              int width_px,
+                              int height_px,
+                              Mosaic mosaic) {
+    assert(width_px >= 2 && height_px >= 2 && mosaic != Mosaic::None);
+    constexpr float kQuarter = 0.25F;
+    const std::vector<float> padded = with_mirrored_rim(plane, width_px, height_px);
+    const std::ptrdiff_t stride = width_px + 2;
+    std::vector<float> planes(plane.size() * size_of(kChannels));
+    for (int channel = 0; channel < kChannels; ++channel) {
+        for (int row = 0; row < height_px; ++row) {
+            const float* const from = padded.data() + (row + 1) * stride + 1;
+            float* const to =
+                planes.data() + size_of(channel) * plane.size() + size_of(row) * size_of(width_px);
+            for (const int first : {0, 1}) {
+                const Neighbours at = neighbours_of(mosaic, first, row, channel, stride);
+                for (int column = first; column < width_px; column += 2) {
+                    const float* const site = from + column;
+                    to[column] =
+                        kQuarter * ((site[at[0]] + site[at[1]]) + (site[at[2]] + site[at[3]]));
+                }
+            }
+        }
+    }
+    return planes;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What looks wrong about a survey, by a few of its images: numbers that were given and that the
+// images contradict. Each is told only where no right survey does the same, so silence proves
+// nothing.
+//
+// white level  Light has no largest number, a sensor has. Where the largest number of all, under
+//              the white level, holds a pile of samples, kPile times as many as a number just below
+//              it and kPileShare of all, the sensor is saturated there.
+// bayer        Both green sites see one light, so their medians agree. Where those that the pattern
+//              makes green differ by over kGreen, and the other two by under a fourth of that, the
+//              pattern is another. Red and blue that are swapped: log(red / blue) of the images
+//              falls over altitude where that of the maps rises.
+// altitude     Over the images, log(image) = s log(map) + const with s = 1 whatever the floor's
+//              mean, in the green channel. Told where s is off by over kSlope and by five of its
+//              standard errors, of kEnoughImages and more at altitudes that differ.
+// map          Where maps are of light that has travelled another way, their colour is another too:
+//              told where the gains of two channels differ by over kGains; as "altitude" where
+//              images have one.
+// attitude     Tilts that are all under kSmall_deg may be radians. Where maps of these, taken as
+//              radians, differ from those of degrees, b = sum x y / sum x x is 1 or 0: over blocks
+//              of pixels, x the logarithm of one map over the other, y that of the image over the
+//              map of degrees, both less their means in each image. Told where b is over kLikeness
+//              and five of its standard errors from 0.
+//
+// Slopes are least squares over the images, with the standard error that their residuals give:
+// floors that differ from image to image widen it. Of maps that are alike there is no slope.
+#pragma once
+
+#include "survey/correction.h"
+#include "survey/raw_image.h"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+// How often an image has its largest number, and the numbers just below it.
+struct TopNumber {
+    double top = 0.0;
+    double at_top = 0.0;      // samples
+    double just_below = 0.0;  // samples from 0.9 top up to it
+    double numbers = 0.0;     // that lie there: whole ones, or as many as tell a pile from none
+    double samples = 0.0;     // of the image
+};
+[[nodiscard]] TopNumber top_of(const RawImage& raw, bool is_whole_numbers);
+
+// The medians of a mosaic's four sites over black, named row by row.
+[[nodiscard]] std::array<double, 4> site_medians(const RawImage& raw, float black);
+
+// Of one image, by blocks of its green samples that are neither black nor saturated.
+struct Likeness {
+    double xx = 0.0;
+    double xy = 0.0;
+};
+[[nodiscard]] Likeness likeness(const RawImage& raw,
+                                const SensorLevels& levels,
+                                const Lightmap& map,
+                                const Lightmap& other);
+
+// What one image tells.
+struct ImageLook {
+    TopNumber top;
+    float white = 0.0F;
+    std::optional<std::array<double, 4>> sites;
+    // Of images with a map.
+    std::optional<double> altitude_m;  // none: one map for all
+    PerChannel quotient{};             // middle_quotient()
+    PerChannel map_mean{};
+    Likeness as_radians;  // of its map to that of the tilts as radians; 0: surely degrees, or alike
+};
+[[nodiscard]] PerChannel means_of(const Lightmap& map);
+
+// Whether tilts [degrees] are such as radians would be.
+inline constexpr double kSmall_deg = 0.6;
+
+// Images with light, for a line through them.
+inline constexpr std::size_t kEnoughImages = 12;
+
+struct Suspicion {
+    std::string about;  // "white-level", "bayer", "altitude", "map", "attitude"
+    std::string what;   // with the number that shows it
+};
+[[nodiscard]] std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic);
+
+// What no line through images with altitudes can tell of these, and why; or empty.
+[[nodiscard]] std::string not_checked(std::span<const ImageLook> looks);
+
+}  // namespace aphotic

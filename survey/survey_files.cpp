@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/survey_files.h"
+
+#include "base/error.h"
+#include "survey/navigation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <system_error>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path without_extension(const fs::path& file) {
+    return is_image_name(file) ? file.parent_path() / file.stem() : file;
+}
+
+bool is_within(const fs::path& path, const fs::path& folder) {
+    return std::ranges::mismatch(folder, path).in1 == folder.end();
+}
+
+// To a folder that it lies in, itself or by the links that led here: it has no end.
+bool leads_back(const fs::path& link, int folders_up) {
+    const fs::path target = fs::canonical(link);
+    fs::path folder = link.parent_path();
+    for (int up = 0; up <= folders_up; ++up, folder = folder.parent_path()) {
+        if (is_within(fs::canonical(folder), target)) return true;
+    }
+    return false;
+}
+
+// Results are no raw images: those of this run, nor those of an earlier one.
+bool holds_results(const fs::path& folder, const fs::path& output) {
+    std::error_code none;
+    return fs::equivalent(folder, output, none) || fs::exists(folder / kCorrectionNotes, none) ||
+           fs::exists(folder / kBaselineNotes, none);
+}
+
+void add_folder(const fs::path& folder, const fs::path& output, std::vector<SurveyFile>& files) {
+    std::error_code none;
+    if (fs::equivalent(folder, output, none)) {
+        throw InputError(
+            fmt::format("{}: found the folder to write to; allowed: folders of images, "
+                        "with the results elsewhere",
+                        folder.string()));
+    }
+    const auto first = std::ssize(files);
+    const auto options = fs::directory_options::follow_directory_symlink;
+    for (fs::recursive_directory_iterator it(folder, options), end; it != end; ++it) {
+        const fs::path& file = it->path();
+        const bool is_folder = it->is_directory(none);
+        if (!is_folder || holds_results(file, output) ||
+            (it->is_symlink() && leads_back(file, it.depth()))) {
+            it.disable_recursion_pending();
+        }
+        const bool is_hidden = file.filename().string().starts_with('.');
+        if (is_folder || is_hidden || !is_image_name(file)) continue;
+        // By its own name here, and not by that of a file elsewhere that it may be a link to.
+        files.push_back(
+            {.source = file, .name = without_extension(file.lexically_relative(folder))});
+    }
+    if (std::ssize(files) == first) {
+        throw InputError(fmt::format("{}: the folder holds no image", folder.string()));
+    }
+    std::ranges::sort(files.begin() + first, files.end(), {}, &SurveyFile::name);
+}
+
+}  // namespace
+
+std::vector<SurveyFile> survey_files(const std::vector<std::string>& arguments,
+                                     const fs::path& output) {
+    std::vector<SurveyFile> files;
+    for (const std::string& argument : arguments) {
+        std::error_code none;
+        if (!fs::exists(argument, none)) {
+            throw InputError(fmt::format("{}: there is no such file or folder", argument));
+        }
+        if (fs::is_directory(argument, none)) {
+            add_folder(argument, output, files);
+        } else {
+            const fs::path file(argument);
+            files.push_back({.source = file, .name = without_extension(file.filename())});
+        }
+    }
+    std::map<fs::path, const SurveyFile*> by_name;
+    for (const SurveyFile& file : files) {
+        const auto [other, is_new] = by_name.emplace(file.name, &file);
+        if (is_new) continue;
+        throw InputError(fmt::format("{} and {} would both become {}",
+                                     other->second->source.string(),
+                                     file.source.string(),
+                                     (output / file.name).string()));
+    }
+    return files;
+}
+
+void require_file(const fs::path& image) {
+    std::error_code none;
+    const fs::file_status status = fs::status(image, none);
+    if (fs::is_regular_file(status)) return;
+    if (fs::exists(status)) throw InputError("found a pipe, device or folder; allowed: a file");
+    throw InputError(fs::is_symlink(fs::symlink_status(image, none))
+                         ? "found a link that leads nowhere; allowed: a file"
+                         : "there is no such file any more");
+}
+
+namespace {
+
+// The file itself, whatever links lead to it; of links that go in a circle, their own place.
+fs::path place_of(const fs::path& file) {
+    std::error_code circle;
+    fs::path place = fs::weakly_canonical(file, circle);
+    return circle ? fs::absolute(file).lexically_normal() : place;
+}
+
+}  // namespace
+
+void require_sources_stay(const std::vector<SurveyFile>& files, const Results& results) {
+    std::set<fs::path> sources;
+    for (const SurveyFile& file : files) sources.insert(place_of(file.source));
+    for (const SurveyFile& file : files) {
+        for (const fs::path& result : results(file)) {
+            if (!sources.contains(place_of(result))) continue;
+            throw InputError(
+                fmt::format("{}: would be overwritten by the result; allowed: another place for -o",
+                            result.string()));
+        }
+    }
+}
+
+}  // namespace aphotic

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/survey_image.h"
+
+#include "base/error.h"
+#include "image/exr.h"
+#include "survey/survey_files.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void refuse_channels(const AnyImage& image, std::string_view allowed) {
+    throw InputError(fmt::format(
+        "found the channels {}; allowed: {}", fmt::join(image.channels, ", "), allowed));
+}
+
+// Where those that are wanted stand among the file's.
+std::vector<std::size_t> places_of(const AnyImage& image, Mosaic mosaic) {
+    if (mosaic != Mosaic::None) {
+        if (image.channels.size() != 1) refuse_channels(image, "one, with --bayer");
+        return {0};
+    }
+    if (image.channels.size() == 1) {
+        throw InputError(
+            "found one channel and no --bayer; allowed: R, G, B, or a mosaic whose pattern --bayer "
+            "names");
+    }
+    std::vector<std::size_t> places;
+    for (const std::string_view name : kChannelNames) {
+        const auto found = std::ranges::find(image.channels, name);
+        if (found == image.channels.end()) {
+            refuse_channels(image, "R, G, B");
+        }
+        places.push_back(static_cast<std::size_t>(found - image.channels.begin()));
+    }
+    return places;
+}
+
+void keep_planes(std::vector<float>& planes,
+                 std::size_t pixels,
+                 const std::vector<std::size_t>& places) {
+    std::vector<float> kept;
+    kept.reserve(places.size() * pixels);
+    for (const std::size_t place : places) {
+        const auto first = planes.begin() + static_cast<std::ptrdiff_t>(place * pixels);
+        kept.insert(kept.end(), first, first + static_cast<std::ptrdiff_t>(pixels));
+    }
+    planes = std::move(kept);
+}
+
+SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) {
+    const std::vector<std::size_t> places = places_of(image, camera.mosaic);
+    if (camera.mosaic != Mosaic::None && std::min(image.width_px, image.height_px) < 2) {
+        throw InputError(
+            fmt::format("found {} x {} pixels; allowed: 2 or more each way, of a mosaic",
+                        image.width_px,
+                        image.height_px));
+    }
+    const bool is_whole_numbers = image.full_scale > 0.0;
+    const double scale = is_whole_numbers ? image.full_scale : 1.0;
+    SurveyImage taken{.raw = {.width_px = image.width_px,
+                              .height_px = image.height_px,
+                              .mosaic = camera.mosaic,
+                              .samples = {}},
+                      .levels = {.black = camera.black_level},
+                      .description = image.description,
+                      .date_time = image.date_time};
+    taken.raw.samples = image.planes();
+    if (image.channels.size() > 1) keep_planes(taken.raw.samples, taken.raw.pixels(), places);
+    for (float& sample : taken.raw.samples) sample = static_cast<float>(sample * scale);
+    if (is_whole_numbers) {
+        taken.levels.white = static_cast<float>(scale);
+        taken.rounding = 1.0 / std::sqrt(12.0);
+    }
+    if (camera.white_level) taken.levels.white = *camera.white_level;
+    return taken;
+}
+
+std::vector<std::string> channel_names(const RawImage& image) {
+    if (image.mosaic != Mosaic::None) return {"Y"};
+    return {kChannelNames.begin(), kChannelNames.end()};
+}
+
+int zip_level(Compression compression) {
+    constexpr int kUsual = 6;
+    if (compression == Compression::None) return 0;
+    return compression == Compression::Small ? kUsual : ExrWriter::kFastestZip;
+}
+
+}  // namespace
+
+void add_camera_options(CLI::App& app, CameraNumbers& camera) {
+    const auto wrong = [](const std::string& name) {
+        return mosaic_named(name)
+                   ? ""
+                   : fmt::format("found '{}'; allowed: RGGB, BGGR, GRBG, GBRG", name);
+    };
+    app.add_option_function<std::string>(
+           "--bayer",
+           [&camera](const std::string& name) { camera.mosaic = *mosaic_named(name); },
+           "the images are mosaics of one channel, named after the four pixels at the top left: "
+           "RGGB, BGGR, GRBG or GBRG")
+        ->check(CLI::Validator(wrong, "PATTERN"));
+    app.add_option("--black-level", camera.black_level, "the camera's number for no light")
+        ->capture_default_str();
+}
+
+SurveyImage read_survey_image(const fs::path& file, const CameraNumbers& camera) {
+    require_file(file);
+    try {
+        return survey_image_of(open_any_image(file), camera);
+    } catch (const InputError& error) {
+        const std::string_view words = error.what();
+        const std::string name = file.string() + ": ";
+        throw InputError(std::string(words.starts_with(name) ? words.substr(name.size()) : words));
+    }
+}
+
+RawImage without_black(SurveyImage taken) {
+    for (float& sample : taken.raw.samples) sample -= taken.levels.black;
+    return std::move(taken.raw);
+}
+
+void require_size(const RawImage& image, int width_px, int height_px, std::string_view as) {
+    if (image.width_px == width_px && image.height_px == height_px) return;
+    throw InputError(fmt::format("found {} x {} pixels; allowed: {} x {}, {}",
+                                 image.width_px,
+                                 image.height_px,
+                                 width_px,
+                                 height_px,
+                                 as));
+}
+
+void print_skipped(const fs::path& file, const std::string& why) {
+    fmt::print(stderr, "aphotic: {}: {}; skipped\n", file.string(), why);
+}
+
+void write_corrected(const fs::path& file,
+                     const RawImage& image,
+                     const SurveyImage& source,
+                     Compression compression) {
+    if (file.extension() == ".exr") {
+        ExrAttributes attributes{{"aphotic:version", APHOTIC_VERSION}};
+        if (!source.description.empty()) attributes.emplace_back("comments", source.description);
+        if (!source.date_time.empty()) attributes.emplace_back("capDate", source.date_time);
+        ExrWriter writer(file,
+                         image.width_px,
+                         image.height_px,
+                         channel_names(image),
+                         attributes,
+                         zip_level(compression));
+        writer.write_rows(image.height_px, image.samples);
+        writer.finish();
+        return;
+    }
+    write_any_image(file,
+                    {.width_px = image.width_px,
+                     .height_px = image.height_px,
+                     .channels = channel_names(image),
+                     .planes = image.samples,
+                     .type = SampleType::Bits16,
+                     .compression = compression,
+                     .description = source.description,
+                     .date_time = source.date_time});
+}
+
+void write_mask(const fs::path& file, const CorrectedImage& image, Compression compression) {
+    constexpr float kByte = 255.0F;
+    std::vector<float> plane;
+    plane.reserve(image.doubts.size());
+    for (const std::uint8_t doubt : image.doubts) {
+        plane.push_back(static_cast<float>(doubt) / kByte);
+    }
+    write_any_image(file,
+                    {.width_px = image.image.width_px,
+                     .height_px = image.image.height_px,
+                     .channels = {"Y"},
+                     .planes = plane,
+                     .type = SampleType::Bits8,
+                     .compression = compression,
+                     .description = "",
+                     .date_time = ""});
+}
+
+}  // namespace aphotic

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/survey_light.h"
+
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/sha256.h"
+#include "image/exr.h"
+#include "lightmap/cone_edge.h"
+#include "rig/rig_reader.h"
+#include "survey/navigation.h"
+#include "survey/survey_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+namespace aphotic {
+
+namespace {
+
+struct RigLight {
+    Navigation navigation;
+    ConeEdges edges;
+    LightmapMaker maker;
+};
+
+void require_altitude(const Sled& sled, const std::vector<double>& altitudes_m) {
+    if (altitudes_m.empty()) return;
+    if (sled.altitude_m >= altitudes_m[0] && sled.altitude_m <= altitudes_m[1]) return;
+    throw InputError(fmt::format("altitude_m: found {}; allowed by --altitudes-m: {} to {}",
+                                 sled.altitude_m,
+                                 altitudes_m[0],
+                                 altitudes_m[1]));
+}
+
+// Least and most of what the sleds have, and 0 between them: at a level sled, paths are shortest.
+std::set<double> extremes(const std::vector<Sled>& sleds, double Sled::*part) {
+    const auto [least, most] = std::ranges::minmax(sleds, {}, part);
+    return {least.*part, std::clamp(0.0, least.*part, most.*part), most.*part};
+}
+
+PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds) {
+    std::vector<Sled> corners;
+    if (sleds.empty()) return {};
+    for (const double altitude_m : extremes(sleds, &Sled::altitude_m)) {
+        for (const double pitch_rad : extremes(sleds, &Sled::pitch_rad)) {
+            for (const double roll_rad : extremes(sleds, &Sled::roll_rad)) {
+                corners.push_back({altitude_m, pitch_rad, roll_rad});
+            }
+        }
+    }
+    return paths_of(rig, corners);
+}
+
+using MapAsRadians = std::function<std::optional<Lightmap>(const Sled& sled)>;
+
+MapAsRadians map_as_radians(const Rig& rig, const Navigation& navigation, std::vector<Sled> sleds) {
+    const auto is_small = [](double tilt_rad) {
+        return std::abs(tilt_rad) <= kSmall_deg * kRadiansPerDegree;
+    };
+    const auto in_radians = [has_pitch = navigation.has_pitch(),
+                             has_roll = navigation.has_roll()](Sled sled) {
+        if (has_pitch) sled.pitch_rad /= kRadiansPerDegree;
+        if (has_roll) sled.roll_rad /= kRadiansPerDegree;
+        return sled;
+    };
+    bool is_level = true;
+    for (Sled& sled : sleds) {
+        if (navigation.has_pitch() && !is_small(sled.pitch_rad)) return {};
+        if (navigation.has_roll() && !is_small(sled.roll_rad)) return {};
+        const Sled other = in_radians(sled);
+        if (other.pitch_rad != sled.pitch_rad || other.roll_rad != sled.roll_rad) is_level = false;
+        sled = other;
+    }
+    if (is_level) return {};
+    try {
+        // Of its own, so that the maps of a sled that is as steady as that stay as they are.
+        const auto maker = std::make_shared<const LightmapMaker>(
+            rig, paths_of_survey(rig, sleds), LightmapOptions{});
+        return [maker, in_radians](const Sled& sled) -> std::optional<Lightmap> {
+            try {
+                return maker->map(in_radians(sled));
+            } catch (const InputError&) {
+                return std::nullopt;
+            }
+        };
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+}  // namespace
+
+SurveyLight light_of_rig(const std::string& rig_file,
+                         const std::string& navigation_file,
+                         const std::vector<double>& altitudes_m,
+                         const std::vector<SurveyFile>& files) {
+    const Rig rig = read_rig(rig_file);
+    Navigation navigation = read_navigation(navigation_file, rig.sled);
+    std::vector<Sled> sleds;
+    for (const SurveyFile& file : files) {
+        try {
+            const Sled sled = navigation.pose_of(file.source).sled;
+            require_altitude(sled, altitudes_m);
+            sleds.push_back(sled);
+        } catch (const InputError&) {
+            // It is said of the image when its turn comes.
+        }
+    }
+    const MapAsRadians as_radians = map_as_radians(rig, navigation, sleds);
+    const auto light = [&] {
+        try {
+            return std::make_shared<const RigLight>(
+                RigLight{.navigation = std::move(navigation),
+                         .edges = ConeEdges(rig),
+                         .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), {})});
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("{}: {}", rig_file, error.what()));
+        }
+    }();
+    return {.digest = rig.digest,
+            .size = {rig.camera.width_px, rig.camera.height_px},
+            .has_poses = true,
+            .pose =
+                [light, altitudes_m](const std::filesystem::path& image) {
+                    const Sled sled = light->navigation.pose_of(image).sled;
+                    require_altitude(sled, altitudes_m);
+                    return sled;
+                },
+            .map = [light](const Sled& sled) { return light->maker.map(sled); },
+            .edges = [light](const Sled& sled,
+                             int within_px) { return light->edges.mask(sled, within_px); },
+            .map_as_radians = as_radians,
+            .floor_colour = floor_colour(rig)};
+}
+
+SurveyLight light_of_map(const std::string& map_file) {
+    static const std::vector<std::string> kNames{"R", "G", "B"};
+    Lightmap map;
+    try {
+        ExrReader reader(map_file);
+        const std::vector<std::string> channels = reader.channels();
+        for (const std::string& name : kNames) {
+            if (std::ranges::find(channels, name) != channels.end()) continue;
+            throw InputError(fmt::format("{}: has no channel {}; needed: R, G, B", map_file, name));
+        }
+        map.width_px = reader.width_px();
+        map.height_px = reader.height_px();
+        map.samples.resize(kNames.size() * static_cast<std::size_t>(map.width_px) *
+                           static_cast<std::size_t>(map.height_px));
+        reader.read_rows(0, map.height_px, kNames, map.samples);
+    } catch (const RunError& error) {
+        throw InputError(error.what());  // the user named it
+    }
+    for (float& sample : map.samples) {
+        if (!std::isfinite(sample) || sample < 0.0F) sample = 0.0F;
+    }
+    const auto pixels = map.samples.size() / kNames.size();
+    return {.digest = sha256_of_file(map_file),
+            .size = {map.width_px, map.height_px},
+            .has_poses = false,
+            .pose = [](const std::filesystem::path&) { return Sled{}; },
+            .map = [map](const Sled&) { return map; },
+            .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); },
+            .map_as_radians = {},
+            .floor_colour = std::nullopt};
+}
+
+}  // namespace aphotic

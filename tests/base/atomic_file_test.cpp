@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/atomic_file.h"
+
+#include "base/error.h"
+#include "tests/support/temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace aphotic::atomic_file_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> names_in(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+template <typename Error>
+std::string message_of(const auto& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(AtomicFile, AppearsUnderItsNameOnlyWhenCommitted) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "out.txt";
+    AtomicFile out(file);
+    write_file(out.temporary(), "whole");
+    EXPECT_FALSE(fs::exists(file));
+    out.commit();
+    EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"out.txt"});
+    EXPECT_EQ(read_text_file(file), "whole");
+}
+
+TEST(AtomicFile, LeavesNothingWithoutCommit) {
+    const TempFolder folder;
+    {
+        const AtomicFile out(folder.path() / "out.txt");
+        write_file(out.temporary(), "half");
+        EXPECT_EQ(names_in(folder.path()).size(), 1U);
+    }
+    EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{});
+}
+
+TEST(AtomicFile, LeavesTheOldFileWithoutCommit) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "out.txt";
+    write_file(file, "old");
+    {
+        const AtomicFile out(file);
+        write_file(out.temporary(), "half");
+    }
+    EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"out.txt"});
+    EXPECT_EQ(read_text_file(file), "old");
+}
+
+// The next writer of the same file may be at work already when the first one's object goes.
+TEST(AtomicFile, TouchesNothingAfterCommit) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "out.txt";
+    auto first = std::make_unique<AtomicFile>(file);
+    write_file(first->temporary(), "first");
+    first->commit();
+    AtomicFile second(file);
+    write_file(second.temporary(), "second");
+    first.reset();
+    second.commit();
+    EXPECT_EQ(read_text_file(file), "second");
+}
+
+// A rename is atomic within one folder only, and some writers go by the extension.
+TEST(AtomicFile, IsWrittenBesideItsPlaceWithItsExtension) {
+    const AtomicFile out("some/folder/image.exr");
+    EXPECT_EQ(out.final_path(), "some/folder/image.exr");
+    EXPECT_EQ(out.temporary().parent_path(), "some/folder");
+    EXPECT_EQ(out.temporary().extension(), ".exr");
+    EXPECT_NE(out.temporary(), out.final_path());
+}
+
+TEST(AtomicFile, AFailedCommitNamesTheFileAndLeavesNothing) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "taken";
+    make_folder(file / "inside");  // no file can replace a folder that holds something
+    {
+        AtomicFile out(file);
+        write_file(out.temporary(), "text");
+        const std::string message = message_of<RunError>([&] { out.commit(); });
+        EXPECT_TRUE(message.starts_with(file.string() + ": cannot be written: ")) << message;
+    }
+    EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"taken"});
+}
+
+TEST(AtomicFile, OfAKilledProcessIsTakenAwayAndNoOther) {
+    const TempFolder folder;
+    const pid_t killed = ::fork();
+    if (killed == 0) {
+        const AtomicFile file(folder.path() / "image.exr");
+        write_file(file.temporary(), "half");
+        ::_exit(0);
+    }
+    ::waitpid(killed, nullptr, 0);
+    const AtomicFile living(folder.path() / "image.exr");
+    write_file(living.temporary(), "half");
+    // Of the users' own.
+    const std::vector<std::string> others{
+        ".notes", "image.part.exr", ".a.part.b", ".image.1x.part.exr", "image.1.part.exr"};
+    for (const std::string& name : others) write_file(folder.path() / name, "");
+    ASSERT_EQ(names_in(folder.path()).size(), others.size() + 2);
+    remove_abandoned_files(folder.path());
+    EXPECT_EQ(names_in(folder.path()).size(), others.size() + 1);
+    EXPECT_TRUE(fs::exists(living.temporary()));
+    for (const std::string& name : others) EXPECT_TRUE(fs::exists(folder.path() / name)) << name;
+    EXPECT_NO_THROW(remove_abandoned_files(folder.path() / "missing"));
+}
+
+TEST(AtomicFile, OfAKilledProcessIsTakenAwayByTheNameOfItsFile) {
+    const TempFolder folder;
+    const pid_t killed = ::fork();
+    if (killed == 0) {
+        const AtomicFile map(folder.path() / "map.exr");
+        const AtomicFile other(folder.path() / "map.png");
+        write_file(map.temporary(), "half");
+        write_file(other.temporary(), "half");
+        ::_exit(0);
+    }
+    ::waitpid(killed, nullptr, 0);
+    remove_abandoned_of(folder.path() / "map.exr");
+    const auto left = names_in(folder.path());
+    ASSERT_EQ(left.size(), 1U);
+    EXPECT_TRUE(left.front().ends_with(".png")) << left.front();
+}
+
+TEST(TextFile, ComesBackByteForByte) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "text";
+    const std::string text("a\r\n\0b\xFF\n", 7);
+    write_text_file(file, text);
+    EXPECT_EQ(read_text_file(file), text);
+    write_text_file(file, "");
+    EXPECT_EQ(read_text_file(file), "");
+    EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"text"});
+}
+
+TEST(TextFile, AFailedWriteIsARunErrorThatNamesTheFile) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "missing" / "text";
+    EXPECT_EQ(message_of<RunError>([&] { write_text_file(file, "x"); }),
+              file.string() + ": cannot be written: No such file or directory");
+}
+
+TEST(TextFile, AnUnreadableOneIsAnInputErrorThatNamesIt) {
+    const TempFolder folder;
+    const fs::path missing = folder.path() / "missing";
+    EXPECT_EQ(message_of<InputError>([&] { static_cast<void>(read_text_file(missing)); }),
+              missing.string() + ": cannot be read: No such file or directory");
+    EXPECT_EQ(message_of<InputError>([&] { static_cast<void>(read_text_file(folder.path())); }),
+              folder.path().string() + ": cannot be read: it is a folder");
+}
+
+TEST(MakeFolder, MakesParentsAndAcceptsWhatIsThere) {
+    const TempFolder folder;
+    const fs::path deep = folder.path() / "a" / "b" / "c";
+    make_folder(deep);
+    EXPECT_TRUE(fs::is_directory(deep));
+    EXPECT_NO_THROW(make_folder(deep));
+}
+
+TEST(MakeFolder, NamesTheFolderThatCannotBeMade) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "file";
+    write_file(file, "");
+    for (const fs::path& wanted : {file, file / "below"}) {
+        EXPECT_EQ(message_of<RunError>([&] { make_folder(wanted); }),
+                  wanted.string() + ": cannot be made: Not a directory");
+    }
+}
+
+TEST(MakeFolder, NamesTheFolderThatCannotBeWrittenTo) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+    const TempFolder folder;
+    const fs::path locked = folder.path() / "locked";
+    make_folder(locked);
+    fs::permissions(locked, fs::perms::owner_read | fs::perms::owner_exec);
+    EXPECT_EQ(message_of<RunError>([&] { make_folder(locked); }),
+              locked.string() + ": cannot be written to: Permission denied");
+}
+
+}  // namespace
+}  // namespace aphotic::atomic_file_test

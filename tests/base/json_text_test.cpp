@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/json_text.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace aphotic::json_text_test {
+namespace {
+
+std::string nested(std::size_t depth) {
+    return std::string(depth, '[') + std::string(depth, ']');
+}
+
+std::string nested_objects(std::size_t depth) {
+    std::string text;
+    for (std::size_t i = 0; i < depth; ++i) text += "{\"a\":";
+    return text + "1" + std::string(depth, '}');
+}
+
+std::string error_of(const std::string& text) {
+    try {
+        static_cast<void>(parse_json(text, "notes.json"));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(ParseJson, ReadsWhatIsThere) {
+    const nlohmann::json json = parse_json(R"({"b": [1, 2.5, null], "a": {"c": "d"}})", "f");
+    EXPECT_EQ(json.at("b").at(1), 2.5);
+    EXPECT_TRUE(json.at("b").at(2).is_null());
+    EXPECT_EQ(json.at("a").at("c"), "d");
+}
+
+TEST(ParseJson, NamesWhatIsNone) {
+    for (const char* text : {"", "{", "{\"a\" 1}", "[1] 2", "NaN", "1e999", "\"\xff\""})
+        EXPECT_EQ(error_of(text), "notes.json: is not JSON") << text;
+}
+
+TEST(ParseJson, RefusesToNestDeeperThanItsLimit) {
+    const auto refusal = [](std::size_t depth) {
+        return fmt::format("notes.json: found values nested in {} levels; allowed: up to {}",
+                           depth,
+                           kMostJsonDepth);
+    };
+    constexpr std::size_t kMost = kMostJsonDepth;
+    EXPECT_EQ(error_of(nested(kMost)), "no error");
+    EXPECT_EQ(error_of(nested_objects(kMost)), "no error");
+    EXPECT_EQ(error_of(nested(kMost + 1)), refusal(kMost + 1));
+    EXPECT_EQ(error_of(nested_objects(kMost + 1)), refusal(kMost + 1));
+    EXPECT_EQ(error_of(nested(10'000'000)), refusal(10'000'000));
+    EXPECT_EQ(error_of("{\"for\\\"mat\\\\\": " + nested(kMost) + "}"), refusal(kMost + 1));
+}
+
+TEST(ParseJson, TakesBracketsInTextsForText) {
+    const std::string brackets(1000, '[');
+    EXPECT_EQ(parse_json("[\"\\\"" + brackets + "\"]", "f").at(0), "\"" + brackets);
+}
+
+TEST(WholeNumber, IsOneWithinItsBounds) {
+    const nlohmann::json json = parse_json(
+        R"({"a": 7, "half": 7.5, "seven": 7.0, "huge": 6.7e122, "most": 18446744073709551615,
+            "under": -1, "text": "7"})",
+        "f");
+    EXPECT_EQ(whole_number_at(json, "a", 1, 7), 7);
+    const auto error_at = [&](const std::string& key) -> std::string {
+        try {
+            static_cast<void>(whole_number_at(json, key, 0, 10));
+            return "no error";
+        } catch (const InputError& error) {
+            return error.what();
+        }
+    };
+    for (const auto& [key, found] :
+         std::map<std::string, std::string>{{"half", "7.5"},
+                                            {"seven", "7.0"},
+                                            {"huge", "6.7e+122"},
+                                            {"most", "18446744073709551615"},
+                                            {"under", "-1"},
+                                            {"text", "\"7\""}}) {
+        EXPECT_EQ(error_at(key),
+                  key + ": found " + found + "; allowed: a whole number from 0 to 10");
+    }
+    EXPECT_THROW(static_cast<void>(whole_number_at(json, "none")), nlohmann::json::out_of_range);
+}
+
+// Where each key was held against all before it, a million would take an hour.
+TEST(ParseJson, TakesAMillionKeys) {
+    constexpr int kKeys = 1'000'000;
+    std::string text = "{\"first\": 0";
+    for (int i = 0; i < kKeys; ++i) text += fmt::format(",\"{}\":{}", i, i);
+    const nlohmann::json json = parse_json(text + "}", "f");
+    EXPECT_EQ(json.size(), kKeys + 1U);
+    EXPECT_EQ(json.at("999999"), 999999);
+}
+
+}  // namespace
+}  // namespace aphotic::json_text_test

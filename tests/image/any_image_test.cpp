@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Files that lost their end, as on a full disk or an interrupted copy, in every format that is
+// read: nobody takes the rows that are gone for black ones.
+#include "image/any_image.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "support/temp_folder.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+extern "C" void aphotic_open_any_image(const std::filesystem::path& file, aphotic::AnyImage& image);
+
+namespace aphotic::any_image_test {
+namespace {
+
+constexpr int kWidth = 48;
+constexpr int kHeight = 40;
+
+struct Format {
+    std::string file;
+    int channels = 3;
+    OIIO::TypeDesc type = OIIO::TypeDesc::UINT8;
+    std::map<std::string, std::string> words = {};
+    bool is_tiled = false;
+    bool is_bigtiff = false;
+
+    [[nodiscard]] std::string name() const {
+        std::string name = file;
+        for (const auto& [key, value] : words) name += "/" + value;
+        return name + (is_tiled ? "/tiled" : "") + (is_bigtiff ? "/big" : "");
+    }
+};
+
+std::vector<Format> all_formats() {
+    const auto k8 = OIIO::TypeDesc::UINT8;
+    const auto k16 = OIIO::TypeDesc::UINT16;
+    const auto kFloat = OIIO::TypeDesc::FLOAT;
+    std::vector<Format> formats{{.file = "a.jpg"},
+                                {.file = "a.png"},
+                                {.file = "mosaic.png", .channels = 1, .type = k16},
+                                {.file = "a.bmp"},
+                                {.file = "a.tga"},
+                                {.file = "rle.tga", .words = {{"compression", "rle"}}},
+                                {.file = "a.ppm"},
+                                {.file = "a.pgm", .channels = 1, .type = k16},
+                                {.file = "a.dpx", .type = k16},
+                                {.file = "a.hdr", .type = kFloat},
+                                {.file = "a.sgi"},
+                                {.file = "a.fits", .channels = 1, .type = kFloat},
+                                {.file = "a.webp"},
+                                {.file = "a.jp2"}};
+    for (const char* compression : {"none", "zip", "lzw", "packbits", "jpeg"}) {
+        for (const bool is_tiled : {false, true}) {
+            for (const bool is_bigtiff : {false, true}) {
+                const bool is_jpeg = std::string(compression) == "jpeg";
+                if (is_jpeg && is_tiled) continue;  // OpenImageIO reads none
+                formats.push_back({.file = "a.tif",
+                                   .channels = is_jpeg ? 3 : 1,
+                                   .type = is_jpeg ? k8 : k16,
+                                   .words = {{"compression", compression}},
+                                   .is_tiled = is_tiled,
+                                   .is_bigtiff = is_bigtiff});
+            }
+        }
+    }
+    for (const char* compression : {"none", "zip", "lzw", "packbits"}) {
+        formats.push_back({.file = "planes.tif",
+                           .type = k16,
+                           .words = {{"compression", compression}, {"planarconfig", "separate"}}});
+    }
+    for (const char* compression :
+         {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}) {
+        formats.push_back(
+            {.file = "a.exr", .type = kFloat, .words = {{"compression", compression}}});
+    }
+    formats.push_back({.file = "tiles.exr", .type = kFloat, .is_tiled = true});
+    return formats;
+}
+
+// Light that falls to the right, with grain.
+std::vector<float> some_pixels(int channels) {
+    std::vector<float> pixels;
+    std::uint32_t grain = 1;
+    for (int i = 0; i < kWidth * kHeight * channels; ++i) {
+        grain = grain * 1664525U + 1013904223U;
+        const float fall = 1.0F - static_cast<float>(i / channels % kWidth) / kWidth;
+        pixels.push_back(0.2F + 0.5F * fall + 0.2F * static_cast<float>(grain >> 16U) / 65536.0F);
+    }
+    return pixels;
+}
+
+// The bytes of a file of that format. By one thread, libtiff writes the directory before the
+// pixels, so that a file that is cut still has it.
+std::string bytes_of(const Format& format, const std::filesystem::path& folder) {
+    OIIO::ImageSpec spec(kWidth, kHeight, format.channels, format.type);
+    for (const auto& [key, value] : format.words) spec.attribute(key, value);
+    if (format.is_tiled) spec.tile_width = spec.tile_height = 16;
+    if (format.is_bigtiff) spec.attribute("tiff:bigtiff", 1);
+    const std::filesystem::path file = folder / format.file;
+    const auto output = OIIO::ImageOutput::create(file.string());
+    if (!output) return "";
+    output->threads(1);
+    const std::vector<float> pixels = some_pixels(format.channels);
+    const bool is_written = output->open(file.string(), spec) &&
+                            output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) &&
+                            output->close();
+    return is_written ? read_text_file(file) : "";
+}
+
+std::vector<float> planes_in(const std::filesystem::path& file) {
+    AnyImage image;
+    aphotic_open_any_image(file, image);
+    return image.planes();
+}
+
+// One plane after another, as `compare` reads them.
+std::vector<float> planes_by_channel(const std::filesystem::path& file) {
+    AnyImage image;
+    aphotic_open_any_image(file, image);
+    std::vector<float> planes;
+    for (std::size_t c = 0; c < image.channels.size(); ++c) {
+        const std::vector<float> plane = image.samples(c);
+        planes.insert(planes.end(), plane.begin(), plane.end());
+    }
+    return planes;
+}
+
+TEST(AnyImage, WhatIsCutAnywhereIsRefusedOrHasAllItsPixels) {
+    constexpr std::size_t kCuts = 100;
+    const TempFolder folder;
+    OIIO::attribute("threads", 1);
+    for (const Format& format : all_formats()) {
+        const std::string bytes = bytes_of(format, folder.path());
+        ASSERT_FALSE(bytes.empty()) << format.name();
+        const std::filesystem::path file = folder.path() / ("cut-" + format.file);
+        write_file(file, bytes);
+        const std::vector<float> whole = planes_in(file);
+        ASSERT_EQ(whole.size(), static_cast<std::size_t>(kWidth * kHeight * format.channels));
+        EXPECT_EQ(planes_by_channel(file), whole) << format.name();
+        std::size_t refused = 0;
+        for (std::size_t cut = 0; cut < kCuts; ++cut) {
+            const std::size_t size = (bytes.size() - 1) * (kCuts - 1 - cut) / (kCuts - 1);
+            std::filesystem::resize_file(file, size);
+            for (const auto& read : {planes_in, planes_by_channel}) {
+                try {
+                    EXPECT_EQ(read(file), whole)
+                        << format.name() << ": " << size << " of " << bytes.size() << " bytes";
+                } catch (const InputError& error) {
+                    const std::string words = error.what();
+                    EXPECT_TRUE(words.starts_with(file.string() + ": cannot be read: ")) << words;
+                    EXPECT_EQ(words.find('\n'), std::string::npos) << words;
+                    ++refused;
+                }
+            }
+        }
+        EXPECT_GT(refused, kCuts) << format.name();
+    }
+}
+
+// A disk that filled up can leave zeros in place of the rest, in a file of its full size. Where
+// numbers stand as they are, zeros are black pixels, and nobody can tell.
+TEST(AnyImage, ZerosInPlaceOfTheRestAreRefusedWhereTheyAreNoPixels) {
+    const TempFolder folder;
+    const auto is_refused = [&](const Format& format) {
+        std::string bytes = bytes_of(format, folder.path());
+        const std::size_t half = bytes.size() / 2;
+        bytes.replace(half, bytes.size() - half, bytes.size() - half, '\0');
+        write_file(folder.path() / format.file, bytes);
+        try {
+            static_cast<void>(planes_in(folder.path() / format.file));
+        } catch (const InputError&) {
+            return true;
+        }
+        return false;
+    };
+    const auto tiff = [](const std::string& compression) {
+        const bool is_jpeg = compression == "jpeg";
+        return Format{.file = "a.tif",
+                      .channels = is_jpeg ? 3 : 1,
+                      .type = is_jpeg ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16,
+                      .words = {{"compression", compression}}};
+    };
+    for (const char* compression : {"zip", "lzw", "packbits"}) {
+        EXPECT_TRUE(is_refused(tiff(compression))) << compression;
+    }
+    EXPECT_TRUE(is_refused({.file = "a.png"}));
+    // Zeros are a code of JPEG's, too; docs/lightmaps.md says so.
+    for (const char* compression : {"none", "jpeg"}) {
+        EXPECT_FALSE(is_refused(tiff(compression))) << compression;
+    }
+    EXPECT_FALSE(is_refused({.file = "a.jpg"}));
+}
+
+// 8 bits, 3 x 2, without compression; numbers of the most significant byte first.
+std::string big_endian_tiff(std::uint32_t strip_bytes) {
+    std::string bytes("MM\0*\0\0\0\10\0\11", 10);
+    const auto entry = [&](unsigned tag, unsigned type, std::uint32_t value) {
+        const unsigned shift = type == 3 ? 16 : 0;  // a short comes first of its four bytes
+        for (const std::uint32_t word : {tag << 16U | type, 1U, value << shift}) {
+            for (const unsigned at : {24U, 16U, 8U, 0U}) {
+                bytes += static_cast<char>(word >> at & 0xFFU);
+            }
+        }
+    };
+    constexpr std::uint32_t kPixelsAt = 10 + 9 * 12 + 4;
+    entry(256, 3, 3);
+    entry(257, 3, 2);
+    entry(258, 3, 8);
+    entry(259, 3, 1);
+    entry(262, 3, 1);
+    entry(273, 4, kPixelsAt);
+    entry(277, 3, 1);
+    entry(278, 3, 2);
+    entry(279, 4, strip_bytes);
+    return bytes + std::string(4, '\0') + "\1\2\3\4\5\6";
+}
+
+TEST(AnyImage, ATiffIsHeldAgainstItsOwnDirectoryInEitherOrderOfBytes) {
+    const TempFolder folder;
+    const std::filesystem::path file = folder.path() / "a.tif";
+    const auto fault = [&](const std::string& bytes) -> std::string {
+        write_file(file, bytes);
+        try {
+            static_cast<void>(planes_in(file));
+        } catch (const InputError& error) {
+            return std::string(error.what()).substr(file.string().size());
+        }
+        return "";
+    };
+    const std::string whole = big_endian_tiff(6);
+    EXPECT_EQ(fault(whole), "");
+    EXPECT_EQ(fault(whole.substr(0, whole.size() - 1)),
+              fmt::format(": cannot be read: it is cut short: found {} bytes of {} and more",
+                          whole.size() - 1,
+                          whole.size()));
+    EXPECT_EQ(fault(big_endian_tiff(0)),
+              ": cannot be read: it is not whole: strip or tile 1 of 1 is empty");
+}
+
+// Some cameras fill their JPEG files up before the end marker.
+TEST(AnyImage, BytesAfterTheLastPixelOfAJpegAreNoFault) {
+    const TempFolder folder;
+    const std::filesystem::path file = folder.path() / "a.jpg";
+    std::string bytes = bytes_of({.file = "a.jpg"}, folder.path());
+    const std::vector<float> whole = planes_in(file);
+    bytes.insert(bytes.size() - 2, "padding");
+    write_file(file, bytes);
+    EXPECT_EQ(planes_in(file), whole);
+}
+
+// The decoder of a progressive JPEG that lost its place has bytes left before the end marker, and
+// these are no camera's padding: whatever they are taken for, pixels differ.
+TEST(AnyImage, BytesThatADamagedJpegLeavesAreAFault) {
+    const TempFolder folder;
+    const std::filesystem::path file = folder.path() / "a.jpg";
+    const std::string bytes =
+        bytes_of({.file = "a.jpg", .words = {{"jpeg:progressive", "1"}}}, folder.path());
+    ASSERT_NE(bytes.find("\xFF\xC2"), std::string::npos) << "it is not progressive";
+    EXPECT_NO_THROW(static_cast<void>(planes_in(file)));
+    const auto is_refused = [&](const std::string& damaged) {
+        write_file(file, damaged);
+        try {
+            static_cast<void>(planes_in(file));
+        } catch (const InputError&) {
+            return true;
+        }
+        return false;
+    };
+    for (const std::size_t left : {7U, 16U, 200U}) {
+        std::string longer = bytes;
+        longer.insert(bytes.size() - 2, left, 'x');
+        EXPECT_TRUE(is_refused(longer)) << left;
+    }
+    constexpr std::size_t kSpan = 50;
+    std::string shorter = bytes;
+    shorter.erase(bytes.size() - 3 * kSpan, kSpan);
+    EXPECT_TRUE(is_refused(shorter)) << "a span in the middle of the last scan is gone";
+    std::string flipped = bytes;
+    std::size_t refused = 0;
+    for (std::size_t at = bytes.size() / 2; at < bytes.size() - 3 * kSpan; at += kSpan) {
+        flipped[at] = static_cast<char>(~flipped[at]);
+        if (is_refused(flipped)) ++refused;
+        flipped[at] = bytes[at];
+    }
+    EXPECT_GT(refused, 0U);
+}
+
+// Whether a file of these is whole, nobody can tell.
+TEST(AnyImage, OtherFormatsAreRefusedByName) {
+    const TempFolder folder;
+    const Format format{.file = "a.zfile", .channels = 1, .type = OIIO::TypeDesc::FLOAT};
+    ASSERT_NE(bytes_of(format, folder.path()), "");
+    try {
+        static_cast<void>(planes_in(folder.path() / "a.zfile"));
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("found the format zfile; allowed: bmp, dpx,"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace aphotic::any_image_test

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/exr.h"
+
+#include "base/error.h"
+#include "tests/support/temp_folder.h"
+
+#include <ImfArray.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace aphotic::exr_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename Action>
+std::string run_error(const Action& action) {
+    try {
+        action();
+    } catch (const RunError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+// A value that tells channel, row and column apart, and that no half float could hold.
+float sample_at(int channel, int row, int column) {
+    return static_cast<float>(channel * 1'000'000 + row * 1000 + column) + 0.25F;
+}
+
+// Rows first to first + rows of all channels, planar.
+std::vector<float> rows_of(int channels, int first_row, int rows, int width_px) {
+    std::vector<float> samples;
+    for (int c = 0; c < channels; ++c) {
+        for (int row = first_row; row < first_row + rows; ++row) {
+            for (int x = 0; x < width_px; ++x) samples.push_back(sample_at(c, row, x));
+        }
+    }
+    return samples;
+}
+
+constexpr int kWidth = 7;
+constexpr int kHeight = 37;  // two of ZIP's blocks of 16 rows, and a part of one
+
+// Room for that many rows of both channels.
+std::vector<float> room_for(int rows) {
+    return std::vector<float>(std::size_t{2} * kWidth * static_cast<std::size_t>(rows));
+}
+
+void write_image(const fs::path& file, const std::vector<int>& blocks) {
+    ExrWriter out(file, kWidth, kHeight, {"A", "B"}, {{"aphotic:note", "text"}, {"empty", ""}});
+    int row = 0;
+    for (const int rows : blocks) {
+        out.write_rows(rows, rows_of(2, row, rows, kWidth));
+        row += rows;
+    }
+    out.finish();
+}
+
+std::size_t files_in(const TempFolder& folder) {
+    const fs::directory_iterator files(folder.path());
+    return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+}
+
+TEST(Exr, ComesBackFloatForFloat) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    write_image(file, {kHeight});
+    ExrReader in(file);
+    EXPECT_EQ(in.width_px(), kWidth);
+    EXPECT_EQ(in.height_px(), kHeight);
+    EXPECT_EQ(in.channels(), (std::vector<std::string>{"A", "B"}));
+    std::vector<float> samples = room_for(kHeight);
+    in.read_rows(0, kHeight, in.channels(), samples);
+    EXPECT_EQ(samples, rows_of(2, 0, kHeight, kWidth));
+}
+
+TEST(Exr, DoesNotDependOnTheBlocksItWasWrittenOrReadIn) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    write_image(file, {1, 16, 5, 15});
+    ExrReader in(file);
+    for (const int rows : {1, 3, 16, 20, kHeight}) {
+        for (int first = 0; first + rows <= kHeight; first += rows) {
+            std::vector<float> samples = room_for(rows);
+            in.read_rows(first, rows, in.channels(), samples);
+            EXPECT_EQ(samples, rows_of(2, first, rows, kWidth))
+                << rows << " rows from row " << first;
+        }
+    }
+}
+
+TEST(Exr, ReadsTheChannelsThatAreNamedInTheirOrder) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    write_image(file, {kHeight});
+    ExrReader in(file);
+    const std::vector<std::string> names{"B", "A"};
+    std::vector<float> samples = room_for(1);
+    in.read_rows(4, 1, names, samples);
+    EXPECT_EQ(samples.front(), sample_at(1, 4, 0));
+    EXPECT_EQ(samples.back(), sample_at(0, 4, kWidth - 1));
+}
+
+TEST(Exr, KeepsTextAttributes) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    write_image(file, {kHeight});
+    const ExrReader in(file);
+    EXPECT_EQ(in.attribute("aphotic:note"), "text");
+    EXPECT_EQ(in.attribute("empty"), "");
+    EXPECT_EQ(in.attribute("none"), "");
+    EXPECT_EQ(in.attribute("compression"), "") << "an attribute that is no text";
+}
+
+// What OpenEXR itself says of the file: 32-bit floats, ZIP.
+TEST(Exr, IsWrittenAsZippedFloats) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    write_image(file, {kHeight});
+    const Imf::InputFile in(file.c_str());
+    EXPECT_EQ(in.header().compression(), Imf::ZIP_COMPRESSION);
+    EXPECT_EQ(in.header().channels()["A"].type, Imf::FLOAT);
+    EXPECT_EQ(in.header().channels()["B"].type, Imf::FLOAT);
+}
+
+// A half-float image whose data window does not start at 0, as other programs crop them.
+TEST(Exr, WidensHalfFloatsWhereverTheImageStarts) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "half.exr";
+    const Imath::Box2i window({-3, 5}, {0, 6});  // 4 x 2 pixels
+    Imf::Header header(window, window);
+    header.channels().insert("R", Imf::Channel(Imf::HALF));
+    Imf::Array2D<half> pixels(2, 4);
+    for (int y = 0; y < 2; ++y) {
+        for (int x = 0; x < 4; ++x) pixels[y][x] = half(0.1F * static_cast<float>(4 * y + x));
+    }
+    {
+        Imf::OutputFile out(file.c_str(), header);
+        Imf::FrameBuffer buffer;
+        buffer.insert("R", Imf::Slice::Make(Imf::HALF, &pixels[0][0], window));
+        out.setFrameBuffer(buffer);
+        out.writePixels(2);
+    }
+    ExrReader in(file);
+    EXPECT_EQ(in.width_px(), 4);
+    EXPECT_EQ(in.height_px(), 2);
+    std::vector<float> row(4);
+    in.read_rows(1, 1, in.channels(), row);
+    for (int x = 0; x < 4; ++x) {
+        EXPECT_EQ(row[static_cast<std::size_t>(x)], static_cast<float>(pixels[1][x])) << x;
+    }
+}
+
+TEST(Exr, ThatWasWrittenAgainIsReadAgain) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    for (const float value : {1.0F, 2.0F}) {
+        ExrWriter out(file, 1, 1, {"Y"}, {});
+        out.write_rows(1, std::vector{value});
+        out.finish();
+        std::vector<float> sample(1);
+        ExrReader in(file);
+        in.read_rows(0, 1, in.channels(), sample);
+        EXPECT_EQ(sample[0], value);
+    }
+}
+
+TEST(Exr, KeepsWhatIsNotANumberForOthersToJudge) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    ExrWriter out(file, 3, 1, {"Y"}, {});
+    out.write_rows(1, std::vector{std::nanf(""), -INFINITY, 65504.0F});
+    out.finish();
+    std::vector<float> samples(3);
+    ExrReader in(file);
+    in.read_rows(0, 1, in.channels(), samples);
+    EXPECT_TRUE(std::isnan(samples[0])) << samples[0];
+    EXPECT_EQ(samples[1], -INFINITY);
+    EXPECT_EQ(samples[2], 65504.0F);
+}
+
+TEST(Exr, LeavesNothingBehindUnlessFinished) {
+    const TempFolder folder;
+    {
+        ExrWriter out(folder.path() / "image.exr", kWidth, kHeight, {"A", "B"}, {});
+        out.write_rows(16, rows_of(2, 0, 16, kWidth));
+    }
+    EXPECT_EQ(files_in(folder), 0U);
+    write_image(folder.path() / "image.exr", {kHeight});
+    EXPECT_EQ(files_in(folder), 1U);
+}
+
+TEST(Exr, ThatCannotBeReadIsARunErrorThatNamesIt) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    EXPECT_TRUE(run_error([&] {
+                    const ExrReader in(file);
+                }).starts_with(file.string() + ": is no readable OpenEXR image: "));
+    write_file(file, "PNG");
+    EXPECT_TRUE(run_error([&] {
+                    const ExrReader in(file);
+                }).starts_with(file.string() + ": is no readable OpenEXR image: "));
+}
+
+TEST(Exr, ThatIsCutShortIsARunErrorThatNamesIt) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    write_image(file, {kHeight});
+    fs::resize_file(file, fs::file_size(file) - 100);
+    const std::string message = run_error([&] {
+        ExrReader in(file);
+        std::vector<float> samples = room_for(kHeight);
+        in.read_rows(0, kHeight, in.channels(), samples);
+    });
+    EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
+}
+
+TEST(Exr, WithoutTheChannelIsARunErrorThatNamesBoth) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    write_image(file, {kHeight});
+    ExrReader in(file);
+    const std::vector<std::string> names{"A", "Z"};
+    std::vector<float> samples = room_for(1);
+    EXPECT_EQ(run_error([&] { in.read_rows(0, 1, names, samples); }),
+              file.string() + ": has no channel Z");
+}
+
+TEST(Exr, ThatCannotBeWrittenIsARunErrorThatNamesIt) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "missing" / "image.exr";
+    const std::string message =
+        run_error([&] { const ExrWriter out(file, kWidth, kHeight, {"A"}, {}); });
+    EXPECT_TRUE(message.starts_with(file.string() + ": cannot be written: ")) << message;
+}
+
+}  // namespace
+}  // namespace aphotic::exr_test

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Directories of TIFF files that promise fewer pixels than the image has, or more than any file.
+#include "image/whole_tiff.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "support/temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace aphotic::whole_tiff_test {
+namespace {
+
+constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t kMost32 = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t kPixelsAt = 1000;
+
+using Directory = std::map<std::uint16_t, std::vector<std::uint64_t>>;
+
+// Little-endian BigTIFF: the directory at 16, what does not fit into an entry behind it, pixels
+// from kPixelsAt to the end at 2000.
+std::string file_of(const Directory& directory) {
+    constexpr std::size_t kEntry = 20;
+    std::string more;
+    const auto put = [](std::string& bytes, std::uint64_t number, unsigned size) {
+        for (unsigned i = 0; i < size; ++i) bytes += static_cast<char>(number >> 8 * i & 0xFFU);
+    };
+    std::string bytes = "II";
+    put(bytes, 43, 2);
+    put(bytes, 8, 4);
+    put(bytes, 16, 8);
+    put(bytes, directory.size(), 8);
+    const std::size_t more_at = bytes.size() + directory.size() * kEntry + 8;
+    for (const auto& [tag, values] : directory) {
+        put(bytes, tag, 2);
+        put(bytes, 16, 2);
+        put(bytes, values.size(), 8);
+        put(bytes, values.size() == 1 ? values[0] : more_at + more.size(), 8);
+        if (values.size() == 1) continue;
+        for (const std::uint64_t value : values) put(more, value, 8);
+    }
+    put(bytes, 0, 8);
+    bytes += more;
+    EXPECT_LE(bytes.size(), kPixelsAt);
+    bytes.resize(2 * kPixelsAt, '\1');
+    return bytes;
+}
+
+std::string fault_of(const Directory& directory) {
+    const TempFolder folder;
+    const std::filesystem::path file = folder.path() / "a.tif";
+    write_file(file, file_of(directory));
+    try {
+        require_whole_tiff(file);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+Directory with(Directory directory, const Directory& others) {
+    for (const auto& [tag, values] : others) directory[tag] = values;
+    return directory;
+}
+
+Directory without(Directory directory, std::uint16_t tag) {
+    directory.erase(tag);
+    return directory;
+}
+
+std::vector<std::uint64_t> times(std::size_t count, std::uint64_t value) {
+    return std::vector<std::uint64_t>(count, value);
+}
+
+// 8 rows of 10 pixels, two a strip.
+const Directory kStrips{
+    {256, {10}}, {257, {8}}, {273, times(4, kPixelsAt)}, {278, {2}}, {279, times(4, 20)}};
+// The same in tiles of 4 x 3: 3 across, 3 down.
+const Directory kTiles{{256, {10}},
+                       {257, {8}},
+                       {322, {4}},
+                       {323, {3}},
+                       {324, times(9, kPixelsAt)},
+                       {325, times(9, 12)}};
+
+TEST(WholeTiff, HasAsManyStripsAndTilesAsThePixelsNeed) {
+    EXPECT_EQ(fault_of(kStrips), "");
+    EXPECT_EQ(fault_of(kTiles), "");
+    EXPECT_EQ(fault_of(with(kStrips, {{278, {8}}, {273, {kPixelsAt}}, {279, {80}}})), "");
+    EXPECT_EQ(fault_of(without(with(kStrips, {{273, {kPixelsAt}}, {279, {80}}}), 278)), "");
+    const std::string few =
+        "it is not whole: found 4 offsets and 4 sizes of strips or tiles; needed: ";
+    EXPECT_EQ(fault_of(with(kStrips, {{278, {1}}})), few + "8");
+    EXPECT_EQ(fault_of(with(kStrips, {{257, {9}}})), few + "5");
+    EXPECT_EQ(fault_of(with(kStrips, {{277, {3}}, {284, {2}}})), few + "12");
+    EXPECT_EQ(fault_of(with(kStrips, {{277, {3}}, {284, {1}}})), "") << "side by side";
+    EXPECT_EQ(fault_of(with(kTiles, {{324, times(4, kPixelsAt)}, {325, times(4, 12)}})), few + "9");
+    EXPECT_EQ(fault_of(with(kTiles, {{277, {3}}, {284, {2}}})),
+              "it is not whole: found 9 offsets and 9 sizes of strips or tiles; needed: 27");
+    EXPECT_EQ(fault_of(with(kStrips, {{279, times(3, 20)}})),
+              "it is not whole: found 4 offsets and 3 sizes of strips or tiles; needed: 4");
+    EXPECT_EQ(fault_of(with(kStrips, {{279, {20, 20, 0, 20}}})),
+              "it is not whole: strip or tile 3 of 4 is empty");
+}
+
+TEST(WholeTiff, WhatIsNotToldIsNotWhole) {
+    for (const auto& [directory, tags] :
+         {std::pair{kStrips, std::vector<std::uint16_t>{257, 273, 279}},
+          std::pair{kTiles, std::vector<std::uint16_t>{256, 257, 322, 323, 324, 325}}}) {
+        for (const std::uint16_t tag : tags) {
+            EXPECT_NE(fault_of(without(directory, tag)).find(" is missing"), std::string::npos)
+                << tag << ": " << fault_of(without(directory, tag));
+        }
+    }
+    for (const std::uint16_t tag : std::vector<std::uint16_t>{257, 278}) {
+        EXPECT_NE(fault_of(with(kStrips, {{tag, {0}}})).find(" is 0 or empty"), std::string::npos);
+    }
+    for (const std::uint16_t tag : std::vector<std::uint16_t>{322, 323}) {
+        EXPECT_NE(fault_of(with(kTiles, {{tag, {0}}})).find(" is 0 or empty"), std::string::npos);
+    }
+}
+
+// Numbers whose sums and products 64 bits do not hold.
+TEST(WholeTiff, NumbersNear2To64AreNoWayRound) {
+    EXPECT_EQ(fault_of(with(kStrips, {{273, times(4, kMost - 10)}})), "it points beyond its end");
+    EXPECT_EQ(fault_of(with(kStrips, {{279, times(4, kMost)}})), "it points beyond its end");
+    EXPECT_EQ(fault_of(with(kStrips, {{279, {20, 20, 20, 1001}}})),
+              "it is cut short: found 2000 bytes of 2001 and more");
+    // 2^32 x 2^32 tiles are 2^64, and as 64 bits have it, 0.
+    EXPECT_EQ(fault_of(with(kTiles,
+                            {{256, {kMost32 + 1}}, {257, {kMost32 + 1}}, {322, {1}}, {323, {1}}})),
+              "it is not whole: found 9 offsets and 9 sizes of strips or tiles; needed: "
+              "18446744073709551615");
+    EXPECT_EQ(fault_of(with(kStrips, {{257, {kMost}}, {278, {1}}, {277, {kMost}}, {284, {2}}})),
+              "it is not whole: found 4 offsets and 4 sizes of strips or tiles; needed: "
+              "18446744073709551615");
+    // 2^61 + 4 numbers of 8 bytes are 2^64 + 32.
+    std::string bytes = file_of(kStrips);
+    const std::size_t entry = 16 + 8 + 2 * 20;
+    bytes[entry + 4 + 7] = '\x20';
+    const TempFolder folder;
+    write_file(folder.path() / "a.tif", bytes);
+    EXPECT_THROW(require_whole_tiff(folder.path() / "a.tif"), InputError);
+}
+
+}  // namespace
+}  // namespace aphotic::whole_tiff_test

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_gen/half_underflow.h"
+
+#include "base/error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace aphotic::half_underflow_test {
+namespace {
+
+constexpr double kFrameError = 5e-4;
+constexpr int kMostExposureOfColours_log2 = 100;  // about what POV-Ray's floats leave
+
+// Green in view, and red that is 2^red_log2 as bright and makes as much signal as green, or a share
+// of it.
+std::vector<ManifestWavelength> green_and_red(int red_log2, double share = 1.0) {
+    const ManifestWavelength green{
+        .lambda_nm = 550.0, .weight = {1.0, 1.0, 0.0}, .exposure_log2 = 13, .radiance_bound = 1.0};
+    const ManifestWavelength red{
+        .lambda_nm = 650.0,
+        .weight = {std::ldexp(share, -red_log2), 0.0, 0.0},
+        .exposure_log2 = std::min(13 - red_log2, kMostExposureOfColours_log2),
+        .radiance_bound = std::ldexp(1.0, red_log2)};
+    return {green, red};
+}
+
+std::string refusal_of(const std::vector<ManifestWavelength>& wavelengths) {
+    try {
+        require_light_that_counts(wavelengths, kFrameError);
+        return "none";
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+// 2^-114 is held as 2^-14, the last with all digits.
+TEST(LostLight, IsBelowTheLeastNormalHalfFloat) {
+    EXPECT_EQ(refusal_of(green_and_red(-114)), "none");
+    EXPECT_EQ(refusal_of(green_and_red(-115)),
+              "found light of at most 2.4e-35 at 650 nm, fainter than frames hold, which counts in "
+              "R by a weight of 4.2e+34; allowed: wavelengths that frames hold, or that count for "
+              "nothing");
+}
+
+TEST(LostLight, IsNoMatterWhereItCountsForNothing) {
+    EXPECT_EQ(refusal_of(green_and_red(-200, 0.9 * kFrameError)), "none");
+    EXPECT_NE(refusal_of(green_and_red(-200, 1.1 * kFrameError)), "none");
+    EXPECT_EQ(refusal_of(green_and_red(-200, 0.0)), "none");
+}
+
+// A sign makes no difference: what is subtracted and lost is lost as well.
+TEST(LostLight, CountsByTheSizeOfItsWeight) {
+    std::vector<ManifestWavelength> wavelengths = green_and_red(-200);
+    wavelengths[1].weight[0] *= -1.0;
+    EXPECT_NE(refusal_of(wavelengths), "none");
+}
+
+TEST(LostLight, IsABlackImageWhereNothingIsHeld) {
+    std::vector<ManifestWavelength> wavelengths = green_and_red(-200);
+    wavelengths[0].weight = {};
+    EXPECT_EQ(refusal_of(wavelengths), "none");
+    for (ManifestWavelength& w : wavelengths) w.radiance_bound = 0.0;
+    EXPECT_EQ(refusal_of(wavelengths), "none");
+}
+
+}  // namespace
+}  // namespace aphotic::half_underflow_test

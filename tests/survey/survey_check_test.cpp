@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What looks wrong about surveys that are wrong, and nothing about right ones: light that falls
+// with the square of the altitude and with water, over floors that differ from image to image.
+#include "survey/survey_check.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+namespace aphotic::survey_check_test {
+namespace {
+
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+// Of clear water, over red, green and blue.
+constexpr PerChannel kAttenuation_per_m{0.35, 0.07, 0.03};
+
+PerChannel light_at(double altitude_m) {
+    PerChannel light{};
+    for (std::size_t c = 0; c < light.size(); ++c) {
+        light[c] = std::exp(-2.0 * kAttenuation_per_m[c] * altitude_m) / (altitude_m * altitude_m);
+    }
+    return light;
+}
+
+using Told = std::function<double(double altitude_m)>;
+
+// What images of that many altitudes show of floors that differ by these standard deviations of the
+// logarithm, one in brightness and one in each channel by itself; told: what the navigation says.
+std::vector<ImageLook> survey(std::uint32_t seed, std::size_t images, const Told& told) {
+    constexpr double kBrightness = 0.3;
+    constexpr double kColour = 0.1;
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> altitude(1.3, 3.2);
+    std::vector<ImageLook> looks(images);
+    for (ImageLook& look : looks) {
+        const double altitude_m = altitude(random);
+        look.altitude_m = told(altitude_m);
+        look.map_mean = light_at(*look.altitude_m);
+        look.white = 4095.0F;
+        const PerChannel light = light_at(altitude_m);
+        const double brightness = kBrightness * normal(random);
+        for (std::size_t c = 0; c < light.size(); ++c) {
+            look.quotient[c] = 1000.0 * std::exp(brightness + kColour * normal(random)) * light[c] /
+                               look.map_mean[c];
+        }
+    }
+    return looks;
+}
+
+std::vector<std::string> told_of(const std::vector<ImageLook>& looks,
+                                 Mosaic mosaic = Mosaic::None) {
+    std::vector<std::string> about;
+    for (const Suspicion& one : suspicions(looks, mosaic)) about.push_back(one.about);
+    return about;
+}
+
+const std::vector<std::string> kNothing;
+const std::vector<std::string> kAltitude{"altitude"};
+const std::vector<std::string> kBayer{"bayer"};
+
+constexpr std::uint32_t kSurveys = 1000;
+
+TEST(SurveyCheck, ARightSurveyLooksRight) {
+    for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
+        for (const std::size_t images : {1U, 3U, 12U, 16U}) {
+            EXPECT_EQ(told_of(survey(seed, images, [](double h) { return h; })), kNothing)
+                << seed << ": " << images;
+        }
+        // An altimeter that is off by some, or in error by a little.
+        EXPECT_EQ(told_of(survey(seed, 16, [](double h) { return h + 0.1; })), kNothing) << seed;
+    }
+}
+
+// As of a sled that stands, or hovers: rounding and the altimeter's noise are no slope.
+TEST(SurveyCheck, ImagesOfOneAltitudeLookRight) {
+    for (const double altitude_m : {0.3, 2.0, 2.1, 2.3, 51.7}) {
+        ImageLook look;
+        look.altitude_m = altitude_m;
+        look.map_mean = light_at(altitude_m);
+        look.quotient = {731.3, 997.1, 1013.7};
+        const std::vector<ImageLook> looks(16, look);
+        EXPECT_EQ(told_of(looks), kNothing) << altitude_m;
+        EXPECT_NE(not_checked(looks).find("16 images, all of one altitude"), std::string::npos);
+    }
+    constexpr double kAltimeter_m = 0.02;
+    for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> noise(0.0, kAltimeter_m);
+        std::vector<ImageLook> looks(16);
+        for (ImageLook& look : looks) {
+            look.altitude_m = 2.0 + noise(random);
+            look.map_mean = light_at(*look.altitude_m);
+            for (std::size_t c = 0; c < 3; ++c) {
+                look.quotient[c] = 1000.0 * light_at(2.0)[c] / look.map_mean[c];
+            }
+        }
+        EXPECT_EQ(told_of(looks), kNothing) << seed;
+    }
+}
+
+// As in air: red over blue is the same at every altitude, but for rounding.
+TEST(SurveyCheck, MapsOfOneColourTellNothingOfRedAndBlue) {
+    std::vector<ImageLook> looks(16);
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        const double altitude_m = 1.5 + 0.1 * static_cast<double>(i);
+        const double light = 1.0 / (altitude_m * altitude_m);
+        looks[i].altitude_m = altitude_m;
+        looks[i].map_mean = {0.7 * light, 0.9 * light, 1.1 * light};
+        looks[i].quotient = {731.3, 997.1, 1013.7};
+    }
+    EXPECT_EQ(told_of(looks), kNothing);
+}
+
+TEST(SurveyCheck, FewImagesAreSaidToBeUnchecked) {
+    const auto right = [](double h) { return h; };
+    EXPECT_EQ(not_checked(survey(1, 16, right)), "");
+    EXPECT_EQ(not_checked(survey(1, 11, right)),
+              "altitudes, red for blue, radians: 11 images with light; needed: 12");
+}
+
+// One map for all images has no altitude to speak of.
+TEST(SurveyCheck, AMapOfAnotherColourIsToldWithoutAltitudes) {
+    std::vector<ImageLook> looks(16);
+    for (ImageLook& look : looks) {
+        look.map_mean = {1.0, 1.0, 1.0};
+        look.quotient = {1.0, 10.0, 1000.0};
+    }
+    const std::vector<Suspicion> found = suspicions(looks, Mosaic::None);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].about, "map");
+    EXPECT_EQ(found[0].what,
+              "the map and the images differ in colour: R, G and B need gains of 1, 0.1 and 0.001. "
+              "Wrong water or camera response?");
+    EXPECT_EQ(not_checked(looks), "");
+}
+
+TEST(SurveyCheck, AltitudesOfAnotherColumnAreToldFrom) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> heading(1.0, 360.0);
+    for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
+        EXPECT_EQ(told_of(survey(seed, 16, [](double h) { return h + 50.0; })).front(), "altitude")
+            << seed;
+        EXPECT_EQ(told_of(survey(seed, 16, [&](double) { return heading(random); })).front(),
+                  "altitude")
+            << seed;
+        // By colour alone where there are few.
+        EXPECT_EQ(told_of(survey(seed, 2, [](double h) { return h + 50.0; })), kAltitude) << seed;
+    }
+}
+
+TEST(SurveyCheck, RedAndBlueThatAreSwappedAreTold) {
+    const auto changed = [](std::uint32_t seed) {
+        std::vector<ImageLook> looks = survey(seed, 16, [](double h) { return h; });
+        for (ImageLook& look : looks) {
+            PerChannel image{};
+            for (std::size_t c = 0; c < 3; ++c) image[c] = look.quotient[c] * look.map_mean[c];
+            std::swap(image[0], image[2]);
+            for (std::size_t c = 0; c < 3; ++c) look.quotient[c] = image[c] / look.map_mean[c];
+        }
+        return looks;
+    };
+    for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
+        EXPECT_EQ(told_of(changed(seed), Mosaic::Bggr), kBayer) << seed;
+    }
+    EXPECT_NE(suspicions(changed(1), Mosaic::Bggr)[0].what.find("--bayer is BGGR"),
+              std::string::npos);
+}
+
+TEST(SurveyCheck, GreenSitesThatDifferAreNoGreenSites) {
+    ImageLook look;
+    look.sites = {{100.0, 180.0, 182.0, 60.0}};
+    for (const Mosaic right : {Mosaic::Rggb, Mosaic::Bggr})
+        EXPECT_EQ(told_of({look}, right), kNothing);
+    for (const Mosaic wrong : {Mosaic::Grbg, Mosaic::Gbrg})
+        EXPECT_EQ(told_of({look}, wrong), kBayer);
+    EXPECT_EQ(
+        suspicions(std::vector{look}, Mosaic::Grbg)[0].what,
+        "the two sites that GRBG makes green differ by 67 %, the other two by 1.1 %: the pattern "
+        "is RGGB or BGGR");
+    look.sites = {{100.0, 101.0, 100.0, 100.0}};  // grey: all patterns alike
+    EXPECT_EQ(told_of({look}, Mosaic::Grbg), kNothing);
+}
+
+RawImage mosaic_of(const std::function<double(std::size_t)>& number) {
+    RawImage raw{.width_px = 100, .height_px = 100, .mosaic = Mosaic::Rggb, .samples = {}};
+    for (std::size_t i = 0; i < raw.pixels(); ++i) {
+        raw.samples.push_back(static_cast<float>(std::floor(number(i))));
+    }
+    return raw;
+}
+
+// A sensor of 12 bits whose file could hold 16.
+TEST(SurveyCheck, ALargestNumberThatManySamplesHaveIsAWhiteLevel) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> light(2500.0, 900.0);
+    const auto seen = [&](double most) {
+        return mosaic_of([&](std::size_t) { return std::clamp(light(random), 0.0, most); });
+    };
+    const auto look_of = [&](double most) {
+        ImageLook look;
+        look.top = top_of(seen(most), true);
+        look.white = 65535.0F;
+        return look;
+    };
+    ImageLook look = look_of(4095.0);
+    const ImageLook dark = look_of(1e4);
+    // The share of a normal distribution from 1.772 standard deviations on: 3.8 %.
+    const std::vector<Suspicion> found = suspicions(std::vector{look}, Mosaic::None);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].about, "white-level");
+    EXPECT_NE(found[0].what.find("samples are 4095, the largest number of all"), std::string::npos)
+        << found[0].what;
+    EXPECT_NEAR(look.top.at_top / look.top.samples, 0.038, 0.006);
+    EXPECT_EQ(told_of({dark}), kNothing) << "none is saturated";
+    look.white = 4095.0F;
+    EXPECT_EQ(told_of({look}), kNothing) << "it is known";
+    look.white = kInfinite;
+    EXPECT_NE(suspicions(std::vector{look}, Mosaic::None)[0].what.find("there is no white level"),
+              std::string::npos);
+}
+
+// Light that grows to the right by a tilt, and a floor of patches.
+TEST(SurveyCheck, TiltsThatAreRadiansAreTold) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> patch(0.0, 0.3);
+    const auto map_of = [](double tilt) {
+        Lightmap map{.width_px = 100, .height_px = 100, .samples = {}};
+        for (std::size_t i = 0; i < 30000; ++i) {
+            map.samples.push_back(
+                static_cast<float>(std::exp(tilt * (static_cast<double>(i % 100) / 100.0 - 0.5))));
+        }
+        return map;
+    };
+    const auto looks = [&](bool is_radians) {
+        std::vector<ImageLook> all(16);
+        for (ImageLook& look : all) {
+            const double tilt = patch(random);
+            std::vector<double> floor;
+            for (int i = 0; i < 100; ++i) floor.push_back(std::exp(patch(random)));
+            const Lightmap light = map_of(is_radians ? tilt : tilt / 57.3);
+            const RawImage raw = mosaic_of([&](std::size_t i) {
+                return 1000.0 * static_cast<double>(light.samples[i]) *
+                       floor[i / 1000 * 10 + i % 100 / 10];
+            });
+            look.as_radians = likeness(raw, SensorLevels{}, map_of(tilt / 57.3), map_of(tilt));
+        }
+        return all;
+    };
+    EXPECT_EQ(told_of(looks(true)), std::vector<std::string>{"attitude"});
+    EXPECT_EQ(told_of(looks(false)), kNothing) << "a sled as steady as that";
+}
+
+}  // namespace
+}  // namespace aphotic::survey_check_test
