@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>  // kill
 #include <unistd.h>
@@ -20,6 +21,10 @@ namespace aphotic {
 namespace fs = std::filesystem;
 
 namespace {
+
+fs::path folder_of(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : ".";
+}
 
 bool is_gone(pid_t process) {
     return ::kill(process, 0) != 0 && errno == ESRCH;
@@ -39,6 +44,19 @@ void remove_abandoned(const fs::path& folder, IsAllowed is_allowed) {
     }
 }
 
+// Onto the disk, with all that it holds: a file, or a folder with its names. Some network file
+// systems cannot, and say so by EINVAL or ENOTSUP, and a folder that may not be listed (EACCES)
+// cannot be opened: there it is the system's to keep.
+bool is_synced(const fs::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return errno == EACCES;
+    const bool is_done = ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
+    const int error = errno;
+    ::close(descriptor);
+    errno = error;
+    return is_done;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path)) {
@@ -56,13 +74,17 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
+    const auto fail = [&](int error) {
+        throw RunError(
+            fmt::format("{}: cannot be written: {}", final_path_.string(), std::strerror(error)));
+    };
+    // In this order, or a power cut may leave the name of a file whose bytes are not there yet.
+    if (!is_synced(temporary_)) fail(errno);
     std::error_code error;
     fs::rename(temporary_, final_path_, error);
-    if (error) {
-        throw RunError(
-            fmt::format("{}: cannot be written: {}", final_path_.string(), error.message()));
-    }
+    if (error) fail(error.value());
     committed_ = true;
+    if (!is_synced(folder_of(final_path_))) fail(errno);
 }
 
 void remove_abandoned_files(const fs::path& folder) {
@@ -70,8 +92,8 @@ void remove_abandoned_files(const fs::path& folder) {
 }
 
 void remove_abandoned_of(const fs::path& file) {
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    remove_abandoned(folder, [&](const std::string& name) { return name == file.filename(); });
+    remove_abandoned(folder_of(file),
+                     [&](const std::string& name) { return name == file.filename(); });
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {

@@ -5,13 +5,45 @@
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fcntl.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
+
+namespace aphotic::atomic_file_test {
+namespace {
+
+// What the calls that follow were made on, in their order, and what fsync fails with.
+std::vector<std::string> disk_calls;
+int fsync_error = 0;
+
+}  // namespace
+}  // namespace aphotic::atomic_file_test
+
+// In place of the C library's, which all of this program calls.
+extern "C" int fsync(int descriptor) {
+    using namespace aphotic::atomic_file_test;
+    const std::string link = "/proc/self/fd/" + std::to_string(descriptor);
+    disk_calls.push_back("fsync " + std::filesystem::read_symlink(link).string());
+    if (fsync_error != 0) {
+        errno = fsync_error;
+        return -1;
+    }
+    return static_cast<int>(::syscall(SYS_fsync, descriptor));
+}
+
+extern "C" int rename(const char* from, const char* to) noexcept {
+    aphotic::atomic_file_test::disk_calls.push_back("rename " + std::string(from));
+    return static_cast<int>(::syscall(SYS_renameat, AT_FDCWD, from, AT_FDCWD, to));
+}
 
 namespace aphotic::atomic_file_test {
 namespace {
@@ -46,6 +78,42 @@ TEST(AtomicFile, AppearsUnderItsNameOnlyWhenCommitted) {
     out.commit();
     EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"out.txt"});
     EXPECT_EQ(read_text_file(file), "whole");
+}
+
+TEST(AtomicFile, IsOnTheDiskBeforeItsNameIs) {
+    const TempFolder folder;
+    AtomicFile out(folder.path() / "out.txt");
+    const std::string temporary = out.temporary().string();
+    write_file(temporary, "whole");
+    disk_calls.clear();
+    out.commit();
+    EXPECT_EQ(disk_calls,
+              (std::vector<std::string>{
+                  "fsync " + temporary, "rename " + temporary, "fsync " + folder.path().string()}));
+}
+
+TEST(AtomicFile, ThatDoesNotReachTheDiskDoesNotTakeItsPlace) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "out.txt";
+    write_file(file, "before");
+    const auto write = [&](int error) {
+        return message_of<RunError>([&] {
+            AtomicFile out(file);
+            write_file(out.temporary(), "after");
+            fsync_error = error;
+            out.commit();
+        });
+    };
+    for (const int error : {EIO, ENOSPC}) {
+        EXPECT_EQ(write(error),
+                  file.string() + ": cannot be written: " + std::string(std::strerror(error)));
+        EXPECT_EQ(read_text_file(file), "before");
+        EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"out.txt"});
+    }
+    // A file system that knows no fsync keeps files as it does.
+    EXPECT_EQ(write(EINVAL), "no error");
+    fsync_error = 0;
+    EXPECT_EQ(read_text_file(file), "after");
 }
 
 TEST(AtomicFile, LeavesNothingWithoutCommit) {
