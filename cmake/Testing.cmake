@@ -5,10 +5,12 @@
 #
 #   unit    no other program needed; milliseconds each. Under the name unit_that_computes it gets the
 #           same label and is optimised, see below
-#   povray  runs POV-Ray, which takes every core: CTest counts such a test as two. Under the name
-#           povray_of_few_pixels it gets the same label and counts as one: POV-Ray mostly waits
+#   povray  runs POV-Ray. Under the name povray_of_few_pixels it gets the same label and weighs half
 #   cli     runs the command as a user would
 #   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser
+#
+# A test weighs two of CTest's processors, one where it mostly waits: POV-Ray spends two thirds of a
+# second on a few pixels, asleep. So scripts/test gives CTest twice as many as there are cores.
 #
 # A file's tests stand in a namespace of its name, aphotic::name_test: in a unity build the unnamed
 # namespaces of all files are one.
@@ -21,7 +23,7 @@ function(aphotic_tests label)
     # people's templates, of which the linker takes the test's. So tests that follow much light through
     # Eigen are a program of their own, optimised too.
     set(optimisation -O0)
-    set(limits TIMEOUT 300)  # for what hangs: with sanitizers on a busy machine some take 120
+    set(limits TIMEOUT 300 PROCESSORS 2)  # for what hangs: with sanitizers on a busy machine some take 120
     if(label STREQUAL "unit_that_computes")
         set(label unit)
         set(optimisation -O2)
@@ -29,8 +31,9 @@ function(aphotic_tests label)
         set(limits TIMEOUT 600 PROCESSORS 2)  # the whole table of extremes takes 220 s
     elseif(label STREQUAL "povray_of_few_pixels")
         set(label povray)
-    elseif(label STREQUAL "slow")
         set(limits TIMEOUT 600)
+    elseif(label STREQUAL "slow")
+        set(limits TIMEOUT 600 PROCESSORS 2)
     endif()
 
     set(folders ${ARGN})

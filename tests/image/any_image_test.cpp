@@ -136,6 +136,7 @@ std::vector<float> planes_by_channel(const std::filesystem::path& file) {
 
 TEST(AnyImage, WhatIsCutAnywhereIsRefusedOrHasAllItsPixels) {
     constexpr std::size_t kCuts = 100;
+    constexpr std::size_t kByChannelEvery = 5;  // the same file, and half of the time
     const TempFolder folder;
     OIIO::attribute("threads", 1);
     for (const Format& format : all_formats()) {
@@ -151,6 +152,7 @@ TEST(AnyImage, WhatIsCutAnywhereIsRefusedOrHasAllItsPixels) {
             const std::size_t size = (bytes.size() - 1) * (kCuts - 1 - cut) / (kCuts - 1);
             std::filesystem::resize_file(file, size);
             for (const auto& read : {planes_in, planes_by_channel}) {
+                if (read == planes_by_channel && cut % kByChannelEvery != 0) continue;
                 try {
                     EXPECT_EQ(read(file), whole)
                         << format.name() << ": " << size << " of " << bytes.size() << " bytes";
@@ -162,7 +164,7 @@ TEST(AnyImage, WhatIsCutAnywhereIsRefusedOrHasAllItsPixels) {
                 }
             }
         }
-        EXPECT_GT(refused, kCuts) << format.name();
+        EXPECT_GT(refused, (kCuts + kCuts / kByChannelEvery) / 2) << format.name();
     }
 }
 
