@@ -111,14 +111,5 @@ TEST_F(CommandRender, PlanSaysWhatRenderWillDo) {
     EXPECT_FALSE(fs::exists(folder_.path() / "out")) << "a plan renders nothing";
 }
 
-TEST_F(CommandRender, EverySceneInTheProjectIsAGoodRig) {
-    // Scenes of the users' own are in scene_test.cpp.
-    for (const fs::path& scene : all_scenes()) {
-        const CommandResult plan = run_aphotic(folder_.path(), {"plan", scene.string()});
-        EXPECT_EQ(plan.status, 0) << plan.err;
-    }
-    EXPECT_FALSE(all_scenes().empty());
-}
-
 }  // namespace
 }  // namespace aphotic::render_test
