@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Is a frame what was asked for? Size, channels R, G and B, every sample finite, not negative
-// and below the largest half float, at which POV-Ray's EXR saturates. What is wrong is a
-// RunError that names the frame and the pixel.
+// and below the largest half float; of brighter light POV-Ray's EXR holds inf. What is wrong is
+// a RunError that names the frame and the pixel.
 #pragma once
 
 #include <filesystem>

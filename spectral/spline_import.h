@@ -7,7 +7,7 @@
 //   #declare D_Clay  = array[36] { 0.021, 0.024, ... }
 //
 // Read as POV-Ray 3.7 reads them: comments nest, most commas may be missing, a number may be a
-// sum, difference, product or quotient of numbers (so "400 -0.5" is -99.5), knots are sorted.
+// sum, difference, product or quotient of numbers (so "400 -0.5" is 399.5), knots are sorted.
 // Where POV-Ray lets a second knot at one wavelength take the first one's place, we refuse.
 // No directive is carried out: what stands in an #if counts whatever its condition, and a spectrum
 // that a loop or a macro fills is refused.

@@ -56,7 +56,9 @@ std::string row(const StressFound& found) {
 }
 
 std::string markdown(std::span<const StressFound> found) {
-    std::string text;
+    std::string text =
+        "# Extremes, case by case\n\nWritten by `aphotic stress`; docs/stress.md explains the "
+        "columns.\n";
     std::string group;
     std::string extreme;
     for (const StressFound& one : found) {

@@ -195,7 +195,7 @@ TEST(AnyImage, ZerosInPlaceOfTheRestAreRefusedWhereTheyAreNoPixels) {
         EXPECT_TRUE(is_refused(tiff(compression))) << compression;
     }
     EXPECT_TRUE(is_refused({.file = "a.png"}));
-    // Zeros are a code of JPEG's, too; docs/lightmaps.md says so.
+    // Zeros are a code of JPEG's, too; docs/surveys.md says so.
     for (const char* compression : {"none", "jpeg"}) {
         EXPECT_FALSE(is_refused(tiff(compression))) << compression;
     }
