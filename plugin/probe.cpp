@@ -70,7 +70,8 @@ struct Unmeasured {
     std::size_t too_near = 0;    // the loss hardly shows
     std::size_t too_faint = 0;   // for half floats
 
-    [[nodiscard]] std::size_t count() const { return too_bright + too_far + too_near + too_faint; }
+    [[nodiscard]] std::size_t not_faint() const { return too_bright + too_far + too_near; }
+    [[nodiscard]] std::size_t count() const { return not_faint() + too_faint; }
 };
 
 class Survey {
@@ -588,6 +589,7 @@ void Survey::measure(int strobes) {
     double K_largest_per_m = attenuation_per_m_;
     int exposure = exposure_log2_;
     Unmeasured left;
+    std::size_t dry = 0;  // pixels that a strobe lights, of the strobe that lights the most
     for (int attempt = 0; attempt < kMostTries && !open.empty(); ++attempt) {
         std::vector<Task> tasks;
         for (const int s : open) {
@@ -602,6 +604,7 @@ void Survey::measure(int strobes) {
         run_tasks(tasks);
         std::vector<int> still_open;
         left = {};
+        dry = 0;
         for (const Task& task : tasks) {
             const Picture picture = picture_of(task);
             for (const auto* plane : {&picture.red, &picture.green, &picture.blue}) {
@@ -609,9 +612,10 @@ void Survey::measure(int strobes) {
                                  plane->size() * sizeof(float));
             }
             const int s = task.frame.only_strobe;
-            const std::size_t before = left.count();
+            const Unmeasured before = left;
             take_in(picture, task.frame, lit[static_cast<std::size_t>(s - 1)], left);
-            if (left.count() > before) still_open.push_back(s);
+            if (left.count() > before.count()) still_open.push_back(s);
+            dry = std::max(dry, left.not_faint() - before.not_faint());
         }
         open = std::move(still_open);
         if (left.too_bright > 0) {
@@ -626,7 +630,7 @@ void Survey::measure(int strobes) {
             K_per_m = attenuation_per_m_;
         }
     }
-    if (const std::size_t dry = left.count() - left.too_faint; dry > 0) require_no_dry_light(dry);
+    if (dry > 0) require_no_dry_light(dry);
     put_together(lit);
 }
 
