@@ -6,6 +6,7 @@
 #include "cli/command.h"
 #include "cli/spline_tables.h"
 #include "report/plot.h"
+#include "report/svg.h"
 #include "spectral/curve_loader.h"
 #include "spectral/refractive_index.h"
 #include "spectral/table.h"
@@ -29,7 +30,6 @@ constexpr double kIndexStep_nm = 2.0;                 // of a plotted refractive
 constexpr WavelengthRange kIndexPlot{300.0, 1100.0};  // what cameras and lamps can use of it
 constexpr double kPlotSalinity_psu = 35.0;
 constexpr double kPlotTemperature_c = 10.0;
-constexpr std::array kColours{kPlotRed, kPlotGreen, kPlotBlue};
 
 // In this order; others follow in theirs.
 constexpr std::array kMetadataKeys{"title",
@@ -190,7 +190,7 @@ Plot curve_plot(const Table& table, CurveRole role) {
         plot.curves.push_back({alone ? "" : table.columns[column],
                                {curve.lambda_nm().begin(), curve.lambda_nm().end()},
                                {curve.values().begin(), curve.values().end()},
-                               alone ? kPlotBlue : kColours.at(column - 1)});
+                               alone ? 0 : kChannelTones.at(column - 1)});
     }
     return plot;
 }
@@ -234,7 +234,7 @@ ExitStatus show_data(const DataCommandOptions& options) {
     }
     const Entry entry = entry_of(names_a_file(options.name) ? read_table(options.name)
                                                             : builtin_table(options.name));
-    if (!options.plot_file.empty()) write_plot(plot_of(entry), options.plot_file);
+    if (!options.plot_file.empty()) write_plots(std::array{plot_of(entry)}, options.plot_file);
     if (options.csv) {
         fmt::print("{}", csv_of(entry.table));
     } else if (options.json) {
@@ -280,8 +280,8 @@ Action configure_data(CLI::App& app) {
     auto* name = app.add_option("NAME", options->name, "a built-in table, or a CSV file to check");
     auto* csv = app.add_flag("--csv", options->csv, "the bare table: header row and numbers");
     app.add_flag("--json", options->json, "the same as JSON")->excludes(csv);
-    app.add_option("--plot", options->plot_file, "draw it into FILE (.png or .svg)")
-        ->type_name("FILE")
+    app.add_option("--plot", options->plot_file, "draw it into FILE.svg")
+        ->type_name("FILE.svg")
         ->needs(name);
     csv->needs(name);
     add_spline_options(app, name, csv, *options);

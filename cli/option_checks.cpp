@@ -107,7 +107,10 @@ void add_common_checks(CLI::App& command) {
         const std::string type = option->get_type_name();
         if (type.find("FLOAT") != std::string::npos) refuse_nan(*option);
         if (is_written(*option) || option->get_positional()) refuse_no_name(*option);
-        if (is_written(*option) && type.ends_with(".exr")) require_extension(*option, ".exr");
+        for (const char* extension : {".exr", ".svg"}) {
+            if (is_written(*option) && type.ends_with(extension))
+                require_extension(*option, extension);
+        }
     }
 }
 

@@ -248,7 +248,7 @@ Action configure_plan(CLI::App& app) {
     app.add_option("--plot",
                    options->plot,
                    "a picture of the light, the wavelengths and the error over path length")
-        ->type_name("FILE.png|FILE.svg");
+        ->type_name("FILE.svg");
     app.add_flag("--json", options->json, "the plan as JSON");
     return [options] {
         const PlannedRender planned = plan_rig(options->planning);

@@ -2,6 +2,7 @@
 #include "cli/plan_plot.h"
 
 #include "report/plot.h"
+#include "report/svg.h"
 
 #include <fmt/format.h>
 
@@ -50,7 +51,7 @@ Plot light_panel(const Rig& rig, const RenderPlan& plan) {
         for (const double path_m : {family.shortest_path_m, family.longest_path_m}) {
             PlotCurve curve = light_on(family, family.sources[s], path_m, rig.camera.range);
             curve.label = fmt::format("{}, {:.3g} m", source_name(family.sources[s]), path_m);
-            curve.colour = kPlotPalette[s % kPlotPalette.size()];
+            curve.tone = s;
             curve.dashed = path_m != family.shortest_path_m;
             panel.curves.push_back(std::move(curve));
         }
@@ -86,10 +87,9 @@ Plot error_panel(const Rig& rig, const RenderPlan& plan) {
                .x_label = "path from lamp to floor to camera (m)",
                .y_label = "relative error of the signal",
                .curves = {}};
-    const std::array colours{kPlotRed, kPlotGreen, kPlotBlue};
     for (std::size_t c = 0; c < kChannels; ++c) {
         PlotCurve curve{.label = std::string(kChannelNames[c]), .x = {}, .y = {}};
-        curve.colour = colours[c];
+        curve.tone = kChannelTones[c];
         for (const auto& at : worst) {
             curve.x.push_back(at.path_m);
             curve.y.push_back(at.error[c]);

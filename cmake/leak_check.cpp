@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the leak sanitizer shall not report, and where it shall not look. Both names are its own.
+// Where the leak sanitizer shall not look. The name is its own.
 #include <link.h>
 
 #include <cstddef>
 #include <cstring>
-
-// Cairo keeps the fonts it has found for the next text, and fontconfig offers no way to free them
-// that is safe while Cairo is in use.
-// NOLINTNEXTLINE(readability-identifier-naming)
-extern "C" const char* __lsan_default_suppressions() {
-    return "leak:libfontconfig";
-}
 
 // Of a process whose threads are just ending the sanitizer now and then scans what is no memory,
 // and ends it with "Tracer caught signal 11" (https://github.com/google/sanitizers/issues/1353).

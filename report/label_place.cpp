@@ -77,9 +77,4 @@ LabelPlace place_label(double x_px,
     return best;
 }
 
-double label_width(std::size_t letters) {
-    constexpr double kMargin = 4.0;
-    return kMargin + 6.3 * static_cast<double>(letters);
-}
-
 }  // namespace aphotic

@@ -39,9 +39,8 @@ struct LabelPlace {
                                      std::span<const LabelBox> taken,
                                      const LabelBox& bounds);
 
-// How wide a text of so many letters is, and how high, of 11 pixels in a sans-serif face: what is
-// kept free for it.
-[[nodiscard]] double label_width(std::size_t letters);
+// What is kept free for a label.
+inline constexpr double kLabelFont_px = 11.0;
 inline constexpr double kLabelHeight = 12.0;
 
 }  // namespace aphotic

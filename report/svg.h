@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Parts of a line drawing in SVG: panels with axes, curves and dots in them. Each function gives
-// the text of some elements; svg_drawing() puts them into one <svg>.
+// Parts of a plot in SVG: panels with axes, curves and dots in them. Each function gives the text
+// of some elements; svg_drawing() puts them into one <svg>. page_style.h says how they look.
 //
 //   x_px = left + width  (x - x.first) / (x.last - x.first)
 //   y_px = top  + height (y.last - y) / (y.last - y.first)       log: of the logarithms
@@ -9,6 +9,8 @@
 // Points that are not finite, or have no logarithm where one is needed, break a curve.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,38 +18,71 @@
 
 namespace aphotic {
 
+// Colours for curves and marks: each stands out from white and from every other.
+inline constexpr std::array<std::string_view, 8> kTones{"#1f61a8",   // blue
+                                                        "#cc332e",   // red
+                                                        "#298c45",   // green
+                                                        "#de7808",   // orange
+                                                        "#7a40a8",   // violet
+                                                        "#0f94a8",   // turquoise
+                                                        "#6b4524",   // brown
+                                                        "#db4f9e"};  // pink
+inline constexpr std::array<std::size_t, 3> kChannelTones{1, 2, 0};  // of R, G, B
+
+// An attribute that gives an element this colour; beyond the last the first follows.
+[[nodiscard]] std::string svg_tone(std::size_t tone);
+
 struct SvgTick {
     double value = 0.0;
-    std::string label;  // empty: a fine grid line
+    std::string label;  // empty: a grid line alone
 };
 
 struct SvgAxis {
     double first = 0.0;
     double last = 1.0;
     bool log = false;
-    std::vector<SvgTick> ticks;
+    std::vector<SvgTick> ticks{};
+    int unit_log10 = 0;   // the labels leave out this power of ten, which the title carries
+    std::string title{};  // without one, the ticks have no labels either
+    std::string title_style = R"(class="axis")";
 
     // 0 at first, 1 at last; NaN where there is no logarithm.
     [[nodiscard]] double fraction(double value) const;
+
+    // Such as "e / 10⁻⁴".
+    [[nodiscard]] std::string in_unit(std::string_view quantity) const;
 };
 
-// Ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them. unit_log10: the
-// labels leave out this power of ten, which the axis's title then carries.
-[[nodiscard]] SvgAxis linear_axis(double first, double last, int wanted, int unit_log10 = 0);
+// Ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them.
+[[nodiscard]] SvgAxis linear_axis(double first, double last, int wanted);
 
-// From 1, 2 or 5 times a power of ten below `least` to one above `most`; both positive.
-[[nodiscard]] SvgAxis log_axis(double least, double most);
+// The same from a tick at or below `least` to one at or above `most`; from 0 where that is near.
+[[nodiscard]] SvgAxis linear_axis_around(double least, double most, int wanted);
+
+// From 1, 2 or 5 times a power of ten below `least` to one above `most`; both positive. All ticks
+// are labelled when there are no more than most_labels, else powers of ten.
+[[nodiscard]] SvgAxis log_axis(double least, double most, int most_labels = 7);
 
 // The least of 1, 1.5, 2, 3, 4, 5, 6, 8, 10 times a power of ten that is not under the value.
 [[nodiscard]] double round_up(double value);
+
+// Of the finite values that were included.
+struct ValueRange {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -std::numeric_limits<double>::infinity();
+
+    void include(double value);
+    void include(std::span<const double> values);
+    [[nodiscard]] bool is_empty() const { return least > most; }
+};
 
 struct SvgPanel {
     double left = 0.0;
     double top = 0.0;
     double width = 0.0;
     double height = 0.0;
-    SvgAxis x;
-    SvgAxis y;
+    SvgAxis x{};
+    SvgAxis y{};
 
     [[nodiscard]] double x_px(double value) const { return left + width * x.fraction(value); }
     [[nodiscard]] double y_px(double value) const {
@@ -57,10 +92,12 @@ struct SvgPanel {
     [[nodiscard]] double bottom() const { return top + height; }
 };
 
-// The grid lines and the frame; then the labels of the ticks below and to the left.
-[[nodiscard]] std::string svg_grid(const SvgPanel& panel);
-[[nodiscard]] std::string svg_x_labels(const SvgPanel& panel);
-[[nodiscard]] std::string svg_y_labels(const SvgPanel& panel);
+// What axes with titles take to the left of the panel at least, and below it.
+inline constexpr double kAxisWidth = 86.0;
+inline constexpr double kAxisHeight = 44.0;
+
+// Grid, frame, and of each axis with a title the labels and the title: below, and to the left.
+[[nodiscard]] std::string svg_axes(const SvgPanel& panel);
 
 // style: the CSS class, and further attributes if any, as in  class="thin" id="a".
 [[nodiscard]] std::string svg_curve(const SvgPanel& panel,
@@ -71,19 +108,28 @@ struct SvgPanel {
                                    std::span<const double> x,
                                    std::span<const double> y,
                                    std::string_view style);
+// At one y, from x to x or from side to side.
+[[nodiscard]] std::string svg_level(
+    const SvgPanel& panel, double y, std::string_view style, double first_x, double last_x);
+[[nodiscard]] std::string svg_level(const SvgPanel& panel, double y, std::string_view style);
+
+[[nodiscard]] std::string svg_line(
+    double x1, double y1, double x2, double y2, std::string_view style);
+[[nodiscard]] std::string svg_frame(double left, double top, double width, double height);
 
 enum class SvgAnchor { Start, Middle, End };
 [[nodiscard]] std::string svg_text(
     double x_px, double y_px, SvgAnchor anchor, std::string_view style, std::string_view text);
 
-// Turned to read upwards, centred on the point.
-[[nodiscard]] std::string svg_upward_text(double x_px,
-                                          double y_px,
-                                          std::string_view style,
-                                          std::string_view text);
+// About how wide a text is in a sans-serif face: what is kept free for it.
+[[nodiscard]] double text_width(std::string_view text, double font_px);
 
-// A whole <svg> of the elements, which a page's style may scale.
+// An attribute that makes the text smaller where it would be wider than the room.
+[[nodiscard]] std::string svg_fit(std::string_view text, double font_px, double room);
+
+// A whole <svg> of the elements, which a page's style may scale. name: what a screen reader says.
 [[nodiscard]] std::string svg_drawing(std::string_view id,
+                                      std::string_view name,
                                       double width,
                                       double height,
                                       std::string_view elements);

@@ -118,6 +118,12 @@ struct Object {
     double phong_size = 40.0;
 };
 
+// A table or mesh of the user's that the rig file names.
+struct RigFile {
+    std::string name;  // as the rig file has it
+    std::string sha256;
+};
+
 struct Rig {
     std::string title;
     Sled sled;
@@ -129,6 +135,8 @@ struct Rig {
     std::vector<Object> objects{};
     std::filesystem::path scene{};  // a POV-Ray scene of the user's own; none: floor and objects
     std::string digest;  // SHA-256 of the rig file and of the user's tables that it names
+    std::string toml{};  // the rig file as it was read
+    std::vector<RigFile> files{};
 };
 
 }  // namespace aphotic

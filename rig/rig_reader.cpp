@@ -305,8 +305,7 @@ class Section {
 
 class RigReader {
   public:
-    RigReader(std::string_view toml, fs::path folder)
-        : folder_(std::move(folder)), digested_(toml) {}
+    RigReader(std::string_view toml, fs::path folder) : folder_(std::move(folder)), toml_(toml) {}
 
     Rig read(Section top);
 
@@ -344,12 +343,30 @@ class RigReader {
                                        CurveRole role);
     std::vector<Spectrum> read_materials(Section& top);
 
+    std::string read_beside(const std::string& name, const fs::path& file, std::size_t most_bytes);
+    [[nodiscard]] std::string digest() const;
+
     fs::path folder_;
-    std::string digested_;
+    std::string toml_;
+    std::vector<RigFile> files_;
 };
 
-// Curves by built-in name or from a CSV file beside the rig; what a file holds counts in the
-// rig's digest.
+// What a file holds counts in the rig's digest.
+std::string RigReader::read_beside(const std::string& name,
+                                   const fs::path& file,
+                                   std::size_t most_bytes) {
+    std::string text = read_text_file(file, most_bytes);
+    files_.push_back({.name = name, .sha256 = sha256_of_text(text)});
+    return text;
+}
+
+std::string RigReader::digest() const {
+    std::string digested = toml_;
+    for (const RigFile& file : files_) digested += file.sha256;
+    return sha256_of_text(digested);
+}
+
+// Curves by built-in name or from a CSV file beside the rig.
 std::vector<Spectrum> RigReader::curves(Section& section, std::string_view key, CurveRole role) {
     return curves_named(
         section,
@@ -365,8 +382,7 @@ std::vector<Spectrum> RigReader::curves_named(const Section& section,
     return section.at_key(key, [&] {
         if (!names_a_file(name)) return load_curves(name, role, folder_);
         const fs::path file = file_beside(folder_, name);
-        const std::string csv = read_text_file(file, kMostTableBytes);
-        digested_ += sha256_of_text(csv);
+        const std::string csv = read_beside(name, file, kMostTableBytes);
         return curves_of(parse_table(file.string(), csv), role);
     });
 }
@@ -584,8 +600,7 @@ Mesh RigReader::read_mesh_of(Section& object) {
     }
     return object.at_key("file", [&] {
         const fs::path file = file_beside(folder_, name);
-        const std::string obj = read_text_file(file, kMostMeshBytes);
-        digested_ += sha256_of_text(obj);
+        const std::string obj = read_beside(name, file, kMostMeshBytes);
         return parse_mesh(file.string(), obj, position_m);
     });
 }
@@ -731,7 +746,9 @@ Rig RigReader::read(Section top) {
             .materials = std::move(materials),
             .objects = std::move(objects),
             .scene = std::move(scene),
-            .digest = sha256_of_text(digested_)};
+            .digest = digest(),
+            .toml = toml_,
+            .files = files_};
     const Section camera_section = top.section("camera", "a table [camera]");
     (void)camera_section.at_key("range_nm", [&] {
         require_tables_to_cover_the_range(rig);

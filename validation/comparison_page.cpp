@@ -3,12 +3,12 @@
 
 #include "image/preview.h"
 #include "report/html.h"
-#include "report/page_style.h"
 #include "report/svg.h"
 #include "validation/error_view.h"
 #include "validation/report_pictures.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -39,82 +39,37 @@ int side_of(const ComparedImages& images) {
 
 Blocks blocks_of(const ComparedChannel& channel, const ComparedImages& images) {
     const int side = side_of(images);
-    Blocks blocks{.side = side,
-                  .across = (images.width_px + side - 1) / side,
-                  .down = (images.height_px + side - 1) / side,
-                  .image = {},
-                  .reference = {}};
-    const auto width = static_cast<std::size_t>(images.width_px);
-    const auto span = static_cast<std::size_t>(side);
-    const auto across = static_cast<std::size_t>(blocks.across);
-    const std::size_t size = across * static_cast<std::size_t>(blocks.down);
-    blocks.image.assign(size, 0.0);
-    blocks.reference.assign(size, 0.0);
-    std::vector<double> counts(size, 0.0);
-    for (std::size_t i = 0; i < channel.image.size(); ++i) {
-        if (!channel.marks.empty() && channel.marks[i] == kUnobserved) continue;
-        const std::size_t column = i % width;
-        const std::size_t row = i / width;
-        const std::size_t block = row / span * across + column / span;
-        blocks.image[block] += channel.image[i];
-        blocks.reference[block] += channel.reference[i];
-        counts[block] += 1.0;
-    }
-    for (std::size_t block = 0; block < size; ++block) {
-        blocks.image[block] /= counts[block];
-        blocks.reference[block] /= counts[block];
-    }
-    return blocks;
-}
-
-struct Range {
-    double least = std::numeric_limits<double>::infinity();
-    double most = -std::numeric_limits<double>::infinity();
-
-    void include(const std::vector<double>& values) {
-        for (const double value : values) {
-            if (!std::isfinite(value)) continue;
-            least = std::min(least, value);
-            most = std::max(most, value);
-        }
-    }
-};
-
-template <typename Colour>
-std::string picture(const Blocks& blocks, const std::string& words, const Colour& colour) {
-    std::vector<std::uint32_t> pixels;
-    for (std::size_t block = 0; block < blocks.image.size(); ++block)
-        pixels.push_back(colour(block));
-    return fmt::format(
-        R"(<img class="picture squares" alt="{0}" width="{1}" height="{2}" src="{3}"/>)",
-        words,
-        blocks.across,
-        blocks.down,
-        data_uri(png_of(pixels, blocks.across, blocks.down)));
-}
-
-std::string figure(const std::string& content, const std::string& caption) {
-    return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", content, caption);
+    return {.side = side,
+            .across = (images.width_px + side - 1) / side,
+            .down = (images.height_px + side - 1) / side,
+            .image = block_means(channel.image, images.width_px, side, channel.marks),
+            .reference = block_means(channel.reference, images.width_px, side, channel.marks)};
 }
 
 std::string patterns(const Blocks& blocks, const ComparedImages& images) {
-    Range range;
+    ValueRange range;
     range.include(blocks.image);
     range.include(blocks.reference);
-    const auto shown = [&](const std::vector<double>& values) {
-        return [&](std::size_t block) {
-            if (!std::isfinite(values[block])) return kNotFiniteColour;
-            return false_colour((values[block] - range.least) /
-                                std::max(range.most - range.least, 1e-300));
-        };
+    if (range.is_empty()) return html_paragraph("No sample of both was observed.");
+    const auto figure = [&](const std::vector<double>& values,
+                            std::string_view words,
+                            const std::string& caption) {
+        std::vector<std::uint32_t> pixels;
+        for (const double value : values) {
+            const double share = (value - range.least) / std::max(range.most - range.least, 1e-300);
+            pixels.push_back(std::isfinite(value) ? false_colour(share) : kNotFiniteColour);
+        }
+        const std::string png = png_of(pixels, blocks.across, blocks.down);
+        return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
+                           picture_html(png, blocks.across, blocks.down, words, true),
+                           caption);
     };
-    if (range.least > range.most) return html_paragraph("No sample of both was observed.");
     return fmt::format(
         "<div class=\"pair\">\n{}{}</div>\n{}",
-        figure(picture(blocks, "the image in false colours", shown(blocks.image)),
+        figure(blocks.image,
+               "the image in false colours",
                user_text(images.image) + (images.scaled ? ", divided by its scale" : "")),
-        figure(picture(blocks, "the reference in false colours", shown(blocks.reference)),
-               user_text(images.reference)),
+        figure(blocks.reference, "the reference in false colours", user_text(images.reference)),
         html_paragraph(fmt::format(
             "From {:.4g}, dark blue, to {:.4g}, yellow, in both.", range.least, range.most)));
 }
@@ -168,41 +123,39 @@ Line middle(const Blocks& blocks, bool is_row) {
     return line;
 }
 
+// A channel's own; other channels are drawn in ink.
 std::string tone_of(const std::string& channel) {
-    constexpr std::array<std::string_view, kChannels> kTones{"red", "green", "blue"};
     const auto found = std::ranges::find(kChannelNames, channel);
     if (found == kChannelNames.end()) return "";
-    return std::string(kTones[static_cast<std::size_t>(found - kChannelNames.begin())]);
+    return svg_tone(kChannelTones[static_cast<std::size_t>(found - kChannelNames.begin())]);
 }
 
 std::string profile(const Blocks& blocks, const std::string& name, bool is_row, int pixels) {
     const Line line = middle(blocks, is_row);
-    Range range{.least = 0.0, .most = 0.0};
+    ValueRange range{.least = 0.0, .most = 0.0};
     range.include(line.image);
     range.include(line.reference);
     if (range.most == range.least) range.most = range.least + 1.0;
-    const SvgPanel panel{.left = 92.0,
-                         .top = 12.0,
-                         .width = 974.0,
-                         .height = 200.0,
-                         .x = linear_axis(0.0, pixels, 10),
-                         .y = linear_axis(range.least, range.most, 5)};
-    const std::string tone = tone_of(name);
-    std::string svg = svg_grid(panel) + svg_x_labels(panel) + svg_y_labels(panel);
-    svg += svg_curve(
-        panel, line.position_px, line.reference, fmt::format(R"(class="reference {}")", tone));
-    svg +=
-        svg_curve(panel, line.position_px, line.image, fmt::format(R"(class="rendered {}")", tone));
-    svg +=
-        svg_text(panel.left + panel.width / 2.0,
-                 panel.bottom() + 36.0,
-                 SvgAnchor::Middle,
-                 R"(class="axis")",
-                 is_row ? "column [px], along the middle row" : "row [px], down the middle column");
+    SvgPanel panel{.left = kAxisWidth,
+                   .top = 12.0,
+                   .width = 980.0,
+                   .height = 200.0,
+                   .x = linear_axis(0.0, pixels, 10),
+                   .y = linear_axis(range.least, range.most, 5)};
+    panel.x.title =
+        is_row ? "column [px], along the middle row" : "row [px], down the middle column";
+    panel.y.title = "value";
+    const auto style = [&](std::string_view whose) {
+        return fmt::format(R"(class="{}" {})", whose, tone_of(name));
+    };
+    const std::string svg = svg_axes(panel) +
+                            svg_curve(panel, line.position_px, line.reference, style("reference")) +
+                            svg_curve(panel, line.position_px, line.image, style("rendered"));
     return "<figure class=\"plot\">" +
            svg_drawing(fmt::format("{}-{}", is_row ? "row" : "column", escaped(name)),
-                       1080.0,
-                       panel.bottom() + 44.0,
+                       fmt::format("{} {}", name, panel.x.title),
+                       panel.right() + 14.0,
+                       panel.bottom() + kAxisHeight,
                        svg) +
            "</figure>\n";
 }
@@ -211,9 +164,9 @@ std::string section(const ComparedChannel& channel, const ComparedImages& images
     const Blocks blocks = blocks_of(channel, images);
     std::string content = patterns(blocks, images);
     content += "<h3>Relative error</h3>\n" + differences(channel, images, side_of(images));
-    content += html_paragraph(
-        "Profiles through the middle: the broad pale line is the reference, the dashed one the "
-        "image.");
+    content += "<h3>Profiles through the middle</h3>\n" +
+               html_legend(html_stroke_key("reference", "reference") +
+                           html_stroke_key("rendered", "image"));
     content += profile(blocks, channel.comparison.name, true, images.width_px);
     content += profile(blocks, channel.comparison.name, false, images.height_px);
     return html_section(
@@ -221,67 +174,63 @@ std::string section(const ComparedChannel& channel, const ComparedImages& images
 }
 
 std::string table(const ComparedImages& images) {
-    std::string rows;
+    constexpr std::array<std::string_view, 11> kColumns{"channel",
+                                                        "scale",
+                                                        "black",
+                                                        "largest |e|",
+                                                        "at column, row",
+                                                        "99.9 %",
+                                                        "rms",
+                                                        "mean",
+                                                        "compared",
+                                                        "not observed",
+                                                        "not finite"};
+    std::vector<HtmlRow> rows;
     for (const ComparedChannel& channel : images.channels) {
         const Comparison& c = channel.comparison;
-        rows += fmt::format(
-            "<tr class=\"{}\"><th>{}</th><td>{:.6g}</td><td>{}</td><td>{}</td><td>{}, {}</td>"
-            "<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-            c.holds() ? "holds" : "fails",
-            escaped(c.name),
-            channel.scale,
-            scientific(channel.black),
-            scientific(c.max_error),
-            c.column,
-            c.row,
-            scientific(c.percentile_999),
-            scientific(c.rms_error),
-            scientific(c.mean_error),
-            grouped(c.compared),
-            grouped(c.unobserved),
-            grouped(c.not_finite));
+        rows.push_back({.style = c.holds() ? "holds" : "fails",
+                        .cells = {escaped(c.name),
+                                  fmt::format("{:.6g}", channel.scale),
+                                  scientific(channel.black),
+                                  scientific(c.max_error),
+                                  fmt::format("{}, {}", c.column, c.row),
+                                  scientific(c.percentile_999),
+                                  scientific(c.rms_error),
+                                  scientific(c.mean_error),
+                                  grouped(c.compared),
+                                  grouped(c.unobserved),
+                                  grouped(c.not_finite)}});
     }
-    return fmt::format(
-        "<div class=\"wide\"><table>\n<thead><tr><th>channel</th><th>scale</th>"
-        "<th>black</th><th>largest |<i>e</i>|</th><th class=\"at\">at column, row</th>"
-        "<th>99.9 %</th><th>rms</th><th>mean</th><th>compared</th>"
-        "<th>not observed</th><th>not finite</th></tr></thead>\n<tbody>\n{}</tbody></table></div>"
-        "\n",
-        rows);
+    return html_table("channels", kColumns, rows);
 }
 
 std::string verdict(const ComparedImages& images) {
-    std::string partners;
-    if (images.unpaired() > 0) {
-        partners = fmt::format("<p>But {} without a partner in the other image.</p>\n",
-                               counted(images.unpaired(), "channel"));
-    }
-    return fmt::format(
-        "<div class=\"verdict {}\" id=\"verdict\">\n<p class=\"word\">{} is {} {} of {}{}.</p>\n"
-        "{}</div>\n",
-        images.holds() ? "holds" : "fails",
-        user_text(images.image),
-        images.are_within() ? "within" : "not within",
-        scientific(images.channels.front().comparison.bound),
-        user_text(images.reference),
-        images.scaled ? ", but for its scale" : "",
-        partners);
+    const std::string partners =
+        images.unpaired() == 0
+            ? ""
+            : html_paragraph(fmt::format("But {} without a partner in the other image.",
+                                         counted(images.unpaired(), "channel")));
+    return html_verdict(images.holds(),
+                        fmt::format("{} is {} {} of {}{}.",
+                                    user_text(images.image),
+                                    images.are_within() ? "within" : "not within",
+                                    scientific(images.channels.front().comparison.bound),
+                                    user_text(images.reference),
+                                    images.scaled ? ", but for its scale" : ""),
+                        partners);
 }
 
 std::string not_compared(const ComparedImages& images) {
-    std::string list;
+    std::vector<HtmlItem> items;
     const auto add = [&](const std::string& term, const std::vector<std::string>& channels) {
-        std::string names;
-        for (const std::string& name : channels)
-            names += (names.empty() ? "" : ", ") + escaped(name);
-        if (!names.empty()) list += fmt::format("<dt>{}</dt><dd>{}</dd>\n", term, names);
+        if (!channels.empty())
+            items.emplace_back(term, escaped(fmt::format("{}", fmt::join(channels, ", "))));
     };
     add("Only in " + user_text(images.image), images.only_in_image);
     add("Only in " + user_text(images.reference), images.only_in_reference);
     add("Left aside", images.left_aside);
-    return list.empty()
-               ? ""
-               : "<h3>Channels not compared</h3>\n<dl id=\"not-compared\">\n" + list + "</dl>\n";
+    return items.empty() ? ""
+                         : "<h3>Channels not compared</h3>\n" + html_list("not-compared", items);
 }
 
 std::string image_rule(const ComparedImages& images) {
@@ -312,16 +261,13 @@ std::uint32_t false_colour(double share) {
 }
 
 std::string comparison_html(const ComparedImages& images) {
-    std::string content = fmt::format(
-        "<header>\n<p class=\"eyebrow\">Aphotic · comparison</p>\n<h1>{} and {}</h1>\n{}"
-        "</header>\n{}",
-        user_text(images.image),
-        user_text(images.reference),
-        verdict(images),
-        image_rule(images));
-    content += table(images) + not_compared(images);
+    std::string content =
+        html_header("comparison",
+                    user_text(images.image) + " and " + user_text(images.reference),
+                    verdict(images)) +
+        image_rule(images) + table(images) + not_compared(images);
     for (const ComparedChannel& channel : images.channels) content += section(channel, images);
-    return html_page("Comparison of " + images.image, kReportStyle, content);
+    return html_page("Comparison of " + images.image, content);
 }
 
 }  // namespace aphotic

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -50,12 +51,7 @@ std::string map_marks(const MappedErrors& mapped) {
     const double unit = width / 100.0;
     std::string svg;
     const auto notch = [&](double x1, double y1, double x2, double y2) {
-        svg +=
-            fmt::format(R"(<line x1="{:.2f}" y1="{:.2f}" x2="{:.2f}" y2="{:.2f}" class="notch"/>)",
-                        x1,
-                        y1,
-                        x2,
-                        y2);
+        svg += svg_line(x1, y1, x2, y2, R"(class="notch")");
     };
     const double row = mapped.row + 0.5;
     const double column = mapped.column + 0.5;
@@ -80,11 +76,10 @@ std::string map_marks(const MappedErrors& mapped) {
 }
 
 std::string swatch(std::uint32_t colour, std::string_view words) {
-    return fmt::format(
-        "<span class=\"key\"><svg class=\"swatch\" viewBox=\"0 0 12 12\"><rect width=\"12\" "
-        "height=\"12\" fill=\"#{:06x}\"/></svg> {}</span>\n",
-        colour,
-        words);
+    return html_key(fmt::format(R"(<svg class="swatch" viewBox="0 0 12 12"><rect width="12" )"
+                                R"(height="12" fill="#{:06x}"/></svg>)",
+                                colour),
+                    words);
 }
 
 std::string map_legend(const MappedErrors& mapped) {
@@ -98,12 +93,13 @@ std::string map_legend(const MappedErrors& mapped) {
             swatch(kNotFiniteColour, "not finite: " + counted(comparison.not_finite, "sample"));
     }
     if (comparison.max_error > 0.0) {
-        legend += fmt::format("<span class=\"key\">◯ the largest, {} at column {}, row {}</span>\n",
-                              scientific(comparison.max_error),
-                              comparison.column,
-                              comparison.row);
+        legend += html_key("◯",
+                           fmt::format("the largest, {} at column {}, row {}",
+                                       scientific(comparison.max_error),
+                                       comparison.column,
+                                       comparison.row));
     }
-    return "<p class=\"legend\">" + legend + "</p>\n";
+    return html_legend(legend);
 }
 
 std::string map_in_words(const ErrorMap& map, const MapScale& scale) {
@@ -123,15 +119,13 @@ std::string map_in_words(const ErrorMap& map, const MapScale& scale) {
 }  // namespace
 
 std::string error_rule(std::string_view a, std::string_view b, std::string_view black) {
-    return fmt::format(
-        "<div class=\"rule\">\n<p class=\"formula\"><i>e<sub>i</sub></i> = "
-        "<span class=\"fraction\"><span><i>a<sub>i</sub></i> − <i>b<sub>i</sub></i></span>"
-        "<span>max( |<i>b<sub>i</sub></i>|, <i>b</i><sub>0</sub> )</span></span></p>\n"
-        "<dl>\n<dt><i>a</i></dt><dd>{}</dd>\n<dt><i>b</i></dt><dd>{}</dd>\n"
-        "<dt><i>b</i><sub>0</sub></dt><dd>{}</dd>\n</dl>\n</div>\n",
-        a,
-        b,
-        black);
+    const std::array<HtmlItem, 3> symbols{{{"<i>a</i>", std::string(a)},
+                                           {"<i>b</i>", std::string(b)},
+                                           {"<i>b</i><sub>0</sub>", std::string(black)}}};
+    return "<div class=\"rule\">\n<p class=\"formula\"><i>e<sub>i</sub></i> = "
+           "<span class=\"fraction\"><span><i>a<sub>i</sub></i> − <i>b<sub>i</sub></i></span>"
+           "<span>max( |<i>b<sub>i</sub></i>|, <i>b</i><sub>0</sub> )</span></span></p>\n" +
+           html_list("symbols", symbols) + "</div>\n";
 }
 
 std::string error_map_html(const MappedErrors& mapped) {
@@ -142,15 +136,11 @@ std::string error_map_html(const MappedErrors& mapped) {
                                    mapped.width_px,
                                    scale.end,
                                    mapped.least_side);
-    return fmt::format(
-               "<div class=\"map\"><div class=\"frame\"><img class=\"picture squares\" "
-               "width=\"{}\" height=\"{}\" alt=\"map of the relative error\" src=\"{}\"/>{}</div>\n"
-               "{}</div>\n",
-               map.width_px,
-               map.height_px,
-               data_uri(map.png),
-               map_marks(mapped),
-               colour_bar_svg(scale.end, mapped.bar_id)) +
+    return fmt::format("<div class=\"map\"><div class=\"frame\">{}{}</div>\n{}</div>\n",
+                       picture_html(
+                           map.png, map.width_px, map.height_px, "map of the relative error", true),
+                       map_marks(mapped),
+                       colour_bar_svg(scale.end, mapped.bar_id)) +
            map_legend(mapped) + map_in_words(map, scale);
 }
 

@@ -4,20 +4,20 @@
 #include "base/atomic_file.h"
 #include "image/preview.h"
 #include "report/html.h"
-#include "report/page_style.h"
-#include "report/svg.h"
+#include "spectral/refractive_index.h"
 #include "validation/error_view.h"
 #include "validation/report.h"
 #include "validation/report_pictures.h"
 #include "validation/report_plots.h"
-#include "validation/report_words.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -93,21 +93,20 @@ std::string verdict(const ValidationReport& report) {
                        : fmt::format("POV-Ray’s images and the reference disagree in {} of {}.",
                                      grouped(failures(report)),
                                      counted(all, "comparison"));
-    return fmt::format(
-        "<div class=\"verdict {}\" id=\"verdict\">\n<p class=\"word\">{}</p>\n<p>{} "
-        "{}</p>\n<p>{}</p>\n</div>\n",
-        report.holds() ? "holds" : "fails",
+    return html_verdict(
+        report.holds(),
         report.holds() ? "✓ Holds" : "✗ Does not hold",
-        summary,
-        worst_in_words(report),
-        edges_in_words(report));
+        fmt::format(
+            "<p>{} {}</p>\n<p>{}</p>\n", summary, worst_in_words(report), edges_in_words(report)));
 }
 
-std::string header(const ValidationReport& report) {
-    return fmt::format(
-        "<header>\n<p class=\"eyebrow\">Aphotic · validation</p>\n<h1>{}</h1>\n{}</header>\n\n",
-        user_text(title_of(report)),
-        verdict(report));
+// That two different scenes were compared has to be known before any number.
+std::string other_scene(const ValidationReport& report) {
+    if (report.scene_file.empty()) return "";
+    return html_paragraph(fmt::format(
+        "POV-Ray rendered <code>{}</code>, a scene of the user’s own. The reference does not read "
+        "it: it traced the floor and the objects of the rig.",
+        escaped(report.scene_file)));
 }
 
 // Both under the reference's scale.
@@ -118,15 +117,13 @@ std::string images(const ValidationReport& report) {
         preview_scale(traced, report.lamp_signal, {.white = PreviewWhite::Lamp, .stops = 0.0});
     const auto figure =
         [&](const CameraImage& image, std::string_view alt, std::string_view caption) {
-            return fmt::format(
-                "<figure><img class=\"{}\" width=\"{}\" height=\"{}\" alt=\"{}\" src=\"{}\"/>"
-                "<figcaption>{}</figcaption></figure>\n",
-                image.width_px < kSmallPicture_px ? "picture squares" : "picture",
-                image.width_px,
-                image.height_px,
-                alt,
-                data_uri(preview_png(image, scale)),
-                caption);
+            return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
+                               picture_html(preview_png(image, scale),
+                                            image.width_px,
+                                            image.height_px,
+                                            alt,
+                                            image.width_px < kSmallPicture_px),
+                               caption);
         };
     return fmt::format(
         "<div class=\"pair\">\n{}{}</div>\n{}",
@@ -168,17 +165,10 @@ std::string map_section(const ValidationReport& report) {
                         .bar_id = "colour-bar"}));
 }
 
-std::string stroke_key(std::string_view style, std::string_view words) {
-    return fmt::format(
-        "<span class=\"key\"><svg class=\"stroke\" viewBox=\"0 0 34 12\"><path class=\"{}\" "
-        "d=\"M2 6L32 6\"/></svg> {}</span>\n",
-        style,
-        words);
-}
-
 std::string profile_legend() {
-    return "<p class=\"legend\">" + stroke_key("reference", "reference") +
-           stroke_key("rendered", "POV-Ray") + stroke_key("bound", "bound of the error") + "</p>\n";
+    return html_legend(html_stroke_key("reference", "reference") +
+                       html_stroke_key("rendered", "POV-Ray") +
+                       html_stroke_key("bound", "bound of the error"));
 }
 
 std::string profiles(const ValidationReport& report) {
@@ -197,11 +187,11 @@ std::string profiles(const ValidationReport& report) {
 }
 
 std::string errors_plot(const ValidationReport& report) {
-    return fmt::format("<figure class=\"plot\"><p class=\"legend\">{}{}{}{}</p>\n{}</figure>\n",
-                       stroke_key("error largest", "largest"),
-                       stroke_key("error percentile", "99.9 percentile"),
-                       stroke_key("error rms", "root mean square"),
-                       stroke_key("bound", "bound"),
+    return fmt::format("<figure class=\"plot\">{}{}</figure>\n",
+                       html_legend(html_stroke_key("error largest", "largest") +
+                                   html_stroke_key("error percentile", "99.9 percentile") +
+                                   html_stroke_key("error rms", "root mean square") +
+                                   html_stroke_key("bound", "bound")),
                        errors_svg(report));
 }
 
@@ -223,45 +213,40 @@ std::string sample_rule() {
                "of <i>e</i> with its sign.");
 }
 
-std::string table_row(const Comparison& comparison) {
-    const double share = share_of_bound(comparison);
-    return fmt::format(
-        "<tr class=\"{}\"><th scope=\"row\">{}</th><td>{}</td><td>{}, {}</td><td>{}</td><td>{}</td>"
-        "<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>"
-        "<td class=\"mark\">{}</td></tr>\n",
-        comparison.holds() ? "holds" : "fails",
-        user_text(comparison.name),
-        scientific(comparison.max_error),
-        comparison.column,
-        comparison.row,
-        scientific(comparison.percentile_999),
-        scientific(comparison.rms_error),
-        scientific(comparison.mean_error),
-        grouped(comparison.compared),
-        grouped(comparison.on_edges),
-        comparison.on_edges == 0 ? "–" : scientific(comparison.max_error_on_edges),
-        grouped(comparison.not_finite),
-        scientific(comparison.bound),
-        scientific(share),
-        comparison.holds() ? "✓ holds" : "✗ fails");
-}
-
 std::string table(std::string_view id,
                   std::string_view first_column,
                   const std::vector<Comparison>& comparisons) {
-    std::string rows;
-    for (const Comparison& comparison : comparisons) rows += table_row(comparison);
-    return fmt::format(
-        "<div class=\"wide\"><table id=\"{}\">\n<thead><tr><th>{}</th><th>largest |<i>e</i>|</th>"
-        "<th class=\"at\">at column, row</th><th>99.9 "
-        "%</th><th>rms</th><th>mean</th><th>compared</th>"
-        "<th>on edges</th><th>largest on edges</th><th>not finite</th><th>bound</th>"
-        "<th>largest / bound</th><th "
-        "class=\"mark\">verdict</th></tr></thead>\n<tbody>\n{}</tbody>\n"
-        "</table></div>\n",
-        id,
-        first_column,
-        rows);
+    const std::array<std::string_view, 13> columns{first_column,
+                                                   "largest |e|",
+                                                   "at column, row",
+                                                   "99.9 %",
+                                                   "rms",
+                                                   "mean",
+                                                   "compared",
+                                                   "on edges",
+                                                   "largest on edges",
+                                                   "not finite",
+                                                   "bound",
+                                                   "largest / bound",
+                                                   ""};
+    std::vector<HtmlRow> rows;
+    for (const Comparison& c : comparisons) {
+        rows.push_back({.style = c.holds() ? "holds" : "fails",
+                        .cells = {user_text(c.name),
+                                  scientific(c.max_error),
+                                  fmt::format("{}, {}", c.column, c.row),
+                                  scientific(c.percentile_999),
+                                  scientific(c.rms_error),
+                                  scientific(c.mean_error),
+                                  grouped(c.compared),
+                                  grouped(c.on_edges),
+                                  c.on_edges == 0 ? "–" : scientific(c.max_error_on_edges),
+                                  grouped(c.not_finite),
+                                  scientific(c.bound),
+                                  scientific(share_of_bound(c)),
+                                  c.holds() ? "✓ holds" : "✗ fails"}});
+    }
+    return html_table(id, columns, rows);
 }
 
 std::string numbers(const ValidationReport& report) {
@@ -270,42 +255,81 @@ std::string numbers(const ValidationReport& report) {
            table("wavelengths", "wavelength", report.wavelengths);
 }
 
-std::string made_with(const ValidationReport& report) {
-    const auto item = [](std::string_view term, const std::string& words) {
-        return fmt::format("<dt>{}</dt><dd>{}</dd>\n", term, words);
+// What no rig file says: how much of the floor is in view, where that is level.
+std::string field_of_view(const Rig& rig) {
+    const Camera& camera = rig.camera;
+    const double middle_nm = (camera.range.first_nm + camera.range.last_nm) / 2.0;
+    const double index =
+        camera.port ? seawater_index(middle_nm, rig.water.salinity_psu, rig.water.temperature_c)
+                    : 1.0;
+    const auto half_rad = [&](int pixels, double in_index) {
+        const double air = std::atan(pixels * camera.pixel_pitch_m / 2.0 / camera.focal_length_m);
+        return std::asin(std::sin(air) / in_index);
     };
+    const auto field = [&](double in_index) {
+        constexpr double kFullDegrees = 360.0 / std::numbers::pi;
+        return fmt::format("{:.1f}° × {:.1f}°",
+                           kFullDegrees * half_rad(camera.width_px, in_index),
+                           kFullDegrees * half_rad(camera.height_px, in_index));
+    };
+    const auto floor_m = [&](int pixels) {
+        return 2.0 * rig.sled.altitude_m * std::tan(half_rad(pixels, index));
+    };
+    return (camera.port ? fmt::format("{} in air, {} in the water (at {} nm)",
+                                      field(1.0),
+                                      field(index),
+                                      plain(middle_nm))
+                        : field(1.0)) +
+           fmt::format(", or some {:.2g} m × {:.2g} m of a level floor",
+                       floor_m(camera.width_px),
+                       floor_m(camera.height_px));
+}
+
+std::string rig_as_read(const ValidationReport& report) {
+    std::vector<HtmlItem> items{{"Field of view", field_of_view(report.rig)},
+                                {"SHA-256, of the rig and its files",
+                                 fmt::format("<code>{}</code>", escaped(report.rig.digest))}};
+    for (const auto& [name, sha256] : report.rig.files) {
+        HtmlItem item{user_text(name), fmt::format("SHA-256 <code>{}</code>", sha256)};
+        if (std::ranges::find(items, item) == items.end()) items.push_back(std::move(item));
+    }
+    return html_list("rig-files", items) + html_source(report.rig.toml);
+}
+
+std::string made_with(const ValidationReport& report) {
     const auto seconds = [](double value) { return fmt::format("{:.2f} s", value); };
-    return "<dl class=\"rig\">\n" + item("Aphotic", escaped(report.aphotic_version)) +
-           item("POV-Ray", escaped(report.povray_version)) +
-           item("Rendering",
-                fmt::format("{} for {}, {} at once: {}",
-                            counted(report.frames, "frame"),
-                            counted(report.wavelengths.size(), "wavelength"),
-                            report.jobs,
-                            seconds(report.render_s))) +
-           item("Integrating", seconds(report.integrate_s)) +
-           item("Tracing",
-                fmt::format("the reference, over {}: {}",
-                            counted(report.grid_size, "wavelength"),
-                            seconds(report.trace_s))) +
-           item("Rig", fmt::format("SHA-256 <code>{}</code>", escaped(report.rig.digest))) +
-           "</dl>\n";
+    const std::array<HtmlItem, 5> items{
+        {{"Aphotic", escaped(report.aphotic_version)},
+         {"POV-Ray", escaped(report.povray_version)},
+         {"Rendering",
+          fmt::format("{} for {}, {} at once: {}",
+                      counted(report.frames, "frame"),
+                      counted(report.wavelengths.size(), "wavelength"),
+                      report.jobs,
+                      seconds(report.render_s))},
+         {"Integrating", seconds(report.integrate_s)},
+         {"Tracing",
+          fmt::format("the reference, over {}: {}",
+                      counted(report.grid_size, "wavelength"),
+                      seconds(report.trace_s))}}};
+    return html_list("programs", items);
 }
 
 }  // namespace
 
 void write_validation_html(const ValidationReport& report, const std::filesystem::path& file) {
     report.check();
-    std::string page = header(report);
-    page += html_section("rig", "The rig", rig_in_words(report.rig, report.scene_file));
+    std::string page = html_header(
+        "validation", user_text(title_of(report)), verdict(report) + other_scene(report));
     page += html_section("images", "Both images", images(report));
     page += map_section(report);
     page += html_section("profiles", "Profiles", profiles(report));
     page += html_section("numbers", "Errors", numbers(report));
+    page += html_section("rig", "The rig", rig_as_read(report));
     page += html_section("made-with", "Made with", made_with(report));
     const std::string title =
         title_of(report) + (report.holds() ? ": validation holds" : ": validation does not hold");
-    write_text_file(file, html_page(title, kReportStyle, page));
+    write_text_file(file, html_page(title, page));
 }
 
 }  // namespace aphotic

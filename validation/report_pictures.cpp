@@ -2,7 +2,9 @@
 #include "validation/report_pictures.h"
 
 #include "image/preview.h"
+#include "validation/comparison.h"
 
+#include <fmt/format.h>
 #include <openssl/evp.h>
 
 #include <algorithm>
@@ -51,23 +53,33 @@ int block_side(int width_px, int height_px) {
     return blocks(std::max(width_px, height_px), kLargestPicture_px);
 }
 
+std::vector<double> block_means(std::span<const float> samples,
+                                int width_px,
+                                int side,
+                                std::span<const unsigned char> marks) {
+    const int height_px = static_cast<int>(samples.size()) / width_px;
+    const auto size = static_cast<std::size_t>(blocks(width_px, side)) *
+                      static_cast<std::size_t>(blocks(height_px, side));
+    std::vector<double> means(size, 0.0);
+    std::vector<double> counts(size, 0.0);
+    for_each_in_blocks(width_px, height_px, side, [&](std::size_t block, std::size_t i) {
+        if (!marks.empty() && marks[i] == kUnobserved) return;
+        means[block] += samples[i];
+        counts[block] += 1.0;
+    });
+    for (std::size_t block = 0; block < size; ++block) means[block] /= counts[block];
+    return means;
+}
+
 CameraImage block_means(const CameraImage& image, int side) {
     CameraImage result{.width_px = blocks(image.width_px, side),
                        .height_px = blocks(image.height_px, side),
                        .samples = {}};
     const std::size_t pixels = image.samples.size() / kChannels;
-    const auto size =
-        static_cast<std::size_t>(result.width_px) * static_cast<std::size_t>(result.height_px);
     for (std::size_t c = 0; c < kChannels; ++c) {
-        std::vector<double> sum(size, 0.0);
-        std::vector<double> count(size, 0.0);
-        for_each_in_blocks(
-            image.width_px, image.height_px, side, [&](std::size_t block, std::size_t i) {
-                sum[block] += image.samples[c * pixels + i];
-                count[block] += 1.0;
-            });
-        for (std::size_t block = 0; block < size; ++block)
-            result.samples.push_back(static_cast<float>(sum[block] / count[block]));
+        const auto plane = std::span(image.samples).subspan(c * pixels, pixels);
+        for (const double mean : block_means(plane, image.width_px, side))
+            result.samples.push_back(static_cast<float>(mean));
     }
     return result;
 }
@@ -129,6 +141,16 @@ std::string data_uri(std::string_view png) {
                                        static_cast<int>(png.size()));
     return "data:image/png;base64," +
            std::string(base64.begin(), base64.begin() + static_cast<std::ptrdiff_t>(length));
+}
+
+std::string picture_html(
+    std::string_view png, int width_px, int height_px, std::string_view words, bool is_small) {
+    return fmt::format(R"(<img class="picture{}" width="{}" height="{}" alt="{}" src="{}"/>)",
+                       is_small ? " squares" : "",
+                       width_px,
+                       height_px,
+                       words,
+                       data_uri(png));
 }
 
 }  // namespace aphotic

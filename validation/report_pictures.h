@@ -17,6 +17,8 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace aphotic {
 
@@ -29,6 +31,13 @@ inline constexpr std::uint32_t kNotFiniteColour = 0x000000;
 [[nodiscard]] int block_side(int width_px, int height_px);
 
 [[nodiscard]] CameraImage block_means(const CameraImage& image, int side);
+
+// The same of one channel, leaving out what is marked as unobserved (comparison.h): NaN where
+// nothing is left. marks may be empty.
+[[nodiscard]] std::vector<double> block_means(std::span<const float> samples,
+                                              int width_px,
+                                              int side,
+                                              std::span<const unsigned char> marks = {});
 
 // step from -(kColourSteps - 1) / 2 to (kColourSteps - 1) / 2; 0xRRGGBB.
 [[nodiscard]] std::uint32_t error_colour(int step);
@@ -51,5 +60,9 @@ struct ErrorMap {
 
 // For src="..."
 [[nodiscard]] std::string data_uri(std::string_view png);
+
+// An <img>. A small one shows its pixels as squares.
+[[nodiscard]] std::string picture_html(
+    std::string_view png, int width_px, int height_px, std::string_view words, bool is_small);
 
 }  // namespace aphotic

@@ -7,22 +7,11 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace aphotic {
 
 // A line of pixels through the middle of the image: row height / 2, or column width / 2.
 enum class ProfileLine { Row, Column };
-
-struct Profile {
-    std::vector<double> position_px;  // of the samples' centres: 0.5, 1.5, ...
-    std::vector<double> rendered;
-    std::vector<double> traced;
-    std::vector<double> error;  // relative, NaN on edges
-};
-[[nodiscard]] Profile profile_of(const ValidationReport& report,
-                                 ProfileLine line,
-                                 std::size_t channel);
 
 // The number of the profile's row or column.
 [[nodiscard]] int profile_index(const ValidationReport& report, ProfileLine line);

@@ -4,9 +4,8 @@
 #include "validation/study_page.h"
 
 #include "report/html.h"
-#include "report/page_style.h"
+#include "validation/error_view.h"
 #include "validation/study_plot.h"
-#include "validation/study_style.h"
 
 #include <fmt/format.h>
 
@@ -19,32 +18,10 @@
 namespace aphotic {
 namespace {
 
-struct SubjectWords {
-    std::string_view subject;
-    std::string_view heading;
-    std::string_view words;
-};
-constexpr std::array<SubjectWords, 7> kSubjectWords{{
-    {"wavelengths",
-     "Wavelengths",
-     "How many, and how they are chosen: fitted to this rig’s lamps, water and camera, or as equal "
-     "bands. Three share a frame, on all cores."},
-    {"packing", "Wavelengths a frame", "One wavelength a frame in place of three."},
-    {"resolution",
-     "Resolution",
-     "Rendered with fewer pixels over the same field of view, and enlarged with a filter."},
-    {"emitters",
-     "Emitters",
-     "One lamp with softened cone edges in place of the many that stand for an emitter."},
-    {"frames", "Frames", "16-bit linear PNG in place of half-float EXR."},
-    {"antialiasing", "Antialiasing", "POV-Ray’s adaptive supersampling."},
-    {"jobs", "Jobs", "One POV-Ray at a time in place of one a core."},
-}};
-
 // A subject that has no words here is its own heading.
-SubjectWords words_of(std::string_view subject) {
-    const auto found = std::ranges::find(kSubjectWords, subject, &SubjectWords::subject);
-    return found == kSubjectWords.end() ? SubjectWords{subject, subject, ""} : *found;
+StudySubject words_of(std::string_view subject) {
+    const auto found = std::ranges::find(kStudySubjects, subject, &StudySubject::name);
+    return found == kStudySubjects.end() ? StudySubject{subject, subject, ""} : *found;
 }
 
 std::string title_of(const Study& study) {
@@ -120,11 +97,7 @@ std::string customary_in_words(const Study& study) {
 
 std::string verdict(const Study& study) {
     const bool found = recommended(study.measures, study.tolerance).has_value();
-    return fmt::format(
-        "<div class=\"verdict {}\" id=\"verdict\">\n<p class=\"word\">{}</p>\n{}</div>\n",
-        found ? "holds" : "fails",
-        recommendation(study),
-        customary_in_words(study));
+    return html_verdict(found, recommendation(study), customary_in_words(study));
 }
 
 std::string what_was_measured(const Study& study) {
@@ -145,15 +118,6 @@ std::string what_was_measured(const Study& study) {
                     : ""));
 }
 
-std::string header(const Study& study) {
-    return fmt::format(
-        "<header>\n<p class=\"eyebrow\">Aphotic · accuracy against time</p>\n<h1>{}</h1>\n{}{}"
-        "</header>\n\n",
-        user_text(title_of(study)),
-        verdict(study),
-        what_was_measured(study));
-}
-
 // The plot.
 
 // In the order in which they come.
@@ -166,25 +130,16 @@ std::vector<std::string> subjects_of(const Study& study) {
     return subjects;
 }
 
-std::string key(std::string_view drawing, std::string_view words) {
-    return fmt::format("<span class=\"key\">{} {}</span>\n", drawing, words);
-}
-
-std::string stroke(std::string_view style) {
-    return fmt::format(
-        R"(<svg class="stroke" viewBox="0 0 34 12"><path class="{}" d="M2 6L32 6"/></svg>)", style);
-}
-
 std::string legend(const Study& study) {
     std::string keys;
     for (const std::string& subject : subjects_of(study)) {
-        keys += key(subject_mark(subject, false), escaped(std::string(words_of(subject).heading)));
+        keys += html_key(subject_mark(subject, false), escaped(words_of(subject).heading));
     }
-    keys += key(subject_mark("wavelengths", true), "hollow: equal bands, filled: fitted");
-    keys += key(stroke("front"), "Pareto front");
-    keys += key(stroke("bound"), "tolerance");
-    keys += key("◯", "recommended");
-    return "<p class=\"legend\">\n" + keys + "</p>\n";
+    keys += html_key(subject_mark("wavelengths", true), "hollow: equal bands, filled: fitted");
+    keys += html_stroke_key("front", "Pareto front");
+    keys += html_stroke_key("bound", "tolerance");
+    keys += html_key("◯", "recommended");
+    return html_legend(keys);
 }
 
 std::string left_out(const Study& study) {
@@ -209,10 +164,6 @@ std::string plot(const Study& study) {
 
 // The tables.
 
-std::string cell(std::string_view label, std::string_view content) {
-    return fmt::format("<td data-label=\"{}\">{}</td>", label, content);
-}
-
 std::string edge_error(const StudyMeasure& measure) {
     const bool has_edges = std::ranges::any_of(
         measure.channels, [](const Comparison& channel) { return channel.on_edges > 0; });
@@ -224,30 +175,43 @@ struct TableRow {
     bool against = false;   // from another table, for comparison
 };
 
-std::string table_row(const Study& study, const std::vector<bool>& front, const TableRow& row) {
+constexpr std::array<std::string_view, 12> kColumns{"setting",
+                                                    "wave\u00ADlengths",
+                                                    "frames",
+                                                    "render [s]",
+                                                    "integrate [s]",
+                                                    "time [s]",
+                                                    "×\u00A0baseline",
+                                                    "largest error",
+                                                    "99.9 %",
+                                                    "off edges",
+                                                    "on edges",
+                                                    ""};
+
+HtmlRow table_row(const Study& study, const std::vector<bool>& front, const TableRow& row) {
     const StudyMeasure& measure = study.measures[row.index];
     const auto ratio = time_ratio(study.measures, measure.setting.name, kBaseline);
     const bool is_best = recommended(study.measures, study.tolerance) == row.index;
-    return fmt::format("<tr class=\"{}\"><th scope=\"row\"><span class=\"number\">{}</span>{}</th>",
-                       row.against ? "against"
-                       : is_best   ? "best"
-                                   : "own",
-                       row.index + 1,
-                       escaped(measure.setting.words)) +
-           cell("wavelengths", grouped(measure.wavelengths)) +
-           cell("frames", grouped(measure.frames)) +
-           cell("render [s]", time_in_digits(measure.render_s)) +
-           cell("integrate [s]", time_in_digits(measure.integrate_s)) +
-           cell("time [s]", time_in_digits(measure.total_s())) +
-           cell("× baseline", ratio ? ratio_in_words(*ratio) : "–") +
-           cell("largest error", scientific(measure.max_error())) +
-           cell("99.9 %", scientific(measure.percentile_999())) +
-           cell("off edges", scientific(measure.max_error_off_edges())) +
-           cell("on edges", edge_error(measure)) +
-           fmt::format("<td class=\"mark\">{}</td></tr>\n",
-                       is_best            ? "★ recommended"
-                       : front[row.index] ? "✓ front"
-                                          : "");
+    return {.style = row.against ? "against"
+                     : is_best   ? "best"
+                                 : "own",
+            .cells = {fmt::format("<span class=\"numbered\"><span class=\"number\">{}</span>"
+                                  "<span>{}</span></span>",
+                                  row.index + 1,
+                                  escaped(measure.setting.words)),
+                      grouped(measure.wavelengths),
+                      grouped(measure.frames),
+                      time_in_digits(measure.render_s),
+                      time_in_digits(measure.integrate_s),
+                      time_in_digits(measure.total_s()),
+                      ratio ? ratio_in_words(*ratio) : "–",
+                      scientific(measure.max_error()),
+                      scientific(measure.percentile_999()),
+                      scientific(measure.max_error_off_edges()),
+                      edge_error(measure),
+                      is_best            ? "★ recommended"
+                      : front[row.index] ? "✓ front"
+                                         : ""}};
 }
 
 // What a subject varies: the same wavelengths with nothing else changed.
@@ -275,40 +239,22 @@ std::vector<TableRow> rows_of(const Study& study, const std::string& subject) {
     return against;
 }
 
-std::string table(const Study& study, const std::vector<bool>& front, const std::string& subject) {
-    const SubjectWords words = words_of(subject);
-    std::string rows;
-    for (const TableRow& row : rows_of(study, subject)) rows += table_row(study, front, row);
-    return fmt::format(
-        "<h3>{}</h3>\n{}<div class=\"wide\"><table>\n<thead><tr><th>setting</th>"
-        "<th>wave&#173;lengths</th><th>frames</th><th>render [s]</th><th>integrate "
-        "[s]</th><th>time [s]</th>"
-        "<th class=\"at\">× baseline</th><th>largest error</th><th>99.9 %</th>"
-        "<th>off edges</th><th>on edges</th><th "
-        "class=\"mark\"></th></tr></thead>\n<tbody>\n{}</tbody>\n</table></div>\n",
-        escaped(words.heading),
-        words.words.empty() ? "" : html_paragraph(words.words),
-        rows);
-}
-
 std::string tables(const Study& study) {
     const std::vector<bool> front = pareto_front(study.measures);
     std::string content;
-    for (const std::string& subject : subjects_of(study)) content += table(study, front, subject);
+    for (const std::string& subject : subjects_of(study)) {
+        const StudySubject words = words_of(subject);
+        std::vector<HtmlRow> rows;
+        for (const TableRow& row : rows_of(study, subject))
+            rows.push_back(table_row(study, front, row));
+        content += fmt::format("<h3>{}</h3>\n", escaped(words.heading));
+        if (!words.words.empty()) content += html_paragraph(words.words);
+        content += html_table("settings-" + escaped(subject), kColumns, rows);
+    }
     return content;
 }
 
 // How to read it.
-
-std::string signal_rule() {
-    return "<div class=\"rule\">\n<p class=\"formula\"><i>e</i> = <span "
-           "class=\"fraction\"><span><i>a</i> − <i>b</i></span>"
-           "<span>max( |<i>b</i>|, <i>b</i><sub>0</sub> )</span></span></p>\n"
-           "<dl>\n<dt><i>a</i></dt><dd>a pixel’s signal in a channel</dd>\n"
-           "<dt><i>b</i></dt><dd>the reference’s</dd>\n"
-           "<dt><i>b</i><sub>0</sub></dt><dd>what counts as black: 10⁻⁸ of the channel’s "
-           "brightest</dd>\n</dl>\n</div>\n";
-}
 
 std::string baseline_in_words(const Study& study) {
     const StudyMeasure* baseline = find_measure(study.measures, kBaseline);
@@ -317,7 +263,9 @@ std::string baseline_in_words(const Study& study) {
 }
 
 std::string notes(const Study& study) {
-    return signal_rule() +
+    return error_rule("a pixel’s signal in a channel",
+                      "the reference’s",
+                      "what counts as black: 10⁻⁸ of the channel’s brightest") +
            html_paragraph(
                "Errors are of |<i>e</i>| in the worst of the three channels, over all pixels off "
                "the edges of cones, shadows and objects: the largest, the 99.9 percentile and the "
@@ -339,8 +287,10 @@ std::string notes(const Study& study) {
 
 std::string study_page(const Study& study) {
     return html_page(title_of(study) + ": accuracy against time",
-                     std::string(kReportStyle) + std::string(kStudyStyle),
-                     header(study) + html_section("plot", "Error against time", plot(study)) +
+                     html_header("accuracy against time",
+                                 user_text(title_of(study)),
+                                 verdict(study) + what_was_measured(study)) +
+                         html_section("plot", "Error against time", plot(study)) +
                          html_section("settings", "Settings", tables(study)) +
                          html_section("reading", "How to read it", notes(study)));
 }

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -21,21 +21,17 @@ namespace {
 constexpr double kMarkRadius = 5.0;
 constexpr double kRingRadius = 9.0;  // around the recommended one
 
-// Where each subject stands is the number of its shape and of its colour; one that is not here
-// looks like the last.
-constexpr std::array<std::string_view, 7> kSubjects{
-    "wavelengths", "packing", "resolution", "emitters", "frames", "antialiasing", "jobs"};
-
+// The number of its shape and of its colour; one that is not known looks like the last.
 std::size_t subject_index(std::string_view subject) {
-    const auto found = std::ranges::find(kSubjects, subject);
-    return std::min<std::size_t>(static_cast<std::size_t>(found - kSubjects.begin()),
-                                 kSubjects.size() - 1);
+    const auto found = std::ranges::find(kStudySubjects, subject, &StudySubject::name);
+    return std::min<std::size_t>(static_cast<std::size_t>(found - kStudySubjects.begin()),
+                                 kStudySubjects.size() - 1);
 }
 
 std::string polygon(double x, double y, int corners, double first_deg) {
     std::string path;
     for (int i = 0; i < corners; ++i) {
-        const double angle = (first_deg + 360.0 * i / corners) * 3.14159265 / 180.0;
+        const double angle = (first_deg + 360.0 * i / corners) * std::numbers::pi / 180.0;
         // A little larger than the circle, whose area they would fall short of.
         const double radius = 1.25 * kMarkRadius;
         path += fmt::format("{}{:.1f} {:.1f}",
@@ -72,61 +68,42 @@ std::string shape(std::size_t subject, double x, double y) {
 std::string mark(
     std::string_view subject, bool hollow, double x, double y, std::string_view content) {
     const std::size_t index = subject_index(subject);
-    return fmt::format(R"(<path class="dot s{}{}" d="{}">{}</path>)",
-                       index,
+    return fmt::format(R"(<path class="dot{}" {} d="{}">{}</path>)",
                        hollow ? " hollow" : "",
+                       svg_tone(index),
                        shape(index, x, y),
                        content);
 }
 
-struct Layout {
-    double width = 0.0;
-    double height = 0.0;
-    double left = 0.0;
-    bool names = true;
-};
-
-Layout layout_of(StudyPlotWidth width) {
-    if (width == StudyPlotWidth::Wide)
-        return {.width = 900.0, .height = 560.0, .left = 74.0, .names = true};
-    return {.width = 390.0, .height = 430.0, .left = 62.0, .names = false};
-}
-
-// The axis over the values, with some room at both ends.
-SvgAxis axis_over(const std::vector<double>& values) {
+// With some room at both ends.
+SvgAxis axis_over(const ValueRange& range, int most_labels) {
     constexpr double kRoom = 1.15;
-    if (values.empty()) return log_axis(1.0, 10.0);
-    const auto [least, most] = std::ranges::minmax(values);
-    return log_axis(least / kRoom, most * kRoom);
+    if (range.is_empty()) return log_axis(1.0, 10.0);
+    return log_axis(range.least / kRoom, range.most * kRoom, most_labels);
 }
 
-// Seconds are read without powers of ten; as many are labelled as there is room for.
-SvgAxis time_axis(const std::vector<double>& times, double width) {
-    constexpr double kLabelWidth = 34.0;
-    SvgAxis axis = axis_over(times);
-    const bool all = width / static_cast<double>(axis.ticks.size()) > kLabelWidth;
-    for (SvgTick& tick : axis.ticks) {
-        if (all || !tick.label.empty()) tick.label = plain(tick.value);
-    }
-    return axis;
-}
-
-SvgPanel panel_of(const Study& study, const Layout& layout) {
-    std::vector<double> times;
-    std::vector<double> errors;
-    if (study.tolerance > 0.0) errors.push_back(study.tolerance);
+SvgPanel panel_of(const Study& study, StudyPlotWidth layout) {
+    ValueRange times;
+    ValueRange errors;
+    if (study.tolerance > 0.0) errors.include(study.tolerance);
     for (const StudyMeasure& measure : study.measures) {
         if (!is_drawn(measure)) continue;
-        times.push_back(measure.total_s());
-        errors.push_back(measure.max_error());
+        times.include(measure.total_s());
+        errors.include(measure.max_error());
     }
-    const double width = layout.width - layout.left - 14.0;
-    return {.left = layout.left,
-            .top = 12.0,
-            .width = width,
-            .height = layout.height - 62.0,
-            .x = time_axis(times, width),
-            .y = axis_over(errors)};
+    const bool is_wide = layout == StudyPlotWidth::Wide;
+    constexpr int kErrorLabels = 7;
+    constexpr double kLabelWidth = 34.0;
+    const double width = is_wide ? 800.0 : 290.0;
+    SvgPanel panel{.left = kAxisWidth,
+                   .top = 12.0,
+                   .width = width,
+                   .height = is_wide ? 498.0 : 368.0,
+                   .x = axis_over(times, static_cast<int>(width / kLabelWidth)),
+                   .y = axis_over(errors, kErrorLabels)};
+    panel.x.title = "time [s]";
+    panel.y.title = "largest error |e|";
+    return panel;
 }
 
 // A measure that is drawn, where its mark is.
@@ -230,7 +207,7 @@ std::string tolerance_line(const Study& study,
     if (!(study.tolerance > 0.0)) return "";
     constexpr std::string_view kName = "tolerance";
     const double y = panel.y_px(study.tolerance);
-    const double width = label_width(kName.size());
+    const double width = text_width(kName, kLabelFont_px);
     taken.push_back(box_along(panel.left, y, panel.right(), y));
     // Only the places above and below a point fit between these bounds.
     const auto at = [&](double left) {
@@ -247,9 +224,7 @@ std::string tolerance_line(const Study& study,
     const LabelPlace left = at(panel.left + 2.0);
     const LabelPlace& place = covered(right) <= covered(left) ? right : left;
     taken.push_back(place.box);
-    const std::array<double, 2> ends{panel.x.first, panel.x.last};
-    const std::array<double, 2> levels{study.tolerance, study.tolerance};
-    return svg_curve(panel, ends, levels, R"(class="bound")") + text_at(place, "limit", kName);
+    return svg_level(panel, study.tolerance, R"(class="bound")") + text_at(place, "limit", kName);
 }
 
 // The recommended one first, then the front. Leaders lie under all words.
@@ -269,29 +244,14 @@ std::string labels(const Study& study,
         const std::string text =
             names ? study.measures[dot.index].setting.name : fmt::format("{}", dot.index + 1);
         const LabelPlace place = place_label(
-            dot.x_px, dot.y_px, label_width(text.size()), clearance(dot), taken, bounds);
+            dot.x_px, dot.y_px, text_width(text, kLabelFont_px), clearance(dot), taken, bounds);
         taken.push_back(place.box);
         if (place.is_far) {
-            leaders += fmt::format(
-                R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" class="leader"/>)",
-                dot.x_px,
-                dot.y_px,
-                place.x_px,
-                place.y_px);
+            leaders += svg_line(dot.x_px, dot.y_px, place.x_px, place.y_px, R"(class="leader")");
         }
         texts += text_at(place, dot.on_front ? "strong" : "", text);
     }
     return leaders + texts;
-}
-
-std::string axis_titles(const SvgPanel& panel) {
-    return svg_text(panel.left + panel.width / 2.0,
-                    panel.bottom() + 38.0,
-                    SvgAnchor::Middle,
-                    R"(class="axis")",
-                    "time [s]") +
-           svg_upward_text(
-               16.0, panel.top + panel.height / 2.0, R"(class="axis")", "largest error |e|");
 }
 
 }  // namespace
@@ -306,18 +266,19 @@ std::string subject_mark(std::string_view subject, bool hollow) {
                        mark(subject, hollow, 7.0, 7.0, ""));
 }
 
-std::string study_svg(const Study& study, StudyPlotWidth width) {
-    const Layout layout = layout_of(width);
+std::string study_svg(const Study& study, StudyPlotWidth layout) {
+    const bool is_wide = layout == StudyPlotWidth::Wide;
     const SvgPanel panel = panel_of(study, layout);
     const std::vector<Dot> dots = dots_of(study, panel);
-    std::string svg = svg_grid(panel) + svg_x_labels(panel) + svg_y_labels(panel);
+    std::string svg = svg_axes(panel);
     std::vector<LabelBox> taken = front_steps(dots, svg);
     for (const Dot& dot : dots) taken.push_back(box_around(dot));
     svg += tolerance_line(study, panel, taken) + marks(study, dots);
-    svg += labels(study, dots, panel, layout.names, taken) + axis_titles(panel);
-    return svg_drawing(width == StudyPlotWidth::Wide ? "plot-wide" : "plot-narrow",
-                       layout.width,
-                       layout.height,
+    svg += labels(study, dots, panel, is_wide, taken);
+    return svg_drawing(is_wide ? "plot-wide" : "plot-narrow",
+                       "largest error of each setting over its time",
+                       panel.right() + 14.0,
+                       panel.bottom() + kAxisHeight,
                        svg);
 }
 

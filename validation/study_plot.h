@@ -9,16 +9,40 @@
 
 #include "validation/study.h"
 
+#include <array>
 #include <string>
 #include <string_view>
 
 namespace aphotic {
 
+// What a study varies.
+struct StudySubject {
+    std::string_view name;
+    std::string_view heading;
+    std::string_view words;
+};
+inline constexpr std::array<StudySubject, 7> kStudySubjects{{
+    {"wavelengths",
+     "Wavelengths",
+     "How many, and how they are chosen: fitted to this rig’s lamps, water and camera, or as equal "
+     "bands. Three share a frame, on all cores."},
+    {"packing", "Wavelengths a frame", "One wavelength a frame in place of three."},
+    {"resolution",
+     "Resolution",
+     "Rendered with fewer pixels over the same field of view, and enlarged with a filter."},
+    {"emitters",
+     "Emitters",
+     "One lamp with softened cone edges in place of the many that stand for an emitter."},
+    {"frames", "Frames", "16-bit linear PNG in place of half-float EXR."},
+    {"antialiasing", "Antialiasing", "POV-Ray’s adaptive supersampling."},
+    {"jobs", "Jobs", "One POV-Ray at a time in place of one a core."},
+}};
+
 // Wide marks carry names; narrow ones, for a window of a phone's width, the measures' numbers from
 // 1 on.
 enum class StudyPlotWidth { Wide, Narrow };
 
-[[nodiscard]] std::string study_svg(const Study& study, StudyPlotWidth width);
+[[nodiscard]] std::string study_svg(const Study& study, StudyPlotWidth layout);
 
 [[nodiscard]] bool is_drawn(const StudyMeasure& measure);
 

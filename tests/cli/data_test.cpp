@@ -76,14 +76,18 @@ TEST_F(CommandData, JsonHoldsTheValues) {
 }
 
 TEST_F(CommandData, PlotsAreDrawn) {
-    for (const char* file : {"water.png", "water.svg"}) {
-        const CommandResult run = data({"pope-fry-1997", "--plot", file});
-        EXPECT_EQ(run.status, 0) << run.err;
-        EXPECT_GT(fs::file_size(folder_.path() / file), 1000U) << file;
-    }
+    const CommandResult run = data({"pope-fry-1997", "--plot", "water.svg"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_GT(fs::file_size(folder_.path() / "water.svg"), 1000U);
     EXPECT_EQ(data({"bk7", "--plot", "glass.svg"}).status, 0);
-    EXPECT_EQ(data({"sand", "--plot", "sand.pdf"}).status, kBadInput);
-    EXPECT_FALSE(fs::exists(folder_.path() / "sand.pdf"));
+    for (const std::string file : {"sand.pdf", "sand.png"}) {
+        const CommandResult refused = data({"sand", "--plot", file});
+        EXPECT_EQ(refused.status, kBadInput);
+        EXPECT_NE(refused.err.find("--plot: found " + file + "; allowed: a name that ends in .svg"),
+                  std::string::npos)
+            << refused.err;
+        EXPECT_FALSE(fs::exists(folder_.path() / file));
+    }
 }
 
 constexpr const char* kSplines =

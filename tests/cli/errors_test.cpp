@@ -136,7 +136,9 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
         {{"trace", "rig.toml", "-o", "out", "--threads", "0"},
          "--threads: found 0; allowed: 1 to "},
         {{"lightmap", "rig.toml", "-o", "map.png"},
-         "--output: found map.png; allowed: a name that ends in .exr"}};
+         "--output: found map.png; allowed: a name that ends in .exr"},
+        {{"plan", "rig.toml", "--plot", "plan.png"},
+         "--plot: found plan.png; allowed: a name that ends in .svg"}};
     for (const Case& wrong : cases) {
         const CommandResult run = run_aphotic(folder_.path(), wrong.arguments);
         EXPECT_EQ(run.status, kBadInput) << wrong.message;
@@ -162,10 +164,11 @@ TEST_F(CommandErrors, AnEmptyNameIsNone) {
 
 TEST_F(CommandErrors, NoResultTakesThePlaceOfWhatItIsMadeFrom) {
     const std::string rig = read_text_file(folder_.path() / "rig.toml");
-    expect_one_message(run_aphotic(folder_.path(), {"plan", "rig.toml", "--plot", "rig.toml"}),
+    write_file(folder_.path() / "rig.svg", rig);
+    expect_one_message(run_aphotic(folder_.path(), {"plan", "rig.svg", "--plot", "rig.svg"}),
                        kBadInput,
-                       "--plot: found rig.toml, which RIG names too");
-    EXPECT_EQ(read_text_file(folder_.path() / "rig.toml"), rig);
+                       "--plot: found rig.svg, which RIG names too");
+    EXPECT_EQ(read_text_file(folder_.path() / "rig.svg"), rig);
     fs::create_directory(folder_.path() / "raw");
     write_file(folder_.path() / "raw/a.exr", "raw");
     write_file(folder_.path() / "nav.csv", "image,altitude_m\na.exr,2\n");

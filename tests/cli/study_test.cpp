@@ -57,12 +57,11 @@ TEST_F(Study, MeasuresRecommendsAndGoesOnWhereItStopped) {
 }
 
 TEST_F(Study, APlanIsAPictureToo) {
-    for (const char* file : {"plan.svg", "plan.png"}) {
-        const CommandResult plan = run({"plan", "rig.toml", "--plot", file});
-        ASSERT_EQ(plan.status, 0) << plan.err;
-        EXPECT_GT(fs::file_size(folder_.path() / file), 10'000U) << file;
-    }
-    EXPECT_EQ(run({"plan", "rig.toml", "--plot", "plan.gif"}).status, 2);
+    const CommandResult plan = run({"plan", "rig.toml", "--plot", "plan.svg"});
+    ASSERT_EQ(plan.status, 0) << plan.err;
+    EXPECT_GT(fs::file_size(folder_.path() / "plan.svg"), 10'000U);
+    for (const char* file : {"plan.gif", "plan.png"})
+        EXPECT_EQ(run({"plan", "rig.toml", "--plot", file}).status, 2) << file;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 
 namespace aphotic::html_test {
@@ -55,6 +56,23 @@ TEST(Counted, SetsThousandsApart) {
               "1\xE2\x80\xAF"
               "392\xE2\x80\xAF"
               "640");
+}
+
+TEST(HtmlSource, KeepsItsLinesAndNothingThatMarkupIsMadeOf) {
+    EXPECT_EQ(html_source("a <b>\r\n  c & d\n\nlast"),
+              "<pre>a &lt;b&gt;\n  c &amp; d\n\nlast\n</pre>\n");
+    EXPECT_EQ(html_source(""), "<pre></pre>\n");
+}
+
+TEST(HtmlTable, NamesEachCellAfterItsColumn) {
+    const std::array<std::string_view, 3> columns{"row", "a \"b\"", ""};
+    const std::array<HtmlRow, 1> rows{{{.style = "best", .cells = {"<i>x</i>", "1", "✓"}}}};
+    const std::string table = html_table("t", columns, rows);
+    EXPECT_NE(table.find("<tr class=\"best\"><th scope=\"row\"><i>x</i></th>"
+                         "<td data-label=\"a &quot;b&quot;\">1</td>"
+                         "<td class=\"mark\" data-label=\"\">✓</td></tr>"),
+              std::string::npos)
+        << table;
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TEST_F(ReportInABrowser, IsFoundOutWhenItIsBroken) {
 TEST_F(ReportInABrowser, ShowsAHostileTitleAsText) {
     ValidationReport report = small_report();
     report.rig.title = "</title><script>document.title = 'owned'</script>";
-    report.rig.strobes[0].name = "<img src=x onerror=\"document.title = 'owned'\">";
+    report.rig.toml = "# </pre><img src=x onerror=\"document.title = 'owned'\">\n";
     const Seen seen = seen_by(*browser(), page_of(report));
     EXPECT_TRUE(title_in(seen.page).starts_with("&lt;/title&gt;&lt;script&gt;"))
         << title_in(seen.page);

@@ -198,7 +198,8 @@ TEST(ReportPage, HasEverySection) {
         EXPECT_TRUE(contains(page, std::string("id=\"") + id + '"')) << id;
     const std::string words = words_of(page);
     for (const char* part : {"HabCam, 2 m above sand",
-                             "bow up by 5°",
+                             "pitch_deg  = 5.0",
+                             "1.2° × 0.9°, or some 0.043 m × 0.032 m of a level floor",
                              "Relative error of channel R, the worst",
                              "Row 15",
                              "Column 20",
@@ -240,6 +241,31 @@ TEST(ReportPage, SaysThatItDoesNotHoldAndWhere) {
     EXPECT_TRUE(contains(words_of(page_of(report)), "Worst is 622 nm: 12 samples are not finite."));
 }
 
+// 40 x 30 pixels, by hand: 2 asin(sin(atan(40 * 6.45e-3 / 24)) / 1.343) = 0.92 degrees.
+TEST(ReportPage, ShowsTheRigAsItWasReadAndItsFiles) {
+    ValidationReport report = small_report();
+    report.rig.toml = "title = \"a & b\"\n\n[sled]\n  altitude_m = 2 # <m>\n";
+    report.rig.files = {{"lamp.csv", "12ab"}, {"sand.csv", "34cd"}, {"lamp.csv", "12ab"}};
+    const std::string page = page_of(report);
+    EXPECT_TRUE(contains(page,
+                         "<pre>title = &quot;a &amp; b&quot;\n\n[sled]\n"
+                         "  altitude_m = 2 # &lt;m&gt;\n</pre>"));
+    EXPECT_TRUE(contains(words_of(page), "lamp.csvSHA-256 12ab\nsand.csvSHA-256 34cd\n\n"))
+        << "each once";
+    EXPECT_FALSE(contains(words_of(page), "in the water"));
+    report.rig.camera.port = FlatPort{.glass = builtin_glass("bk7")};
+    EXPECT_TRUE(contains(words_of(page_of(report)),
+                         "1.2° × 0.9° in air, 0.9° × 0.7° in the water (at 560 nm), or some "
+                         "0.032 m × 0.024 m of a level floor"));
+}
+
+TEST(ReportPage, SaysWhichSceneTheReferenceDoesNotRead) {
+    EXPECT_FALSE(contains(page_of(small_report()), "The reference does not read it"));
+    ValidationReport report = small_report();
+    report.scene_file = "my <reef>.pov";
+    EXPECT_TRUE(contains(page_of(report), "POV-Ray rendered <code>my &lt;reef&gt;.pov</code>"));
+}
+
 // 10 of 1200 pixels, and 300.
 TEST(ReportPage, SaysHowManyPixelsHaveNoBoundAndHowFarTheyAreOff) {
     ValidationReport report = small_report();
@@ -279,17 +305,11 @@ TEST(ReportPage, IsWellFormed) {
 TEST(ReportPage, EscapesEveryNameOfTheRig) {
     ValidationReport report = small_report();
     const std::string evil = "</title></bdi><script>alert(\"1\" & '2')</script>\x01";
-    const Spectrum evil_spectrum(evil, {300.0, 800.0}, {1.0, 1.0});
     report.rig.title = evil;
     report.rig.digest = evil;
-    report.rig.camera.sensor =
-        Sensor({evil_spectrum, evil_spectrum, evil_spectrum}, ResponseKind::Energy);
-    report.rig.water.absorption_per_m = evil_spectrum;
-    report.rig.seafloor.reflectance = evil_spectrum;
-    report.rig.strobes[0].name = evil;
-    report.rig.strobes[0].spectrum = evil_spectrum;
-    report.rig.strobes[0].beam.name = evil;
-    report.rig.strobes[0].beam.cones[0].part = evil;
+    report.rig.toml = "# " + evil + "\n";
+    report.rig.files = {{.name = evil, .sha256 = "1"}};
+    report.scene_file = evil;
     report.aphotic_version = evil;
     report.povray_version = evil;
     for (Comparison& comparison : report.wavelengths) comparison.name = evil;
