@@ -41,6 +41,10 @@ inline constexpr std::array<std::string_view, 5> kBaselineNames{"illumination-re
                                                                 "log-polynomial",
                                                                 "binned-polynomial"};  // in order
 
+[[nodiscard]] constexpr bool needs_altitude(Baseline baseline) {
+    return baseline == Baseline::BinnedPolynomial;
+}
+
 struct BaselineOptions {
     double sigma = 0.1;  // of the blur, as a share of the image's width
     double low = 0.0;    // gains of slow and of quick changes, homomorphic
@@ -58,7 +62,7 @@ class BaselineCorrector {
 
     // Whether every image of the survey is to be learned before the first is corrected.
     [[nodiscard]] bool learns() const { return baseline_ >= Baseline::LogPolynomial; }
-    [[nodiscard]] bool needs_altitude() const { return baseline_ == Baseline::BinnedPolynomial; }
+    [[nodiscard]] bool needs_altitude() const { return aphotic::needs_altitude(baseline_); }
 
     // All of one size and mosaic, finite. Keeps moments, and forgets the image.
     void learn(const RawImage& image, double altitude_m);

@@ -4,27 +4,18 @@
 #include "base/error.h"
 #include "image/image_size.h"
 #include "lightmap/cone_edge.h"
-#include "spectral/light_family.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace aphotic {
 
 namespace {
-
-void require_same_size(const RawImage& raw, const Lightmap& map) {
-    if (raw.width_px == map.width_px && raw.height_px == map.height_px) return;
-    throw InputError(fmt::format("found {} x {} pixels; allowed: {} x {}, as the map has",
-                                 raw.width_px,
-                                 raw.height_px,
-                                 map.width_px,
-                                 map.height_px));
-}
 
 std::span<const float> plane_of(const Lightmap& map, int channel) {
     const std::size_t pixels = map.samples.size() / kChannels;
@@ -101,7 +92,7 @@ double least_signal(const NoiseLimit& limit) {
 }
 
 CorrectedImage corrected(RawImage raw, const Lightmap& map, const Correction& correction) {
-    require_same_size(raw, map);
+    require_size(raw, map.width_px, map.height_px, "as the map has");
     require_finite(raw.samples, raw.width_px, "the image");
     const std::size_t pixels = raw.pixels();
     CorrectedImage result{.image = std::move(raw), .doubts = std::vector<std::uint8_t>(pixels)};
@@ -159,7 +150,7 @@ PerChannel middle_quotient(const RawImage& raw,
                            const Lightmap& map,
                            const SensorLevels& levels,
                            double share) {
-    require_same_size(raw, map);
+    require_size(raw, map.width_px, map.height_px, "as the map has");
     require_finite(raw.samples, raw.width_px, "the image");
     std::array<std::vector<float>, kChannels> quotients;
     std::array<float, kChannels> least{};
@@ -188,36 +179,6 @@ PerChannel middle_quotient(const RawImage& raw,
         medians[c] = *middle;
     }
     return medians;
-}
-
-PerChannel floor_colour(const Rig& rig) {
-    constexpr double kError = 1e-6;
-    LightFamily family{.sources = {},
-                       .water = rig.water,
-                       .shortest_path_m = 0.0,
-                       .longest_path_m = 0.0,
-                       .tilt = std::nullopt};
-    for (const Strobe& strobe : rig.strobes) {
-        family.sources.push_back({strobe.spectrum});
-        family.sources.push_back({strobe.spectrum, rig.seafloor.reflectance});
-    }
-    PerChannel given_back{};
-    PerChannel lamps{};
-    for (const WeightedWavelength& w :
-         reference_grid(rig.camera.sensor, family, rig.camera.range, kError)) {
-        double flux = 0.0;
-        for (const Strobe& strobe : rig.strobes) {
-            flux += strobe.power * strobe.spectrum.at(w.lambda_nm);
-        }
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            lamps[c] += flux * w.weight[c];
-            given_back[c] += flux * w.weight[c] * rig.seafloor.reflectance.at(w.lambda_nm);
-        }
-    }
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        given_back[c] = lamps[c] > 0.0 ? given_back[c] / lamps[c] : 0.0;
-    }
-    return given_back;
 }
 
 }  // namespace aphotic

@@ -30,12 +30,12 @@
 #pragma once
 
 #include "lightmap/lightmap.h"
-#include "rig/rig.h"
 #include "survey/raw_image.h"
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -48,6 +48,12 @@ inline constexpr std::uint8_t kSaturated = 2;  // the sample is at the white lev
 inline constexpr std::uint8_t kBlack = 4;      // it is at the black level or under it
 inline constexpr std::uint8_t kEdge = 8;       // the edge of a cone passes near (cone_edge.h)
 inline constexpr std::uint8_t kClipped = 16;  // the corrected sample does not fit the file's format
+inline constexpr std::array<std::pair<std::string_view, std::uint8_t>, 5> kDoubts{
+    {{"dark", kDark},
+     {"saturated", kSaturated},
+     {"black", kBlack},
+     {"edge", kEdge},
+     {"clipped", kClipped}}};
 
 struct NoiseLimit {
     double share = 0.01;              // of the map's brightest, in each channel
@@ -86,9 +92,5 @@ struct CorrectedImage {
                                          const Lightmap& map,
                                          const SensorLevels& levels,
                                          double share);
-
-// Of the rig's floor: how much of the lamps' own light, without water, it gives back to each
-// channel:  int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.
-[[nodiscard]] PerChannel floor_colour(const Rig& rig);
 
 }  // namespace aphotic

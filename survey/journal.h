@@ -31,6 +31,9 @@ struct JournalEntry {
 // By the name of the piece of work.
 [[nodiscard]] std::map<std::string, JournalEntry> parse_journal(std::string_view text);
 
+// Its name in a folder of results.
+inline constexpr std::string_view kJournal = "corrected.jsonl";
+
 class Journal {
   public:
     // Reads the journal, if there is one, and writes it anew without what no longer counts.

@@ -2,205 +2,281 @@
 #include "survey/observation.h"
 
 #include "base/error.h"
-#include "base/parallel.h"
+#include "base/in_order.h"
+#include "image/exr.h"
+#include "survey/first_look.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <numbers>
+#include <optional>
+#include <string_view>
 
 namespace aphotic {
+
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-struct Estimate {
-    double value = kNaN;
-    double standard_error = kNaN;
+struct ChosenImage {
+    ImageFile file;
+    Sled sled;
+    bool is_bad = false;
 };
 
-// Of the mean of `kept` samples whose squares about it add up to `squares`.
-double error_of_mean(double squares, std::size_t kept) {
-    if (kept < 2) return kNaN;
-    const auto n = static_cast<double>(kept);
-    return std::sqrt(squares / (n * (n - 1.0)));
-}
-
-Observed unobserved(std::size_t samples) {
-    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-    return {.average = std::vector<float>(samples, kNone),
-            .standard_error = std::vector<float>(samples, kNone),
-            .count = std::vector<float>(samples, 0.0F)};
-}
-
-void put(Observed& observed, std::size_t at, const Estimate& estimate, std::size_t count) {
-    observed.average[at] = static_cast<float>(estimate.value);
-    observed.standard_error[at] = static_cast<float>(estimate.standard_error);
-    observed.count[at] = static_cast<float>(count);
-}
-
-// The sample of that rank, from 0. Orders the samples about it.
-double ranked(std::span<float> samples, std::size_t rank) {
-    const auto place = samples.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(samples.begin(), place, samples.end());
-    return *place;
-}
-
-Estimate median_of(std::span<float> samples) {
-    constexpr double kZ = 2.5758;
-    const std::size_t n = samples.size();
-    const double upper = ranked(samples, n / 2);
-    const double lower =
-        n % 2 == 1 ? upper : *std::max_element(samples.begin(), samples.begin() + n / 2);
-    Estimate estimate{.value = (lower + upper) / 2.0};
-    if (n < 2) return estimate;
-    const auto count = static_cast<double>(n);
-    const double k = std::max(1.0, std::round((count + 1.0) / 2.0 - kZ * std::sqrt(count / 4.0)));
-    const auto low = static_cast<std::size_t>(k) - 1;
-    estimate.standard_error = (ranked(samples, n - 1 - low) - ranked(samples, low)) / (2.0 * kZ);
-    return estimate;
-}
-
-double sum_of_squares(std::span<const float> samples, double about) {
-    return std::transform_reduce(
-        samples.begin(), samples.end(), 0.0, std::plus<>(), [&](double sample) {
-            return (sample - about) * (sample - about);
-        });
-}
-
-Estimate trimmed_mean_of(std::span<float> samples, double trim) {
-    const std::size_t n = samples.size();
-    constexpr double kRounding = 1e-9;  // 0.29 of 100 samples are 29
-    const auto cut = static_cast<std::size_t>(trim * static_cast<double>(n) + kRounding);
-    const double least = ranked(samples, cut);
-    // Beyond the least ones alone, so that they stay where they are.
-    const double most = ranked(samples.subspan(cut), n - 1 - 2 * cut);
-    const std::span<const float> kept = samples.subspan(cut, n - 2 * cut);
-    const double sum = std::accumulate(kept.begin(), kept.end(), 0.0);
-    const auto cut_off = static_cast<double>(cut);
-    const double winsorised = (sum + cut_off * (least + most)) / static_cast<double>(n);
-    const double squares =
-        sum_of_squares(kept, winsorised) +
-        cut_off * (std::pow(least - winsorised, 2.0) + std::pow(most - winsorised, 2.0));
-    return {.value = sum / static_cast<double>(kept.size()),
-            .standard_error = error_of_mean(squares, kept.size())};
-}
-
-Estimate estimate_of(std::span<float> samples, Average average, double trim) {
-    if (samples.empty()) return {};
-    if (average == Average::Median) return median_of(samples);
-    return trimmed_mean_of(samples, average == Average::Trimmed ? trim : 0.0);
-}
-
-// A few places at a time, so that each image is read by whole cache lines.
-constexpr std::size_t kPlaces = 64;
-constexpr std::size_t kPlacesOfAPart = 64 * kPlaces;  // that a thread takes at once
-
-struct Places {
-    std::size_t first = 0;
-    std::size_t last = 0;  // one beyond
+// The images at the altitude, and what became of the others.
+struct Selection {
+    std::vector<ChosenImage> images;
+    std::size_t outside = 0;
+    double nearest_m = std::numeric_limits<double>::infinity();  // from the altitude, of those
+    std::vector<Skipped> skipped;
 };
 
-void average_places(std::span<const std::vector<float>> images,
-                    Places places,
-                    Average average,
-                    double trim,
-                    Observed& observed) {
-    std::vector<float> samples(kPlaces * images.size());
-    std::vector<std::size_t> counts(kPlaces);
-    for (std::size_t first = places.first; first < places.last; first += kPlaces) {
-        const std::size_t many = std::min(kPlaces, places.last - first);
-        std::ranges::fill(counts, 0);
-        for (const std::vector<float>& image : images) {
-            for (std::size_t i = 0; i < many; ++i) {
-                if (std::isnan(image[first + i])) continue;
-                samples[i * images.size() + counts[i]++] = image[first + i];
+Selection selected(const Survey& survey, const ObservationOptions& options) {
+    constexpr double kRounding_m = 1e-9;  // 2.1 lies within 0.1 of 2
+    const ToldAngles told = survey.navigation->told();
+    Selection selection;
+    for (const ImageFile& file : survey.files) {
+        try {
+            Sled sled = survey.sled_of(file);
+            // There is no rig here to take them from.
+            if (!told.pitch) sled.pitch_rad = kUnknown;
+            if (!told.roll) sled.roll_rad = kUnknown;
+            const double off_m = std::abs(sled.altitude_m - options.altitude_m);
+            if (off_m > options.within_m + kRounding_m) {
+                ++selection.outside;
+                selection.nearest_m = std::min(selection.nearest_m, off_m);
+            } else {
+                selection.images.push_back({.file = file, .sled = sled});
             }
-        }
-        for (std::size_t i = 0; i < many; ++i) {
-            const auto of_place = std::span(samples).subspan(i * images.size(), counts[i]);
-            put(observed, first + i, estimate_of(of_place, average, trim), counts[i]);
+        } catch (const InputError& error) {
+            selection.skipped.push_back({.image = file.source.string(), .why = error.what()});
         }
     }
+    return selection;
+}
+
+// Goes through the images in their order, and drops from the selection what cannot be used.
+struct Pass {
+    const CameraNumbers& camera;
+    const ObservationOptions& options;
+    const RunWatch& watch;
+    Selection& selection;
+    RawImage like{};  // the first image's size and mosaic, without its samples
+
+    // use(image); share: of all passes, where this one begins and ends.
+    template <typename Use>
+    void run(const Use& use, double from, double to) {
+        std::vector<ChosenImage>& images = selection.images;
+        in_order(
+            images.size(),
+            static_cast<int>(options.jobs),
+            [&](std::size_t i) { return read(images[i].file); },
+            [&](std::size_t i, const RawImage& image) {
+                if (like.width_px == 0) {
+                    like = {.width_px = image.width_px,
+                            .height_px = image.height_px,
+                            .mosaic = image.mosaic,
+                            .samples = {}};
+                }
+                require_size(image, like.width_px, like.height_px, "as the first image");
+                use(image);
+                const auto done = static_cast<double>(i + 1) / static_cast<double>(images.size());
+                watch.progress("averaging", from + (to - from) * done);
+            },
+            [&](std::size_t i, const std::string& why) {
+                selection.skipped.push_back({.image = images[i].file.source.string(), .why = why});
+                images[i].is_bad = true;
+            });
+        std::erase_if(images, [](const ChosenImage& image) { return image.is_bad; });
+    }
+
+    [[nodiscard]] RawImage read(const ImageFile& file) const {
+        SurveyImage taken = read_survey_image(file.source, camera);
+        take_off_black(taken);
+        if (std::ranges::any_of(taken.raw.samples, [](float s) { return std::isinf(s); }))
+            throw InputError("a sample is infinite");
+        if (options.normalise) divide_by_own_mean(taken.raw);
+        return std::move(taken.raw);
+    }
+};
+
+Observed running_mean(Pass& pass) {
+    std::optional<RunningMean> mean;
+    pass.run(
+        [&](const RawImage& image) {
+            if (!mean) mean.emplace(image.samples.size());
+            mean->add(image.samples);
+        },
+        0.0,
+        1.0);
+    return mean ? mean->observed() : Observed{};
+}
+
+void append(std::vector<float>& to, const std::vector<float>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+// A first pass finds which images can be used at all.
+Observed average_by_bands(Pass& pass, Selection& selection, const ObservationOptions& options) {
+    constexpr double kFirstPass = 0.1;
+    std::size_t samples = 0;
+    pass.run([&](const RawImage& image) { samples = image.samples.size(); }, 0.0, kFirstPass);
+    const std::size_t band = samples_in_memory(selection.images.size(), options.memory_mb);
+    const auto share = [&](std::size_t at) {
+        return kFirstPass +
+               (1.0 - kFirstPass) * static_cast<double>(at) / static_cast<double>(samples);
+    };
+    Observed observed;
+    for (std::size_t first = 0; first < samples; first += band) {
+        const std::size_t many = std::min(band, samples - first);
+        std::vector<std::vector<float>> images;
+        const std::size_t skipped = selection.skipped.size();
+        pass.run(
+            [&](const RawImage& image) {
+                const auto from = image.samples.begin() + static_cast<std::ptrdiff_t>(first);
+                images.emplace_back(from, from + static_cast<std::ptrdiff_t>(many));
+            },
+            share(first),
+            share(first + many));
+        if (selection.skipped.size() > skipped) {
+            throw RunError(fmt::format("{}: changed while it was read: {}",
+                                       selection.skipped.back().image,
+                                       selection.skipped.back().why));
+        }
+        const Observed part =
+            average_of(images, options.average, options.trim, static_cast<int>(options.jobs));
+        append(observed.average, part.average);
+        append(observed.standard_error, part.standard_error);
+        append(observed.count, part.count);
+    }
+    return observed;
+}
+
+void require_images(const Selection& selection, const ObservationOptions& options) {
+    if (!selection.images.empty()) return;
+    const std::string others =
+        selection.outside > 0 ? fmt::format("; the nearest is {:.3g} m off", selection.nearest_m)
+                              : "";
+    const std::string first = selection.skipped.empty()
+                                  ? ""
+                                  : fmt::format("; skipped: {}, the first: {}: {}",
+                                                selection.skipped.size(),
+                                                selection.skipped.front().image,
+                                                selection.skipped.front().why);
+    throw InputError(fmt::format("no image to be used within {} m of {} m{}{}",
+                                 options.within_m,
+                                 options.altitude_m,
+                                 others,
+                                 first));
+}
+
+Sled mean_sled(const std::vector<ChosenImage>& images) {
+    Sled mean;
+    const auto count = static_cast<double>(images.size());
+    for (const ChosenImage& image : images) {
+        mean.altitude_m += image.sled.altitude_m / count;
+        mean.pitch_rad += image.sled.pitch_rad / count;
+        mean.roll_rad += image.sled.roll_rad / count;
+    }
+    return mean;
+}
+
+double noise_of(const Observed& observed) {
+    double squares = 0.0;
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < observed.average.size(); ++i) {
+        if (std::isnan(observed.standard_error[i])) continue;
+        squares += std::pow(observed.standard_error[i], 2.0);
+        sum += observed.average[i];
+        count += 1.0;
+    }
+    return count > 0.0 ? std::sqrt(squares / count) / (sum / count) : kUnknown;
+}
+
+double degrees(double radians) {
+    return radians * 180.0 / std::numbers::pi;
+}
+
+std::vector<float> planes_of(const Observed& observed, const RawImage& like, bool is_demosaiced) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    std::vector<float> planes =
+        is_demosaiced && like.mosaic != Mosaic::None
+            ? demosaiced(observed.average, like.width_px, like.height_px, like.mosaic)
+            : by_channel(observed.average, like, kNone);
+    append(planes, by_channel(observed.count, like, 0.0F));
+    append(planes, by_channel(observed.standard_error, like, kNone));
+    return planes;
 }
 
 }  // namespace
 
-RunningMean::RunningMean(std::size_t samples)
-    : mean_(samples, 0.0), squares_(samples, 0.0), count_(samples, 0) {}
+std::string name_of(Average average) {
+    return std::ranges::find(kAverages, average, [](const auto& a) { return a.second; })->first;
+}
 
-void RunningMean::add(std::span<const float> image) {
-    assert(image.size() == mean_.size());
-    for (std::size_t i = 0; i < image.size(); ++i) {
-        if (std::isnan(image[i])) continue;
-        const double off = image[i] - mean_[i];
-        mean_[i] += off / ++count_[i];
-        squares_[i] += off * (image[i] - mean_[i]);
+Observation observe(const Survey& survey,
+                    const ObservationOptions& options,
+                    const RunWatch& watch) {
+    Selection selection = selected(survey, options);
+    Observation observation;
+    observation.average = options.average;
+    std::vector<ImageFile> files;
+    for (const ChosenImage& image : selection.images) files.push_back(image.file);
+    observation.looks_wrong = suspicions_of(files, survey.camera, options.jobs, watch);
+    Pass pass{survey.camera, options, watch, selection};
+    const Observed observed = options.average == Average::Mean
+                                  ? running_mean(pass)
+                                  : average_by_bands(pass, selection, options);
+    for (const Skipped& one : selection.skipped) watch.skipped(one);
+    require_images(selection, options);
+    observation.width_px = pass.like.width_px;
+    observation.height_px = pass.like.height_px;
+    observation.planes = planes_of(observed, pass.like, options.demosaic);
+    observation.images = selection.images.size();
+    observation.outside = selection.outside;
+    observation.sled = mean_sled(selection.images);
+    observation.relative_error = noise_of(observed);
+    observation.skipped = std::move(selection.skipped);
+    return observation;
+}
+
+nlohmann::ordered_json to_json(const Observation& observation,
+                               const std::filesystem::path& map_file) {
+    return {{"map", map_file.string()},
+            {"average", name_of(observation.average)},
+            {"images", observation.images},
+            {"outside", observation.outside},
+            {"altitude_m", observation.sled.altitude_m},
+            {"pitch_deg", degrees(observation.sled.pitch_rad)},
+            {"roll_deg", degrees(observation.sled.roll_rad)},
+            {"relative_error", observation.relative_error},
+            {"skipped", to_json(observation.skipped)},
+            {"looks_wrong", to_json(observation.looks_wrong)}};
+}
+
+void write_observation(const std::filesystem::path& map_file, const Observation& observation) {
+    std::vector<std::string> channels;
+    for (const std::string_view prefix : {"", "count.", "stderr."}) {
+        for (const std::string_view name : kChannelNames)
+            channels.push_back(fmt::format("{}{}", prefix, name));
     }
-}
-
-Observed RunningMean::observed() const {
-    Observed observed = unobserved(mean_.size());
-    for (std::size_t i = 0; i < mean_.size(); ++i) {
-        if (count_[i] == 0) continue;
-        put(observed, i, {mean_[i], error_of_mean(squares_[i], count_[i])}, count_[i]);
-    }
-    return observed;
-}
-
-Observed average_of(std::span<const std::vector<float>> images,
-                    Average average,
-                    double trim,
-                    int threads) {
-    assert(trim >= 0.0 && trim < 0.5 && threads > 0);
-    const std::size_t samples = images.empty() ? 0 : images.front().size();
-    Observed observed = unobserved(samples);
-    const std::size_t parts = (samples + kPlacesOfAPart - 1) / kPlacesOfAPart;
-    parallel_for(parts, static_cast<std::size_t>(threads), [&](std::size_t part, std::size_t) {
-        const std::size_t first = part * kPlacesOfAPart;
-        const Places places{.first = first, .last = std::min(first + kPlacesOfAPart, samples)};
-        average_places(images, places, average, trim, observed);
-    });
-    return observed;
-}
-
-std::vector<float> by_channel(const std::vector<float>& samples,
-                              const RawImage& like,
-                              float elsewhere) {
-    if (like.mosaic == Mosaic::None) return samples;
-    const std::size_t pixels = like.pixels();
-    std::vector<float> planes(pixels * kChannels, elsewhere);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const auto width = static_cast<std::size_t>(like.width_px);
-        const int channel =
-            channel_at(like.mosaic, static_cast<int>(i % width), static_cast<int>(i / width));
-        planes[static_cast<std::size_t>(channel) * pixels + i] = samples[i];
-    }
-    return planes;
-}
-
-void divide_by_own_mean(RawImage& image) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (const float sample : image.samples) {
-        if (std::isnan(sample)) continue;
-        sum += sample;
-        count += 1.0;
-    }
-    const double mean = sum / count;
-    if (!(mean > 0.0))
-        throw InputError(fmt::format("its mean is {:.3g}; allowed: above 0, to divide by", mean));
-    for (float& sample : image.samples) sample = static_cast<float>(sample / mean);
-}
-
-std::size_t samples_in_memory(std::size_t images, double memory_mb) {
-    constexpr double kMegabyte = 1e6;
-    constexpr double kMost = 1e12;  // more than any image has
-    const double bytes = static_cast<double>(std::max<std::size_t>(1, images)) * sizeof(float);
-    return static_cast<std::size_t>(std::clamp(memory_mb * kMegabyte / bytes, 1.0, kMost));
+    const Sled& sled = observation.sled;
+    ExrWriter exr(map_file,
+                  observation.width_px,
+                  observation.height_px,
+                  channels,
+                  {{"aphotic:version", APHOTIC_VERSION},
+                   {"aphotic:average", name_of(observation.average)},
+                   {"aphotic:images", fmt::format("{}", observation.images)},
+                   {"aphotic:altitude_m", fmt::format("{}", sled.altitude_m)},
+                   {"aphotic:pitch_deg", fmt::format("{}", degrees(sled.pitch_rad))},
+                   {"aphotic:roll_deg", fmt::format("{}", degrees(sled.roll_rad))}});
+    exr.write_rows(observation.height_px, observation.planes);
+    exr.finish();
 }
 
 }  // namespace aphotic

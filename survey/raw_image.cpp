@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/raw_image.h"
 
+#include "base/error.h"
 #include "image/image_size.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -74,6 +77,16 @@ std::string_view mosaic_name(Mosaic mosaic) {
 
 int channel_at(Mosaic mosaic, int column, int row) {
     return sites_of(mosaic).channels[size_of((row & 1) * 2 + (column & 1))];
+}
+
+void require_size(const RawImage& image, int width_px, int height_px, std::string_view as) {
+    if (image.width_px == width_px && image.height_px == height_px) return;
+    throw InputError(fmt::format("found {} x {} pixels; allowed: {} x {}, {}",
+                                 image.width_px,
+                                 image.height_px,
+                                 width_px,
+                                 height_px,
+                                 as));
 }
 
 std::vector<float> demosaiced(std::span<const float> plane,

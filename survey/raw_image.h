@@ -38,6 +38,9 @@ struct RawImage {
     [[nodiscard]] int planes() const { return mosaic == Mosaic::None ? kChannels : 1; }
 };
 
+// An InputError unless it is of this size, "as the map has".
+void require_size(const RawImage& image, int width_px, int height_px, std::string_view as);
+
 struct SensorLevels {
     float black = 0.0F;
     float white = std::numeric_limits<float>::infinity();  // from here up it is saturated

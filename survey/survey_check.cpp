@@ -4,6 +4,7 @@
 #include "image/image_size.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -368,6 +369,13 @@ std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosai
     if (has_line && found.size() == before) check_colour(lit_looks, mosaic, found);
     check_attitude(looks, found);
     return found;
+}
+
+nlohmann::ordered_json to_json(const std::vector<Suspicion>& suspicions) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const Suspicion& one : suspicions)
+        json.push_back({{"about", one.about}, {"what", one.what}});
+    return json;
 }
 
 std::string not_checked(std::span<const ImageLook> looks) {

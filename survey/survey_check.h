@@ -30,6 +30,8 @@
 #include "survey/correction.h"
 #include "survey/raw_image.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -64,6 +66,8 @@ struct Likeness {
 
 // What one image tells.
 struct ImageLook {
+    std::string name;
+    bool is_for_gain = false;  // the survey's gain is taken from it (gain.h)
     TopNumber top;
     float white = 0.0F;
     std::optional<std::array<double, 4>> sites;
@@ -86,6 +90,7 @@ struct Suspicion {
     std::string what;   // with the number that shows it
 };
 [[nodiscard]] std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic);
+[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Suspicion>& suspicions);
 
 // What no line through images with altitudes can tell of these, and why; or empty.
 [[nodiscard]] std::string not_checked(std::span<const ImageLook> looks);

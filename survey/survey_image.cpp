@@ -2,8 +2,8 @@
 #include "survey/survey_image.h"
 
 #include "base/error.h"
-#include "image/exr.h"
-#include "survey/survey_files.h"
+#include "image/any_image.h"
+#include "survey/image_files.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -85,34 +85,7 @@ SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) 
     return taken;
 }
 
-std::vector<std::string> channel_names(const RawImage& image) {
-    if (image.mosaic != Mosaic::None) return {"Y"};
-    return {kChannelNames.begin(), kChannelNames.end()};
-}
-
-int zip_level(Compression compression) {
-    constexpr int kUsual = 6;
-    if (compression == Compression::None) return 0;
-    return compression == Compression::Small ? kUsual : ExrWriter::kFastestZip;
-}
-
 }  // namespace
-
-void add_camera_options(CLI::App& app, CameraNumbers& camera) {
-    const auto wrong = [](const std::string& name) {
-        return mosaic_named(name)
-                   ? ""
-                   : fmt::format("found '{}'; allowed: RGGB, BGGR, GRBG, GBRG", name);
-    };
-    app.add_option_function<std::string>(
-           "--bayer",
-           [&camera](const std::string& name) { camera.mosaic = *mosaic_named(name); },
-           "the images are mosaics of one channel, named after the four pixels at the top left: "
-           "RGGB, BGGR, GRBG or GBRG")
-        ->check(CLI::Validator(wrong, "PATTERN"));
-    app.add_option("--black-level", camera.black_level, "the camera's number for no light")
-        ->capture_default_str();
-}
 
 SurveyImage read_survey_image(const fs::path& file, const CameraNumbers& camera) {
     require_file(file);
@@ -125,70 +98,8 @@ SurveyImage read_survey_image(const fs::path& file, const CameraNumbers& camera)
     }
 }
 
-RawImage without_black(SurveyImage taken) {
+void take_off_black(SurveyImage& taken) {
     for (float& sample : taken.raw.samples) sample -= taken.levels.black;
-    return std::move(taken.raw);
-}
-
-void require_size(const RawImage& image, int width_px, int height_px, std::string_view as) {
-    if (image.width_px == width_px && image.height_px == height_px) return;
-    throw InputError(fmt::format("found {} x {} pixels; allowed: {} x {}, {}",
-                                 image.width_px,
-                                 image.height_px,
-                                 width_px,
-                                 height_px,
-                                 as));
-}
-
-void print_skipped(const fs::path& file, const std::string& why) {
-    fmt::print(stderr, "aphotic: {}: {}; skipped\n", file.string(), why);
-}
-
-void write_corrected(const fs::path& file,
-                     const RawImage& image,
-                     const SurveyImage& source,
-                     Compression compression) {
-    if (file.extension() == ".exr") {
-        ExrAttributes attributes{{"aphotic:version", APHOTIC_VERSION}};
-        if (!source.description.empty()) attributes.emplace_back("comments", source.description);
-        if (!source.date_time.empty()) attributes.emplace_back("capDate", source.date_time);
-        ExrWriter writer(file,
-                         image.width_px,
-                         image.height_px,
-                         channel_names(image),
-                         attributes,
-                         zip_level(compression));
-        writer.write_rows(image.height_px, image.samples);
-        writer.finish();
-        return;
-    }
-    write_any_image(file,
-                    {.width_px = image.width_px,
-                     .height_px = image.height_px,
-                     .channels = channel_names(image),
-                     .planes = image.samples,
-                     .type = SampleType::Bits16,
-                     .compression = compression,
-                     .description = source.description,
-                     .date_time = source.date_time});
-}
-
-void write_mask(const fs::path& file, const CorrectedImage& image, Compression compression) {
-    constexpr float kByte = 255.0F;
-    std::vector<float> plane;
-    plane.reserve(image.doubts.size());
-    for (const std::uint8_t doubt : image.doubts) {
-        plane.push_back(static_cast<float>(doubt) / kByte);
-    }
-    write_any_image(file,
-                    {.width_px = image.image.width_px,
-                     .height_px = image.image.height_px,
-                     .channels = {"Y"},
-                     .planes = plane,
-                     .type = SampleType::Bits8,
-                     .compression = compression,
-                     .description = "",
-                     .date_time = ""});
 }
 
 }  // namespace aphotic

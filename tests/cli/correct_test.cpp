@@ -2,7 +2,7 @@
 //
 // The correction of surveys as a user runs it. The images are made of the reference tracer's light,
 // which shares no geometry and no light with the maps that they are divided by.
-#include "survey/correction.h"
+#include "survey/light_at.h"
 
 #include "image/exr.h"
 #include "image/preview.h"

@@ -47,9 +47,12 @@ const std::vector<Struck> kCommands{
     {"Trace", {"trace", "rig.toml", "-o", "out"}},
     {"Validate", {"validate", "rig.toml", "-o", "out", "--bands", "6"}}};
 
-// What a file of these names says depends on the clock, or on the frames' own times.
+// What a file of these names says depends on the clock, on the frames' own times, or on what an
+// earlier run had done.
 bool tells_the_time(const fs::path& file) {
-    constexpr std::array kNames{"manifest.json",
+    constexpr std::array kNames{"baseline.json",
+                                "corrected.jsonl",
+                                "manifest.json",
                                 "validation.json",
                                 "trace.json",
                                 "report.html",

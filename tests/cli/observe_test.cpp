@@ -385,6 +385,44 @@ TEST_F(CommandBaseline, LeavesWhatItDidAndWithWhatSettings) {
     EXPECT_EQ(notes["settings"]["bayer"], "none");
 }
 
+TEST_F(CommandBaseline, WritesTheFormatsOfCorrectAndGoesOnWhereItStopped) {
+    fs::create_directories(path("raw"));
+    std::vector<std::uint16_t> mosaic(kPixels, 2000);
+    mosaic[kPixels / 2] = 4095;
+    for (const char* name : {"raw/a.tif", "raw/b.tif"}) {
+        write_file(path(name), tiff_of(mosaic, kWidth_px, kHeight_px, "lat=41.5"));
+    }
+    const auto baseline = [&](const std::string& format) {
+        const CommandResult result = run({"baseline",
+                                          "homomorphic",
+                                          "raw",
+                                          "-o",
+                                          "out",
+                                          "--bayer",
+                                          "RGGB",
+                                          "--white-level",
+                                          "4095",
+                                          "--format",
+                                          format,
+                                          "--mask",
+                                          "--compression",
+                                          "none",
+                                          "--json"});
+        EXPECT_EQ(result.status, 0) << result.err;
+        return nlohmann::json::parse(result.out);
+    };
+    EXPECT_EQ(baseline("tiff")["corrected"], 2);
+    EXPECT_GE(fs::file_size(path("out/a.tif")), 3 * 2 * kPixels) << "not compressed";
+    EXPECT_NE(read_text_file(path("out/a.tif")).find("lat=41.5"), std::string::npos);
+    EXPECT_TRUE(fs::exists(path("out/a.mask.png")));
+    fs::remove(path("out/b.mask.png"));
+    const nlohmann::json again = baseline("tiff");
+    EXPECT_EQ(again["kept"], 1);
+    EXPECT_EQ(again["corrected"], 1);
+    EXPECT_GT(again["doubtful"]["saturated"], 0.0);
+    EXPECT_EQ(baseline("exr")["corrected"], 2);
+}
+
 // Nor are they lost when the folder is named itself.
 TEST_F(CommandBaseline, ItsResultsAreNoRawImages) {
     write_survey();

@@ -3,7 +3,7 @@
 // The gain in the notes of a corrected survey, from any text: what is not ours tells of none, so
 // every text is taken. A gain that comes of it is one to multiply with.
 #include "fuzz.h"
-#include "survey/kept_gain.h"
+#include "survey/gain.h"
 
 #include <cmath>
 

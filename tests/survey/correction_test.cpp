@@ -5,6 +5,7 @@
 #include "survey/correction.h"
 
 #include "base/error.h"
+#include "survey/light_at.h"
 
 #include <gtest/gtest.h>
 

@@ -1,156 +1,90 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// A survey averaged at one altitude, as a program without our command does it.
 #include "survey/observation.h"
 
 #include "base/error.h"
+#include "support/raw_survey.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <limits>
-#include <random>
 
 namespace aphotic::observation_test {
 namespace {
 
-using Images = std::vector<std::vector<float>>;
+constexpr double kFloats = 1e-6;
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr double kFloat = 1e-6;  // a few roundings of a float, relative
+class ObservedSurvey : public testing::Test {
+  protected:
+    RawSurvey raw_;
+    ObservationOptions options_{.altitude_m = 2.0};
+};
 
-Observed running(const Images& images) {
-    RunningMean mean(images.front().size());
-    for (const std::vector<float>& image : images) mean.add(image);
-    return mean.observed();
-}
-
-// One place, seen once an image.
-Images images_of(const std::vector<float>& samples) {
-    Images images;
-    for (const float sample : samples) images.push_back({sample});
-    return images;
-}
-
-// 2, 4, 4, 4, 5, 5, 7, 9: mean 5 and squares about it 32, so s^2 = 32 / 7 and E^2 = 4 / 7.
-TEST(Observation, MeanOfATextbooksEightSamples) {
-    const Observed observed = running(images_of({2, 4, 4, 4, 5, 5, 7, 9}));
-    EXPECT_FLOAT_EQ(observed.average[0], 5.0F);
-    EXPECT_NEAR(observed.standard_error[0], std::sqrt(4.0 / 7.0), kFloat);
-    EXPECT_EQ(observed.count[0], 8.0F);
-}
-
-// By hand: trim 0.2 of ten samples cuts 2 a side. Kept 3..8, mean 5.5. Winsorised 3 3 3 4 5 6 7 8 8
-// 8, mean 5.5, squares 2 (3 * 2.5^2 + 1.5^2 + 0.5^2) = 42.5; E = sqrt(42.5 / (6 * 5)).
-TEST(Observation, TrimmedMeanLeavesTheEndsOut) {
-    const Images images = images_of({10, 3, 1e6F, 7, 5, 6, 4, 8, -1e6F, 2});
-    const Observed observed = average_of(images, Average::Trimmed, 0.2, 1);
-    EXPECT_FLOAT_EQ(observed.average[0], 5.5F);
-    EXPECT_NEAR(observed.standard_error[0], std::sqrt(42.5 / 30.0), kFloat);
-    EXPECT_EQ(observed.count[0], 10.0F);
-}
-
-// k = max(1, round(13 - 2.5758 * 2.5)) = 7 of 25: the 7th and the 19th of 1 .. 25.
-TEST(Observation, MedianAndItsErrorByRanks) {
-    std::vector<float> samples;
-    for (int i = 0; i < 25; ++i) samples.push_back(static_cast<float>((i * 7) % 25 + 1));
-    const Observed odd = average_of(images_of(samples), Average::Median, 0.0, 1);
-    EXPECT_FLOAT_EQ(odd.average[0], 13.0F);
-    EXPECT_NEAR(odd.standard_error[0], 12.0 / (2.0 * 2.5758), kFloat);
-
-    const Observed even = average_of(images_of({9, 1, 4, 2}), Average::Median, 0.0, 1);
-    EXPECT_FLOAT_EQ(even.average[0], 3.0F);
-}
-
-TEST(Observation, TrimmedByNothingIsTheMean) {
-    const Images images = images_of({2.5F, 4, 3.25F, 4, -5, 5, 7, 9.75F});
-    const Observed trimmed = average_of(images, Average::Trimmed, 0.0, 1);
-    const Observed mean = running(images);
-    EXPECT_FLOAT_EQ(trimmed.average[0], mean.average[0]);
-    EXPECT_FLOAT_EQ(trimmed.standard_error[0], mean.standard_error[0]);
-}
-
-// A float has 24 bits: added up in float, 4000 samples of 10^6 + i % 2 would lose them.
-TEST(Observation, RunningMeanKeepsSmallChangesOfLargeSamples) {
-    Images images;
-    for (int i = 0; i < 4000; ++i) images.push_back({1e6F + static_cast<float>(i % 2)});
-    const Observed observed = running(images);
-    EXPECT_FLOAT_EQ(observed.average[0], 1000000.5F);
-    EXPECT_NEAR(observed.standard_error[0], 0.5 / std::sqrt(3999.0), kFloat);
-}
-
-TEST(Observation, WhatIsNotANumberWasNotObserved) {
-    const Images images{{1.0F, kNaN, kNaN}, {kNaN, kNaN, 4.0F}, {3.0F, kNaN, kNaN}};
-    for (const Average average : {Average::Mean, Average::Median, Average::Trimmed}) {
-        const Observed observed =
-            average == Average::Mean ? running(images) : average_of(images, average, 0.1, 1);
-        EXPECT_EQ(observed.count, (std::vector<float>{2, 0, 1}));
-        EXPECT_FLOAT_EQ(observed.average[0], 2.0F);
-        EXPECT_TRUE(std::isnan(observed.average[1]));
-        EXPECT_TRUE(std::isnan(observed.standard_error[1]));
-        EXPECT_FLOAT_EQ(observed.average[2], 4.0F);
-        EXPECT_TRUE(std::isnan(observed.standard_error[2])) << "one sample has no error of its own";
+// 0.5, 1 and 3: mean 1.5, squares 1 + 0.25 + 2.25 about it, over n (n - 1) = 6.
+TEST_F(ObservedSurvey, AMeanOfThreeAndItsError) {
+    const Observation observation = observe(raw_.survey(), options_, {});
+    EXPECT_EQ(observation.images, 3U);
+    EXPECT_EQ(observation.outside, 1U);
+    EXPECT_NEAR(observation.sled.pitch_rad, 0.3, kFloats);
+    const std::vector<float> light = RawSurvey::light();
+    ASSERT_EQ(observation.planes.size(), 3 * light.size());
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        EXPECT_NEAR(observation.planes[i], 1.5 * light[i], 4 * kFloats);
+        EXPECT_EQ(observation.planes[light.size() + i], 3.0F);
+        EXPECT_NEAR(
+            observation.planes[2 * light.size() + i], std::sqrt(3.5 / 6.0) * light[i], 4 * kFloats);
     }
 }
 
-// Many places of the same normal distribution: their averages scatter as the errors say.
-TEST(Observation, AveragesScatterAsTheirErrorsSay) {
-    constexpr std::size_t kPlaces = 4000;
-    constexpr std::size_t kImages = 101;
-    constexpr double kTolerance = 0.06;  // 1 / sqrt(2 places), of the scatter, is 0.011; the rest
-                                         // is the median's error, known to be rough
-    std::mt19937 random(20261);
-    std::normal_distribution<float> normal(5.0F, 2.0F);
-    Images images(kImages, std::vector<float>(kPlaces));
-    for (std::vector<float>& image : images) {
-        for (float& sample : image) sample = normal(random);
-    }
-    for (const Average average : {Average::Mean, Average::Median, Average::Trimmed}) {
-        const Observed observed = average_of(images, average, 0.2, 2);
-        double scatter = 0.0;
-        double stated = 0.0;
-        for (std::size_t i = 0; i < kPlaces; ++i) {
-            scatter += std::pow(observed.average[i] - 5.0, 2.0) / kPlaces;
-            stated += std::pow(observed.standard_error[i], 2.0) / kPlaces;
+// Memory for one sample of each image at a time, or for all.
+TEST_F(ObservedSurvey, RanksDoNotDependOnMemory) {
+    const std::vector<float> light = RawSurvey::light();
+    for (const Average average : {Average::Median, Average::Trimmed}) {
+        options_.average = average;
+        options_.trim = 0.4;  // leaves the middle one of three
+        for (const double memory_mb : {1000.0, 1e-5}) {
+            options_.memory_mb = memory_mb;
+            const Observation observation = observe(raw_.survey(), options_, {});
+            for (std::size_t i = 0; i < light.size(); ++i) {
+                EXPECT_EQ(observation.planes[i], light[i]);
+                EXPECT_EQ(observation.planes[light.size() + i], 3.0F);
+            }
         }
-        EXPECT_NEAR(std::sqrt(stated / scatter), 1.0, kTolerance) << static_cast<int>(average);
     }
 }
 
-TEST(Observation, ThreadsChangeNothing) {
-    std::mt19937 random(7);
-    std::uniform_real_distribution<float> uniform;
-    Images images(9, std::vector<float>(1001));
-    for (std::vector<float>& image : images) {
-        for (float& sample : image) sample = uniform(random);
-    }
-    const Observed one = average_of(images, Average::Trimmed, 0.3, 1);
-    for (const int threads : {2, 3, 1000}) {
-        const Observed many = average_of(images, Average::Trimmed, 0.3, threads);
-        EXPECT_EQ(many.average, one.average) << threads;
-        EXPECT_EQ(many.standard_error, one.standard_error) << threads;
-    }
+TEST_F(ObservedSurvey, WhatNobodyToldIsUnknown) {
+    Survey survey = raw_.survey();
+    survey.navigation = Navigation(
+        "track", {{.image = "b", .sled = {2.0, 0.0, 0.1}}}, {.pitch = false, .roll = true});
+    std::vector<std::string> heard;
+    RunWatch watch;
+    watch.skipped = [&](const Skipped& one) { heard.push_back(one.image); };
+    const Observation observation = observe(survey, options_, watch);
+    EXPECT_EQ(heard.size(), 3U);
+    const nlohmann::ordered_json json = to_json(observation, "map.exr");
+    EXPECT_EQ(json["map"], "map.exr");
+    EXPECT_EQ(json["images"], 1);
+    EXPECT_TRUE(std::isnan(json["pitch_deg"].get<double>()));
+    EXPECT_NEAR(json["roll_deg"].get<double>(), 5.729578, kFloats);
+    EXPECT_EQ(json["skipped"].size(), 3U);
 }
 
-TEST(Observation, SitesOfAMosaicHoldTheirOwnChannel) {
-    const RawImage mosaic{.width_px = 2, .height_px = 2, .mosaic = Mosaic::Grbg, .samples = {}};
-    EXPECT_EQ(by_channel({1, 2, 3, 4}, mosaic, 0.0F),
-              (std::vector<float>{0, 2, 0, 0, 1, 0, 0, 4, 0, 0, 3, 0}));
-    const RawImage colours{.width_px = 1, .height_px = 1, .mosaic = Mosaic::None, .samples = {}};
-    EXPECT_EQ(by_channel({1, 2, 3}, colours, 0.0F), (std::vector<float>{1, 2, 3}));
+TEST_F(ObservedSurvey, WritesItsPlanesByName) {
+    const Observation observation = observe(raw_.survey(), options_, {});
+    write_observation(raw_.path("map.exr"), observation);
+    const std::vector<float> blue = RawSurvey::samples_of(raw_.path("map.exr"), {"stderr.B"});
+    EXPECT_EQ(blue,
+              std::vector<float>(observation.planes.end() - RawSurvey::kPixels_of_plane,
+                                 observation.planes.end()));
+    EXPECT_EQ(ExrReader(raw_.path("map.exr")).attribute("aphotic:images"), "3");
 }
 
-TEST(Observation, DividedByItsMeanAnImageHasMeanOne) {
-    RawImage image{
-        .width_px = 2, .height_px = 1, .mosaic = Mosaic::None, .samples = {1, 2, kNaN, 3, 4, 10}};
-    divide_by_own_mean(image);
-    EXPECT_FLOAT_EQ(image.samples[0], 0.25F);
-    EXPECT_FLOAT_EQ(image.samples[5], 2.5F);
-    image.samples.assign(6, 0.0F);
-    EXPECT_THROW(divide_by_own_mean(image), InputError);
-}
-
-TEST(Observation, SamplesInMemory) {
-    EXPECT_EQ(samples_in_memory(500, 272.0), 136000U);  // of 4 bytes each
-    EXPECT_EQ(samples_in_memory(500, 1e-6), 1U) << "less than one cannot be held";
+TEST_F(ObservedSurvey, NoImageIsAnError) {
+    options_.altitude_m = 2.8;
+    EXPECT_THROW(static_cast<void>(observe(raw_.survey(), options_, {})), InputError);
 }
 
 }  // namespace

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "survey/survey_files.h"
+#include "survey/image_files.h"
 
 #include "base/error.h"
-#include "survey/navigation.h"
+#include "base/words.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
-#include <set>
 #include <system_error>
 
 namespace aphotic {
@@ -16,10 +16,6 @@ namespace aphotic {
 namespace fs = std::filesystem;
 
 namespace {
-
-fs::path without_extension(const fs::path& file) {
-    return is_image_name(file) ? file.parent_path() / file.stem() : file;
-}
 
 bool is_within(const fs::path& path, const fs::path& folder) {
     return std::ranges::mismatch(folder, path).in1 == folder.end();
@@ -42,7 +38,7 @@ bool holds_results(const fs::path& folder, const fs::path& output) {
            fs::exists(folder / kBaselineNotes, none);
 }
 
-void add_folder(const fs::path& folder, const fs::path& output, std::vector<SurveyFile>& files) {
+void add_folder(const fs::path& folder, const fs::path& output, std::vector<ImageFile>& files) {
     std::error_code none;
     if (fs::equivalent(folder, output, none)) {
         throw InputError(
@@ -68,14 +64,14 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Surv
     if (std::ssize(files) == first) {
         throw InputError(fmt::format("{}: the folder holds no image", folder.string()));
     }
-    std::ranges::sort(files.begin() + first, files.end(), {}, &SurveyFile::name);
+    std::ranges::sort(files.begin() + first, files.end(), {}, &ImageFile::name);
 }
 
 }  // namespace
 
-std::vector<SurveyFile> survey_files(const std::vector<std::string>& arguments,
-                                     const fs::path& output) {
-    std::vector<SurveyFile> files;
+std::vector<ImageFile> image_files(const std::vector<std::string>& arguments,
+                                   const fs::path& output) {
+    std::vector<ImageFile> files;
     for (const std::string& argument : arguments) {
         std::error_code none;
         if (!fs::exists(argument, none)) {
@@ -88,8 +84,8 @@ std::vector<SurveyFile> survey_files(const std::vector<std::string>& arguments,
             files.push_back({.source = file, .name = without_extension(file.filename())});
         }
     }
-    std::map<fs::path, const SurveyFile*> by_name;
-    for (const SurveyFile& file : files) {
+    std::map<fs::path, const ImageFile*> by_name;
+    for (const ImageFile& file : files) {
         const auto [other, is_new] = by_name.emplace(file.name, &file);
         if (is_new) continue;
         throw InputError(fmt::format("{} and {} would both become {}",
@@ -110,28 +106,15 @@ void require_file(const fs::path& image) {
                          : "there is no such file any more");
 }
 
-namespace {
-
-// The file itself, whatever links lead to it; of links that go in a circle, their own place.
-fs::path place_of(const fs::path& file) {
-    std::error_code circle;
-    fs::path place = fs::weakly_canonical(file, circle);
-    return circle ? fs::absolute(file).lexically_normal() : place;
+bool is_image_name(const fs::path& file) {
+    static constexpr std::array<std::string_view, 6> kExtensions{
+        ".tif", ".tiff", ".png", ".exr", ".jpg", ".jpeg"};
+    return std::ranges::find(kExtensions, lower_case(file.extension().string())) !=
+           kExtensions.end();
 }
 
-}  // namespace
-
-void require_sources_stay(const std::vector<SurveyFile>& files, const Results& results) {
-    std::set<fs::path> sources;
-    for (const SurveyFile& file : files) sources.insert(place_of(file.source));
-    for (const SurveyFile& file : files) {
-        for (const fs::path& result : results(file)) {
-            if (!sources.contains(place_of(result))) continue;
-            throw InputError(
-                fmt::format("{}: would be overwritten by the result; allowed: another place for -o",
-                            result.string()));
-        }
-    }
+fs::path without_extension(const fs::path& file) {
+    return is_image_name(file) ? file.parent_path() / file.stem() : file;
 }
 
 }  // namespace aphotic

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "survey/survey_light.h"
+#include "survey/light_at.h"
 
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/sha256.h"
 #include "image/exr.h"
 #include "lightmap/cone_edge.h"
-#include "rig/rig_reader.h"
-#include "survey/navigation.h"
+#include "spectral/light_family.h"
 #include "survey/survey_check.h"
 
 #include <fmt/format.h>
@@ -22,19 +21,9 @@ namespace aphotic {
 namespace {
 
 struct RigLight {
-    Navigation navigation;
     ConeEdges edges;
     LightmapMaker maker;
 };
-
-void require_altitude(const Sled& sled, const std::vector<double>& altitudes_m) {
-    if (altitudes_m.empty()) return;
-    if (sled.altitude_m >= altitudes_m[0] && sled.altitude_m <= altitudes_m[1]) return;
-    throw InputError(fmt::format("altitude_m: found {}; allowed by --altitudes-m: {} to {}",
-                                 sled.altitude_m,
-                                 altitudes_m[0],
-                                 altitudes_m[1]));
-}
 
 // Least and most of what the sleds have, and 0 between them: at a level sled, paths are shortest.
 std::set<double> extremes(const std::vector<Sled>& sleds, double Sled::*part) {
@@ -61,16 +50,15 @@ MapAsRadians map_as_radians(const Rig& rig, const Navigation& navigation, std::v
     const auto is_small = [](double tilt_rad) {
         return std::abs(tilt_rad) <= kSmall_deg * kRadiansPerDegree;
     };
-    const auto in_radians = [has_pitch = navigation.has_pitch(),
-                             has_roll = navigation.has_roll()](Sled sled) {
-        if (has_pitch) sled.pitch_rad /= kRadiansPerDegree;
-        if (has_roll) sled.roll_rad /= kRadiansPerDegree;
+    const auto in_radians = [told = navigation.told()](Sled sled) {
+        if (told.pitch) sled.pitch_rad /= kRadiansPerDegree;
+        if (told.roll) sled.roll_rad /= kRadiansPerDegree;
         return sled;
     };
     bool is_level = true;
     for (Sled& sled : sleds) {
-        if (navigation.has_pitch() && !is_small(sled.pitch_rad)) return {};
-        if (navigation.has_roll() && !is_small(sled.roll_rad)) return {};
+        if (navigation.told().pitch && !is_small(sled.pitch_rad)) return {};
+        if (navigation.told().roll && !is_small(sled.roll_rad)) return {};
         const Sled other = in_radians(sled);
         if (other.pitch_rad != sled.pitch_rad || other.roll_rad != sled.roll_rad) is_level = false;
         sled = other;
@@ -94,50 +82,29 @@ MapAsRadians map_as_radians(const Rig& rig, const Navigation& navigation, std::v
 
 }  // namespace
 
-SurveyLight light_of_rig(const std::string& rig_file,
-                         const std::string& navigation_file,
-                         const std::vector<double>& altitudes_m,
-                         const std::vector<SurveyFile>& files) {
-    const Rig rig = read_rig(rig_file);
-    Navigation navigation = read_navigation(navigation_file, rig.sled);
+LightAt light_of_rig(const Rig& rig,
+                     const Navigation& navigation,
+                     const std::vector<ImageFile>& files) {
     std::vector<Sled> sleds;
-    for (const SurveyFile& file : files) {
+    for (const ImageFile& file : files) {
         try {
-            const Sled sled = navigation.pose_of(file.source).sled;
-            require_altitude(sled, altitudes_m);
-            sleds.push_back(sled);
+            sleds.push_back(navigation.pose_of(file.source).sled);
         } catch (const InputError&) {
             // It is said of the image when its turn comes.
         }
     }
-    const MapAsRadians as_radians = map_as_radians(rig, navigation, sleds);
-    const auto light = [&] {
-        try {
-            return std::make_shared<const RigLight>(
-                RigLight{.navigation = std::move(navigation),
-                         .edges = ConeEdges(rig),
-                         .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), {})});
-        } catch (const InputError& error) {
-            throw InputError(fmt::format("{}: {}", rig_file, error.what()));
-        }
-    }();
+    const auto light = std::make_shared<const RigLight>(RigLight{
+        .edges = ConeEdges(rig), .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), {})});
     return {.digest = rig.digest,
             .size = {rig.camera.width_px, rig.camera.height_px},
-            .has_poses = true,
-            .pose =
-                [light, altitudes_m](const std::filesystem::path& image) {
-                    const Sled sled = light->navigation.pose_of(image).sled;
-                    require_altitude(sled, altitudes_m);
-                    return sled;
-                },
             .map = [light](const Sled& sled) { return light->maker.map(sled); },
             .edges = [light](const Sled& sled,
                              int within_px) { return light->edges.mask(sled, within_px); },
-            .map_as_radians = as_radians,
+            .map_as_radians = map_as_radians(rig, navigation, sleds),
             .floor_colour = floor_colour(rig)};
 }
 
-SurveyLight light_of_map(const std::string& map_file) {
+LightAt light_of_map(const std::filesystem::path& map_file) {
     static const std::vector<std::string> kNames{"R", "G", "B"};
     Lightmap map;
     try {
@@ -145,7 +112,8 @@ SurveyLight light_of_map(const std::string& map_file) {
         const std::vector<std::string> channels = reader.channels();
         for (const std::string& name : kNames) {
             if (std::ranges::find(channels, name) != channels.end()) continue;
-            throw InputError(fmt::format("{}: has no channel {}; needed: R, G, B", map_file, name));
+            throw InputError(
+                fmt::format("{}: has no channel {}; needed: R, G, B", map_file.string(), name));
         }
         map.width_px = reader.width_px();
         map.height_px = reader.height_px();
@@ -161,12 +129,40 @@ SurveyLight light_of_map(const std::string& map_file) {
     const auto pixels = map.samples.size() / kNames.size();
     return {.digest = sha256_of_file(map_file),
             .size = {map.width_px, map.height_px},
-            .has_poses = false,
-            .pose = [](const std::filesystem::path&) { return Sled{}; },
             .map = [map](const Sled&) { return map; },
             .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); },
             .map_as_radians = {},
             .floor_colour = std::nullopt};
+}
+
+PerChannel floor_colour(const Rig& rig) {
+    constexpr double kError = 1e-6;
+    LightFamily family{.sources = {},
+                       .water = rig.water,
+                       .shortest_path_m = 0.0,
+                       .longest_path_m = 0.0,
+                       .tilt = std::nullopt};
+    for (const Strobe& strobe : rig.strobes) {
+        family.sources.push_back({strobe.spectrum});
+        family.sources.push_back({strobe.spectrum, rig.seafloor.reflectance});
+    }
+    PerChannel given_back{};
+    PerChannel lamps{};
+    for (const WeightedWavelength& w :
+         reference_grid(rig.camera.sensor, family, rig.camera.range, kError)) {
+        double flux = 0.0;
+        for (const Strobe& strobe : rig.strobes) {
+            flux += strobe.power * strobe.spectrum.at(w.lambda_nm);
+        }
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            lamps[c] += flux * w.weight[c];
+            given_back[c] += flux * w.weight[c] * rig.seafloor.reflectance.at(w.lambda_nm);
+        }
+    }
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        given_back[c] = lamps[c] > 0.0 ? given_back[c] / lamps[c] : 0.0;
+    }
+    return given_back;
 }
 
 }  // namespace aphotic

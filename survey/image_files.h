@@ -5,14 +5,13 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace aphotic {
 
-struct SurveyFile {
+struct ImageFile {
     std::filesystem::path source;
     // Below the output folder, without extension: the file's name, and its folders below the one
     // that was named.
@@ -28,15 +27,16 @@ inline constexpr std::string_view kBaselineNotes = "baseline.json";
 // in folders of results is left out. What has an image's name and cannot be read, as a link that
 // leads nowhere, is among them, for require_file() to tell. An InputError when an argument is not
 // there or is `output` itself, a folder holds no image, or two images would have one name.
-[[nodiscard]] std::vector<SurveyFile> survey_files(const std::vector<std::string>& arguments,
-                                                   const std::filesystem::path& output);
+[[nodiscard]] std::vector<ImageFile> image_files(const std::vector<std::string>& arguments,
+                                                 const std::filesystem::path& output);
 
 // An InputError, which does not name the image, unless it is there and is a file: of a pipe one
 // would wait for ever.
 void require_file(const std::filesystem::path& image);
 
-// An InputError when one of the files that are made of the images would take the place of one.
-using Results = std::function<std::vector<std::filesystem::path>(const SurveyFile& file)>;
-void require_sources_stay(const std::vector<SurveyFile>& files, const Results& results);
+// Whether the file's name ends as an image's does, such as .tif, in any letter case; and the path
+// without that.
+[[nodiscard]] bool is_image_name(const std::filesystem::path& file);
+[[nodiscard]] std::filesystem::path without_extension(const std::filesystem::path& file);
 
 }  // namespace aphotic

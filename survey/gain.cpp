@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "survey/survey_gain.h"
+#include "survey/gain.h"
 
 #include "base/error.h"
+#include "base/json_text.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace aphotic {
 
@@ -27,11 +30,11 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     }
     SurveyGain gain{.gain = {}, .middle = middle, .images = {}};
     std::array<std::vector<double>, kChannels> quotients;
-    for (const SeenImage& seen : look.images) {
-        const PerChannel& quotient = seen.look.quotient;
-        if (!seen.is_for_gain) continue;
+    for (const ImageLook& image : look.images) {
+        const PerChannel& quotient = image.quotient;
+        if (!image.is_for_gain) continue;
         if (!std::ranges::all_of(quotient, [](double q) { return q > 0.0; })) continue;
-        gain.images.push_back(seen.name);
+        gain.images.push_back(image.name);
         for (std::size_t c = 0; c < kChannels; ++c) quotients[c].push_back(quotient[c]);
     }
     if (gain.images.empty()) {
@@ -45,6 +48,23 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     for (std::size_t c = 0; c < kChannels; ++c)
         gain.gain[c] = gain.middle[c] / median(quotients[c]);
     return gain;
+}
+
+std::optional<SurveyGain> kept_gain(std::string_view text, const std::string& settings_sha256) {
+    try {
+        const nlohmann::json notes = parse_json(text, "correction.json");
+        if (notes.at("settings_sha256") != settings_sha256) return std::nullopt;
+        if (!notes.at("looks_wrong").empty()) return std::nullopt;
+        SurveyGain kept{.gain = notes.at("gain").get<PerChannel>(),
+                        .middle = notes.at("settings").at("middle").get<PerChannel>(),
+                        .images = notes.at("gain_from").get<std::vector<std::string>>()};
+        const auto is_gain = [](double gain) { return std::isfinite(gain) && gain > 0.0; };
+        return std::ranges::all_of(kept.gain, is_gain) ? std::optional(kept) : std::nullopt;
+    } catch (const nlohmann::json::exception&) {
+        return std::nullopt;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
 }
 
 }  // namespace aphotic

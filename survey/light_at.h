@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The light that each image of a survey was taken in: by a rig at the image's own altitude and
+// The light that an image of a survey was taken in: by a rig at the image's own altitude and
 // attitude, or one map for all.
 #pragma once
 
@@ -8,9 +8,11 @@
 #include "lightmap/lightmap.h"
 #include "rig/rig.h"
 #include "survey/correction.h"
-#include "survey/survey_files.h"
+#include "survey/image_files.h"
+#include "survey/navigation.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -18,12 +20,9 @@
 
 namespace aphotic {
 
-struct SurveyLight {
+struct LightAt {
     std::string digest;  // of all that the maps depend on, the pose aside
     PlaneSize size;
-    bool has_poses = true;  // else one map for all images, and a pose that means nothing
-    // An InputError when the image has none that can be corrected.
-    std::function<Sled(const std::filesystem::path& image)> pose;
     // These are called from several threads.
     std::function<Lightmap(const Sled& sled)> map;
     std::function<std::vector<std::uint8_t>(const Sled& sled, int within_px)> edges;
@@ -33,13 +32,17 @@ struct SurveyLight {
     std::optional<PerChannel> floor_colour;  // none: nothing is known of the floor
 };
 
-// altitudes_m: least and most that are corrected; empty: all.
-[[nodiscard]] SurveyLight light_of_rig(const std::string& rig_file,
-                                       const std::string& navigation_file,
-                                       const std::vector<double>& altitudes_m,
-                                       const std::vector<SurveyFile>& files);
+// For the poses of these images: those that have none are passed over here.
+[[nodiscard]] LightAt light_of_rig(const Rig& rig,
+                                   const Navigation& navigation,
+                                   const std::vector<ImageFile>& files);
 
-// Channels R, G and B of an EXR. What is not finite in it, as where nothing was observed, is dark.
-[[nodiscard]] SurveyLight light_of_map(const std::string& map_file);
+// One map, whatever the pose: channels R, G and B of an EXR. What is not finite in it, as where
+// nothing was observed, is dark.
+[[nodiscard]] LightAt light_of_map(const std::filesystem::path& map_file);
+
+// Of the rig's floor: how much of the lamps' own light, without water, it gives back to each
+// channel:  int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.
+[[nodiscard]] PerChannel floor_colour(const Rig& rig);
 
 }  // namespace aphotic

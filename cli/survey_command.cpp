@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/survey_command.h"
+
+#include "base/error.h"
+#include "base/progress.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+namespace aphotic::cli {
+
+namespace {
+
+// A line for each part of the work: it tells how long that part will take.
+class ProgressOfParts {
+  public:
+    void show(std::string_view what, double share) {
+        if (!line_ || share < share_) line_.emplace();
+        share_ = share;
+        line_->show(what, share);
+    }
+    void wipe() {
+        if (line_) line_->wipe();
+    }
+
+  private:
+    std::optional<ProgressLine> line_;
+    double share_ = 0.0;
+};
+
+}  // namespace
+
+void add_camera_options(CLI::App& app, CameraNumbers& camera) {
+    const auto wrong = [](const std::string& name) {
+        return mosaic_named(name)
+                   ? ""
+                   : fmt::format("found '{}'; allowed: RGGB, BGGR, GRBG, GBRG", name);
+    };
+    app.add_option_function<std::string>(
+           "--bayer",
+           [&camera](const std::string& name) { camera.mosaic = *mosaic_named(name); },
+           "the images are mosaics of one channel, named after the four pixels at the top left: "
+           "RGGB, BGGR, GRBG or GBRG")
+        ->check(CLI::Validator(wrong, "PATTERN"));
+    app.add_option("--black-level", camera.black_level, "the camera's number for no light")
+        ->capture_default_str();
+}
+
+void add_white_level_option(CLI::App& app, CameraNumbers& camera) {
+    app.add_option("--white-level",
+                   camera.white_level,
+                   "the camera's number at saturation, such as 4095; by default the largest that "
+                   "the file's integers hold");
+}
+
+void add_format_options(CLI::App& app, ResultFormat& format) {
+    app.add_flag("--mask", format.mask, "write NAME.mask.png beside each image");
+    app.add_option("--format",
+                   format.format,
+                   "tiff or png, of 16 bits with 65535 for white, or exr, of floats")
+        ->check(CLI::IsMember({"tiff", "png", "exr"}))
+        ->capture_default_str();
+    app.add_option(
+           "--compression",
+           format.compression,
+           "of the files, always lossless: none, fast, or small (a few per cent smaller, about "
+           "1.5 times slower)")
+        ->transform(CLI::CheckedTransformer(kCompressions).description(""))
+        ->type_name("none|fast|small")
+        ->default_str("fast");
+}
+
+void add_strict_option(CLI::App& app, bool& strict) {
+    app.add_flag("--strict", strict, "treat warnings about the survey as errors");
+}
+
+RunWatch terminal_watch(bool strict) {
+    const auto line = std::make_shared<ProgressOfParts>();
+    return {
+        .progress = [line](std::string_view what, double share) { line->show(what, share); },
+        .skipped =
+            [line](const Skipped& one) {
+                line->wipe();
+                fmt::print(stderr, "aphotic: {}: {}; skipped\n", one.image, one.why);
+            },
+        .looks_wrong =
+            [line, strict](const std::vector<Suspicion>& found) {
+                line->wipe();
+                std::string all;
+                for (const Suspicion& one : found) {
+                    if (!strict) {
+                        fmt::print(stderr, "aphotic: looks wrong: {}: {}\n", one.about, one.what);
+                    }
+                    all += fmt::format("{}{}: {}", all.empty() ? "" : "; ", one.about, one.what);
+                }
+                if (strict && !all.empty()) {
+                    throw InputError("--strict: suspicious survey: " + all);
+                }
+            }};
+}
+
+void print_doubts(const RunOutcome& outcome) {
+    constexpr double kPercent = 100.0;
+    fmt::print("  doubtful pixels:");
+    for (const auto& [name, bit] : kDoubts) {
+        fmt::print(" {} {:.3g} %", name, kPercent * outcome.doubtful_share(name));
+    }
+    fmt::print("\n");
+}
+
+}  // namespace aphotic::cli

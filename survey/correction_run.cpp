@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/correction_run.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/json_text.h"
+#include "base/sha256.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+#include <utility>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+PerChannel wanted_middle(const Survey& survey, const CorrectionOptions& options) {
+    constexpr double kGrey = 0.2;
+    if (!options.middle && survey.light.floor_colour) return *survey.light.floor_colour;
+    const double middle = options.middle.value_or(kGrey);
+    return {middle, middle, middle};
+}
+
+// Their text stands for all that results depend on, images, poses and gain aside: changed, it does
+// every image of every folder anew.
+Json settings_of(const Survey& survey, const CorrectionOptions& options) {
+    const ResultFormat& format = options.run.format;
+    Json json{{"aphotic", APHOTIC_VERSION},
+              {survey.navigation ? "rig_sha256" : "map_sha256", survey.light.digest},
+              {"bayer", mosaic_name(survey.camera.mosaic)},
+              {"keep_mosaic", options.keep_mosaic},
+              {"black_level", survey.camera.black_level},
+              {"white_level", nullptr},
+              {"gain", options.gain},
+              {"gain_images", nullptr},
+              {"middle", wanted_middle(survey, options)},
+              {"least_light", options.limit.share},
+              {"most_noise", options.limit.relative},
+              {"read_noise", nullptr},
+              {"electrons", options.limit.electrons_per_number},
+              {"edge_px", options.edge_px},
+              {"mask", format.mask},
+              {"format", format.format},
+              {"compression", name_of(format.compression)}};
+    if (options.gain.empty()) json["gain_images"] = options.gain_images;
+    if (options.read_noise) json["read_noise"] = *options.read_noise;
+    if (survey.camera.white_level) json["white_level"] = *survey.camera.white_level;
+    return json;
+}
+
+std::optional<SurveyGain> known_gain(const Survey& survey,
+                                     const CorrectionOptions& options,
+                                     const std::string& settings_sha256) {
+    if (!options.gain.empty()) {
+        const auto& given = options.gain;
+        return SurveyGain{.gain = {given.front(), given[given.size() / 2], given.back()},
+                          .middle = wanted_middle(survey, options),
+                          .images = {}};
+    }
+    const fs::path notes = options.run.folder / kCorrectionNotes;
+    return fs::exists(notes) ? kept_gain(read_text_file(notes), settings_sha256) : std::nullopt;
+}
+
+// A gain that is kept is not taken again, but the survey is looked at: it may have other images and
+// another navigation by now.
+void look_first(const Survey& survey,
+                const CorrectionOptions& options,
+                const RunWatch& watch,
+                CorrectionReport& report) {
+    const std::optional<SurveyGain> known = known_gain(survey, options, report.settings_sha256);
+    const SurveyLook look = look_at(survey,
+                                    {.gain_images = known ? 0 : options.gain_images,
+                                     .least_light = options.limit.share,
+                                     .jobs = options.run.jobs},
+                                    watch);
+    report.looks_wrong = suspicions(look.images, survey.camera.mosaic);
+    report.not_checked = not_checked(look.images);
+    watch.looks_wrong(report.looks_wrong);
+    report.gain = known ? *known : measured_gain(look, wanted_middle(survey, options));
+}
+
+Counts correct_image(const Survey& survey,
+                     const CorrectionOptions& options,
+                     const SurveyGain& gain,
+                     const ImageFile& file) {
+    const Sled sled = survey.sled_of(file);
+    SurveyImage taken = read_survey_image(file.source, survey.camera);
+    NoiseLimit limit = options.limit;
+    limit.read_noise = options.read_noise.value_or(taken.rounding);
+    // Of a gain by itself nobody knows how much light the survey's middle has.
+    if (!options.gain.empty() && !options.middle) limit = {.share = options.limit.share};
+    const Correction correction{
+        .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = limit};
+    CorrectedImage result = corrected(std::move(taken.raw), survey.light.map(sled), correction);
+    if (result.image.mosaic != Mosaic::None && !options.keep_mosaic) result = demosaiced(result);
+    const std::vector<std::uint8_t> edges = survey.light.edges(sled, options.edge_px);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        result.doubts[i] |= edges[i] != 0 ? kEdge : std::uint8_t{0};
+    }
+    return write_results(options.run.folder, file, std::move(result), taken, options.run.format);
+}
+
+ImageWork work_of(const Survey& survey,
+                  const CorrectionOptions& options,
+                  const CorrectionReport& report) {
+    ImageWork work;
+    work.inputs = [&](const ImageFile& file) {
+        const Sled sled = survey.sled_of(file);
+        return fmt::format("{} {} {} {} {}",
+                           report.settings_sha256,
+                           fmt::join(report.gain.gain, " "),
+                           sled.altitude_m,
+                           sled.pitch_rad,
+                           sled.roll_rad);
+    };
+    work.make = [&](const ImageFile& file) {
+        return correct_image(survey, options, report.gain, file);
+    };
+    return work;
+}
+
+}  // namespace
+
+Json to_json(const CorrectionReport& report) {
+    Json json{{"settings", report.settings},
+              {"settings_sha256", report.settings_sha256},
+              {"gain", report.gain.gain},
+              {"gain_from", report.gain.images},
+              {"looks_wrong", to_json(report.looks_wrong)},
+              {"not_checked", report.not_checked}};
+    if (!report.run) return json;
+    json.update(to_json(*report.run));
+    json["seconds"] = report.seconds;
+    return json;
+}
+
+CorrectionReport correct_survey(const Survey& survey,
+                                const CorrectionOptions& options,
+                                const RunWatch& watch) {
+    const auto start = std::chrono::steady_clock::now();
+    if (options.gain.size() == 2) {
+        throw InputError("--gain: found 2 numbers; allowed: 1, or 3 for R, G and B");
+    }
+    const ResultFolder folder(options.run, survey.files);
+    const fs::path notes = options.run.folder / kCorrectionNotes;
+    CorrectionReport report;
+    report.settings = settings_of(survey, options);
+    report.settings_sha256 = sha256_of_text(report.settings.dump());
+    look_first(survey, options, watch, report);
+    // Before the first image: also what an interrupted run leaves is no survey.
+    write_text_file(notes, json_text(to_json(report)));
+    report.run = run_images(survey.files, options.run, work_of(survey, options, report), watch);
+    const PlaneSize size = survey.light.size;
+    report.run->pixels = static_cast<double>(report.run->corrected + report.run->kept) *
+                         size.width_px * size.height_px;
+    report.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    write_text_file(notes, json_text(to_json(report)));
+    return report;
+}
+
+}  // namespace aphotic

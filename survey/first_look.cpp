@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/first_look.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace aphotic {
+
+namespace {
+
+ImageLook look_at_image(const ImageFile& file, const Survey& survey, double least_light) {
+    ImageLook look;
+    look.name = file.name.string();
+    const bool has_light = static_cast<bool>(survey.light.map);
+    const Sled sled = has_light ? survey.sled_of(file) : Sled{};
+    const SurveyImage taken = read_survey_image(file.source, survey.camera);
+    look.top = top_of(taken.raw, taken.rounding > 0.0);
+    look.white = taken.levels.white;
+    if (taken.raw.mosaic != Mosaic::None) look.sites = site_medians(taken.raw, taken.levels.black);
+    if (!has_light) return look;
+    require_size(
+        taken.raw, survey.light.size.width_px, survey.light.size.height_px, "as the map has");
+    const Lightmap map = survey.light.map(sled);
+    if (survey.navigation) look.altitude_m = sled.altitude_m;
+    look.quotient = middle_quotient(taken.raw, map, taken.levels, least_light);
+    look.map_mean = means_of(map);
+    if (const auto other =
+            survey.light.map_as_radians ? survey.light.map_as_radians(sled) : std::nullopt) {
+        look.as_radians = likeness(taken.raw, taken.levels, map, *other);
+    }
+    return look;
+}
+
+// Which files, in their order, and whether the gain is taken from them.
+struct Choice {
+    std::size_t file = 0;
+    bool is_for_gain = false;
+};
+
+std::vector<Choice> chosen(std::size_t files, const LookRequest& request) {
+    std::map<std::size_t, bool> chosen;
+    const auto spread = [&](std::size_t most, bool is_for_gain) {
+        const std::size_t count = std::min(most, files);
+        for (std::size_t i = 0; i < count; ++i) chosen[i * files / count] = is_for_gain;
+    };
+    if (request.gain_images < request.most_images) spread(request.most_images, false);
+    spread(request.gain_images, true);
+    std::vector<Choice> choices;
+    for (const auto& [file, is_for_gain] : chosen) choices.push_back({file, is_for_gain});
+    return choices;
+}
+
+}  // namespace
+
+SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWatch& watch) {
+    const std::vector<Choice> choices = chosen(survey.files.size(), request);
+    std::vector<std::optional<ImageLook>> looks(choices.size());
+    std::vector<std::string> whys(choices.size());
+    std::size_t count = 0;
+    std::mutex mutex;
+    parallel_for(choices.size(), request.jobs, [&](std::size_t i, std::size_t) {
+        try {
+            looks[i] = look_at_image(survey.files[choices[i].file], survey, request.least_light);
+            looks[i]->is_for_gain = choices[i].is_for_gain;
+        } catch (const InputError& error) {
+            whys[i] = error.what();  // it is said of the image when its turn comes, if one does
+        }
+        const std::scoped_lock lock(mutex);
+        watch.progress("looking at the survey",
+                       static_cast<double>(++count) / static_cast<double>(choices.size()));
+    });
+    SurveyLook result{.images = {}, .count = choices.size(), .first_why = {}};
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        if (looks[i]) {
+            result.images.push_back(std::move(*looks[i]));
+        } else if (result.first_why.empty()) {
+            result.first_why =
+                fmt::format("{}: {}", survey.files[choices[i].file].name.string(), whys[i]);
+        }
+    }
+    return result;
+}
+
+std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
+                                     const CameraNumbers& camera,
+                                     std::size_t jobs,
+                                     const RunWatch& watch) {
+    constexpr std::size_t kImages = 8;
+    const SurveyLook look =
+        look_at({.files = files, .navigation = {}, .light = {}, .camera = camera},
+                {.most_images = kImages, .jobs = jobs},
+                watch);
+    std::vector<Suspicion> found = suspicions(look.images, camera.mosaic);
+    watch.looks_wrong(found);
+    return found;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A first look at some images of a survey, spread evenly over it: what the gain is taken from
+// (gain.h), and what looks wrong (survey_check.h). How many the gain takes is no matter to the
+// check, which needs kEnoughImages.
+#pragma once
+
+#include "survey/run_watch.h"
+#include "survey/survey.h"
+#include "survey/survey_check.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct LookRequest {
+    std::size_t most_images = 16;
+    std::size_t gain_images =
+        0;                     // that the gain is taken from, whether or not they are among these
+    double least_light = 0.0;  // of the map's brightest: darker pixels do not count
+    std::size_t jobs = 1;
+};
+
+struct SurveyLook {
+    std::vector<ImageLook> images;  // those that can be used
+    std::size_t count = 0;          // that were looked at
+    std::string first_why;          // why the first of the others cannot, and which; or empty
+};
+
+[[nodiscard]] SurveyLook look_at(const Survey& survey,
+                                 const LookRequest& request,
+                                 const RunWatch& watch);
+
+// What looks wrong about images whose light nobody knows: says it to the watch, too.
+[[nodiscard]] std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
+                                                   const CameraNumbers& camera,
+                                                   std::size_t jobs,
+                                                   const RunWatch& watch);
+
+}  // namespace aphotic

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Work on every image of a survey, some at a time, that can be stopped at any moment and given
+// again: what is done is noted in the folder of results as it is done (journal.h), and an image
+// that cannot be used costs no other.
+//
+// An image is left as it is when its source (size and time) and all that its result depends on are
+// what was noted, and its files are there in the noted size.
+#pragma once
+
+#include "base/folder_lock.h"
+#include "survey/image_files.h"
+#include "survey/journal.h"
+#include "survey/result_files.h"
+#include "survey/run_watch.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace aphotic {
+
+struct ImageRunOptions {
+    std::filesystem::path folder;  // of the results
+    ResultFormat format;
+    std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
+};
+
+// The folder, made, taken from all other runs, and rid of what killed ones left half written. When
+// nothing was written it goes again.
+class ResultFolder {
+  public:
+    // An InputError when a result would take the place of one of the images.
+    ResultFolder(const ImageRunOptions& options, const std::vector<ImageFile>& files);
+    ~ResultFolder();
+    ResultFolder(const ResultFolder&) = delete;
+    ResultFolder& operator=(const ResultFolder&) = delete;
+
+  private:
+    std::filesystem::path folder_;
+    FolderLock lock_;
+};
+
+// Of the file as it is now: size and time. An InputError when it vanished since it was listed: one
+// bad image.
+[[nodiscard]] std::string state_of(const std::filesystem::path& image);
+
+// An InputError that these throw is of one image, which is skipped.
+struct ImageWork {
+    // All that the image's result depends on, the image itself aside.
+    std::function<std::string(const ImageFile& file)> inputs;
+    // Before the first image that is not done yet, if there is one.
+    std::function<void()> prepare = [] {};
+    // Reads the image and writes its results; what it counted is noted. Called by several threads.
+    std::function<Counts(const ImageFile& file)> make;
+};
+
+struct RunOutcome {
+    std::size_t corrected = 0;
+    std::size_t kept = 0;
+    std::vector<Skipped> skipped;  // in the order of the images
+    Counts counts;                 // of all that are done
+    double pixels = 0.0;           // of these
+
+    [[nodiscard]] double doubtful_share(std::string_view doubt) const;
+};
+[[nodiscard]] nlohmann::ordered_json to_json(const RunOutcome& outcome);
+
+// pixels: the sum of what was counted under kPixels.
+inline constexpr const char* kPixels = "pixels";
+[[nodiscard]] RunOutcome run_images(const std::vector<ImageFile>& files,
+                                    const ImageRunOptions& options,
+                                    const ImageWork& work,
+                                    const RunWatch& watch);
+
+}  // namespace aphotic

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A survey: its images, where each was taken, in what light, and by what camera.
+#pragma once
+
+#include "survey/image_files.h"
+#include "survey/light_at.h"
+#include "survey/navigation.h"
+#include "survey/survey_image.h"
+
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+
+struct Survey {
+    std::vector<ImageFile> files;
+    std::optional<Navigation> navigation;  // none: nothing here depends on a pose
+    LightAt light;                         // without maps, as by default, it is not known
+    CameraNumbers camera;
+
+    // An InputError when the navigation has no pose for it.
+    [[nodiscard]] Sled sled_of(const ImageFile& file) const {
+        return navigation ? navigation->pose_of(file.source).sled : Sled{};
+    }
+};
+
+}  // namespace aphotic

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Corrections without a model over whole surveys: formats, masks, and what is done again.
+#include "survey/baseline_run.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "support/png.h"
+#include "support/raw_survey.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace aphotic::baseline_run_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BaselineRun : public testing::Test {
+  protected:
+    RunOutcome run(Baseline baseline) {
+        options_.baseline = baseline;
+        Survey survey = raw_.survey();
+        survey.camera = camera_;
+        return *correct_by_baseline(survey, options_, watch_).run;
+    }
+
+    RawSurvey raw_;
+    CameraNumbers camera_;
+    BaselineRunOptions options_{.baseline = {},
+                                .settings = {.order = 1},
+                                .run = {.folder = raw_.path("out"), .format = {.format = "exr"}}};
+    RunWatch watch_;
+};
+
+// Light that falls in a line leaves a polynomial of order 1 nothing but the survey's mean, 1.15.
+TEST_F(BaselineRun, LearnsThePatternOfEachAltitude) {
+    options_.settings.bin_m = 0.5;
+    EXPECT_EQ(run(Baseline::BinnedPolynomial).corrected, 4U);
+    constexpr double kFloats = 1e-5;
+    for (const char* name : {"out/b.exr", "out/high.exr"}) {
+        const std::vector<float> green = RawSurvey::samples_of(raw_.path(name), {"G"});
+        for (const float sample : green) EXPECT_NEAR(sample / green[0], 1.0, kFloats) << name;
+    }
+}
+
+TEST_F(BaselineRun, AloneItDoesWhatIsNewAndLearningItDoesAllAnew) {
+    EXPECT_EQ(run(Baseline::Homomorphic).corrected, 4U);
+    EXPECT_EQ(run(Baseline::Homomorphic).kept, 4U);
+    raw_.write("b", 2.0F);
+    const RunOutcome alone = run(Baseline::Homomorphic);
+    EXPECT_EQ(alone.corrected, 1U);
+    EXPECT_EQ(alone.kept, 3U);
+
+    EXPECT_EQ(run(Baseline::LogPolynomial).corrected, 4U) << "another correction";
+    EXPECT_EQ(run(Baseline::LogPolynomial).kept, 4U);
+    raw_.write("b", 5.0F);
+    EXPECT_EQ(run(Baseline::LogPolynomial).corrected, 4U) << "another pattern";
+    fs::remove(raw_.path("out/c.exr"));
+    const std::string before = read_text_file(raw_.path("out/a.exr"));
+    const RunOutcome one = run(Baseline::LogPolynomial);
+    EXPECT_EQ(one.corrected, 1U);
+    EXPECT_EQ(read_text_file(raw_.path("out/a.exr")), before);
+    EXPECT_TRUE(fs::exists(raw_.path("out/c.exr")));
+    options_.settings.order = 2;
+    EXPECT_EQ(run(Baseline::LogPolynomial).corrected, 4U) << "other settings";
+}
+
+// What comes of an interruption is what comes of none.
+TEST_F(BaselineRun, ItGoesOnToTheSameImages) {
+    run(Baseline::LogPolynomial);
+    const std::string whole = read_text_file(raw_.path("out/b.exr"));
+    fs::remove(raw_.path("out/b.exr"));
+    EXPECT_EQ(run(Baseline::LogPolynomial).corrected, 1U);
+    EXPECT_EQ(read_text_file(raw_.path("out/b.exr")), whole);
+}
+
+// White is the white level less the black level: of sigma so large that the image keeps its shape.
+TEST_F(BaselineRun, SixteenBitsAreSharesOfTheWhiteLevel) {
+    options_.run.format = {.format = "png", .mask = true};
+    options_.settings.low = 1.0;  // changes nothing
+    camera_ = {.mosaic = Mosaic::None, .black_level = 1.0F, .white_level = 4.0F};
+    const RunOutcome outcome = run(Baseline::Homomorphic);
+    EXPECT_EQ(outcome.corrected, 4U);
+    const DecodedPng image = decode_png(read_text_file(raw_.path("out/c.png")));
+    const DecodedPng mask = decode_png(read_text_file(raw_.path("out/c.mask.png")));
+    const std::vector<float> light = RawSurvey::light();
+    for (std::size_t i = 0; i < RawSurvey::kPixels_of_plane; ++i) {
+        const float red = 3.0F * light[i];
+        const float blue = 3.0F * light[i + 2 * RawSurvey::kPixels_of_plane];
+        const std::uint32_t doubts = mask.pixels[i] & 0xFFU;
+        EXPECT_EQ((doubts & kSaturated) != 0, blue >= 4.0F) << i;
+        EXPECT_EQ((doubts & kClipped) != 0, blue > 4.0F) << i;
+        if (red > 4.0F) continue;
+        constexpr double kStep =
+            1.0;  // of eight bits, of which the picture's reader gives the upper
+        EXPECT_NEAR(image.pixels[i] >> 16U & 0xFFU, 255.0 * (red - 1.0) / 3.0, kStep) << i;
+    }
+    EXPECT_GT(outcome.doubtful_share("saturated"), 0.0);
+    EXPECT_EQ(outcome.doubtful_share("edge"), 0.0);
+}
+
+TEST_F(BaselineRun, SixteenBitsOfFloatsNeedAWhiteLevel) {
+    options_.run.format = {.format = "tiff"};
+    const RunOutcome outcome = run(Baseline::Homomorphic);
+    ASSERT_EQ(outcome.skipped.size(), 4U);
+    EXPECT_NE(outcome.skipped[0].why.find("--white-level"), std::string::npos);
+}
+
+TEST_F(BaselineRun, ItsReportIsWhatItLeaves) {
+    options_.baseline = Baseline::Homomorphic;
+    const nlohmann::ordered_json report =
+        to_json(correct_by_baseline(raw_.survey(), options_, watch_));
+    EXPECT_EQ(nlohmann::ordered_json::parse(read_text_file(raw_.path("out/baseline.json"))),
+              report);
+    EXPECT_EQ(report["baseline"], "homomorphic");
+    EXPECT_EQ(report["settings"]["format"], "exr");
+    EXPECT_EQ(report["kept"], 0);
+}
+
+TEST_F(BaselineRun, BinsOfAltitudeNeedANavigation) {
+    options_.baseline = Baseline::BinnedPolynomial;
+    Survey survey = raw_.survey();
+    survey.navigation.reset();
+    EXPECT_THROW(correct_by_baseline(survey, options_, watch_), InputError);
+    EXPECT_FALSE(fs::exists(raw_.path("out")));
+}
+
+}  // namespace
+}  // namespace aphotic::baseline_run_test

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Navigation files as loggers write them, and what is said of those that are wrong.
+#include "survey/navigation_csv.h"
+
+#include "base/error.h"
+#include "support/temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace aphotic::navigation_csv_test {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+const Sled kRigSled{.altitude_m = 2.0, .pitch_rad = 5.0 * kDegree, .roll_rad = 1.0 * kDegree};
+
+Navigation parsed(std::string_view text) {
+    return parse_navigation_csv("nav.csv", text, kRigSled);
+}
+
+template <typename Function>
+std::string fault_of(Function function) {
+    try {
+        function();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "nothing was said";
+}
+
+std::string fault_in(std::string_view text) {
+    return fault_of([&] { static_cast<void>(parsed(text)); });
+}
+
+TEST(NavigationCsv, ColumnsStandInAnyOrderAmongOthers) {
+    const Navigation nav = parsed(
+        "# a survey\n"
+        "roll_deg, latitude, image, pitch_deg, altitude_m\n"
+        "-3, 41.5, a.tif, 4, 1.5\n"
+        "\n"
+        "0.5, 41.6, b.tif, -2.5, +2.25\n");
+    EXPECT_EQ(nav.size(), 2U);
+    const ImagePose& b = nav.pose_of("b.tif");
+    EXPECT_EQ(b.line, 5U);
+    EXPECT_DOUBLE_EQ(b.sled.altitude_m, 2.25);
+    EXPECT_DOUBLE_EQ(b.sled.pitch_rad, -2.5 * kDegree);
+    EXPECT_DOUBLE_EQ(b.sled.roll_rad, 0.5 * kDegree);
+}
+
+// Of a misspelt column the rig's own attitude would be taken, and nobody be told.
+TEST(NavigationCsv, AnAttitudeUnderAnotherNameIsRefused) {
+    EXPECT_EQ(fault_in("image,altitude_m,pitch,roll_deg\na.tif,2,1,0\n"),
+              "nav.csv:1: found the column 'pitch'; allowed: 'pitch_deg'");
+    EXPECT_EQ(fault_in("image,altitude_m,roll_rad\na.tif,2,1\n"),
+              "nav.csv:1: found the column 'roll_rad'; allowed: 'roll_deg'");
+}
+
+TEST(NavigationCsv, HabCamLinesHaveNoHeader) {
+    const Navigation nav = parsed("# eic\na.tif 1.5 4 -3\n  b.tif\t2.25   -2.5 0.5\r\n");
+    EXPECT_EQ(nav.size(), 2U);
+    EXPECT_DOUBLE_EQ(nav.pose_of("a.tif").sled.roll_rad, -3.0 * kDegree);
+    EXPECT_DOUBLE_EQ(nav.pose_of("b.tif").sled.pitch_rad, -2.5 * kDegree);
+}
+
+TEST(NavigationCsv, WhatHasNoColumnIsAsTheRigHasIt) {
+    const Navigation nav = parsed("image,altitude_m\na.tif,1.5\n");
+    EXPECT_DOUBLE_EQ(nav.pose_of("a.tif").sled.altitude_m, 1.5);
+    EXPECT_DOUBLE_EQ(nav.pose_of("a.tif").sled.pitch_rad, kRigSled.pitch_rad);
+    EXPECT_DOUBLE_EQ(nav.pose_of("a.tif").sled.roll_rad, kRigSled.roll_rad);
+}
+
+TEST(NavigationCsv, AnImageIsKnownByItsNameWithoutFolderAndExtension) {
+    const Navigation nav = parsed(
+        "image,altitude_m\n"
+        "\"D:\\\\raw\\\\20120623.171552346.1219.TIF\",1.5\n"
+        "/data/20120623.171552346.1220,2.5\n");
+    EXPECT_EQ(nav.pose_of("converted/20120623.171552346.1219.png").sled.altitude_m, 1.5);
+    EXPECT_EQ(nav.pose_of("20120623.171552346.1220.tif").sled.altitude_m, 2.5);
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("20120623.171552346.tif")); }),
+              "nav.csv has no line for it");
+}
+
+TEST(NavigationCsv, ByteOrderMarkAndWindowsLinesAreNoMatter) {
+    const Navigation nav = parsed("\xEF\xBB\xBFimage,altitude_m\r\na.tif,1.5\r\n");
+    EXPECT_EQ(nav.pose_of("a.tif").sled.altitude_m, 1.5);
+}
+
+TEST(NavigationCsv, AnAltimeterThatLostTheFloorCostsItsOwnImageAlone) {
+    const Navigation nav = parsed("a.tif 0 0 0\nb.tif nan 0 0\nc.tif 2 95 0\nd.tif 2 0 0\n");
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); }),
+              "nav.csv:1: altitude_m: found 0; allowed: 0.001 to 10000");
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
+              "nav.csv:2: altitude_m: found no number; allowed: 0.001 to 10000");
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("c.tif")); }),
+              "nav.csv:3: pitch_deg: found 95; allowed: -89.9 to 89.9");
+    EXPECT_EQ(nav.pose_of("d.tif").sled.altitude_m, 2.0);
+}
+
+// However a logger, a database or a spreadsheet writes that it knows no number.
+TEST(NavigationCsv, ACellWithoutANumberCostsItsOwnImageAlone) {
+    for (const char* none :
+         {"", " ", "\"\"", "NaN", "-nan", "NA", "n/a", "#N/A", "null", "None", "-"}) {
+        const std::string cell = none;
+        const Navigation nav =
+            parsed("image,altitude_m,pitch_deg,roll_deg,latitude\n" + std::string("a.tif,") + cell +
+                   ",1,2,41\nb.tif,2," + cell + ",2,41\nc.tif,2,1," + cell + ",41\nd.tif,2,1,2," +
+                   cell + "\n");
+        EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); }),
+                  "nav.csv:2: altitude_m: found no number; allowed: 0.001 to 10000")
+            << none;
+        EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
+                  "nav.csv:3: pitch_deg: found no number; allowed: -89.9 to 89.9")
+            << none;
+        EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("c.tif")); }),
+                  "nav.csv:4: roll_deg: found no number; allowed: -89.9 to 89.9")
+            << none;
+        EXPECT_EQ(nav.pose_of("d.tif").sled.altitude_m, 2.0) << none;
+    }
+    EXPECT_EQ(parsed("a.tif NA 1 2\nb.tif 2 1 2\n").size(), 2U);
+    EXPECT_EQ(parsed("image,altitude_m\na.tif,2\n,\n,,\n").size(), 1U);
+}
+
+// Of a line that cannot be understood the other images know nothing.
+TEST(NavigationCsv, ALineThatCannotBeUnderstoodCostsItsOwnImageAlone) {
+    const auto fault_of_a = [](const std::string& text) {
+        const Navigation nav = parsed(text);
+        EXPECT_EQ(nav.pose_of("z.tif").sled.altitude_m, 2.0) << text;
+        return fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); });
+    };
+    const std::string header = "image,altitude_m,pitch_deg,roll_deg\nz.tif,2,0,0\n";
+    for (const std::string cell : {"--", "---", "2 m", "?", "ERR", "1.5.2", "0x2", "2;0"}) {
+        EXPECT_EQ(fault_of_a(header + "a.tif," + cell + ",0,0\n"),
+                  "nav.csv:3: altitude_m: found '" + cell + "'; allowed: a number");
+    }
+    EXPECT_EQ(fault_of_a(header + "a.tif,2,--,0\n"),
+              "nav.csv:3: pitch_deg: found '--'; allowed: a number");
+    EXPECT_EQ(fault_of_a(header + "a.tif,2,0,--\n"),
+              "nav.csv:3: roll_deg: found '--'; allowed: a number");
+    EXPECT_EQ(fault_of_a(header + "a.tif,2\n"),
+              "nav.csv:3: found 2 fields; allowed: 4, as in the header row");
+    EXPECT_EQ(fault_of_a(header + "a.tif,2,0,0,0\n"),
+              "nav.csv:3: found 5 fields; allowed: 4, as in the header row");
+    EXPECT_EQ(fault_of_a("z 2 0 0\na.tif 2 0\n"),
+              "nav.csv:2: found 3 fields; allowed: 4: image, altitude, pitch, roll");
+    EXPECT_EQ(fault_of_a("x/a.tif 2 0 0\nz 2 0 0\ny/a.png 2 0 0\na 2 0 0\n"),
+              "nav.csv:1: the image 'a' stands twice, also on line 4");
+    EXPECT_EQ(fault_of_a(header + ",2,0,0\n"),
+              "nav.csv has no line for it; line 3 has no image's name");
+    EXPECT_EQ(fault_of_a("altitude_m,image\n2,z\n2\n"),
+              "nav.csv has no line for it; line 3 has no image's name");
+}
+
+TEST(NavigationCsv, FaultsOfTheHeaderNameFileAndLine) {
+    EXPECT_EQ(fault_in("image,altitude\na.tif,2\n"),
+              "nav.csv:1: found the columns image,altitude; needed: 'altitude_m' (is it "
+              "'altitude'?); allowed besides: pitch_deg, roll_deg");
+    EXPECT_EQ(fault_in("image,altitude_m,altitude_m\n"),
+              "nav.csv:1: the column 'altitude_m' stands twice");
+    EXPECT_EQ(fault_in("# nothing\n"), "nav.csv:2: the file ends without a line of an image");
+    EXPECT_EQ(fault_in("image,altitude_m\n,2\n"),
+              "nav.csv:3: the file ends without a line of an image");
+}
+
+TEST(NavigationCsv, FilesAreReadAndNamed) {
+    const TempFolder folder;
+    const auto file = folder.path() / "nav.csv";
+    write_file(file, "image,altitude\n");
+    EXPECT_TRUE(fault_of([&] {
+                    static_cast<void>(read_navigation_csv(file, kRigSled));
+                }).starts_with(file.string() + ":1: found the columns"));
+    write_file(file, "a.tif 2 0 0\n");
+    EXPECT_EQ(read_navigation_csv(file, kRigSled).size(), 1U);
+}
+
+}  // namespace
+}  // namespace aphotic::navigation_csv_test
