@@ -9,7 +9,7 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "image/exr.h"
@@ -211,14 +211,14 @@ ExitStatus correct_by_baseline(const BaselineCommandOptions& options) {
 void add_baseline_options(CLI::App& app, BaselineOptions& options) {
     app.add_option("--sigma",
                    options.sigma,
-                   "of the blur of illumination-reflectance and homomorphic, as a share of the\n"
-                   "image's width")
+                   "illumination-reflectance, homomorphic: width of the blur as a share of the "
+                   "image's")
         ->check(in_range(1e-4, 10.0))
         ->capture_default_str();
-    app.add_option("--low", options.low, "homomorphic: the gain of what is slow")
+    app.add_option("--low", options.low, "homomorphic: gain of low frequencies")
         ->check(in_range(0.0, 10.0))
         ->capture_default_str();
-    app.add_option("--high", options.high, "homomorphic: the gain of what is quick")
+    app.add_option("--high", options.high, "homomorphic: gain of high frequencies")
         ->check(in_range(0.0, 10.0))
         ->capture_default_str();
     app.add_option("--tiles", options.tiles, "local-equalisation: tiles across and down")
@@ -226,46 +226,48 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options) {
         ->capture_default_str();
     app.add_option("--clip",
                    options.clip,
-                   "local-equalisation: the most a bin counts, in mean bins; 1 changes nothing")
+                   "local-equalisation: clip histograms at N mean bins; 1 changes nothing")
         ->check(in_range(1.0, 1e6))
         ->capture_default_str();
-    app.add_option("--order", options.order, "of the polynomials")
+    app.add_option(
+           "--order", options.order, "log-polynomial, binned-polynomial: order of the polynomials")
         ->check(in_range(0, 12))
         ->capture_default_str();
-    app.add_option("--bin", options.bin_m, "binned-polynomial: the width of a bin of altitude [m]")
+    app.add_option("--bin", options.bin_m, "binned-polynomial: width of an altitude bin, in metres")
         ->check(in_range(1e-3, 1e4))
         ->capture_default_str();
 }
-
-}  // namespace
 
 Action configure_baseline(CLI::App& app) {
     const auto options = std::make_shared<BaselineCommandOptions>();
     app.add_option("NAME", options->name, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
         ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
         ->required();
-    app.add_option("IMAGES", options->images, "images, and folders of images: TIFF, PNG, EXR, JPEG")
+    app.add_option(
+           "IMAGES", options->images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
         ->required();
-    app.add_option("-o,--output", options->folder, "where the corrected images go, as float EXR")
-        ->type_name("DIR")
-        ->required();
+    add_output_folder(app, options->folder)->required();
     app.add_option("--nav",
                    options->navigation,
-                   "the altitude of each image, for binned-polynomial; as for observe")
+                   "Altitude of each image, for binned-polynomial; as for observe")
         ->type_name("FILE");
     add_baseline_options(app, options->baseline);
     add_camera_options(app, options->camera);
-    app.add_option("--jobs", options->jobs, "images at a time")
-        ->check(in_range(1, 1024))
-        ->capture_default_str();
+    add_jobs(app, options->jobs, "Correct N images at a time");
     add_strict_option(app, options->strict);
-    app.add_flag("--json", options->json, "print DIR/baseline.json");
+    add_json(app, options->json, "Print DIR/baseline.json");
     app.footer(
-        "What users do without a model of the lamps, to hold it against. The polynomials learn "
-        "from\n"
-        "all images given, the others from each alone. An image that cannot be used is told and\n"
-        "skipped; the exit status is then 1.");
+        "Writes float EXR. The polynomials learn from all images given; the others correct each "
+        "image by itself. Images that cannot be used are reported and skipped; the exit status is "
+        "then 1.");
     return [options] { return correct_by_baseline(*options); };
 }
+
+}  // namespace
+
+const Command kBaseline{"baseline",
+                        kSurveyCommands,
+                        "Correct images without a model of the lamps, for comparison",
+                        configure_baseline};
 
 }  // namespace aphotic::cli

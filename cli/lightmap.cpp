@@ -10,7 +10,7 @@
 #include "cli/atlas_map.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/outcome.h"
 #include "image/exr.h"
 #include "image/preview.h"
@@ -26,7 +26,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <thread>
 
 namespace aphotic::cli {
 namespace {
@@ -38,9 +37,7 @@ struct LightmapCommandOptions {
     std::optional<double> pitch_deg;
     std::optional<double> roll_deg;
     std::optional<double> water_multiple;
-    LightmapOptions map{
-        .error = 1e-5,
-        .threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
+    LightmapOptions map{.error = 1e-5, .threads = all_cores()};
     bool per_strobe = false;
     bool per_cone = false;
     bool normalised = false;
@@ -108,7 +105,76 @@ std::string words_of(const MapPromise& promise) {
                        promise.is_of_lamp_grids ? ", emitters being grids of lamps" : "");
 }
 
-ExitStatus make_lightmap(const LightmapCommandOptions& options) {
+struct MadeLightmap {
+    std::string title;
+    std::string rig_sha256;
+    std::string file;
+    int width_px = 0;
+    int height_px = 0;
+    Sled sled;
+    std::vector<std::string> channels;
+    std::array<float, kChannels> peaks{};
+    bool is_normalised = false;
+    double error = 0.0;
+    MapPromise promise;
+    PathRange paths;
+    std::size_t grid = 0;
+    int table_steps = 0;
+    int threads = 1;
+    double tables_s = 0.0;
+    double map_s = 0.0;
+};
+
+nlohmann::ordered_json to_json(const MadeLightmap& made) {
+    return {{"title", made.title},
+            {"rig_sha256", made.rig_sha256},
+            {"file", made.file},
+            {"width_px", made.width_px},
+            {"height_px", made.height_px},
+            {"altitude_m", made.sled.altitude_m},
+            {"pitch_deg", made.sled.pitch_rad / kRadiansPerDegree},
+            {"roll_deg", made.sled.roll_rad / kRadiansPerDegree},
+            {"channels", made.channels},
+            {"peak", made.peaks},
+            {"normalised", made.is_normalised},
+            {"error", made.error},
+            {"promise",
+             {{"error", made.promise.error},
+              {"bounded", made.promise.is_bounded},
+              {"of_lamp_grids", made.promise.is_of_lamp_grids}}},
+            {"paths_m", {made.paths.shortest_m, made.paths.longest_m}},
+            {"grid", made.grid},
+            {"table_steps", made.table_steps},
+            {"threads", made.threads},
+            {"tables_s", made.tables_s},
+            {"map_s", made.map_s}};
+}
+
+void print(const MadeLightmap& made) {
+    constexpr double kMilli = 1e3;
+    fmt::print(
+        "{}: {} x {} pixels in {:.0f} ms,\n"
+        "  {};\n"
+        "  {:.0f} ms more for {} of the paths from {:.4g} to {:.4g} m, of {}\n",
+        made.title,
+        made.width_px,
+        made.height_px,
+        kMilli * made.map_s,
+        words_of(made.promise),
+        kMilli * made.tables_s,
+        counted(static_cast<std::size_t>(made.table_steps), "step"),
+        made.paths.shortest_m,
+        made.paths.longest_m,
+        counted(made.grid, "wavelength"));
+    fmt::print("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
+               made.peaks[0],
+               made.peaks[1],
+               made.peaks[2],
+               made.is_normalised ? ", each channel divided by its own" : "");
+    fmt::print("  {}  {}\n", made.file, counted(made.channels.size(), "channel"));
+}
+
+MadeLightmap make_lightmap(const LightmapCommandOptions& options) {
     const auto seconds_since = [](auto start) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
@@ -154,56 +220,23 @@ ExitStatus make_lightmap(const LightmapCommandOptions& options) {
                       options.preview,
                       options.preview_file);
     }
-
-    const MapPromise promise = map_promise(rig, options.map);
-    nlohmann::ordered_json outcome = {
-        {"title", rig.title},
-        {"rig_sha256", rig.digest},
-        {"file", options.file},
-        {"width_px", map.width_px},
-        {"height_px", map.height_px},
-        {"altitude_m", rig.sled.altitude_m},
-        {"pitch_deg", rig.sled.pitch_rad / kRadiansPerDegree},
-        {"roll_deg", rig.sled.roll_rad / kRadiansPerDegree},
-        {"channels", planes.names},
-        {"peak", peaks},
-        {"normalised", options.normalised},
-        {"error", options.map.error},
-        {"promise",
-         {{"error", promise.error},
-          {"bounded", promise.is_bounded},
-          {"of_lamp_grids", promise.is_of_lamp_grids}}},
-        {"paths_m", {maker.paths().shortest_m, maker.paths().longest_m}},
-        {"grid", maker.grid_size()},
-        {"table_steps", maker.table_steps()},
-        {"threads", options.map.threads},
-        {"tables_s", tables_s},
-        {"map_s", map_s}};
-    if (options.json) {
-        fmt::print("{}\n", dumped(outcome));
-        return kDone;
-    }
-    fmt::print(
-        "{}: {} x {} pixels in {:.0f} ms,\n"
-        "  {};\n"
-        "  {:.0f} ms more for {} of the paths from {:.4g} to {:.4g} m, of {}\n",
-        rig.title,
-        map.width_px,
-        map.height_px,
-        1e3 * map_s,
-        words_of(promise),
-        1e3 * tables_s,
-        counted(static_cast<std::size_t>(maker.table_steps()), "step"),
-        maker.paths().shortest_m,
-        maker.paths().longest_m,
-        counted(maker.grid_size(), "wavelength"));
-    fmt::print("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
-               peaks[0],
-               peaks[1],
-               peaks[2],
-               options.normalised ? ", by which each channel is divided" : "");
-    fmt::print("  {}  {}\n", options.file, counted(planes.names.size(), "channel"));
-    return kDone;
+    return {.title = rig.title,
+            .rig_sha256 = rig.digest,
+            .file = options.file,
+            .width_px = map.width_px,
+            .height_px = map.height_px,
+            .sled = rig.sled,
+            .channels = planes.names,
+            .peaks = peaks,
+            .is_normalised = options.normalised,
+            .error = options.map.error,
+            .promise = map_promise(rig, options.map),
+            .paths = maker.paths(),
+            .grid = maker.grid_size(),
+            .table_steps = maker.table_steps(),
+            .threads = options.map.threads,
+            .tables_s = tables_s,
+            .map_s = map_s};
 }
 
 void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& options) {
@@ -219,7 +252,10 @@ void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& 
 }
 
 ExitStatus make_map(const CLI::App& app, const LightmapCommandOptions& options) {
-    if (!std::filesystem::is_directory(options.rig_file)) return make_lightmap(options);
+    if (!std::filesystem::is_directory(options.rig_file)) {
+        show(make_lightmap(options), options.json);
+        return kDone;
+    }
     refuse_what_needs_a_rig(app, options);
     PreviewOptions preview = options.preview;
     if (preview.white == PreviewWhite::Lamp) preview.white = PreviewWhite::Image;  // by default
@@ -237,65 +273,69 @@ ExitStatus make_map(const CLI::App& app, const LightmapCommandOptions& options) 
 }
 
 void add_sled_options(CLI::App& app, LightmapCommandOptions& options) {
-    constexpr double kLeastAltitude_m = 0.001;
-    constexpr double kMostAltitude_m = 10000.0;
-    constexpr double kMostTilt_deg = 89.9;
-    app.add_option("--altitude-m", options.altitude_m, "instead of the rig's altitude")
-        ->check(in_range(kLeastAltitude_m, kMostAltitude_m));
-    app.add_option("--pitch-deg", options.pitch_deg, "instead of the rig's pitch, bow up")
-        ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
-    app.add_option("--roll-deg", options.roll_deg, "instead of the rig's roll, starboard down")
-        ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
+    app.add_option(kAltitudeNames, options.altitude_m, "Altitude in metres instead of the rig's")
+        ->check(in_range(kLeastAltitude_m, kMostAltitude_m))
+        ->option_text("M");
+    app.add_option(kPitchNames, options.pitch_deg, "Pitch in degrees, bow up, instead of the rig's")
+        ->check(in_range(-kMostTilt_deg, kMostTilt_deg))
+        ->option_text("DEG");
+    app.add_option(
+           kRollNames, options.roll_deg, "Roll in degrees, starboard down, instead of the rig's")
+        ->check(in_range(-kMostTilt_deg, kMostTilt_deg))
+        ->option_text("DEG");
     app.add_option("--water-multiple",
                    options.water_multiple,
-                   "instead of the rig's multiple of the water's absorption")
-        ->check(not_negative());
+                   "Multiple of the water's absorption instead of the rig's")
+        ->check(not_negative())
+        ->option_text("M");
 }
 
-}  // namespace
-
 Action configure_lightmap(CLI::App& app) {
-    constexpr int kMostThreads = 1024;
     constexpr double kLeastError = 1e-7;
     constexpr double kMostError = 0.1;
     const auto options = std::make_shared<LightmapCommandOptions>();
-    app.add_option("RIG", options->rig_file, "the rig file (TOML), or the folder of an atlas")
+    app.add_option("RIG", options->rig_file, "The rig file (TOML), or the folder of an atlas")
         ->required();
-    app.add_option("-o,--output", options->file, "the OpenEXR file to write")
+    app.add_option("-o,--output", options->file, "Write the map to this OpenEXR file")
         ->required()
         ->type_name("FILE.exr");
     add_sled_options(app, *options);
     app.add_flag("--per-strobe",
                  options->per_strobe,
-                 "what each strobe gives too, in channels such as fore.R");
+                 "Add each strobe's own light, in channels such as fore.R");
     app.add_flag("--per-cone",
                  options->per_cone,
-                 "what each cone of each strobe gives too, in channels such as fore.collimated.R");
-    app.add_flag(
-        "--normalised",
-        options->normalised,
-        "each channel divided by its largest value; absolute by default. Parts are divided "
-        "by what the whole is");
+                 "Add each cone's own light, in channels such as fore.collimated.R");
+    app.add_flag("--normalised",
+                 options->normalised,
+                 "Divide each channel by its largest value, and parts by that of the whole");
     app.add_option("--error",
                    options->map.error,
-                   "relative error of the spectral integral and its table; the rounding of floats "
-                   "comes on top, and behind a port what is not bounded")
+                   "Relative error of the spectral integral and its table; the rounding of floats "
+                   "adds to it, and an unbounded error behind a port")
         ->check(in_range(kLeastError, kMostError))
+        ->option_text("E")
         ->capture_default_str();
-    app.add_option("--preview", options->preview_file, "a picture to look at, too")
-        ->type_name("FILE.png");
-    add_preview_options(app, options->preview);
-    app.add_option("--threads", options->map.threads, "threads to map with; by default the cores")
-        ->check(in_range(1, kMostThreads))
-        ->capture_default_str();
+    add_jobs(app, options->map.threads, "Map with N threads");
     add_needs_option(app, options->ignore_needs);
-    app.add_flag("--json", options->json, "say what was made as JSON");
+    add_json(app, options->json);
+    app.add_option("--preview", options->preview_file, "Write a picture to look at, too")
+        ->type_name("FILE.png")
+        ->group("Preview");
+    add_preview_options(app, options->preview);
     app.footer(
-        "Of the bare flat floor; POV-Ray is not needed. The file holds what image.exr of a render\n"
-        "does: R, G, B, linear, 32-bit floats. Of an atlas it is blended from the bins about that\n"
-        "altitude, attitude and water, and the preview's white is image or none: image by "
-        "default.");
+        "Maps the bare flat floor, without POV-Ray. The file holds what image.exr of a render "
+        "does: R, G, B, linear, 32-bit floats. Given an atlas, blends the bins around the "
+        "altitude, "
+        "attitude and water; its preview's white is image (the default) or none.");
     return [&app, options] { return make_map(app, *options); };
 }
+
+}  // namespace
+
+const Command kLightmap{"lightmap",
+                        kMapCommands,
+                        "Map the camera's signal on a bare flat floor in milliseconds",
+                        configure_lightmap};
 
 }  // namespace aphotic::cli

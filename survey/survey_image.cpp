@@ -107,10 +107,10 @@ void add_camera_options(CLI::App& app, CameraNumbers& camera) {
     app.add_option_function<std::string>(
            "--bayer",
            [&camera](const std::string& name) { camera.mosaic = *mosaic_named(name); },
-           "the images are mosaics of one channel, named after the four pixels at the top left: "
-           "RGGB, BGGR, GRBG or GBRG")
+           "The images are mosaics, named after the four pixels at the top left: RGGB, BGGR, GRBG "
+           "or GBRG")
         ->check(CLI::Validator(wrong, "PATTERN"));
-    app.add_option("--black-level", camera.black_level, "the camera's number for no light")
+    app.add_option("--black-level", camera.black_level, "The camera's number for no light")
         ->capture_default_str();
 }
 

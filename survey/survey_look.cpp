@@ -106,7 +106,7 @@ std::vector<Suspicion> suspicions_of(std::vector<SurveyFile> files,
 }
 
 void add_strict_option(CLI::App& app, bool& strict) {
-    app.add_flag("--strict", strict, "treat warnings about the survey as errors");
+    app.add_flag("--strict", strict, "Treat warnings about the survey as errors");
 }
 
 void tell(const std::vector<Suspicion>& suspicions, bool strict) {

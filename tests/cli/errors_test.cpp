@@ -133,8 +133,7 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
          "--altitude: found -1; allowed: more than 0"},
         {{"observe", "raw", "--nav", "n", "-o", "m.exr", "--altitude", "2", "--within", "inf"},
          "--within: found inf; allowed: 0 or more"},
-        {{"trace", "rig.toml", "-o", "out", "--threads", "0"},
-         "--threads: found 0; allowed: 1 to "},
+        {{"trace", "rig.toml", "-o", "out", "--threads", "0"}, "--jobs: found 0; allowed: 1 to "},
         {{"lightmap", "rig.toml", "-o", "map.png"},
          "--output: found map.png; allowed: a name that ends in .exr"}};
     for (const Case& wrong : cases) {
