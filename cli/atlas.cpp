@@ -186,7 +186,7 @@ void print(const MadeAtlas& made) {
     }
     fmt::print("  {}/atlas.json\n", made.folder.string());
     if (!made.holds()) {
-        fmt::print("  over the tolerance of {:.2g}: the steps allow no finer bins\n",
+        fmt::print("  not within the tolerance of {:.2g}: the steps allow no finer bins\n",
                    made.tolerance);
     }
 }

@@ -87,15 +87,15 @@ void add_axis_options(CLI::App& app, AxisTexts& texts) {
     constexpr const char* kSteps = "FIRST:LAST:STEP";
     app.add_option(kAltitudeNames, texts.altitude, "Altitudes in metres, such as 1:4:0.1")
         ->required()
-        ->type_name(kSteps);
+        ->option_text(kSteps);
     app.add_option(kPitchNames, texts.pitch, "Pitches in degrees; by default the rig's")
-        ->type_name(kSteps);
+        ->option_text(kSteps);
     app.add_option(kRollNames, texts.roll, "Rolls in degrees; by default the rig's")
-        ->type_name(kSteps);
+        ->option_text(kSteps);
     app.add_option("--water-multiple",
                    texts.water,
                    "Multiples of the water's absorption; by default the rig's")
-        ->type_name(kSteps);
+        ->option_text(kSteps);
 }
 
 MapAxes axes_of(const AxisTexts& texts, const Rig& rig) {

@@ -329,16 +329,15 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
     app.add_option("--gain-images", options.gain_images, "Take the gain from N images")
         ->check(in_range(1, kMostImages))
         ->capture_default_str();
-    app.add_option(
-           "--least-light",
-           options.result.limit.share,
-           "Stop raising a pixel's gain where the map is below this share of its brightest in a "
-           "channel")
+    app.add_option("--least-light",
+                   options.result.limit.share,
+                   "Hold a pixel's gain where the map is below this share of its brightest in a "
+                   "channel")
         ->check(in_range(kLeastShare, 1.0))
         ->capture_default_str();
     app.add_option("--most-noise",
                    options.result.limit.relative,
-                   "And where noise would exceed this share of the survey's median")
+                   "Hold it, too, where noise would exceed this share of the survey's median")
         ->check(in_range(kLeastNoise, kMostNoise))
         ->capture_default_str();
     app.add_option(

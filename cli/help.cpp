@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace aphotic::cli {
@@ -31,20 +32,26 @@ std::string wrapped(const std::string& text, std::size_t columns) {
     return result;
 }
 
-// A type's name is "INT:1 to 48": what it is, and what is allowed of it.
-std::string allowed_of(const CLI::Option& option) {
-    const std::string type = option.get_type_name();
-    const std::size_t colon = type.find(':');
-    const bool is_number = type.starts_with("FLOAT") || type.find("INT") != std::string::npos ||
-                           type.starts_with("S:");
-    return is_number && colon != std::string::npos ? type.substr(colon + 1) : "";
-}
+// A type's name is such as "INT:1 to 48" or "TEXT:{tiff,png,exr}": what it is, and what is allowed.
+struct OptionType {
+    explicit OptionType(const std::string& name)
+        : word(name.substr(0, name.find(':'))),
+          allowed(name.size() > word.size() ? name.substr(word.size() + 1) : "") {}
+
+    [[nodiscard]] bool is_number() const {
+        return word == "FLOAT" || word == "INT" || word == "UINT";
+    }
+
+    std::string word;
+    std::string allowed;
+};
 
 }  // namespace
 
 HelpFormatter::HelpFormatter() {
     column_width(kNameColumns);
     label("Positionals", "Arguments");
+    label("SUBCOMMAND", "COMMAND");
 }
 
 std::string HelpFormatter::make_usage(const CLI::App* app, std::string name) const {
@@ -76,16 +83,21 @@ std::string HelpFormatter::make_option_name(const CLI::Option* option, bool is_p
 std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
     if (option->get_positional() || option->get_type_size() == 0) return "";
     if (!option->get_option_text().empty()) return " " + option->get_option_text();
-    const std::string type = option->get_type_name();
-    const std::string word = type.substr(0, type.find(':'));
-    return " " + (word == "FLOAT" || word == "INT" || word == "UINT" ? "N" : word);
+    const OptionType type(option->get_type_name());
+    if (type.is_number()) return " N";
+    if (type.word != "TEXT" || type.allowed.empty()) return " " + type.word;
+    std::string words = type.allowed;
+    std::erase_if(words, [](char c) { return c == '{' || c == '}'; });
+    std::ranges::replace(words, ',', '|');
+    return " " + words;
 }
 
 std::string HelpFormatter::make_option_desc(const CLI::Option* option) const {
     std::string text = option->get_description();
-    const std::string allowed = allowed_of(*option);
+    const OptionType type(option->get_type_name());
     const std::string usual = option->get_default_str();
-    std::string notes = option->get_required() && option->nonpositional() ? "required" : allowed;
+    std::string notes = type.is_number() ? type.allowed : "";
+    if (option->get_required() && option->nonpositional()) notes = "required";
     if (!usual.empty()) notes += (notes.empty() ? "default: " : "; default: ") + usual;
     if (!notes.empty()) text += fmt::format(" [{}]", notes);
     return wrapped(text, kColumns - kNameColumns);

@@ -86,8 +86,9 @@ int main(int argc, char** argv) {
         "Simulate what an underwater camera sled sees by its own strobes, and correct "
         "its\nimages for their light.",
         "aphotic"};
+    app.set_help_flag("-h,--help", "Print this help and exit");
     app.formatter(std::make_shared<aphotic::cli::HelpFormatter>());
-    app.set_version_flag("--version", "aphotic " APHOTIC_VERSION);
+    app.set_version_flag("--version", "aphotic " APHOTIC_VERSION, "Print the version and exit");
     app.require_subcommand(1);
     app.footer(
         "Exit status: 0 done; 1 ran, and the answer is no; 2 wrong command line or input file; 3 "
