@@ -113,8 +113,7 @@ void announce(const AtlasCommandOptions& options, const MapAxes& chosen, AtlasWo
 }
 
 struct MadeAtlas {
-    std::string title;
-    std::string rig_sha256;
+    Rig rig;
     fs::path folder;
     ChosenAxes chosen;
     std::size_t computed = 0;
@@ -141,8 +140,8 @@ nlohmann::ordered_json to_json(const MadeAtlas& made) {
         exports["exponential"] = {
             {"file", made.fits().string()}, {"rms", fit->rms}, {"worst", fit->worst}};
     }
-    return {{"title", made.title},
-            {"rig_sha256", made.rig_sha256},
+    return {{"title", made.rig.title},
+            {"rig_sha256", made.rig.digest},
             {"folder", made.folder.string()},
             {"bins", bin_count(made.chosen.axes)},
             {"computed", made.computed},
@@ -156,7 +155,7 @@ void print(const MadeAtlas& made) {
     constexpr double kPercent = 100.0;
     const InterpolationError& error = made.chosen.interpolation;
     fmt::print("{}: {}, {} of them computed, in {:.1f} s\n",
-               made.title,
+               made.rig.title,
                counted(bin_count(made.chosen.axes), "bin"),
                made.computed,
                made.seconds);
@@ -195,8 +194,7 @@ MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes
     require_over_floor(rig, finest);
     if (is_exported(options, "exponential"))
         AltitudeFitter{finest.altitude_m};  // or it says why not
-    MadeAtlas made{.title = rig.title,
-                   .rig_sha256 = rig.digest,
+    MadeAtlas made{.rig = rig,
                    .folder = options.folder,
                    .chosen = choose(options, rig, finest),
                    .exports = {},

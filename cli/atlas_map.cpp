@@ -130,15 +130,19 @@ void print(const BlendedMap& map) {
             map.manifest.interpolation.worst,
             map.manifest.interpolation.whole_rms);
     }
-    fmt::print("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
-               map.peaks[0],
-               map.peaks[1],
-               map.peaks[2],
-               map.request.normalised ? ", each channel divided by its own" : "");
+    print_peaks(map.peaks, map.request.normalised);
     fmt::print("  {}\n", map.request.file);
 }
 
 }  // namespace
+
+void print_peaks(const std::array<float, kChannels>& peaks, bool is_normalised) {
+    fmt::print("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
+               peaks[0],
+               peaks[1],
+               peaks[2],
+               is_normalised ? ", each channel divided by its own" : "");
+}
 
 ExitStatus write_atlas_map(const AtlasMapRequest& request) {
     Atlas atlas(request.folder);

@@ -2,7 +2,7 @@
 //
 // aphotic lightmap RIG -o FILE.exr: the camera's signal on the rig's bare flat floor, at once; or
 // of an atlas, from its bins (atlas_map.h).
-#include "lightmap/lightmap.h"
+#include "lightmap/lightmap_file.h"
 
 #include "base/degrees.h"
 #include "base/error.h"
@@ -14,15 +14,12 @@
 #include "cli/outcome.h"
 #include "image/exr.h"
 #include "image/preview.h"
-#include "lightmap/planes.h"
 #include "rig/rig_reader.h"
 #include "scene_gen/scene_set.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -64,39 +61,6 @@ std::vector<RigPart> parts_of(const LightmapCommandOptions& options, const Rig& 
     return parts;
 }
 
-// The planes of the file, one after another, and their names.
-struct Planes {
-    std::vector<std::string> names;
-    std::vector<float> samples;
-
-    void take(const std::string& layer, const Lightmap& map) {
-        for (const std::string_view channel : kChannelNames) {
-            names.push_back(layer.empty() ? std::string(channel)
-                                          : fmt::format("{}.{}", layer, channel));
-        }
-        samples.insert(samples.end(), map.samples.begin(), map.samples.end());
-    }
-};
-
-void write(const LightmapCommandOptions& options, const Rig& rig, const Planes& planes) {
-    ExrWriter writer(
-        options.file,
-        rig.camera.width_px,
-        rig.camera.height_px,
-        planes.names,
-        {{"aphotic:version", APHOTIC_VERSION},
-         {"aphotic:rig_title", rig.title},
-         {"aphotic:rig_sha256", rig.digest},
-         {"aphotic:renderer", "lightmap"},
-         {"aphotic:altitude_m", fmt::format("{}", rig.sled.altitude_m)},
-         {"aphotic:pitch_deg", fmt::format("{}", rig.sled.pitch_rad / kRadiansPerDegree)},
-         {"aphotic:roll_deg", fmt::format("{}", rig.sled.roll_rad / kRadiansPerDegree)},
-         {"aphotic:normalised", options.normalised ? "yes" : "no"},
-         {"aphotic:error", fmt::format("{}", options.map.error)}});
-    writer.write_rows(rig.camera.height_px, planes.samples);
-    writer.finish();
-}
-
 std::string words_of(const MapPromise& promise) {
     return fmt::format("{} to {:.1e} of a signal off the cones' edges{}{}",
                        promise.is_bounded ? "exact" : "near",
@@ -106,137 +70,92 @@ std::string words_of(const MapPromise& promise) {
 }
 
 struct MadeLightmap {
-    std::string title;
-    std::string rig_sha256;
-    std::string file;
-    int width_px = 0;
-    int height_px = 0;
-    Sled sled;
-    std::vector<std::string> channels;
-    std::array<float, kChannels> peaks{};
-    bool is_normalised = false;
-    double error = 0.0;
+    const LightmapCommandOptions& options;
+    Rig rig;
+    WrittenLightmap written;
     MapPromise promise;
-    PathRange paths;
-    std::size_t grid = 0;
-    int table_steps = 0;
-    int threads = 1;
-    double tables_s = 0.0;
-    double map_s = 0.0;
 };
 
 nlohmann::ordered_json to_json(const MadeLightmap& made) {
-    return {{"title", made.title},
-            {"rig_sha256", made.rig_sha256},
-            {"file", made.file},
-            {"width_px", made.width_px},
-            {"height_px", made.height_px},
-            {"altitude_m", made.sled.altitude_m},
-            {"pitch_deg", made.sled.pitch_rad / kRadiansPerDegree},
-            {"roll_deg", made.sled.roll_rad / kRadiansPerDegree},
-            {"channels", made.channels},
-            {"peak", made.peaks},
-            {"normalised", made.is_normalised},
-            {"error", made.error},
+    const auto& [options, rig, written, promise] = made;
+    return {{"title", rig.title},
+            {"rig_sha256", rig.digest},
+            {"file", options.file},
+            {"width_px", rig.camera.width_px},
+            {"height_px", rig.camera.height_px},
+            {"altitude_m", rig.sled.altitude_m},
+            {"pitch_deg", rig.sled.pitch_rad / kRadiansPerDegree},
+            {"roll_deg", rig.sled.roll_rad / kRadiansPerDegree},
+            {"channels", written.channels},
+            {"peak", written.peaks},
+            {"normalised", options.normalised},
+            {"error", options.map.error},
             {"promise",
-             {{"error", made.promise.error},
-              {"bounded", made.promise.is_bounded},
-              {"of_lamp_grids", made.promise.is_of_lamp_grids}}},
-            {"paths_m", {made.paths.shortest_m, made.paths.longest_m}},
-            {"grid", made.grid},
-            {"table_steps", made.table_steps},
-            {"threads", made.threads},
-            {"tables_s", made.tables_s},
-            {"map_s", made.map_s}};
+             {{"error", promise.error},
+              {"bounded", promise.is_bounded},
+              {"of_lamp_grids", promise.is_of_lamp_grids}}},
+            {"paths_m", {written.paths.shortest_m, written.paths.longest_m}},
+            {"grid", written.grid_size},
+            {"table_steps", written.table_steps},
+            {"threads", options.map.threads},
+            {"tables_s", written.tables_s},
+            {"map_s", written.map_s}};
 }
 
 void print(const MadeLightmap& made) {
     constexpr double kMilli = 1e3;
+    const auto& [options, rig, written, promise] = made;
     fmt::print(
         "{}: {} x {} pixels in {:.0f} ms,\n"
         "  {};\n"
         "  {:.0f} ms more for {} of the paths from {:.4g} to {:.4g} m, of {}\n",
-        made.title,
-        made.width_px,
-        made.height_px,
-        kMilli * made.map_s,
-        words_of(made.promise),
-        kMilli * made.tables_s,
-        counted(static_cast<std::size_t>(made.table_steps), "step"),
-        made.paths.shortest_m,
-        made.paths.longest_m,
-        counted(made.grid, "wavelength"));
-    fmt::print("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
-               made.peaks[0],
-               made.peaks[1],
-               made.peaks[2],
-               made.is_normalised ? ", each channel divided by its own" : "");
-    fmt::print("  {}  {}\n", made.file, counted(made.channels.size(), "channel"));
+        rig.title,
+        rig.camera.width_px,
+        rig.camera.height_px,
+        kMilli * written.map_s,
+        words_of(promise),
+        kMilli * written.tables_s,
+        counted(static_cast<std::size_t>(written.table_steps), "step"),
+        written.paths.shortest_m,
+        written.paths.longest_m,
+        counted(written.grid_size, "wavelength"));
+    print_peaks(written.peaks, options.normalised);
+    fmt::print("  {}  {}\n", options.file, counted(written.channels.size(), "channel"));
 }
 
-MadeLightmap make_lightmap(const LightmapCommandOptions& options) {
-    const auto seconds_since = [](auto start) {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    const Rig rig = rig_of(options);
-    const auto prefixed = [&](const auto& work) {
-        try {
-            return work();
-        } catch (const InputError& error) {
-            throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
-        }
-    };
-    const std::vector<RigPart> parts = prefixed([&] { return parts_of(options, rig); });
-    require_room(lightmap_needs({.width_px = rig.camera.width_px,
-                                 .height_px = rig.camera.height_px,
-                                 .parts = parts.size(),
-                                 .has_preview = !options.preview_file.empty(),
-                                 .threads = options.map.threads}),
-                 std::filesystem::absolute(options.file).parent_path(),
-                 options.ignore_needs);
-    const auto start = std::chrono::steady_clock::now();
-    const LightmapMaker maker =
-        prefixed([&] { return LightmapMaker(rig, std::nullopt, options.map); });
-    const double tables_s = seconds_since(start);
-    const auto mapping = std::chrono::steady_clock::now();
-    Lightmap map = maker.map(rig.sled);
-    const double map_s = seconds_since(mapping);
-
-    const std::array<float, kChannels> peaks = peaks_of(map);
-    if (options.normalised) divide_by(peaks, map);
-    Planes planes;
-    planes.samples.reserve((1 + parts.size()) * map.samples.size());
-    planes.take("", map);
-    for (const RigPart& part : parts) {
-        Lightmap share = LightmapMaker(part.rig, maker.paths(), options.map).map(rig.sled);
-        if (options.normalised) divide_by(peaks, share);
-        planes.take(part.name, share);
+WrittenLightmap write_map(const LightmapCommandOptions& options, const Rig& rig) {
+    try {
+        LightmapRequest request{.file = options.file,
+                                .parts = parts_of(options, rig),
+                                .is_normalised = options.normalised,
+                                .map = options.map,
+                                .version = APHOTIC_VERSION};
+        require_room(lightmap_needs({.width_px = rig.camera.width_px,
+                                     .height_px = rig.camera.height_px,
+                                     .parts = request.parts.size(),
+                                     .has_preview = !options.preview_file.empty(),
+                                     .threads = options.map.threads}),
+                     std::filesystem::absolute(options.file).parent_path(),
+                     options.ignore_needs);
+        return write_lightmap(rig, request);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
     }
-    set_exr_threads(options.map.threads);
-    write(options, rig, planes);
+}
+
+ExitStatus make_lightmap(const LightmapCommandOptions& options) {
+    MadeLightmap made{.options = options, .rig = rig_of(options), .written = {}, .promise = {}};
+    made.written = write_map(options, made.rig);
+    made.promise = map_promise(made.rig, options.map);
     if (!options.preview_file.empty()) {
+        const Lightmap& map = made.written.map;
         write_preview({map.width_px, map.height_px, map.samples},
-                      lamp_signal(rig, light_family(rig)),
+                      lamp_signal(made.rig, light_family(made.rig)),
                       options.preview,
                       options.preview_file);
     }
-    return {.title = rig.title,
-            .rig_sha256 = rig.digest,
-            .file = options.file,
-            .width_px = map.width_px,
-            .height_px = map.height_px,
-            .sled = rig.sled,
-            .channels = planes.names,
-            .peaks = peaks,
-            .is_normalised = options.normalised,
-            .error = options.map.error,
-            .promise = map_promise(rig, options.map),
-            .paths = maker.paths(),
-            .grid = maker.grid_size(),
-            .table_steps = maker.table_steps(),
-            .threads = options.map.threads,
-            .tables_s = tables_s,
-            .map_s = map_s};
+    show(made, options.json);
+    return kDone;
 }
 
 void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& options) {
@@ -252,10 +171,7 @@ void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& 
 }
 
 ExitStatus make_map(const CLI::App& app, const LightmapCommandOptions& options) {
-    if (!std::filesystem::is_directory(options.rig_file)) {
-        show(make_lightmap(options), options.json);
-        return kDone;
-    }
+    if (!std::filesystem::is_directory(options.rig_file)) return make_lightmap(options);
     refuse_what_needs_a_rig(app, options);
     PreviewOptions preview = options.preview;
     if (preview.white == PreviewWhite::Lamp) preview.white = PreviewWhite::Image;  // by default

@@ -45,7 +45,7 @@ std::string ini_line(const std::string& setting) {
     if (!is_plain || std::ranges::find(kSpeedKeys, key) == kSpeedKeys.end()) {
         throw InputError(
             fmt::format("--povray-ini: found {}; allowed: KEY=VALUE with one of {}. "
-                        "Others would change what a frame holds; --antialias is apart",
+                        "Others would change the image; for antialiasing there is --antialias",
                         setting,
                         fmt::join(kSpeedKeys, ", ")));
     }
