@@ -266,7 +266,7 @@ Action configure_atlas(CLI::App& app) {
 
 const Command kAtlas{"atlas",
                      kMapCommands,
-                     "Map over altitude, attitude and water; measure the error in between",
+                     "Map over altitude, attitude and water; measure errors in between",
                      configure_atlas};
 
 }  // namespace aphotic::cli

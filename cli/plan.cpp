@@ -261,7 +261,7 @@ Action configure_plan(CLI::App& app) {
 
 const Command kPlan{"plan",
                     kRenderingCommands,
-                    "Show which wavelengths and frames a render takes, and its error bound",
+                    "Show the wavelengths, frames and error bound of a render",
                     configure_plan};
 
 }  // namespace aphotic::cli

@@ -11,11 +11,9 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "image/output_images.h"
-#include "image/row_blocks.h"
-#include "image/traced_image.h"
+#include "image/exr.h"
 #include "spectral/manifest.h"
-#include "validation/tracer.h"
+#include "validation/traced_images.h"
 
 #include <fmt/format.h>
 
@@ -140,25 +138,13 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
     const FolderLock lock = claim_folder(options.folder);
     require_no_render(options.folder);
     set_exr_threads(options.threads);
-    OutputImages images(options.folder,
-                        camera.width_px,
-                        camera.height_px,
-                        request.planes_nm,
-                        {{"aphotic:version", APHOTIC_VERSION},
-                         {"aphotic:rig_title", planned.rig.title},
-                         {"aphotic:rig_sha256", planned.rig.digest},
-                         {kRendererAttribute, kReferenceTracer}});
-    {
+    const CameraImage image = [&] {
         ProgressLine line;
-        const int block = traced_rows(camera.width_px, tracer.planes(), options.threads);
-        for (int row = 0; row < camera.height_px; row += block) {
-            const int rows = std::min(block, camera.height_px - row);
-            const std::vector<double> samples = tracer.rows(row, rows);
-            images.write_rows(rows, {samples.begin(), samples.end()});
-            line.show("tracing", static_cast<double>(row + rows) / camera.height_px);
-        }
-    }
-    const CameraImage image = images.finish();
+        return write_traced_images(
+            tracer, request, options.folder, APHOTIC_VERSION, [&](double share) {
+                line.show("tracing", share);
+            });
+    }();
     write_preview(image,
                   lamp_signal(planned.rig, planned.plan.family),
                   options.preview,

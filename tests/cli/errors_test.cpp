@@ -185,6 +185,8 @@ TEST_F(CommandErrors, HelpAndVersionAreNoErrors) {
         EXPECT_EQ(run.status, 0);
         EXPECT_NE(run.out.find("--json"), std::string::npos) << command;
         EXPECT_EQ(run.err, "");
+        std::istringstream lines(run.out);
+        for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
     }
     EXPECT_TRUE(run_aphotic(folder_.path(), {"--version"}).out.starts_with("aphotic "));
 }
