@@ -136,7 +136,7 @@ void make_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) {
-        throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+        throw RunError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
     }
     if (::access(folder.c_str(), W_OK | X_OK) != 0) {
         throw RunError(

@@ -52,7 +52,7 @@ inline constexpr std::size_t kMebibyte = std::size_t{1} << 20U;
     const std::filesystem::path& path,
     std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
 
-// Makes the folder and its parents. A RunError says why it cannot be made or written to.
+// Makes the folder and its parents. A RunError says why it cannot be created or written to.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace aphotic

@@ -10,7 +10,7 @@
 #include "cli/atlas_axes.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "image/exr.h"
@@ -26,7 +26,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <thread>
 
 namespace aphotic::cli {
 namespace {
@@ -39,9 +38,7 @@ struct AtlasCommandOptions {
     AxisTexts axes;
     double tolerance = 0.0;  // 0: every value of the axes
     std::vector<std::string> exports;
-    LightmapOptions map{
-        .error = 1e-5,
-        .threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
+    LightmapOptions map{.error = 1e-5, .threads = all_cores()};
     bool ignore_needs = false;
     bool json = false;
 };
@@ -68,57 +65,6 @@ AtlasExports export_maps(const AtlasCommandOptions& options,
     }
     note_exports(options.folder, made);
     return made;
-}
-
-nlohmann::ordered_json json_of(const AtlasCommandOptions& options, const AtlasExports& exports) {
-    nlohmann::ordered_json made = nlohmann::ordered_json::object();
-    const fs::path folder = options.folder;
-    if (!exports.bayer.empty()) {
-        made["bayer"] = {{"folder", (folder / exports.bayer.front().file).parent_path().string()},
-                         {"bins", exports.bayer.size()}};
-    }
-    if (exports.exponential) {
-        made["exponential"] = {{"file", (folder / exports.exponential->file).string()},
-                               {"rms", exports.exponential->rms},
-                               {"worst", exports.exponential->worst}};
-    }
-    return made;
-}
-
-void print_atlas(const nlohmann::ordered_json& outcome) {
-    fmt::print("{}: {}, {} of them computed, in {:.1f} s\n",
-               outcome["title"].get<std::string>(),
-               counted(outcome["bins"].get<std::size_t>(), "bin"),
-               outcome["computed"].get<std::size_t>(),
-               outcome["atlas_s"].get<double>());
-    const auto& error = outcome["interpolation"];
-    fmt::print(
-        "  between bins the light without the cones' edges is off by {:.2g} at most, {:.2g} rms, "
-        "as measured\n",
-        error["worst"].get<double>(),
-        error["rms"].get<double>());
-    const auto& whole = error["whole_maps"];
-    fmt::print(
-        "  whole maps by {:.2g} rms, {:.1f} % of their samples by over {:.2g} (in {}): edges cross "
-        "{:.1f} % of\n  the pixels on the way from bin to bin, and step there\n",
-        whole["rms"].get<double>(),
-        100.0 * whole["share_over_limit"].get<double>(),
-        whole["limit"].get<double>(),
-        counted(whole["cells"].get<std::size_t>(), "cell"),
-        100.0 * error["crossed_by_edges"].get<double>());
-    const auto& exports = outcome["exports"];
-    if (exports.contains("bayer")) {
-        fmt::print("  {}  RGGB mosaics of {}\n",
-                   exports["bayer"]["folder"].get<std::string>(),
-                   counted(exports["bayer"]["bins"].get<std::size_t>(), "altitude"));
-    }
-    if (exports.contains("exponential")) {
-        fmt::print("  {}  a exp(b h) + c, off by {:.2g} of a pixel's mean rms, {:.2g} at most\n",
-                   exports["exponential"]["file"].get<std::string>(),
-                   exports["exponential"]["rms"].get<double>(),
-                   exports["exponential"]["worst"].get<double>());
-    }
-    fmt::print("  {}/atlas.json\n", outcome["folder"].get<std::string>());
 }
 
 // A line that begins anew when the work does.
@@ -167,16 +113,92 @@ void announce(const AtlasCommandOptions& options, const MapAxes& chosen, AtlasWo
 }
 
 struct MadeAtlas {
+    Rig rig;
+    fs::path folder;
     ChosenAxes chosen;
     std::size_t computed = 0;
     AtlasExports exports;
+    double tolerance = 0.0;  // 0: none
+    double seconds = 0.0;
+
+    [[nodiscard]] bool holds() const {
+        return tolerance == 0.0 || chosen.interpolation.worst <= tolerance;
+    }
+    [[nodiscard]] fs::path mosaics() const {
+        return (folder / exports.bayer.front().file).parent_path();
+    }
+    [[nodiscard]] fs::path fits() const { return folder / exports.exponential->file; }
 };
+
+nlohmann::ordered_json to_json(const MadeAtlas& made) {
+    nlohmann::ordered_json exports = nlohmann::ordered_json::object();
+    if (!made.exports.bayer.empty()) {
+        exports["bayer"] = {{"folder", made.mosaics().string()},
+                            {"bins", made.exports.bayer.size()}};
+    }
+    if (const auto& fit = made.exports.exponential) {
+        exports["exponential"] = {
+            {"file", made.fits().string()}, {"rms", fit->rms}, {"worst", fit->worst}};
+    }
+    return {{"title", made.rig.title},
+            {"rig_sha256", made.rig.digest},
+            {"folder", made.folder.string()},
+            {"bins", bin_count(made.chosen.axes)},
+            {"computed", made.computed},
+            {"interpolation", interpolation_json(made.chosen.interpolation)},
+            {"holds_tolerance", made.holds()},
+            {"exports", exports},
+            {"atlas_s", made.seconds}};
+}
+
+void print(const MadeAtlas& made) {
+    constexpr double kPercent = 100.0;
+    const InterpolationError& error = made.chosen.interpolation;
+    fmt::print("{}: {}, {} of them computed, in {:.1f} s\n",
+               made.rig.title,
+               counted(bin_count(made.chosen.axes), "bin"),
+               made.computed,
+               made.seconds);
+    fmt::print(
+        "  measured between bins, light without the cones' edges is off by up to {:.2g}, {:.2g} "
+        "rms\n",
+        error.worst,
+        error.rms);
+    fmt::print(
+        "  whole maps are off by {:.2g} rms, {:.1f} % of their samples by over {:.2g} (in {}): "
+        "edges cross\n  {:.1f} % of the pixels on the way from bin to bin, and step there\n",
+        error.whole_rms,
+        kPercent * error.whole_over,
+        error.whole_limit,
+        counted(error.whole_cells, "cell"),
+        kPercent * error.crossed_share);
+    if (!made.exports.bayer.empty()) {
+        fmt::print("  {}  RGGB mosaics of {}\n",
+                   made.mosaics().string(),
+                   counted(made.exports.bayer.size(), "altitude"));
+    }
+    if (const auto& fit = made.exports.exponential) {
+        fmt::print("  {}  a exp(b h) + c, off by {:.2g} of a pixel's mean rms, {:.2g} at most\n",
+                   made.fits().string(),
+                   fit->rms,
+                   fit->worst);
+    }
+    fmt::print("  {}/atlas.json\n", made.folder.string());
+    if (!made.holds()) {
+        fmt::print("  not within the tolerance of {:.2g}: the steps allow no finer bins\n",
+                   made.tolerance);
+    }
+}
 
 MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes& finest) {
     require_over_floor(rig, finest);
     if (is_exported(options, "exponential"))
         AltitudeFitter{finest.altitude_m};  // or it says why not
-    MadeAtlas made{.chosen = choose(options, rig, finest), .exports = {}};
+    MadeAtlas made{.rig = rig,
+                   .folder = options.folder,
+                   .chosen = choose(options, rig, finest),
+                   .exports = {},
+                   .tolerance = options.tolerance};
     announce(options, made.chosen.axes, work_of(options, rig, finest));
     set_exr_threads(options.map.threads);
     const FolderLock lock = claim_folder(options.folder);
@@ -203,72 +225,48 @@ MadeAtlas make_named(const AtlasCommandOptions& options, const Rig& rig, const M
     }
 }
 
-nlohmann::ordered_json noted_interpolation(const fs::path& folder) {
-    return nlohmann::ordered_json::parse(read_text_file(folder / "atlas.json"))["interpolation"];
-}
-
 ExitStatus make_atlas(const AtlasCommandOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     const Rig rig = read_rig(options.rig_file);
-    const MadeAtlas made = make_named(options, rig, axes_of(options.axes, rig));
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    const InterpolationError& error = made.chosen.interpolation;
-    const bool holds = options.tolerance == 0.0 || error.worst <= options.tolerance;
-    const nlohmann::ordered_json outcome = {{"title", rig.title},
-                                            {"rig_sha256", rig.digest},
-                                            {"folder", options.folder},
-                                            {"bins", bin_count(made.chosen.axes)},
-                                            {"computed", made.computed},
-                                            {"interpolation", noted_interpolation(options.folder)},
-                                            {"holds_tolerance", holds},
-                                            {"exports", json_of(options, made.exports)},
-                                            {"atlas_s", elapsed.count()}};
-    if (options.json) {
-        fmt::print("{}\n", dumped(outcome));
-        return holds ? kDone : kAnswerIsNo;
-    }
-    print_atlas(outcome);
-    if (!holds) {
-        fmt::print("  not within the tolerance of {:.2g}: the steps allow no finer bins\n",
-                   options.tolerance);
-    }
-    return holds ? kDone : kAnswerIsNo;
+    MadeAtlas made = make_named(options, rig, axes_of(options.axes, rig));
+    made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    show(made, options.json);
+    return made.holds() ? kDone : kAnswerIsNo;
+}
+
+Action configure_atlas(CLI::App& app) {
+    constexpr double kLeastTolerance = 1e-6;
+    const auto options = std::make_shared<AtlasCommandOptions>();
+    add_rig(app, options->rig_file);
+    add_output_folder(app, options->folder)->required()->type_name("ATLAS");
+    add_axis_options(app, options->axes);
+    app.add_option("--tolerance",
+                   options->tolerance,
+                   "Keep only as many of these bins as interpolate within this relative error, "
+                   "cones' edges aside")
+        ->check(in_range(kLeastTolerance, 1.0))
+        ->option_text("E");
+    app.add_option("--export",
+                   options->exports,
+                   "Also export, over all altitudes at the rig's own attitude and water, RGGB "
+                   "mosaics (bayer) or a exp(b h) + c fitted to each pixel (exponential)")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"bayer", "exponential"}))
+        ->option_text("bayer,exponential");
+    add_jobs(app, options->map.threads, "Map with N threads");
+    add_needs_option(app, options->ignore_needs);
+    add_json(app, options->json);
+    app.footer(
+        "Maps the bare flat floor, without POV-Ray. Interrupted, it continues where it stopped "
+        "when run again. Exit status 1 when the steps are too wide for --tolerance.");
+    return [options] { return make_atlas(*options); };
 }
 
 }  // namespace
 
-Action configure_atlas(CLI::App& app) {
-    constexpr int kMostThreads = 1024;
-    constexpr double kLeastTolerance = 1e-6;
-    const auto options = std::make_shared<AtlasCommandOptions>();
-    app.add_option("RIG", options->rig_file, "the rig file (TOML)")->required();
-    app.add_option("-o,--output", options->folder, "the folder to write to")
-        ->required()
-        ->type_name("ATLAS");
-    add_axis_options(app, options->axes);
-    app.add_option("--tolerance",
-                   options->tolerance,
-                   "of these, only as many as keep interpolation between bins within this relative "
-                   "error, off the cones' edges")
-        ->check(in_range(kLeastTolerance, 1.0));
-    app.add_option("--export",
-                   options->exports,
-                   "beside the atlas, over all altitudes at the rig's own attitude and water: RGGB "
-                   "mosaics (bayer), or a exp(b h) + c fitted to each pixel (exponential)")
-        ->delimiter(',')
-        ->check(CLI::IsMember({"bayer", "exponential"}))
-        ->option_text("bayer,exponential");
-    app.add_option("--threads", options->map.threads, "threads to map with; by default the cores")
-        ->check(in_range(1, kMostThreads))
-        ->capture_default_str();
-    add_needs_option(app, options->ignore_needs);
-    app.add_flag("--json", options->json, "say what was made as JSON");
-    app.footer(
-        "Of the bare flat floor; POV-Ray is not needed. An atlas that was interrupted goes on "
-        "where\n"
-        "it stopped. The answer is no (exit status 1) when the steps are too wide for "
-        "--tolerance.");
-    return [options] { return make_atlas(*options); };
-}
+const Command kAtlas{"atlas",
+                     kMapCommands,
+                     "Map over altitude, attitude and water; measure errors in between",
+                     configure_atlas};
 
 }  // namespace aphotic::cli

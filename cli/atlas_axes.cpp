@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "cli/options.h"
 
 #include <fmt/format.h>
 
@@ -16,8 +17,8 @@ struct Bounds {
     double least;
     double most;
 };
-constexpr Bounds kAltitude_m{0.001, 10000.0};
-constexpr Bounds kTilt_deg{-89.9, 89.9};
+constexpr Bounds kAltitude_m{kLeastAltitude_m, kMostAltitude_m};
+constexpr Bounds kTilt_deg{-kMostTilt_deg, kMostTilt_deg};
 constexpr Bounds kMultiple{0.0, 1e6};
 
 // A, or FIRST:LAST:STEP with both ends.
@@ -83,17 +84,18 @@ void require_few(const MapAxes& axes) {
 }  // namespace
 
 void add_axis_options(CLI::App& app, AxisTexts& texts) {
-    app.add_option("--altitude", texts.altitude, "altitudes in metres, such as 1:4:0.1")
+    constexpr const char* kSteps = "FIRST:LAST:STEP";
+    app.add_option(kAltitudeNames, texts.altitude, "Altitudes in metres, such as 1:4:0.1")
         ->required()
-        ->type_name("FIRST:LAST:STEP");
-    app.add_option("--pitch", texts.pitch, "pitches in degrees; by default the rig's")
-        ->type_name("FIRST:LAST:STEP");
-    app.add_option("--roll", texts.roll, "rolls in degrees; by default the rig's")
-        ->type_name("FIRST:LAST:STEP");
+        ->option_text(kSteps);
+    app.add_option(kPitchNames, texts.pitch, "Pitches in degrees; by default the rig's")
+        ->option_text(kSteps);
+    app.add_option(kRollNames, texts.roll, "Rolls in degrees; by default the rig's")
+        ->option_text(kSteps);
     app.add_option("--water-multiple",
                    texts.water,
-                   "multiples of the water's absorption; by default the rig's")
-        ->type_name("FIRST:LAST:STEP");
+                   "Multiples of the water's absorption; by default the rig's")
+        ->option_text(kSteps);
 }
 
 MapAxes axes_of(const AxisTexts& texts, const Rig& rig) {

@@ -32,14 +32,13 @@ double value_on(const char* option,
 }
 
 MapPoint point_of(const AtlasMapRequest& request, const MapAxes& axes) {
-    return {
-        .sled = {.altitude_m = value_on("--altitude-m", request.altitude_m, axes.altitude_m, 1.0),
-                 .pitch_rad =
-                     value_on("--pitch-deg", request.pitch_deg, axes.pitch_rad, kRadiansPerDegree),
-                 .roll_rad =
-                     value_on("--roll-deg", request.roll_deg, axes.roll_rad, kRadiansPerDegree)},
-        .water_multiple =
-            value_on("--water-multiple", request.water_multiple, axes.water_multiple, 1.0)};
+    return {.sled = {.altitude_m = value_on("--altitude", request.altitude_m, axes.altitude_m, 1.0),
+                     .pitch_rad =
+                         value_on("--pitch", request.pitch_deg, axes.pitch_rad, kRadiansPerDegree),
+                     .roll_rad =
+                         value_on("--roll", request.roll_deg, axes.roll_rad, kRadiansPerDegree)},
+            .water_multiple =
+                value_on("--water-multiple", request.water_multiple, axes.water_multiple, 1.0)};
 }
 
 MapPoint point_of(const AtlasMapRequest& request, const Atlas& atlas) {
@@ -89,30 +88,61 @@ void write_picture(const AtlasMapRequest& request, const Lightmap& map) {
                   request.preview_file);
 }
 
-void print_map(const nlohmann::ordered_json& outcome) {
-    const std::size_t bins = outcome["bins"];
-    fmt::print(
-        "{}: {} x {} pixels, {}\n",
-        outcome["title"].get<std::string>(),
-        outcome["width_px"].get<int>(),
-        outcome["height_px"].get<int>(),
-        bins == 1 ? "a bin of the atlas" : fmt::format("blended from {}", counted(bins, "bin")));
-    if (bins > 1) {
+struct BlendedMap {
+    const AtlasMapRequest& request;
+    const AtlasManifest& manifest;
+    MapPoint point;
+    int width_px = 0;
+    int height_px = 0;
+    std::array<float, kChannels> peaks{};
+    std::size_t bins = 0;  // that it is blended from
+};
+
+nlohmann::ordered_json to_json(const BlendedMap& map) {
+    return {{"title", map.manifest.title},
+            {"rig_sha256", map.manifest.rig_digest},
+            {"file", map.request.file},
+            {"width_px", map.width_px},
+            {"height_px", map.height_px},
+            {"altitude_m", map.point.sled.altitude_m},
+            {"pitch_deg", map.point.sled.pitch_rad / kRadiansPerDegree},
+            {"roll_deg", map.point.sled.roll_rad / kRadiansPerDegree},
+            {"water_multiple", map.point.water_multiple},
+            {"peak", map.peaks},
+            {"normalised", map.request.normalised},
+            {"bins", map.bins},
+            {"interpolation",
+             {{"worst", map.manifest.interpolation.worst},
+              {"whole_rms", map.manifest.interpolation.whole_rms}}}};
+}
+
+void print(const BlendedMap& map) {
+    fmt::print("{}: {} x {} pixels, {}\n",
+               map.manifest.title,
+               map.width_px,
+               map.height_px,
+               map.bins == 1 ? "a bin of the atlas"
+                             : fmt::format("blended from {}", counted(map.bins, "bin")));
+    if (map.bins > 1) {
         fmt::print(
-            "  between bins the light without the cones' edges is off by {:.2g} at most, whole "
-            "maps by {:.2g} rms,\n  as measured over the atlas\n",
-            outcome["interpolation"]["worst"].get<double>(),
-            outcome["interpolation"]["whole_rms"].get<double>());
+            "  measured over the atlas, blending is off by up to {:.2g} for light without the "
+            "cones' edges,\n  {:.2g} rms for whole maps\n",
+            map.manifest.interpolation.worst,
+            map.manifest.interpolation.whole_rms);
     }
-    fmt::print("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
-               outcome["peak"][0].get<double>(),
-               outcome["peak"][1].get<double>(),
-               outcome["peak"][2].get<double>(),
-               outcome["normalised"].get<bool>() ? ", by which each channel is divided" : "");
-    fmt::print("  {}\n", outcome["file"].get<std::string>());
+    print_peaks(map.peaks, map.request.normalised);
+    fmt::print("  {}\n", map.request.file);
 }
 
 }  // namespace
+
+void print_peaks(const std::array<float, kChannels>& peaks, bool is_normalised) {
+    fmt::print("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
+               peaks[0],
+               peaks[1],
+               peaks[2],
+               is_normalised ? ", each channel divided by its own" : "");
+}
 
 ExitStatus write_atlas_map(const AtlasMapRequest& request) {
     Atlas atlas(request.folder);
@@ -123,26 +153,14 @@ ExitStatus write_atlas_map(const AtlasMapRequest& request) {
     if (request.normalised) divide_by(peaks, map);
     write(request, manifest, point, map);
     write_picture(request, map);
-    const nlohmann::ordered_json outcome = {{"title", manifest.title},
-                                            {"rig_sha256", manifest.rig_digest},
-                                            {"file", request.file},
-                                            {"width_px", map.width_px},
-                                            {"height_px", map.height_px},
-                                            {"altitude_m", point.sled.altitude_m},
-                                            {"pitch_deg", point.sled.pitch_rad / kRadiansPerDegree},
-                                            {"roll_deg", point.sled.roll_rad / kRadiansPerDegree},
-                                            {"water_multiple", point.water_multiple},
-                                            {"peak", peaks},
-                                            {"normalised", request.normalised},
-                                            {"bins", neighbours_of(manifest.axes, point).size()},
-                                            {"interpolation",
-                                             {{"worst", manifest.interpolation.worst},
-                                              {"whole_rms", manifest.interpolation.whole_rms}}}};
-    if (request.json) {
-        fmt::print("{}\n", dumped(outcome));
-    } else {
-        print_map(outcome);
-    }
+    show(BlendedMap{.request = request,
+                    .manifest = manifest,
+                    .point = point,
+                    .width_px = map.width_px,
+                    .height_px = map.height_px,
+                    .peaks = peaks,
+                    .bins = neighbours_of(manifest.axes, point).size()},
+         request.json);
     return kDone;
 }
 

@@ -6,6 +6,7 @@
 #include "cli/command.h"
 #include "image/preview.h"
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -24,6 +25,9 @@ struct AtlasMapRequest {
     PreviewOptions preview;
     bool json = false;
 };
+
+// For people: the largest value of each channel.
+void print_peaks(const std::array<float, kChannels>& peaks, bool is_normalised);
 
 ExitStatus write_atlas_map(const AtlasMapRequest& request);
 

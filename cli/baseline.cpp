@@ -4,7 +4,8 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
+#include "cli/outcome.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "survey/baseline_run.h"
@@ -61,14 +62,14 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
 void add_baseline_options(CLI::App& app, BaselineOptions& options) {
     app.add_option("--sigma",
                    options.sigma,
-                   "of the blur of illumination-reflectance and homomorphic, as a share of the\n"
-                   "image's width")
+                   "illumination-reflectance, homomorphic: width of the blur as a share of the "
+                   "image's")
         ->check(in_range(1e-4, 10.0))
         ->capture_default_str();
-    app.add_option("--low", options.low, "homomorphic: the gain of what is slow")
+    app.add_option("--low", options.low, "homomorphic: gain of low frequencies")
         ->check(in_range(0.0, 10.0))
         ->capture_default_str();
-    app.add_option("--high", options.high, "homomorphic: the gain of what is quick")
+    app.add_option("--high", options.high, "homomorphic: gain of high frequencies")
         ->check(in_range(0.0, 10.0))
         ->capture_default_str();
     app.add_option("--tiles", options.tiles, "local-equalisation: tiles across and down")
@@ -76,51 +77,54 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options) {
         ->capture_default_str();
     app.add_option("--clip",
                    options.clip,
-                   "local-equalisation: the most a bin counts, in mean bins; 1 changes nothing")
+                   "local-equalisation: clip histograms at N mean bins; 1 changes nothing")
         ->check(in_range(1.0, 1e6))
         ->capture_default_str();
-    app.add_option("--order", options.order, "of the polynomials")
+    app.add_option(
+           "--order", options.order, "log-polynomial, binned-polynomial: order of the polynomials")
         ->check(in_range(0, 12))
         ->capture_default_str();
-    app.add_option("--bin", options.bin_m, "binned-polynomial: the width of a bin of altitude [m]")
+    app.add_option("--bin", options.bin_m, "binned-polynomial: width of an altitude bin, in metres")
         ->check(in_range(1e-3, 1e4))
         ->capture_default_str();
 }
-
-}  // namespace
 
 Action configure_baseline(CLI::App& app) {
     const auto options = std::make_shared<BaselineCommandOptions>();
     app.add_option("NAME", options->name, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
         ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
         ->required();
-    app.add_option("IMAGES", options->images, "images, and folders of images: TIFF, PNG, EXR, JPEG")
+    app.add_option(
+           "IMAGES", options->images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
         ->required();
-    app.add_option("-o,--output", options->baseline.run.folder, "where the corrected images go")
-        ->type_name("DIR")
-        ->required();
+    add_output_folder(app, options->baseline.run.folder)->required();
     app.add_option("--nav",
                    options->navigation,
-                   "the altitude of each image, for binned-polynomial; as for observe")
+                   "Altitude of each image, for binned-polynomial; as for observe")
         ->type_name("FILE");
     add_baseline_options(app, options->baseline.settings);
     add_camera_options(app, options->camera);
     add_white_level_option(app, options->camera);
     add_format_options(app, options->baseline.run.format);
-    app.add_option("--jobs", options->baseline.run.jobs, "images at a time")
-        ->check(in_range(1, 1024))
-        ->capture_default_str();
+    add_jobs(app, options->baseline.run.jobs, "Correct N images at a time");
     add_strict_option(app, options->strict);
-    app.add_flag("--json", options->json, "print DIR/baseline.json");
+    add_json(app, options->json, "Print DIR/baseline.json");
     app.footer(
-        "What users do without a model of the lamps, to hold it against. The polynomials learn "
-        "from\n"
-        "all images given, the others from each alone. An EXR holds the camera's own numbers less\n"
-        "the black level; a TIFF or PNG has 65535 where the camera is saturated. Given again, it\n"
-        "goes on where it stopped. An image that cannot be used is told and skipped; the exit\n"
-        "status is then 1. A mask's pixel is a sum of 2 saturated, 4 black, 16 clipped; 0 is "
-        "good.");
+        "The polynomials learn from all images given; the others correct each image by itself. An "
+        "EXR holds the camera's own numbers less the black level; a TIFF or PNG has 65535 where "
+        "the "
+        "camera saturates. Interrupted, it continues where it stopped when run again. Images that "
+        "cannot be used are reported and skipped; the exit status is then 1. A mask's pixel is a "
+        "sum "
+        "of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
     return [options] { return correct_by_baseline(*options); };
 }
+
+}  // namespace
+
+const Command kBaseline{"baseline",
+                        kSurveyCommands,
+                        "Correct images without a model of the lamps, for comparison",
+                        configure_baseline};
 
 }  // namespace aphotic::cli

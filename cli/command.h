@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The subcommands of `aphotic`, one small file each, listed in one table (cli/main.cpp) from
-// which both the dispatch and the help come.
+// The subcommands of `aphotic`, one small file each, which ends with its entry of the table in
+// cli/main.cpp. Dispatch and help come from that table.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,27 +20,34 @@ enum ExitStatus : int {
 // What a subcommand does once its options are parsed. Throws InputError or RunError.
 using Action = std::function<ExitStatus()>;
 
+// The headings of `aphotic --help`.
+inline constexpr const char* kRenderingCommands = "Render a rig";
+inline constexpr const char* kMapCommands = "Map its light on a flat floor";
+inline constexpr const char* kSurveyCommands = "Correct a survey";
+inline constexpr const char* kCheckCommands = "Check and measure";
+
 struct Command {
     const char* name;
+    const char* group;
     const char* summary;
     // Adds the options to the subcommand's parser and returns the action that reads them.
     Action (*configure)(CLI::App& options);
 };
 
-Action configure_atlas(CLI::App& options);
-Action configure_baseline(CLI::App& options);
-Action configure_compare(CLI::App& options);
-Action configure_correct(CLI::App& options);
-Action configure_data(CLI::App& options);
-Action configure_generate(CLI::App& options);
-Action configure_integrate(CLI::App& options);
-Action configure_lightmap(CLI::App& options);
-Action configure_observe(CLI::App& options);
-Action configure_plan(CLI::App& options);
-Action configure_render(CLI::App& options);
-Action configure_stress(CLI::App& options);
-Action configure_study(CLI::App& options);
-Action configure_trace(CLI::App& options);
-Action configure_validate(CLI::App& options);
+extern const Command kRender;
+extern const Command kPlan;
+extern const Command kGenerate;
+extern const Command kIntegrate;
+extern const Command kTrace;
+extern const Command kLightmap;
+extern const Command kAtlas;
+extern const Command kCorrect;
+extern const Command kObserve;
+extern const Command kBaseline;
+extern const Command kValidate;
+extern const Command kStudy;
+extern const Command kStress;
+extern const Command kCompare;
+extern const Command kData;
 
 }  // namespace aphotic::cli

@@ -6,7 +6,8 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
+#include "cli/outcome.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
@@ -76,9 +77,8 @@ Survey survey_of(const CorrectCommandOptions& options) {
     }
     const std::vector<double>& altitudes_m = options.altitudes_m;
     if (!altitudes_m.empty() && altitudes_m[0] > altitudes_m[1]) {
-        throw InputError(fmt::format("--altitudes-m: found {},{}; allowed: the lower first",
-                                     altitudes_m[0],
-                                     altitudes_m[1]));
+        throw InputError(fmt::format(
+            "--altitude: found {},{}; allowed: the lower first", altitudes_m[0], altitudes_m[1]));
     }
     Survey survey{.files = image_files(options.images, options.correction.run.folder),
                   .navigation = {},
@@ -113,36 +113,39 @@ ExitStatus correct(const CorrectCommandOptions& options) {
 }
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
-    app.add_option("--rig", options.rig, "the sled that took the images")->type_name("RIG");
+    app.add_option("--rig", options.rig, "The rig that took the images")->type_name("RIG");
     app.add_option(
            "--nav",
            options.nav,
-           "altitude, pitch and roll of each image: CSV with the columns image, altitude_m, "
+           "Altitude, pitch and roll of each image: CSV with the columns image, altitude_m, "
            "pitch_deg, roll_deg, or lines of these four without a header")
         ->type_name("FILE");
-    app.add_option("--map", options.map, "instead of both, one lightmap (EXR) for all images")
+    app.add_option(
+           "--map", options.map, "Use one lightmap (EXR) for all images instead of --rig and --nav")
         ->type_name("FILE");
-    app.add_option("--altitudes-m",
+    app.add_option(kAltitudeNames,
                    options.altitudes_m,
-                   "least,most altitude; images from beyond are skipped")
+                   "Skip images from outside these altitudes in metres")
         ->delimiter(',')
         ->expected(2)
+        ->option_text("LEAST,MOST")
         ->check(not_negative());
 }
 
 void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
     add_camera_options(app, options.camera);
-    app.add_flag(
-        "--keep-mosaic", options.correction.keep_mosaic, "write mosaics as such, not R, G, B");
+    app.add_flag("--keep-mosaic",
+                 options.correction.keep_mosaic,
+                 "Write mosaics as mosaics, not as R, G, B");
     add_white_level_option(app, options.camera);
     app.add_option("--read-noise",
                    options.correction.read_noise,
-                   "its noise without light, in the camera's numbers; by default what rounding to "
-                   "whole numbers makes, 0.3, and none for floats")
+                   "The camera's noise without light, in its own numbers; by default that of "
+                   "rounding to integers, 0.3, and none for floats")
         ->check(not_negative());
     app.add_option("--electrons",
                    options.correction.limit.electrons_per_number,
-                   "electrons a number, for shot noise; 0 leaves it aside")
+                   "Electrons per number, for shot noise; 0 ignores it")
         ->check(not_negative())
         ->capture_default_str();
 }
@@ -155,63 +158,64 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
     constexpr std::size_t kMostImages = 10000;
     app.add_option("--gain",
                    options.correction.gain,
-                   "what (raw - black) / map is multiplied by: one number, or R,G,B; by default "
-                   "taken from the survey")
+                   "Multiply (raw - black) / map by this: one number, or R,G,B; by default taken "
+                   "from the survey")
         ->delimiter(',')
         ->expected(1, kChannels)
         ->check(positive());
     app.add_option("--middle",
                    options.correction.middle,
-                   "what the survey's middle pixel comes out as, such as 0.2, grey; by default the "
-                   "colour of the rig's floor, with --map 0.2")
+                   "Make the survey's median pixel this value, such as 0.2 for grey; by default "
+                   "the colour of the rig's floor, with --map 0.2")
         ->check(positive());
-    app.add_option(
-           "--gain-images", options.correction.gain_images, "images that the gain is taken from")
+    app.add_option("--gain-images", options.correction.gain_images, "Take the gain from N images")
         ->check(in_range(1, kMostImages))
         ->capture_default_str();
-    app.add_option(
-           "--least-light",
-           options.correction.limit.share,
-           "a pixel's gain is held where the map is under this share of its brightest in one "
-           "channel")
+    app.add_option("--least-light",
+                   options.correction.limit.share,
+                   "Hold a pixel's gain where the map is below this share of its brightest in a "
+                   "channel")
         ->check(in_range(kLeastShare, 1.0))
         ->capture_default_str();
     app.add_option("--most-noise",
                    options.correction.limit.relative,
-                   "and where the middle's noise would be over this share of it")
+                   "Hold it, too, where noise would exceed this share of the survey's median")
         ->check(in_range(kLeastNoise, kMostNoise))
         ->capture_default_str();
-    app.add_option(
-           "--edge-px", options.correction.edge_px, "pixels about a cone's edge that are doubtful")
+    app.add_option("--edge-px",
+                   options.correction.edge_px,
+                   "Mark N pixels around a cone's edge as doubtful")
         ->check(in_range(0, kMostEdge_px))
         ->capture_default_str();
     add_format_options(app, options.correction.run.format);
 }
 
-}  // namespace
-
 Action configure_correct(CLI::App& app) {
-    constexpr std::size_t kMostJobs = 1024;
     const auto options = std::make_shared<CorrectCommandOptions>();
     app.add_option(
-           "IMAGES", options->images, "raw images, or folders of them: TIFF, PNG, EXR, JPEG")
+           "IMAGES", options->images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
         ->required();
     add_light_options(app, *options);
-    app.add_option("-o,--output", options->correction.run.folder, "the folder to write to")
-        ->required()
-        ->type_name("DIR");
+    add_output_folder(app, options->correction.run.folder)->required();
     add_raw_options(app, *options);
     add_result_options(app, *options);
-    app.add_option("--jobs", options->correction.run.jobs, "images at a time; by default the cores")
-        ->check(in_range(1, kMostJobs))
-        ->capture_default_str();
+    add_jobs(app, options->correction.run.jobs, "Correct N images at a time");
     add_strict_option(app, options->strict);
-    app.add_flag("--json", options->json, "print DIR/correction.json");
+    add_json(app, options->json, "Print DIR/correction.json");
     app.footer(
-        "Given again, it goes on where it stopped. Exit status 0 when all images are corrected, 1\n"
-        "when some had to be skipped: correction.json lists them. A mask's pixel is a sum of 1\n"
-        "dark, 2 saturated, 4 black, 8 on a cone's edge, 16 clipped by the format; 0 is good.");
+        "Interrupted, it continues where it stopped when run again. Exit status 0 when every image "
+        "is corrected, 1 when some are skipped: correction.json lists them. A mask's pixel is a "
+        "sum "
+        "of 1 dark, 2 saturated, 4 black, 8 on a cone's edge, 16 clipped by the format; 0 is "
+        "good.");
     return [options] { return correct(*options); };
 }
+
+}  // namespace
+
+const Command kCorrect{"correct",
+                       kSurveyCommands,
+                       "Divide survey images by the light they were taken in",
+                       configure_correct};
 
 }  // namespace aphotic::cli

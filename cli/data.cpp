@@ -4,6 +4,7 @@
 // a table of the user's own, or make tables of POV-Ray's splines.
 #include "base/error.h"
 #include "cli/command.h"
+#include "cli/options.h"
 #include "cli/spline_tables.h"
 #include "report/plot.h"
 #include "report/svg.h"
@@ -252,40 +253,50 @@ void add_spline_options(CLI::App& app,
                         CLI::Option* csv,
                         DataCommandOptions& options) {
     SplineOptions& splines = options.splines;
+    constexpr const char* kSplineOptions = "Tables from POV-Ray's spectra";
     auto* from = app.add_option("--from-spline",
                                 splines.file,
-                                "make tables of the spectra in FILE, a scene or include file of "
-                                "POV-Ray: splines, and SpectralRender's arrays")
+                                "Make a table of each spectrum in a scene or include file: "
+                                "splines, and SpectralRender's arrays")
                      ->type_name("FILE")
                      ->excludes(name)
-                     ->excludes(csv);
-    app.add_option(
-           "-o,--output", splines.folder, "the folder for these tables, by default this one")
-        ->type_name("DIR")
-        ->needs(from);
-    app.add_option("--role", splines.role, "what they are: reflectance (the default) or lamp")
+                     ->excludes(csv)
+                     ->group(kSplineOptions);
+    add_output_folder(app, splines.folder)
+        ->description("Write the tables to this folder; by default the current one")
+        ->needs(from)
+        ->group(kSplineOptions);
+    app.add_option("--role", splines.role, "The spectra are reflectance (the default) or lamp")
         ->type_name("ROLE")
         ->check(CLI::IsMember({"reflectance", "lamp"}))
-        ->needs(from);
-    app.add_option("--only", splines.only, "only those whose name fits PATTERN, such as 'D_CC_*'")
+        ->needs(from)
+        ->group(kSplineOptions);
+    app.add_option("--only", splines.only, "Skip spectra whose name does not match, as 'D_CC_*'")
         ->type_name("PATTERN")
-        ->needs(from);
-    app.add_flag("--force", splines.force, "overwrite tables that are there")->needs(from);
+        ->needs(from)
+        ->group(kSplineOptions);
+    app.add_flag("--force", splines.force, "Overwrite existing tables")
+        ->needs(from)
+        ->group(kSplineOptions);
 }
-
-}  // namespace
 
 Action configure_data(CLI::App& app) {
     const auto options = std::make_shared<DataCommandOptions>();
-    auto* name = app.add_option("NAME", options->name, "a built-in table, or a CSV file to check");
-    auto* csv = app.add_flag("--csv", options->csv, "the bare table: header row and numbers");
-    app.add_flag("--json", options->json, "the same as JSON")->excludes(csv);
-    app.add_option("--plot", options->plot_file, "draw it into FILE.svg")
+    auto* name =
+        app.add_option("NAME", options->name, "A built-in table, or a CSV file of yours to check");
+    auto* csv = app.add_flag("--csv", options->csv, "Print the bare table: header row and numbers");
+    app.add_flag("--json", options->json, "Print the same as JSON")->excludes(csv);
+    app.add_option("--plot", options->plot_file, "Plot the table into FILE.svg")
         ->type_name("FILE.svg")
         ->needs(name);
     csv->needs(name);
     add_spline_options(app, name, csv, *options);
     return [options] { return show_data(*options); };
 }
+
+}  // namespace
+
+const Command kData{
+    "data", kCheckCommands, "List, show, plot or check tables of spectra", configure_data};
 
 }  // namespace aphotic::cli

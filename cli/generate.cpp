@@ -7,6 +7,7 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
+#include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
@@ -47,7 +48,7 @@ void print_own_scene(const SceneSet& scenes, const Manifest& manifest, const std
         "Render them in the scene's folder, for example with\n"
         "  (cd {} && for scene in {}/povray/band_*.pov; do povray {} "
         "\"+I\\\"$scene\\\"\"; done)\n"
-        "and then say\n"
+        "then run\n"
         "  aphotic integrate {}\n",
         manifest.rig_title,
         counted(manifest.frames.size(), "frame"),
@@ -63,7 +64,7 @@ void print_own_scene(const SceneSet& scenes, const Manifest& manifest, const std
 ExitStatus generate_scenes(const GenerateCommandOptions& options) {
     if (!options.quick_look.empty()) return write_quick_look(options);
     if (options.folder.empty()) {
-        throw InputError("found neither --output nor --quick-look; allowed: one of them");
+        throw InputError("--output or --quick-look: found neither; allowed: one of them");
     }
     const SceneSet scenes = scenes_of(plan_rig(options.planning), options.planning);
     require_place_for_scenes(options.folder, scenes);
@@ -87,7 +88,7 @@ ExitStatus generate_scenes(const GenerateCommandOptions& options) {
         "{}: {} for {} in {}/povray\n"
         "Render them there, for example with\n"
         "  (cd {}/povray && for scene in band_*.pov; do povray render.ini +I$scene; done)\n"
-        "and then say\n"
+        "then run\n"
         "  aphotic integrate {}\n",
         manifest.rig_title,
         counted(manifest.frames.size(), "scene"),
@@ -98,22 +99,24 @@ ExitStatus generate_scenes(const GenerateCommandOptions& options) {
     return kDone;
 }
 
-}  // namespace
-
 Action configure_generate(CLI::App& app) {
     const auto options = std::make_shared<GenerateCommandOptions>();
-    add_planning_options(app, options->planning);
-    auto* folder =
-        app.add_option("-o,--output", options->folder, "the folder to write to")->type_name("DIR");
+    CLI::Option* folder = add_output_folder(app, options->folder);
     app.add_option("--quick-look",
                    options->quick_look,
-                   "instead, write the rig to this file, aphotic_quick.inc beside a "
-                   "scene of your own: plain povray then shows it by this rig's light")
+                   "Write the rig to FILE instead: as aphotic_quick.inc beside a scene of your "
+                   "own, it shows plain POV-Ray the scene by this rig's light")
         ->type_name("FILE")
         ->excludes(folder);
     add_needs_option(app, options->planning.ignore_needs);
-    app.add_flag("--json", options->json, "say what was written as JSON");
+    add_json(app, options->json);
+    add_planning_options(app, options->planning);
     return [options] { return generate_scenes(*options); };
 }
+
+}  // namespace
+
+const Command kGenerate{
+    "generate", kRenderingCommands, "Write the POV-Ray scenes and stop", configure_generate};
 
 }  // namespace aphotic::cli

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "rig/rig_reader.h"
@@ -14,11 +14,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <system_error>
-#include <thread>
 #include <vector>
 
 namespace aphotic::cli {
@@ -52,8 +50,8 @@ void require_own_folder(const fs::path& images, const IntegrateCommandOptions& o
     for (const fs::path& notes : {manifest_path(images), images / "trace.json"}) {
         if (!fs::exists(notes)) continue;
         throw InputError(fmt::format(
-            "{}: found the notes of a render or trace; allowed: a folder without, for these images "
-            "would take the place of its own",
+            "{}: found the notes of a render or trace; allowed: a folder without, as these images "
+            "would replace its own",
             notes.string()));
     }
 }
@@ -93,44 +91,49 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     const fs::path images = images_folder(options);
     require_own_folder(images, options);
     // Frames that cannot serve, and images that have no room, leave no folder behind.
-    const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    require_room(
-        integration_needs(image_size(manifest_of(options)), threads), images, options.ignore_needs);
+    require_room(integration_needs(image_size(manifest_of(options)), all_cores()),
+                 images,
+                 options.ignore_needs);
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
     const Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
-    Json outcome = integrate_folder(options.folder, manifest, options.preview, images);
-    outcome["title"] = manifest.rig_title;
+    const Integration integration =
+        integrate_folder(options.folder, manifest, options.preview, images);
     if (!options.rig_file.empty()) {
         write_text_file(images / "integration.json", dumped(account_of(options, manifest)) + "\n");
     }
-    options.json ? fmt::print("{}\n", dumped(outcome)) : print_outcome(outcome);
+    show(integration, options.json);
     return kDone;
+}
+
+Action configure_integrate(CLI::App& app) {
+    const auto options = std::make_shared<IntegrateCommandOptions>();
+    app.add_option("DIR", options->folder, "A folder of `aphotic render` or `aphotic generate`")
+        ->required();
+    add_output_folder(app, options->images_folder)
+        ->description("Write the images to this folder; by default DIR, with --rig DIR/as-RIG");
+    auto* rig = app.add_option("--rig",
+                               options->rig_file,
+                               "Make the image of this rig from the same frames: same geometry, "
+                               "other water, lamps, materials or sensor")
+                    ->type_name("RIG");
+    app.add_option("--tolerance",
+                   options->tolerance,
+                   "With --rig: largest relative error of any pixel's signal")
+        ->check(in_range(0.0, 1.0))
+        ->needs(rig)
+        ->option_text("E")
+        ->capture_default_str();
+    add_needs_option(app, options->ignore_needs);
+    add_json(app, options->json);
+    add_preview_options(app, options->preview);
+    return [options] { return integrate_frames(*options); };
 }
 
 }  // namespace
 
-Action configure_integrate(CLI::App& app) {
-    const auto options = std::make_shared<IntegrateCommandOptions>();
-    app.add_option("DIR", options->folder, "a folder of `aphotic render` or `aphotic generate`")
-        ->required();
-    auto* rig = app.add_option("--rig",
-                               options->rig_file,
-                               "a rig of the same geometry but other water, lamps, materials or "
-                               "sensor: its image, from these frames");
-    app.add_option("--tolerance",
-                   options->tolerance,
-                   "with --rig: relative error that no pixel's signal is to exceed")
-        ->check(in_range(0.0, 1.0))
-        ->needs(rig)
-        ->capture_default_str();
-    app.add_option("-o,--output",
-                   options->images_folder,
-                   "the folder for the images; by default DIR, with --rig DIR/as-RIG")
-        ->type_name("DIR");
-    add_preview_options(app, options->preview);
-    add_needs_option(app, options->ignore_needs);
-    app.add_flag("--json", options->json, "say what was made as JSON");
-    return [options] { return integrate_frames(*options); };
-}
+const Command kIntegrate{"integrate",
+                         kRenderingCommands,
+                         "Turn the frames of a folder into images",
+                         configure_integrate};
 
 }  // namespace aphotic::cli

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "cli/command.h"
+#include "cli/help.h"
 #include "cli/option_checks.h"
 #include "plugin/interruption.h"
 
@@ -14,6 +15,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string_view>
 
@@ -23,45 +25,22 @@ using aphotic::cli::Action;
 using aphotic::cli::Command;
 using aphotic::cli::ExitStatus;
 
-constexpr std::array kCommands{
-    Command{"render",
-            "plan, write the scenes, run POV-Ray, integrate: rig to image",
-            aphotic::cli::configure_render},
-    Command{"plan",
-            "which wavelengths and frames a render would take, and the error it promises",
-            aphotic::cli::configure_plan},
-    Command{"generate", "write the POV-Ray scenes alone", aphotic::cli::configure_generate},
-    Command{"integrate", "frames and manifest to images", aphotic::cli::configure_integrate},
-    Command{"trace",
-            "the same images by the reference tracer, without POV-Ray",
-            aphotic::cli::configure_trace},
-    Command{"lightmap",
-            "the camera's signal on a bare flat floor, at the camera's pace",
-            aphotic::cli::configure_lightmap},
-    Command{"atlas",
-            "lightmaps over altitude, attitude and water, and how far it is between them",
-            aphotic::cli::configure_atlas},
-    Command{"validate",
-            "render, trace, and compare them within stated bounds",
-            aphotic::cli::configure_validate},
-    Command{"study",
-            "measure the trade of accuracy for time on this machine",
-            aphotic::cli::configure_study},
-    Command{"stress",
-            "hold both renderers at extremes against a long-double answer",
-            aphotic::cli::configure_stress},
-    Command{"correct",
-            "survey images divided by the light that they were taken in",
-            aphotic::cli::configure_correct},
-    Command{"observe",
-            "average the images of one altitude into their pattern of light",
-            aphotic::cli::configure_observe},
-    Command{"baseline",
-            "correct images as one does without a model of the lamps",
-            aphotic::cli::configure_baseline},
-    Command{"compare", "how far one image is from another", aphotic::cli::configure_compare},
-    Command{"data", "the built-in tables: list, show, plot, source", aphotic::cli::configure_data},
-};
+// In the order of --help.
+constexpr std::array kCommands{&aphotic::cli::kRender,
+                               &aphotic::cli::kPlan,
+                               &aphotic::cli::kGenerate,
+                               &aphotic::cli::kIntegrate,
+                               &aphotic::cli::kTrace,
+                               &aphotic::cli::kLightmap,
+                               &aphotic::cli::kAtlas,
+                               &aphotic::cli::kCorrect,
+                               &aphotic::cli::kObserve,
+                               &aphotic::cli::kBaseline,
+                               &aphotic::cli::kValidate,
+                               &aphotic::cli::kStudy,
+                               &aphotic::cli::kStress,
+                               &aphotic::cli::kCompare,
+                               &aphotic::cli::kData};
 
 // A message quotes what it found: nothing in it may steer the terminal.
 void say(std::string_view message) {
@@ -77,7 +56,7 @@ ExitStatus run(const Action& action) {
         return status;
     } catch (const aphotic::Interrupted& interrupted) {
         fmt::print(stderr,
-                   "aphotic: {}; what was done is kept, and the same command goes on from there\n",
+                   "aphotic: {}; finished work is kept: run the same command again to continue\n",
                    interrupted.what());
         aphotic::end_by_signal(interrupted.signal());
     } catch (const aphotic::InputError& error) {
@@ -87,7 +66,7 @@ ExitStatus run(const Action& action) {
         say(error.what());
         return aphotic::cli::kRunFailed;
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "aphotic: there is not enough memory for this\n");
+        fmt::print(stderr, "aphotic: out of memory\n");
         return aphotic::cli::kRunFailed;
     } catch (const std::exception& error) {
         // The file system's own words, mostly.
@@ -103,17 +82,22 @@ int main(int argc, char** argv) {
     // POV-Ray is to be seen, whoever started us.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGCHLD, SIG_DFL);
-    CLI::App app{"What an underwater camera sled sees by the light of its own strobes."};
-    app.set_version_flag("--version", "aphotic " APHOTIC_VERSION);
+    CLI::App app{
+        "Simulate what an underwater camera sled sees by its own strobes, and correct "
+        "its\nimages for their light.",
+        "aphotic"};
+    app.set_help_flag("-h,--help", "Print this help and exit");
+    app.formatter(std::make_shared<aphotic::cli::HelpFormatter>());
+    app.set_version_flag("--version", "aphotic " APHOTIC_VERSION, "Print the version and exit");
     app.require_subcommand(1);
     app.footer(
-        "Exit status: 0 done; 1 it ran and the answer is no; 2 the command line or an input\n"
-        "file is wrong; 3 POV-Ray or the file system failed. Interrupted, it ends by the signal.");
+        "Exit status: 0 done; 1 ran, and the answer is no; 2 wrong command line or input file; 3 "
+        "POV-Ray or the file system failed. Ends by the signal when interrupted.");
 
     Action chosen;
-    for (const Command& command : kCommands) {
-        CLI::App* sub = app.add_subcommand(command.name, command.summary);
-        const Action action = command.configure(*sub);
+    for (const Command* command : kCommands) {
+        CLI::App* sub = app.add_subcommand(command->name, command->summary)->group(command->group);
+        const Action action = command->configure(*sub);
         aphotic::cli::add_common_checks(*sub);
         sub->callback([&chosen, action, sub] {
             chosen = [action, sub] {

@@ -55,8 +55,7 @@ std::size_t frames_to_render(const SceneSet& scenes, const fs::path& folder) {
 }  // namespace
 
 void add_needs_option(CLI::App& app, bool& ignore_needs) {
-    app.add_flag(
-        "--ignore-needs", ignore_needs, "begin though there seems to be too little disk or memory");
+    app.add_flag("--ignore-needs", ignore_needs, "Start even if disk or memory looks insufficient");
 }
 
 void require_room(const Needs& needs, const fs::path& folder, bool ignore_needs) {

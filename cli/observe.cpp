@@ -5,7 +5,8 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
+#include "cli/outcome.h"
 #include "cli/survey_command.h"
 #include "survey/navigation_csv.h"
 #include "survey/observation.h"
@@ -68,63 +69,68 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
 }
 
 void add_average_options(CLI::App& app, ObservationOptions& options) {
-    app.add_option("--method", options.average, "mean, median or trimmed (mean)")
+    app.add_option("--method", options.average, "Average by mean, median or trimmed mean")
         ->transform(CLI::CheckedTransformer(kAverages).description(""))
-        ->type_name("METHOD")
+        ->type_name("mean|median|trimmed")
         ->default_str("mean");
-    app.add_option("--trim",
-                   options.trim,
-                   "the share of samples that is left out at either end, of a trimmed mean")
+    app.add_option(
+           "--trim", options.trim, "Trimmed mean: leave out this share of samples at either end")
         ->check(in_range(0.0, 0.49))
         ->capture_default_str();
     app.add_flag("--normalise",
                  options.normalise,
-                 "first divide each image by the mean of its samples, so that patterns alone are\n"
-                 "averaged");
-    app.add_flag(
-        "--demosaic",
-        options.demosaic,
-        "of a mosaic's map, fill the other channels of each pixel from the sites about it");
+                 "First divide each image by its mean, to average patterns alone");
+    app.add_flag("--demosaic",
+                 options.demosaic,
+                 "Fill in the other channels of each pixel of a mosaic's map");
 }
-
-}  // namespace
 
 Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
-    app.add_option("IMAGES", options->images, "images, and folders of images: TIFF, PNG, EXR, JPEG")
+    app.add_option(
+           "IMAGES", options->images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
         ->required();
     app.add_option("--nav",
                    options->navigation,
-                   "where the sled was: CSV with the columns image and altitude_m, or HabCam's\n"
+                   "Where the sled was: CSV with the columns image and altitude_m, or HabCam's "
                    "lines of name, altitude, pitch and roll")
         ->type_name("FILE")
         ->required();
-    app.add_option("-o,--output", options->output, "the map to write")
+    app.add_option("-o,--output", options->output, "Write the map to this file")
         ->type_name("MAP.exr")
         ->required();
-    app.add_option("--altitude", options->observation.altitude_m, "the altitude to observe [m]")
+    app.add_option(
+           kAltitudeNames, options->observation.altitude_m, "Altitude to observe, in metres")
         ->check(positive())
+        ->option_text("M")
         ->required();
-    app.add_option("--within", options->observation.within_m, "how far an image may be off it [m]")
+    app.add_option("--within",
+                   options->observation.within_m,
+                   "Accept images up to this far from it, in metres")
         ->check(not_negative())
         ->capture_default_str();
     add_average_options(app, options->observation);
     add_camera_options(app, options->camera);
     app.add_option("--memory",
                    options->observation.memory_mb,
-                   "for the images that a median or a trimmed mean holds at a time [MB]")
+                   "Hold up to N MB of images at a time, for a median or trimmed mean")
         ->check(positive())
         ->capture_default_str();
-    app.add_option("--jobs", options->observation.jobs, "images read at a time")
-        ->check(in_range(1, 1024))
-        ->capture_default_str();
+    add_jobs(app, options->observation.jobs, "Read N images at a time");
     add_strict_option(app, options->strict);
-    app.add_flag("--json", options->json, "print what was done as JSON");
+    add_json(app, options->json);
     app.footer(
-        "MAP.exr holds the average in R, G, B, the number of images in count.R ..., the standard\n"
-        "error in stderr.R ...; what was never observed is NaN. An image that cannot be used is\n"
+        "MAP.exr holds the average in R, G, B, the number of images in count.R ..., the standard "
+        "error in stderr.R ...; what was never observed is NaN. Images that cannot be used are "
         "reported and skipped; the exit status is then 1.");
     return [options] { return observe_survey(*options); };
 }
+
+}  // namespace
+
+const Command kObserve{"observe",
+                       kSurveyCommands,
+                       "Average images of one altitude into their shared light",
+                       configure_observe};
 
 }  // namespace aphotic::cli

@@ -3,17 +3,12 @@
 
 #include "base/progress.h"
 #include "base/words.h"
-#include "cli/option_checks.h"
 #include "image/exr.h"
 #include "plugin/interruption.h"
 #include "spectral/integrator.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <map>
 #include <numeric>
 #include <thread>
 
@@ -22,41 +17,109 @@ namespace aphotic::cli {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-void add_preview_options(CLI::App& app, PreviewOptions& options) {
-    static const std::map<std::string, PreviewWhite> kWhites{
-        {"lamp", PreviewWhite::Lamp}, {"image", PreviewWhite::Image}, {"none", PreviewWhite::None}};
-    constexpr double kMostStops = 20.0;
-    app.add_option("--preview-white",
-                   options.white,
-                   "what the preview shows as grey: the lamp's own light (lamp, the default), the "
-                   "image's mean (image), or equal signals (none)")
-        ->transform(CLI::CheckedTransformer(kWhites))
-        ->option_text("lamp|image|none");
-    app.add_option("--preview-stops", options.stops, "the preview brighter by 2^STOPS")
-        ->check(in_range(-kMostStops, kMostStops))
-        ->capture_default_str();
-}
-
 std::string dumped(const Json& json) {
     // Titles and paths are the user's and need not be UTF-8; JSON must be.
     constexpr int kIndent = 2;
     return json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
 }
 
-Json outcome_of(const fs::path& folder, const CameraImage& image) {
-    Json channels;
+MadeImages made_images(const fs::path& folder, const CameraImage& image) {
+    MadeImages made{.folder = folder, .width_px = image.width_px, .height_px = image.height_px};
     const auto plane = static_cast<std::ptrdiff_t>(image.samples.size() / kChannels);
-    for (int c = 0; c < kChannels; ++c) {
-        const auto first = image.samples.begin() + c * plane;
+    auto first = image.samples.begin();
+    for (MadeImages::Signal& signal : made.signals) {
         const auto [least, most] = std::minmax_element(first, first + plane);
-        const double mean = std::accumulate(first, first + plane, 0.0) / static_cast<double>(plane);
-        channels[std::string(kChannelNames[static_cast<std::size_t>(c)])] = {
-            {"least", *least}, {"mean", mean}, {"most", *most}};
+        const double sum = std::accumulate(first, first + plane, 0.0);
+        signal = {.least = *least, .mean = sum / static_cast<double>(plane), .most = *most};
+        first += plane;
     }
-    return {{"folder", folder.string()},
-            {"width_px", image.width_px},
-            {"height_px", image.height_px},
+    return made;
+}
+
+Json to_json(const MadeImages& made) {
+    Json channels;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const MadeImages::Signal& signal = made.signals[c];
+        channels[std::string(kChannelNames[c])] = {
+            {"least", signal.least}, {"mean", signal.mean}, {"most", signal.most}};
+    }
+    return {{"folder", made.folder.string()},
+            {"width_px", made.width_px},
+            {"height_px", made.height_px},
             {"signal", channels}};
+}
+
+void print(const MadeImages& made) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const MadeImages::Signal& signal = made.signals[c];
+        fmt::print("  {}  {:.6g} to {:.6g}, mean {:.6g}\n",
+                   kChannelNames[c],
+                   signal.least,
+                   signal.most,
+                   signal.mean);
+    }
+    fmt::print(
+        "  {0}/preview.png   to look at\n"
+        "  {0}/image.exr     the camera's signal, linear R, G, B\n",
+        made.folder.string());
+    if (made.has_spectral) {
+        fmt::print("  {}/spectral.exr  the radiance at each wavelength\n", made.folder.string());
+    }
+}
+
+Integration integrate_folder(const fs::path& folder,
+                             const Manifest& manifest,
+                             const PreviewOptions& preview,
+                             const fs::path& images) {
+    const auto start = std::chrono::steady_clock::now();
+    const InterruptionHold hold;
+    set_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+    ProgressLine line;
+    const auto report = [&](double share) {
+        throw_if_interrupted();
+        line.show("integrating", share);
+    };
+    const bool is_own = images == folder;
+    const CameraImage image = is_own ? integrate(folder, manifest, report)
+                                     : integrate_signals(folder, manifest, images, report);
+    write_preview(image, manifest.lamp_signal, preview, images / "preview.png");
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    MadeImages made = made_images(images, image);
+    made.has_spectral = is_own;
+    return {.manifest = manifest, .images = made, .seconds = elapsed.count()};
+}
+
+Json to_json(const Integration& integration) {
+    const Manifest& manifest = integration.manifest;
+    Json json = to_json(integration.images);
+    json["spectral"] = integration.images.has_spectral;
+    json["wavelengths"] = manifest.wavelengths.size();
+    json["frames"] = manifest.frames.size();
+    json["frame_error"] = manifest.frame_error;
+    put_promises(json, manifest);
+    json["integration_s"] = integration.seconds;
+    json["title"] = manifest.rig_title;
+    return json;
+}
+
+void print(const Integration& integration) {
+    const Manifest& manifest = integration.manifest;
+    fmt::print("{}: {} x {} pixels from {} in {}, integrated in {:.1f} s\n",
+               manifest.rig_title,
+               integration.images.width_px,
+               integration.images.height_px,
+               counted(manifest.wavelengths.size(), "wavelength"),
+               counted(manifest.frames.size(), "frame"),
+               integration.seconds);
+    if (manifest.has_promise()) {
+        fmt::print("  off the full spectrum by at most {:.3g} (R), {:.3g} (G), {:.3g} (B)\n",
+                   manifest.promise(0),
+                   manifest.promise(1),
+                   manifest.promise(2));
+    } else {
+        print_no_promise(manifest.no_promise);
+    }
+    print(integration.images);
 }
 
 void put_promises(Json& json, const Manifest& manifest) {
@@ -73,75 +136,9 @@ void put_promises(Json& json, const Manifest& manifest) {
     }
 }
 
-Json integrate_folder(const fs::path& folder,
-                      const Manifest& manifest,
-                      const PreviewOptions& preview,
-                      const fs::path& images) {
-    const auto start = std::chrono::steady_clock::now();
-    const InterruptionHold hold;
-    set_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
-    ProgressLine line;
-    const auto report = [&](double share) {
-        throw_if_interrupted();
-        line.show("integrating", share);
-    };
-    const CameraImage image = images == folder
-                                  ? integrate(folder, manifest, report)
-                                  : integrate_signals(folder, manifest, images, report);
-    write_preview(image, manifest.lamp_signal, preview, images / "preview.png");
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-
-    Json outcome = outcome_of(images, image);
-    outcome["spectral"] = images == folder;
-    outcome["wavelengths"] = manifest.wavelengths.size();
-    outcome["frames"] = manifest.frames.size();
-    outcome["frame_error"] = manifest.frame_error;
-    put_promises(outcome, manifest);
-    outcome["integration_s"] = elapsed.count();
-    return outcome;
-}
-
-void print_outcome(const Json& outcome) {
-    fmt::print("{}: {} x {} pixels from {} in {}, integrated in {:.1f} s\n",
-               outcome["title"].get<std::string>(),
-               outcome["width_px"].get<int>(),
-               outcome["height_px"].get<int>(),
-               counted(outcome["wavelengths"].get<std::size_t>(), "wavelength"),
-               counted(outcome["frames"].get<std::size_t>(), "frame"),
-               outcome["integration_s"].get<double>());
-    if (outcome["promise"].is_null()) {
-        print_no_promise(outcome["no_promise"]);
-    } else {
-        fmt::print("  off the full spectrum by at most {:.3g} (R), {:.3g} (G), {:.3g} (B)\n",
-                   outcome["promise"]["R"]["promise"].get<double>(),
-                   outcome["promise"]["G"]["promise"].get<double>(),
-                   outcome["promise"]["B"]["promise"].get<double>());
-    }
-    print_signals(outcome);
-}
-
 void print_no_promise(const std::vector<std::string>& reasons) {
     fmt::print("  no bound on the error against the full spectrum:\n");
     for (const std::string& reason : reasons) fmt::print("    {}\n", reason);
-}
-
-void print_signals(const Json& outcome) {
-    const auto folder = outcome["folder"].get<std::string>();
-    for (const auto& [channel, signal] : outcome["signal"].items()) {
-        fmt::print("  {}  {:.6g} to {:.6g}, mean {:.6g}\n",
-                   channel,
-                   signal["least"].get<double>(),
-                   signal["most"].get<double>(),
-                   signal["mean"].get<double>());
-    }
-    fmt::print(
-        "  {}/preview.png   to look at\n"
-        "  {}/image.exr     the camera's signal, linear R, G, B\n",
-        folder,
-        folder);
-    if (outcome.value("spectral", true)) {
-        fmt::print("  {}/spectral.exr  the radiance at each wavelength\n", folder);
-    }
 }
 
 }  // namespace aphotic::cli

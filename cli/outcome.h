@@ -1,46 +1,72 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From finished frames to pictures, and what is said about them.
+// What a command made. Each result is a struct with to_json(), for programs, and print(), for
+// people.
 #pragma once
 
 #include "image/preview.h"
 #include "spectral/manifest.h"
-#include "spectral/quadrature_fit.h"
 
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <array>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace aphotic::cli {
-
-void add_preview_options(CLI::App& app, PreviewOptions& options);
 
 // JSON as it is printed.
 [[nodiscard]] std::string dumped(const nlohmann::ordered_json& json);
 
-// Where the images are, their size, and the least, mean and largest signal of each channel.
-[[nodiscard]] nlohmann::ordered_json outcome_of(const std::filesystem::path& folder,
-                                                const CameraImage& image);
+template <typename Result>
+void show(const Result& result, bool as_json) {
+    if (as_json) {
+        fmt::print("{}\n", dumped(to_json(result)));
+    } else {
+        print(result);
+    }
+}
+
+// The images in a folder, and what signals they hold.
+struct MadeImages {
+    struct Signal {
+        float least = 0.0F;
+        double mean = 0.0;
+        float most = 0.0F;
+    };
+    std::filesystem::path folder;
+    int width_px = 0;
+    int height_px = 0;
+    std::array<Signal, kChannels> signals{};
+    bool has_spectral = true;
+};
+
+[[nodiscard]] MadeImages made_images(const std::filesystem::path& folder, const CameraImage& image);
+[[nodiscard]] nlohmann::ordered_json to_json(const MadeImages& made);
+void print(const MadeImages& made);
+
+struct Integration {
+    Manifest manifest;
+    MadeImages images;
+    double seconds = 0.0;
+};
 
 // Integrates the frames of `folder` into `images`, the same folder or another: then the signals
-// alone. Writes image.exr, spectral.exr and preview.png, and returns what there is to say of them.
-[[nodiscard]] nlohmann::ordered_json integrate_folder(const std::filesystem::path& folder,
-                                                      const Manifest& manifest,
-                                                      const PreviewOptions& preview,
-                                                      const std::filesystem::path& images);
+// alone. Writes image.exr, spectral.exr and preview.png.
+[[nodiscard]] Integration integrate_folder(const std::filesystem::path& folder,
+                                           const Manifest& manifest,
+                                           const PreviewOptions& preview,
+                                           const std::filesystem::path& images);
+[[nodiscard]] nlohmann::ordered_json to_json(const Integration& integration);
+void print(const Integration& integration);
 
-// What a plan or a manifest promises, per channel: error, amplification and promise. Null where a
-// scene of the user's voids it; no_promise in the JSON then says why.
+// The error bound of a plan or manifest, per channel: error, amplification and promise. Null where
+// a scene of the user's voids it; no_promise in the JSON then says why.
 void put_promises(nlohmann::ordered_json& json, const Manifest& manifest);
 
-// Why there is no promise, for people.
+// Why there is no error bound, for people.
 void print_no_promise(const std::vector<std::string>& reasons);
-
-// The same for people: of a whole integration, or of its images alone.
-void print_outcome(const nlohmann::ordered_json& outcome);
-void print_signals(const nlohmann::ordered_json& outcome);
 
 }  // namespace aphotic::cli

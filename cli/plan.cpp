@@ -240,16 +240,14 @@ void print_for_people(const PlannedRender& planned, const SceneSet& scenes) {
     }
 }
 
-}  // namespace
-
 Action configure_plan(CLI::App& app) {
     const auto options = std::make_shared<PlanCommandOptions>();
-    add_planning_options(app, options->planning);
     app.add_option("--plot",
                    options->plot,
-                   "a picture of the light, the wavelengths and the error over path length")
+                   "Plot the light, the wavelengths and the error over path length")
         ->type_name("FILE.svg");
-    app.add_flag("--json", options->json, "the plan as JSON");
+    add_json(app, options->json, "Print the plan as JSON");
+    add_planning_options(app, options->planning);
     return [options] {
         const PlannedRender planned = plan_rig(options->planning);
         const SceneSet scenes = scenes_of(planned, options->planning);
@@ -258,5 +256,12 @@ Action configure_plan(CLI::App& app) {
         return kDone;
     };
 }
+
+}  // namespace
+
+const Command kPlan{"plan",
+                    kRenderingCommands,
+                    "Show the wavelengths, frames and error bound of a render",
+                    configure_plan};
 
 }  // namespace aphotic::cli

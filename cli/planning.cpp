@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "cli/option_checks.h"
 #include "plugin/probe.h"
 #include "rig/rig_reader.h"
 
@@ -46,7 +45,7 @@ std::string ini_line(const std::string& setting) {
     if (!is_plain || std::ranges::find(kSpeedKeys, key) == kSpeedKeys.end()) {
         throw InputError(
             fmt::format("--povray-ini: found {}; allowed: KEY=VALUE with one of {}. "
-                        "Others would change what a frame holds; --antialias is apart",
+                        "Others would change the image; for antialiasing there is --antialias",
                         setting,
                         fmt::join(kSpeedKeys, ", ")));
     }
@@ -126,118 +125,6 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
 }
 
 }  // namespace
-
-void add_povray_options(CLI::App& app, std::string& povray, double& stall_timeout_s) {
-    constexpr double kLeast_s = 0.5;
-    constexpr double kMost_s = 1e6;
-    app.add_option("--povray", povray, "the POV-Ray to run; otherwise APHOTIC_POVRAY, or PATH")
-        ->type_name("PROGRAM");
-    app.add_option(
-           "--stall-timeout",
-           stall_timeout_s,
-           "seconds after which POV-Ray is stopped when it neither prints anything nor uses "
-           "the processor")
-        ->check(in_range(kLeast_s, kMost_s))
-        ->type_name("S")
-        ->capture_default_str();
-}
-
-void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
-    constexpr int kMostFitted = 48;
-    constexpr int kMostBands = 100000;
-    constexpr double kLeastPath_m = 1e-6;
-    constexpr double kMostPath_m = 1e6;
-    app.add_option("RIG", options.rig_file, "the rig file (TOML)")->required();
-    auto* tolerance = app.add_option("--tolerance",
-                                     options.tolerance,
-                                     "relative error that no pixel's signal is to exceed; as few "
-                                     "wavelengths are fitted as keep it")
-                          ->check(in_range(0.0, 1.0))
-                          ->capture_default_str();
-    auto* fitted = app.add_option("--fitted",
-                                  options.fitted,
-                                  "instead, so many fitted wavelengths, whatever they keep")
-                       ->check(in_range(1, kMostFitted))
-                       ->excludes(tolerance);
-    auto* bands = app.add_option("--bands",
-                                 options.bands,
-                                 "instead, so many equal bands over the sensor's range, each at "
-                                 "its middle")
-                      ->check(in_range(1, kMostBands))
-                      ->excludes(tolerance)
-                      ->excludes(fitted);
-    app.add_option("--wavelengths",
-                   options.wavelengths_nm,
-                   "instead, these wavelengths in nm, such as 478,576,638, with fitted weights")
-        ->delimiter(',')
-        ->excludes(bands)
-        ->excludes(fitted)
-        ->excludes(tolerance);
-    app.add_option("--paths-m",
-                   options.paths_m,
-                   "shortest,longest way of light from lamp to floor to camera, such as 2,16, for "
-                   "a plan that serves several rigs; by default what this one sees")
-        ->delimiter(',')
-        ->expected(2)
-        ->check(in_range(kLeastPath_m, kMostPath_m));
-}
-
-void add_planning_options(CLI::App& app, PlanningOptions& options) {
-    constexpr int kMostLamps = 64;
-    constexpr int kMostAntialias = 9;
-    constexpr double kMostShift_px = 100.0;
-    constexpr double kMostClock = 1e6;
-    add_wavelength_options(app, options);
-    options.renders = true;
-    app.add_option("--scene",
-                   options.scene,
-                   "a POV-Ray scene of your own that includes aphotic.inc, instead of the rig's "
-                   "bare floor; by default what the rig's `scene` names")
-        ->type_name("FILE.pov");
-    app.add_option(
-           "--library-path",
-           options.library_paths,
-           "where that scene's includes are, beside its own folder and what povray.ini says")
-        ->type_name("DIR");
-    app.add_option("--clock",
-                   options.clock,
-                   "value of POV-Ray's clock in the scene; run once per animation frame")
-        ->check(in_range(-kMostClock, kMostClock))
-        ->capture_default_str();
-    app.add_flag("--unchecked",
-                 options.unchecked,
-                 "render a scene with radiosity, photons or its own media anyway; the result has "
-                 "no error bound");
-    app.add_option("--antialias",
-                   options.antialias,
-                   "so many by so many further rays to each pixel: edges are smooth, and no longer "
-                   "those that the reference traces; costs their number in time")
-        ->check(in_range(0, kMostAntialias));
-    app.add_option("--povray-ini",
-                   options.povray_ini,
-                   "a setting of POV-Ray's own that changes its speed, such as Bounding_Method=2")
-        ->type_name("KEY=VALUE");
-    add_povray_options(app, options.povray, options.stall_timeout_s);
-    app.add_option("--per-frame",
-                   options.per_frame,
-                   "wavelengths that share a frame at most, one a channel")
-        ->check(in_range(1, 3))
-        ->capture_default_str();
-    app.add_option("--pixel-shift",
-                   options.pixel_shift,
-                   "how far apart behind a port, in pixels at the image's corner, wavelengths may "
-                   "lie that share a frame")
-        ->check(in_range(0.0, kMostShift_px))
-        ->capture_default_str();
-    app.add_option(
-           "--emitter-lamps",
-           options.emitter_lamps,
-           "point lamps that stand for an emitter, across,along, such as 4,2; by default as "
-           "many as the distance asks for")
-        ->delimiter(',')
-        ->expected(2)
-        ->check(in_range(1, kMostLamps));
-}
 
 PlannedRender plan_rig(const PlanningOptions& options) {
     Rig rig = read_rig(options.rig_file);

@@ -2,10 +2,11 @@
 //
 // aphotic render RIG -o DIR: the main job, from a rig file to a camera image through POV-Ray.
 #include "plugin/render.h"
+
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
@@ -14,7 +15,7 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <thread>
+#include <optional>
 
 namespace aphotic::cli {
 namespace {
@@ -22,10 +23,43 @@ namespace {
 struct RenderCommandOptions {
     PlanningOptions planning;
     std::string folder;
-    int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    int jobs = all_cores();
     PreviewOptions preview;
     bool json = false;
 };
+
+struct Rendered {
+    Integration integration;
+    std::string povray_version;
+    int jobs = 1;
+    std::size_t frames_rendered = 0;
+    std::size_t frames_kept = 0;
+    double povray_s = 0.0;
+    std::optional<double> probe_s;  // of a scene of the user's own
+};
+
+nlohmann::ordered_json to_json(const Rendered& rendered) {
+    nlohmann::ordered_json json = to_json(rendered.integration);
+    json["povray_version"] = rendered.povray_version;
+    json["jobs"] = rendered.jobs;
+    json["frames_rendered"] = rendered.frames_rendered;
+    json["frames_kept"] = rendered.frames_kept;
+    json["povray_s"] = rendered.povray_s;
+    if (rendered.probe_s) json["probe_s"] = *rendered.probe_s;
+    return json;
+}
+
+void print(const Rendered& rendered) {
+    fmt::print(
+        "POV-Ray {}: {} rendered, {} kept, in {:.1f} s with {}{}\n",
+        rendered.povray_version,
+        counted(rendered.frames_rendered, "frame"),
+        rendered.frames_kept,
+        rendered.povray_s,
+        counted(static_cast<std::size_t>(rendered.jobs), "job"),
+        rendered.probe_s ? fmt::format(", after a {:.1f} s scene probe", *rendered.probe_s) : "");
+    print(rendered.integration);
+}
 
 ExitStatus render_rig(const RenderCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
@@ -45,50 +79,33 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
                                                  .library_paths = options.planning.library_paths,
                                                  .stall_s = options.planning.stall_timeout_s});
     const RenderResult& result = frames.result;
-    const int jobs = scenes.scene_writes_files ? 1 : options.jobs;
-
-    auto outcome =
-        integrate_folder(options.folder, result.manifest, options.preview, options.folder);
-    outcome["title"] = planned.rig.title;
-    outcome["povray_version"] = povray.version;
-    outcome["jobs"] = jobs;
-    outcome["frames_rendered"] = result.rendered;
-    outcome["frames_kept"] = result.kept;
-    outcome["povray_s"] = frames.povray_s;
-    if (planned.plan.scene.user_scene) outcome["probe_s"] = planned.probe_s;
-    if (options.json) {
-        fmt::print("{}\n", dumped(outcome));
-        return kDone;
-    }
-    fmt::print("POV-Ray {}: {} rendered, {} kept, in {:.1f} s with {}{}\n",
-               povray.version,
-               counted(result.rendered, "frame"),
-               result.kept,
-               frames.povray_s,
-               counted(static_cast<std::size_t>(jobs), "job"),
-               planned.plan.scene.user_scene
-                   ? fmt::format(", after a {:.1f} s scene probe", planned.probe_s)
-                   : "");
-    print_outcome(outcome);
+    Rendered rendered{.integration = integrate_folder(
+                          options.folder, result.manifest, options.preview, options.folder),
+                      .povray_version = povray.version,
+                      .jobs = scenes.scene_writes_files ? 1 : options.jobs,
+                      .frames_rendered = result.rendered,
+                      .frames_kept = result.kept,
+                      .povray_s = frames.povray_s,
+                      .probe_s = {}};
+    if (planned.plan.scene.user_scene) rendered.probe_s = planned.probe_s;
+    show(rendered, options.json);
     return kDone;
+}
+
+Action configure_render(CLI::App& app) {
+    const auto options = std::make_shared<RenderCommandOptions>();
+    add_output_folder(app, options->folder)->required();
+    add_jobs(app, options->jobs, "Render N frames at a time");
+    add_needs_option(app, options->planning.ignore_needs);
+    add_json(app, options->json);
+    add_planning_options(app, options->planning);
+    add_preview_options(app, options->preview);
+    return [options] { return render_rig(*options); };
 }
 
 }  // namespace
 
-Action configure_render(CLI::App& app) {
-    constexpr int kMostJobs = 1024;
-    const auto options = std::make_shared<RenderCommandOptions>();
-    add_planning_options(app, options->planning);
-    app.add_option("-o,--output", options->folder, "the folder to write to")
-        ->required()
-        ->type_name("DIR");
-    app.add_option("--jobs", options->jobs, "frames at a time; by default the cores")
-        ->check(in_range(1, kMostJobs))
-        ->capture_default_str();
-    add_preview_options(app, options->preview);
-    add_needs_option(app, options->planning.ignore_needs);
-    app.add_flag("--json", options->json, "say what was done as JSON");
-    return [options] { return render_rig(*options); };
-}
+const Command kRender{
+    "render", kRenderingCommands, "Render a rig: plan, run POV-Ray, integrate", configure_render};
 
 }  // namespace aphotic::cli

@@ -3,15 +3,12 @@
 // aphotic stress -o DIR: both renderers at the extremes, against an answer in long double.
 #include "validation/stress.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/output_folder.h"
-#include "cli/planning.h"
 #include "cli/rendered_images.h"
 #include "plugin/render.h"
 #include "scene_gen/render_plan.h"
@@ -22,8 +19,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
-#include <thread>
 
 namespace aphotic::cli {
 namespace {
@@ -36,7 +31,7 @@ struct StressCommandOptions {
     double stall_timeout_s = kStall_s;
     std::string only;
     int width_px = 24;
-    int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    int jobs = all_cores();
     bool json = false;
 };
 
@@ -53,30 +48,6 @@ RenderedImages render_case(const PovRay& povray,
         povray, folder, make_scene_set(rig, plan), {.jobs = 1, .report = {}, .stall_s = stall_s});
     integrate(folder, result.manifest);
     return images_in(folder, rig, result.manifest, plan.family);
-}
-
-// A case mostly waits for POV-Ray, which starts by sleeping: so there are more at a time than
-// cores.
-std::vector<StressFound> measured(const std::vector<StressCase>& cases,
-                                  const StressCommandOptions& options,
-                                  const PovRay& povray) {
-    constexpr std::size_t kWaiting = 2;
-    std::vector<StressFound> found(cases.size());
-    const StressRender render = [&](const Rig& rig, const StressCase& asked, const fs::path& to) {
-        return render_case(povray, options.stall_timeout_s, rig, asked, to);
-    };
-    std::mutex mutex;  // of what follows
-    std::size_t done = 0;
-    ProgressLine line;
-    const std::size_t threads = kWaiting * static_cast<std::size_t>(options.jobs);
-    parallel_for(cases.size(), threads, [&](std::size_t i, std::size_t) {
-        found[i] = measure_stress(cases[i], fs::path(options.folder) / cases[i].name, render);
-        const std::scoped_lock lock(mutex);
-        ++done;
-        line.show(fmt::format("{} of {} cases", done, cases.size()),
-                  static_cast<double>(done) / static_cast<double>(cases.size()));
-    });
-    return found;
 }
 
 void print_found(const std::vector<StressFound>& found, const std::string& folder) {
@@ -107,40 +78,48 @@ ExitStatus stress(const StressCommandOptions& options) {
             fmt::format("--only: found '{}'; allowed: part of a case's name", options.only));
     }
     const FolderLock lock = claim_tree(options.folder);
-    const std::vector<StressFound> found = measured(cases, options, povray);
+    const StressRender render = [&](const Rig& rig, const StressCase& asked, const fs::path& to) {
+        return render_case(povray, options.stall_timeout_s, rig, asked, to);
+    };
+    ProgressLine line;
+    const std::vector<StressFound> found =
+        measure_stress(cases, options.folder, options.jobs, render, [&](std::size_t done) {
+            line.show(fmt::format("{} of {} cases", done, cases.size()),
+                      static_cast<double>(done) / static_cast<double>(cases.size()));
+        });
+    line.wipe();
     write_stress(found, options.folder);
     if (options.json) {
-        fmt::print("{}", read_text_file(fs::path(options.folder) / "stress.json"));
+        fmt::print("{}", stress_json(found));
     } else {
         print_found(found, options.folder);
     }
     return std::ranges::all_of(found, &StressFound::as_expected) ? kDone : kAnswerIsNo;
 }
 
-}  // namespace
-
 Action configure_stress(CLI::App& app) {
-    constexpr int kMostJobs = 1024;
     constexpr int kMostWidth_px = 1360;
     const auto options = std::make_shared<StressCommandOptions>();
-    app.add_option("-o,--output", options->folder, "the folder to write to")
-        ->required()
-        ->type_name("DIR");
-    app.add_option("--width", options->width_px, "of the images, in pixels")
+    add_output_folder(app, options->folder)->required();
+    app.add_option("--width", options->width_px, "Render images N pixels wide")
         ->check(in_range(1, kMostWidth_px))
         ->capture_default_str();
-    app.add_option("--only", options->only, "the cases alone whose folders' names hold this")
+    app.add_option("--only", options->only, "Run only cases whose folder's name contains TEXT")
         ->type_name("TEXT");
+    add_jobs(app, options->jobs, "Run 2 N cases at a time");
+    add_json(app, options->json, "Print stress.json");
     add_povray_options(app, options->povray, options->stall_timeout_s);
-    app.add_option("--jobs", options->jobs, "cases at a time, two for each; by default the cores")
-        ->check(in_range(1, kMostJobs))
-        ->capture_default_str();
-    app.add_flag("--json", options->json, "print stress.json");
     app.footer(
-        "Exit status 0 when every case comes out as it should, 1 when not. Each case's rig stays "
-        "in\n"
-        "its folder: aphotic validate DIR/CASE/rig.toml -o OUT looks closer.");
+        "Exit status 0 when every case comes out as it should, 1 when not. Each case leaves its "
+        "rig in its folder: `aphotic validate DIR/CASE/rig.toml -o OUT` looks closer.");
     return [options] { return stress(*options); };
 }
+
+}  // namespace
+
+const Command kStress{"stress",
+                      kCheckCommands,
+                      "Test both renderers at extremes against a long-double answer",
+                      configure_stress};
 
 }  // namespace aphotic::cli

@@ -10,7 +10,7 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
@@ -355,29 +355,33 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
     return kDone;
 }
 
-}  // namespace
-
 Action configure_study(CLI::App& app) {
     const auto options = std::make_shared<StudyCommandOptions>();
-    app.add_option("RIG", options->rig_file, "the rig file (TOML)")->required();
-    app.add_option("-o,--output", options->folder, "the folder to write to")
-        ->required()
-        ->type_name("DIR");
+    add_rig(app, options->rig_file);
+    add_output_folder(app, options->folder)->required();
     app.add_option("--tolerance",
                    options->tolerance,
-                   "the largest error for which a setting is recommended")
+                   "Recommend the fastest setting within this relative error")
         ->check(in_range(0.0, 1.0))
+        ->option_text("E")
         ->capture_default_str();
     app.add_flag("--quick",
                  options->quick,
-                 "the settings that decide, at a size that takes under two minutes");
-    add_povray_options(app, options->povray, options->stall_timeout_s);
+                 "Try only the settings that matter most, small enough for two minutes");
     add_needs_option(app, options->ignore_needs);
-    app.add_flag("--json", options->json, "print study.json");
+    add_json(app, options->json, "Print study.json");
+    add_povray_options(app, options->povray, options->stall_timeout_s);
     app.footer(
-        "Stopped and started again, it goes on with the settings that are not measured yet.\n"
-        "Leave the machine alone meanwhile: the times are wall times.");
+        "Interrupted, it continues with the settings not yet measured when run again. Leave the "
+        "machine alone meanwhile: the times are wall times.");
     return [options] { return study_rig(*options); };
 }
+
+}  // namespace
+
+const Command kStudy{"study",
+                     kCheckCommands,
+                     "Measure how accuracy trades for time on this machine",
+                     configure_study};
 
 }  // namespace aphotic::cli

@@ -41,39 +41,38 @@ void add_camera_options(CLI::App& app, CameraNumbers& camera) {
     app.add_option_function<std::string>(
            "--bayer",
            [&camera](const std::string& name) { camera.mosaic = *mosaic_named(name); },
-           "the images are mosaics of one channel, named after the four pixels at the top left: "
-           "RGGB, BGGR, GRBG or GBRG")
+           "The images are mosaics, named after the four pixels at the top left: RGGB, BGGR, GRBG "
+           "or GBRG")
         ->check(CLI::Validator(wrong, "PATTERN"));
-    app.add_option("--black-level", camera.black_level, "the camera's number for no light")
+    app.add_option("--black-level", camera.black_level, "The camera's number for no light")
         ->capture_default_str();
 }
 
 void add_white_level_option(CLI::App& app, CameraNumbers& camera) {
     app.add_option("--white-level",
                    camera.white_level,
-                   "the camera's number at saturation, such as 4095; by default the largest that "
-                   "the file's integers hold");
+                   "The camera's number at saturation, such as 4095; by default the largest of the "
+                   "file's integer type");
 }
 
 void add_format_options(CLI::App& app, ResultFormat& format) {
-    app.add_flag("--mask", format.mask, "write NAME.mask.png beside each image");
-    app.add_option("--format",
-                   format.format,
-                   "tiff or png, of 16 bits with 65535 for white, or exr, of floats")
+    app.add_flag("--mask", format.mask, "Write NAME.mask.png beside each image");
+    app.add_option(
+           "--format", format.format, "Write tiff or png (16 bits, white 65535) or exr (floats)")
         ->check(CLI::IsMember({"tiff", "png", "exr"}))
         ->capture_default_str();
     app.add_option(
            "--compression",
            format.compression,
-           "of the files, always lossless: none, fast, or small (a few per cent smaller, about "
-           "1.5 times slower)")
+           "Compress losslessly: none, fast, or small (a few per cent smaller, about 1.5 times "
+           "slower)")
         ->transform(CLI::CheckedTransformer(kCompressions).description(""))
         ->type_name("none|fast|small")
         ->default_str("fast");
 }
 
 void add_strict_option(CLI::App& app, bool& strict) {
-    app.add_flag("--strict", strict, "treat warnings about the survey as errors");
+    app.add_flag("--strict", strict, "Treat warnings about the survey as errors");
 }
 
 RunWatch terminal_watch(bool strict) {

@@ -7,22 +7,19 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "image/output_images.h"
-#include "image/row_blocks.h"
-#include "image/traced_image.h"
+#include "image/exr.h"
 #include "spectral/manifest.h"
-#include "validation/tracer.h"
+#include "validation/traced_images.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <thread>
 
 namespace aphotic::cli {
 namespace {
@@ -30,7 +27,7 @@ namespace {
 struct TraceCommandOptions {
     PlanningOptions planning;
     std::string folder;
-    int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    int threads = all_cores();
     PreviewOptions preview;
     bool json = false;
 };
@@ -40,54 +37,87 @@ struct TraceCommandOptions {
 void require_no_render(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(manifest_path(folder))) return;
     throw InputError(
-        fmt::format("{}: found the manifest of a render; allowed: a folder without one, for the "
-                    "traced images would take the place of the rendered ones",
+        fmt::format("{}: found the manifest of a render; allowed: a folder without one, as the "
+                    "traced images would replace the rendered ones",
                     manifest_path(folder).string()));
 }
 
-// What the images are exact to, and how many pixels lie where that does not hold.
-void note_errors(const Tracer& tracer, nlohmann::ordered_json& outcome) {
-    outcome["spectral_error"] = kSpectralError;
-    nlohmann::ordered_json emitters = nlohmann::ordered_json::array();
-    for (std::size_t s = 0; s < tracer.rig().strobes.size(); ++s) {
-        const Strobe& strobe = tracer.rig().strobes[s];
-        if (!strobe.emitter) continue;
-        emitters.push_back({{"strobe", strobe.name},
-                            {"lamps_across", tracer.lamps(s).across},
-                            {"lamps_along", tracer.lamps(s).along}});
+struct TracedEmitter {
+    std::string strobe;
+    EmitterLamps lamps;
+};
+
+struct Traced {
+    MadeImages images;
+    std::string title;
+    std::string rig_sha256;
+    std::size_t wavelengths = 0;  // the planes of spectral.exr
+    std::size_t grid = 0;         // wavelengths of the signals
+    std::vector<TracedEmitter> emitters;
+    std::size_t on_edges = 0;  // pixels for which the errors do not hold
+    int threads = 1;
+    double seconds = 0.0;
+};
+
+nlohmann::ordered_json to_json(const Traced& traced) {
+    nlohmann::ordered_json json = to_json(traced.images);
+    json["title"] = traced.title;
+    json["rig_sha256"] = traced.rig_sha256;
+    json["wavelengths"] = traced.wavelengths;
+    json["grid"] = traced.grid;
+    json["spectral_error"] = kSpectralError;
+    if (!traced.emitters.empty()) json["emitter_error"] = kEmitterError;
+    for (const TracedEmitter& emitter : traced.emitters) {
+        json["emitters"].push_back({{"strobe", emitter.strobe},
+                                    {"lamps_across", emitter.lamps.across},
+                                    {"lamps_along", emitter.lamps.along}});
     }
-    if (!emitters.empty()) {
-        outcome["emitter_error"] = kEmitterError;
-        outcome["emitters"] = emitters;
-    }
-    const std::vector<unsigned char> marks = tracer.on_edges(tracer.rig().camera.range);
-    outcome["on_edges"] = marks.size() - static_cast<std::size_t>(std::ranges::count(marks, 0));
+    json["on_edges"] = traced.on_edges;
+    json["threads"] = traced.threads;
+    json["trace_s"] = traced.seconds;
+    return json;
 }
 
-void print_errors(const nlohmann::ordered_json& outcome) {
-    if (outcome.contains("emitters")) {
-        for (const auto& emitter : outcome["emitters"]) {
-            fmt::print("  strobe '{}' has a size: {} x {} lamps, exact to {:.0e} of its light\n",
-                       emitter["strobe"].get<std::string>(),
-                       emitter["lamps_across"].get<int>(),
-                       emitter["lamps_along"].get<int>(),
-                       outcome["emitter_error"].get<double>());
-        }
+void print(const Traced& traced) {
+    fmt::print(
+        "{}: {} x {} pixels traced over {} wavelengths, exact to {:.0e} of a signal off the edges, "
+        "in {:.1f} s\n",
+        traced.title,
+        traced.images.width_px,
+        traced.images.height_px,
+        traced.grid,
+        kSpectralError,
+        traced.seconds);
+    for (const TracedEmitter& emitter : traced.emitters) {
+        fmt::print("  strobe '{}' is traced as {} x {} lamps, exact to {:.0e} of its light\n",
+                   emitter.strobe,
+                   emitter.lamps.across,
+                   emitter.lamps.along,
+                   kEmitterError);
     }
-    const auto on_edges = outcome["on_edges"].get<std::size_t>();
-    if (on_edges > 0) {
+    if (traced.on_edges > 0) {
         fmt::print(
-            "  {} on edges, where that does not hold: of cones, shadows or things, by "
-            "rounding, by a port's dispersion or in an emitter's penumbra\n",
-            counted(on_edges, "pixel"));
+            "  {} on the edge of a cone, shadow, object or penumbra, or where a port disperses "
+            "one: no such bound there\n",
+            counted(traced.on_edges, "pixel"));
     }
+    print(traced.images);
+}
+
+std::vector<TracedEmitter> traced_emitters(const Tracer& tracer) {
+    std::vector<TracedEmitter> emitters;
+    for (std::size_t s = 0; s < tracer.rig().strobes.size(); ++s) {
+        const Strobe& strobe = tracer.rig().strobes[s];
+        if (strobe.emitter) emitters.push_back({strobe.name, tracer.lamps(s)});
+    }
+    return emitters;
 }
 
 ExitStatus trace_rig(const TraceCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     if (!planned.rig.scene.empty()) {
         fmt::print(stderr,
-                   "aphotic: the rig's floor and objects are traced; {} is POV-Ray's to read\n",
+                   "aphotic: tracing the rig's floor and objects; only POV-Ray can read {}\n",
                    planned.rig.scene.string());
     }
     const Camera& camera = planned.rig.camera;
@@ -108,77 +138,55 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
     const FolderLock lock = claim_folder(options.folder);
     require_no_render(options.folder);
     set_exr_threads(options.threads);
-    OutputImages images(options.folder,
-                        camera.width_px,
-                        camera.height_px,
-                        request.planes_nm,
-                        {{"aphotic:version", APHOTIC_VERSION},
-                         {"aphotic:rig_title", planned.rig.title},
-                         {"aphotic:rig_sha256", planned.rig.digest},
-                         {kRendererAttribute, kReferenceTracer}});
-    {
+    const CameraImage image = [&] {
         ProgressLine line;
-        const int block = traced_rows(camera.width_px, tracer.planes(), options.threads);
-        for (int row = 0; row < camera.height_px; row += block) {
-            const int rows = std::min(block, camera.height_px - row);
-            const std::vector<double> samples = tracer.rows(row, rows);
-            images.write_rows(rows, {samples.begin(), samples.end()});
-            line.show("tracing", static_cast<double>(row + rows) / camera.height_px);
-        }
-    }
-    const CameraImage image = images.finish();
+        return write_traced_images(
+            tracer, request, options.folder, APHOTIC_VERSION, [&](double share) {
+                line.show("tracing", share);
+            });
+    }();
     write_preview(image,
                   lamp_signal(planned.rig, planned.plan.family),
                   options.preview,
                   std::filesystem::path(options.folder) / "preview.png");
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
-    nlohmann::ordered_json outcome = outcome_of(options.folder, image);
-    outcome["title"] = planned.rig.title;
-    outcome["rig_sha256"] = planned.rig.digest;
-    outcome["wavelengths"] = request.planes_nm.size();
-    outcome["grid"] = tracer.grid_size();
-    note_errors(tracer, outcome);
-    outcome["threads"] = options.threads;
-    outcome["trace_s"] = elapsed.count();
-    write_text_file(std::filesystem::path(options.folder) / "trace.json", dumped(outcome) + "\n");
-    if (options.json) {
-        fmt::print("{}\n", dumped(outcome));
-        return kDone;
-    }
-    fmt::print(
-        "{}: {} x {} pixels traced over {} wavelengths, exact to {:.0e} of a signal off "
-        "the edges, in {:.1f} s\n",
-        planned.rig.title,
-        image.width_px,
-        image.height_px,
-        tracer.grid_size(),
-        kSpectralError,
-        elapsed.count());
-    print_errors(outcome);
-    print_signals(outcome);
+    const std::vector<unsigned char> marks = tracer.on_edges(camera.range);
+    const Traced traced{
+        .images = made_images(options.folder, image),
+        .title = planned.rig.title,
+        .rig_sha256 = planned.rig.digest,
+        .wavelengths = request.planes_nm.size(),
+        .grid = tracer.grid_size(),
+        .emitters = traced_emitters(tracer),
+        .on_edges = marks.size() - static_cast<std::size_t>(std::ranges::count(marks, 0)),
+        .threads = options.threads,
+        .seconds = elapsed.count()};
+    write_text_file(std::filesystem::path(options.folder) / "trace.json",
+                    dumped(to_json(traced)) + "\n");
+    show(traced, options.json);
     return kDone;
+}
+
+Action configure_trace(CLI::App& app) {
+    const auto options = std::make_shared<TraceCommandOptions>();
+    add_output_folder(app, options->folder)->required();
+    add_jobs(app, options->threads, "Trace with N threads");
+    add_needs_option(app, options->planning.ignore_needs);
+    add_json(app, options->json);
+    add_wavelength_options(app, options->planning);
+    add_preview_options(app, options->preview);
+    app.footer(
+        "image.exr holds the signals over the full spectrum; the wavelengths chosen are the planes "
+        "of spectral.exr. POV-Ray is not needed.");
+    return [options] { return trace_rig(*options); };
 }
 
 }  // namespace
 
-Action configure_trace(CLI::App& app) {
-    constexpr int kMostThreads = 1024;
-    const auto options = std::make_shared<TraceCommandOptions>();
-    add_wavelength_options(app, options->planning);
-    app.add_option("-o,--output", options->folder, "the folder to write to")
-        ->required()
-        ->type_name("DIR");
-    app.add_option("--threads", options->threads, "threads to trace with; by default the cores")
-        ->check(in_range(1, kMostThreads))
-        ->capture_default_str();
-    add_preview_options(app, options->preview);
-    add_needs_option(app, options->planning.ignore_needs);
-    app.add_flag("--json", options->json, "say what was made as JSON");
-    app.footer(
-        "image.exr holds the signals over the full spectrum; the wavelengths chosen are the\n"
-        "planes of spectral.exr. POV-Ray is not needed.");
-    return [options] { return trace_rig(*options); };
-}
+const Command kTrace{"trace",
+                     kRenderingCommands,
+                     "Make the same images with the reference tracer, without POV-Ray",
+                     configure_trace};
 
 }  // namespace aphotic::cli

@@ -3,13 +3,12 @@
 // aphotic validate RIG -o DIR: the rig through POV-Ray and through the reference, compared.
 #include "validation/validation.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
-#include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
@@ -23,7 +22,6 @@
 
 #include <cmath>
 #include <memory>
-#include <thread>
 
 namespace aphotic::cli {
 namespace {
@@ -34,7 +32,7 @@ struct ValidateCommandOptions {
     PlanningOptions planning;
     std::string folder;
     std::string rendered_folder;
-    int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    int jobs = all_cores();
     bool json = false;
 };
 
@@ -56,8 +54,8 @@ Rendering render_here(const ValidateCommandOptions& options,
                                                  .library_paths = options.planning.library_paths,
                                                  .stall_s = options.planning.stall_timeout_s});
     Rendering rendering{.manifest = frames.result.manifest, .render_s = frames.povray_s};
-    const auto outcome = integrate_folder(options.folder, rendering.manifest, {}, options.folder);
-    rendering.integrate_s = outcome["integration_s"].get<double>();
+    rendering.integrate_s =
+        integrate_folder(options.folder, rendering.manifest, {}, options.folder).seconds;
     return rendering;
 }
 
@@ -92,8 +90,8 @@ std::string edges_in_words(const ValidationReport& report) {
     std::string words = edges.share == 0.0
                             ? "no pixel is on an edge"
                             : fmt::format(
-                                  "{:.2g} % of the pixels are on edges and have no bound, "
-                                  "largest |e| there {:.2g}",
+                                  "{:.2g} % of the pixels are on edges, without a bound; largest "
+                                  "|e| there {:.2g}",
                                   kPercent * edges.share,
                                   edges.max_error);
     if (edges.share_in_penumbrae > 0.0) {
@@ -177,7 +175,7 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
         rendering.manifest = rendered_manifest(options.rendered_folder, planned.rig);
         if (rendering.manifest.rig_sha256 != planned.rig.digest) {
             fmt::print(stderr,
-                       "aphotic: {} was rendered from another rig file than {}; going on\n",
+                       "aphotic: {} was rendered from another rig file than {}; continuing\n",
                        options.rendered_folder,
                        options.planning.rig_file);
         }
@@ -187,10 +185,9 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const fs::path images = is_rendered ? options.rendered_folder : options.folder;
 
     if (rendering.manifest.scene) {
-        fmt::print(
-            stderr,
-            "aphotic: the reference traces the rig's floor and objects; it does not read {}\n",
-            rendering.manifest.scene->file);
+        fmt::print(stderr,
+                   "aphotic: the reference traces the rig's floor and objects, not {}\n",
+                   rendering.manifest.scene->file);
     }
     ValidationReport report = [&] {
         ProgressLine line;
@@ -211,33 +208,33 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
     write_validation_json(report, folder / "validation.json");
     write_validation_html(report, folder / "report.html");
     if (options.json) {
-        fmt::print("{}", read_text_file(folder / "validation.json"));
+        fmt::print("{}", validation_json(report));
     } else {
         print_verdict(report, options.folder);
     }
     return report.holds() ? kDone : kAnswerIsNo;
 }
 
-}  // namespace
-
 Action configure_validate(CLI::App& app) {
-    constexpr int kMostJobs = 1024;
     const auto options = std::make_shared<ValidateCommandOptions>();
-    add_planning_options(app, options->planning);
-    app.add_option("-o,--output", options->folder, "the folder to write to")
-        ->required()
-        ->type_name("DIR");
+    add_output_folder(app, options->folder)->required();
     app.add_option("--rendered",
                    options->rendered_folder,
-                   "a finished render to validate, instead of rendering: its wavelengths count")
+                   "Validate this finished render, with its wavelengths, instead of rendering")
         ->type_name("DIR");
-    app.add_option("--jobs", options->jobs, "frames and threads at a time; by default the cores")
-        ->check(in_range(1, kMostJobs))
-        ->capture_default_str();
+    add_jobs(app, options->jobs, "Render N frames at a time, trace with N threads");
     add_needs_option(app, options->planning.ignore_needs);
-    app.add_flag("--json", options->json, "print validation.json");
+    add_json(app, options->json, "Print validation.json");
+    add_planning_options(app, options->planning);
     app.footer("Exit status 0 when every wavelength and channel is within its bound, 1 when not.");
     return [options] { return validate_rig(*options); };
 }
+
+}  // namespace
+
+const Command kValidate{"validate",
+                        kCheckCommands,
+                        "Render with POV-Ray and the reference tracer; compare every pixel",
+                        configure_validate};
 
 }  // namespace aphotic::cli

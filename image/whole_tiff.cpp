@@ -32,7 +32,7 @@ std::uint64_t bytes_of_type(std::uint64_t type) {
         {1, 1}, {3, 2}, {4, 4}, {13, 4}, {16, 8}, {18, 8}};
     const auto found = kBytes.find(type);
     if (found != kBytes.end()) return found->second;
-    throw InputError(fmt::format("it has numbers of the type {} where whole ones belong", type));
+    throw InputError(fmt::format("it has numbers of the type {} where integers belong", type));
 }
 
 class Tiff {
@@ -88,7 +88,7 @@ class Tiff {
         std::string read(count, '\0');
         stream_.seekg(static_cast<std::streamoff>(offset));
         stream_.read(read.data(), static_cast<std::streamsize>(count));
-        if (!stream_) throw InputError("it cannot be read to its end");
+        if (!stream_) throw InputError("it cannot be read to the end");
         return read;
     }
 

@@ -55,17 +55,6 @@ fs::path bin_path(const fs::path& folder, const MapPoint& point) {
     return folder / "bins" / bin_name(point);
 }
 
-OrderedJson json_of(const InterpolationError& error) {
-    return {{"worst", error.worst},
-            {"rms", error.rms},
-            {"crossed_by_edges", error.crossed_share},
-            {"whole_maps",
-             {{"cells", error.whole_cells},
-              {"rms", error.whole_rms},
-              {"limit", error.whole_limit},
-              {"share_over_limit", error.whole_over}}}};
-}
-
 InterpolationError interpolation_of(const Json& json) {
     const Json& whole = json.at("whole_maps");
     return {.worst = json.at("worst"),
@@ -129,7 +118,7 @@ OrderedJson json_of(const AtlasManifest& manifest) {
               {"pitch_deg", in_degrees(manifest.axes.pitch_rad)},
               {"roll_deg", in_degrees(manifest.axes.roll_rad)},
               {"water_multiple", manifest.axes.water_multiple}}},
-            {"interpolation", json_of(manifest.interpolation)},
+            {"interpolation", interpolation_json(manifest.interpolation)},
             {"exports", json_of(manifest.exports)},
             {"bins", bins}};
 }
@@ -276,6 +265,17 @@ void remove_others(const fs::path& folder, const std::vector<MapPoint>& points) 
 }
 
 }  // namespace
+
+nlohmann::ordered_json interpolation_json(const InterpolationError& error) {
+    return {{"worst", error.worst},
+            {"rms", error.rms},
+            {"crossed_by_edges", error.crossed_share},
+            {"whole_maps",
+             {{"cells", error.whole_cells},
+              {"rms", error.whole_rms},
+              {"limit", error.whole_limit},
+              {"share_over_limit", error.whole_over}}}};
+}
 
 std::string bin_name(const MapPoint& point) {
     return fmt::format("a{}_p{}_r{}_w{}.exr",

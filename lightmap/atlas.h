@@ -17,6 +17,8 @@
 #include "lightmap/atlas_plan.h"
 #include "lightmap/map_axes.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -66,6 +68,9 @@ void require_over_floor(const Rig& rig, const MapAxes& axes);
 std::size_t write_atlas(const std::filesystem::path& folder,
                         const Rig& rig,
                         const AtlasRequest& request);
+
+// As atlas.json has it.
+[[nodiscard]] nlohmann::ordered_json interpolation_json(const InterpolationError& error);
 
 // name stands in messages. Throws InputError when the text is no atlas.json.
 [[nodiscard]] AtlasManifest parse_atlas(std::string_view text, const std::string& name);

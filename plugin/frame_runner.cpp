@@ -141,7 +141,7 @@ void check(const Running& run,
     const fs::path& part = run.part->path();
     try {
         if (options.convert) options.convert(part);
-        if (!fs::exists(part)) throw RunError("POV-Ray made no image, though it ended well");
+        if (!fs::exists(part)) throw RunError("POV-Ray exited normally without an image");
         check_frame(part, width_px, height_px);
     } catch (const RunError& error) {
         throw RunError(fmt::format("{}: {}\nIts log: {}{}",

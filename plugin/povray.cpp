@@ -107,7 +107,7 @@ std::string version_from(std::string_view printed) {
     constexpr std::size_t kIntroduction_bytes = 16384;
     printed = printed.substr(0, kIntroduction_bytes);
     const std::optional<Version> version = introduced_version(printed);
-    if (!version) throw RunError("it does not introduce itself as POV-Ray");
+    if (!version) throw RunError("it does not identify itself as POV-Ray");
     if (version->number < kLeastVersion) {
         throw RunError(fmt::format("found version {}.{}; allowed: {}.{} or later",
                                    version->number.first,

@@ -102,7 +102,7 @@ Process::Process(const ProcessRequest& request) {
     // Boost goes on in our own folder if it cannot change into this one, starts the program though
     // its log cannot be opened, and writes over the beginning of an older one.
     if (!std::filesystem::is_directory(request.folder)) {
-        throw RunError(fmt::format("{}: cannot be started: {} is no folder",
+        throw RunError(fmt::format("{}: cannot be started: {} is not a folder",
                                    request.executable.string(),
                                    request.folder.string()));
     }
@@ -155,7 +155,7 @@ ProcessEnd run_process(const ProcessRequest& request, double timeout_s) {
         if (const auto end = process.poll()) return *end;
         if (std::chrono::steady_clock::now() > deadline) {
             throw RunError(fmt::format(
-                "{}: gave no answer within {} s", request.executable.string(), timeout_s));
+                "{}: did not answer within {} s", request.executable.string(), timeout_s));
         }
         std::this_thread::sleep_for(kPollInterval);
     }

@@ -32,9 +32,8 @@ std::optional<Manifest> earlier_manifest(const fs::path& folder) {
     try {
         return read_manifest(folder);
     } catch (const InputError& error) {
-        throw InputError(
-            fmt::format("{}; nothing was touched. Without that file everything is rendered afresh",
-                        error.what()));
+        throw InputError(fmt::format(
+            "{}; nothing was changed. Remove that file to render everything again", error.what()));
     }
 }
 

@@ -34,7 +34,7 @@ ScratchFolder::ScratchFolder() {
     std::string pattern = (temporary_folder() / "aphotic-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) {
         throw RunError(
-            fmt::format("{}: no temporary folder can be made: {}", pattern, std::strerror(errno)));
+            fmt::format("{}: cannot create a temporary folder: {}", pattern, std::strerror(errno)));
     }
     path_ = pattern;
 }

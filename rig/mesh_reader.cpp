@@ -151,13 +151,13 @@ void require_area(const Mesh& mesh,
     const Vector3d ac = vertex(2) - vertex(0);
     const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
     if (ab.cross(ac).norm() > kLeastTriangleHeight * longest2) return;
-    throw InputError(
-        fmt::format("{}: found a triangle of no area, of the vertices {}, {} and {}, counted from "
-                    "1; allowed: three corners that do not lie on one line",
-                    file_name,
-                    corners[0] + 1,
-                    corners[1] + 1,
-                    corners[2] + 1));
+    throw InputError(fmt::format(
+        "{}: found a triangle without area, of the vertices {}, {} and {}, counted from "
+        "1; allowed: three corners that do not lie on one line",
+        file_name,
+        corners[0] + 1,
+        corners[1] + 1,
+        corners[2] + 1));
 }
 
 }  // namespace

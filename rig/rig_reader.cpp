@@ -125,7 +125,7 @@ class Section {
         for (const auto& [name, node] : table_) {
             if (is_known(name.str())) continue;
             if (nearest_name(name.str(), std::array{std::string(key)}).empty()) continue;
-            fail(node, name.str(), fmt::format("is no known key; did you mean '{}'?", key));
+            fail(node, name.str(), fmt::format("is not a known key; did you mean '{}'?", key));
         }
         fail(table_, key, "is missing; allowed: " + allowed);
     }
@@ -228,7 +228,7 @@ class Section {
                 nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
             fail(node,
                  name,
-                 fmt::format("is no known key{} Known here: {}",
+                 fmt::format("is not a known key{} Known here: {}",
                              hint.empty() ? "." : hint,
                              fmt::join(known_, ", ")));
         }
@@ -621,13 +621,13 @@ Shape RigReader::read_shape(Section& object, std::string_view key) {
 
 void require_place(const Shape& shape, const std::vector<Strobe>& strobes) {
     if (holds(shape, Eigen::Vector3d::Zero())) {
-        throw InputError("found the camera's pupil inside of the object; allowed: outside");
+        throw InputError("found the camera's pupil inside the object; allowed: outside");
     }
     for (const Strobe& strobe : strobes) {
         const double away_m = distance_m(shape, strobe.position_m);
         if (away_m >= kLeastDistance_m && !holds(shape, strobe.position_m)) continue;
         throw InputError(
-            fmt::format("found strobe '{}' inside of the object or {:.3g} m off it; allowed: at "
+            fmt::format("found strobe '{}' inside the object or {:.3g} m off it; allowed: at "
                         "least {} m off",
                         strobe.name,
                         away_m,

@@ -2,6 +2,7 @@
 #include "validation/report.h"
 
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -122,7 +123,7 @@ void ValidationReport::check() const {
     require(channel_errors.size() == samples, "one error a sample");
 }
 
-void write_validation_json(const ValidationReport& report, const std::filesystem::path& file) {
+std::string validation_json(const ValidationReport& report) {
     report.check();
     const Comparison& worst = report.worst();
     const Json json{
@@ -152,8 +153,11 @@ void write_validation_json(const ValidationReport& report, const std::filesystem
          {{"render", report.render_s},
           {"integrate", report.integrate_s},
           {"trace", report.trace_s}}}};
-    constexpr int kIndent = 2;
-    write_text_file(file, json.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n");
+    return json_text(json);
+}
+
+void write_validation_json(const ValidationReport& report, const std::filesystem::path& file) {
+    write_text_file(file, validation_json(report));
 }
 
 }  // namespace aphotic

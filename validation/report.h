@@ -60,6 +60,7 @@ struct ValidationReport {
 
 // {holds, worst, rig, rule, wavelengths, channels, versions, ...}: every number above but the
 // pixels. A number that is not finite is null.
+[[nodiscard]] std::string validation_json(const ValidationReport& report);
 void write_validation_json(const ValidationReport& report, const std::filesystem::path& file);
 // The same report gives the same page, byte for byte.
 void write_validation_html(const ValidationReport& report, const std::filesystem::path& file);

@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "image/frame_check.h"
 #include "rig/rig_reader.h"
 #include "validation/comparison.h"
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <sstream>
 #include <utility>
 
@@ -371,6 +373,24 @@ StressFound measure_stress(const StressCase& asked,
         found.answer = StressAnswer::Refused;
         found.said = error.what();
     }
+    return found;
+}
+
+std::vector<StressFound> measure_stress(std::span<const StressCase> cases,
+                                        const std::filesystem::path& folder,
+                                        int cores,
+                                        const StressRender& render,
+                                        const std::function<void(std::size_t)>& progress) {
+    constexpr std::size_t kPerCore = 2;
+    std::vector<StressFound> found(cases.size());
+    std::mutex mutex;  // of what follows
+    std::size_t done = 0;
+    parallel_for(
+        cases.size(), kPerCore * static_cast<std::size_t>(cores), [&](std::size_t i, std::size_t) {
+            found[i] = measure_stress(cases[i], folder / cases[i].name, render);
+            const std::scoped_lock lock(mutex);
+            progress(++done);
+        });
     return found;
 }
 

@@ -89,6 +89,16 @@ using StressRender = std::function<RenderedImages(
                                          const std::filesystem::path& folder,
                                          const StressRender& render);
 
+// All cases, each in the folder of its name: as many at a time as keep the cores busy, for a case
+// mostly waits for POV-Ray, which starts by sleeping. progress: cases done.
+[[nodiscard]] std::vector<StressFound> measure_stress(
+    std::span<const StressCase> cases,
+    const std::filesystem::path& folder,
+    int cores,
+    const StressRender& render,
+    const std::function<void(std::size_t)>& progress);
+
+[[nodiscard]] std::string stress_json(std::span<const StressFound> found);
 // stress.json, and stress.md with a table for people.
 void write_stress(std::span<const StressFound> found, const std::filesystem::path& folder);
 

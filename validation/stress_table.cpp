@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/atomic_file.h"
+#include "base/json_text.h"
 #include "validation/stress.h"
 
 #include <fmt/format.h>
@@ -105,12 +106,14 @@ Json json_of(const StressFound& found) {
 
 }  // namespace
 
-void write_stress(std::span<const StressFound> found, const std::filesystem::path& folder) {
+std::string stress_json(std::span<const StressFound> found) {
     Json all = Json::array();
     for (const StressFound& one : found) all.push_back(json_of(one));
-    constexpr int kIndent = 2;
-    write_text_file(folder / "stress.json",
-                    all.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n");
+    return json_text(all);
+}
+
+void write_stress(std::span<const StressFound> found, const std::filesystem::path& folder) {
+    write_text_file(folder / "stress.json", stress_json(found));
     write_text_file(folder / "stress.md", markdown(found));
 }
 

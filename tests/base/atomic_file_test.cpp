@@ -255,7 +255,7 @@ TEST(MakeFolder, NamesTheFolderThatCannotBeMade) {
     write_file(file, "");
     for (const fs::path& wanted : {file, file / "below"}) {
         EXPECT_EQ(message_of<RunError>([&] { make_folder(wanted); }),
-                  wanted.string() + ": cannot be made: Not a directory");
+                  wanted.string() + ": cannot be created: Not a directory");
     }
 }
 

@@ -176,7 +176,7 @@ TEST_F(CommandAtlas, IsNoMapBeyondItsAxesOrWithWhatNeedsARig) {
         return run.err;
     };
     EXPECT_NE(refused({"--altitude-m", "2.5"}).find("allowed: from 2 to 2.4"), std::string::npos);
-    EXPECT_NE(refused({"--json"}).find("--altitude-m: found none"), std::string::npos);
+    EXPECT_NE(refused({"--json"}).find("--altitude: found none"), std::string::npos);
     const std::vector<std::string> there{"--altitude-m", "2.1"};
     for (const std::vector<std::string>& option : std::vector<std::vector<std::string>>{
              {"--per-strobe"},

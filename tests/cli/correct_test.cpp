@@ -784,7 +784,7 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     refused(with({"raw", "-o", "out", "--bayer", "RGB"}), "--bayer: found 'RGB'");
     refused(with({"raw", "-o", "out", "--gain", "1,2"}), "--gain: found 2 numbers");
     refused(with({"raw", "-o", "out", "--compression", "lzw"}), "--compression");
-    refused(with({"raw", "-o", "out", "--altitudes-m", "4,1"}), "--altitudes-m: found 4,1");
+    refused(with({"raw", "-o", "out", "--altitudes-m", "4,1"}), "--altitude: found 4,1");
     refused(with({"raw/a.tif", "-o", "raw"}), "would be overwritten by the result");
     write_file(path("raw/a.mask.png"), "an image of the user's");
     refused(with({"raw/a.tif", "raw/a.mask.png", "-o", "raw", "--format", "exr", "--mask"}),

@@ -6,8 +6,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 
 namespace aphotic::errors_test {
 namespace {
@@ -133,8 +136,7 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
          "--altitude: found -1; allowed: more than 0"},
         {{"observe", "raw", "--nav", "n", "-o", "m.exr", "--altitude", "2", "--within", "inf"},
          "--within: found inf; allowed: 0 or more"},
-        {{"trace", "rig.toml", "-o", "out", "--threads", "0"},
-         "--threads: found 0; allowed: 1 to "},
+        {{"trace", "rig.toml", "-o", "out", "--threads", "0"}, "--jobs: found 0; allowed: 1 to "},
         {{"lightmap", "rig.toml", "-o", "map.png"},
          "--output: found map.png; allowed: a name that ends in .exr"},
         {{"plan", "rig.toml", "--plot", "plan.png"},
@@ -186,6 +188,8 @@ TEST_F(CommandErrors, HelpAndVersionAreNoErrors) {
         EXPECT_EQ(run.status, 0);
         EXPECT_NE(run.out.find("--json"), std::string::npos) << command;
         EXPECT_EQ(run.err, "");
+        std::istringstream lines(run.out);
+        for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
     }
     EXPECT_TRUE(run_aphotic(folder_.path(), {"--version"}).out.starts_with("aphotic "));
 }
@@ -220,6 +224,67 @@ TEST_F(CommandErrors, TheManPageHasEveryCommandAndOption) {
                 << command << ": " << name << " is not in the man page";
         }
     }
+}
+
+// What --help says of an option: its name, and the default at the end of its text.
+std::map<std::string, std::string> stated_defaults(const std::string& help) {
+    const std::regex option("^  (?:-[a-z], )?(--[a-z-]+).*");
+    const std::regex stated(R"(.*default: +([^\]]+)\].*)");
+    std::map<std::string, std::string> texts;
+    std::istringstream lines(help);
+    std::string name;
+    for (std::string line; std::getline(lines, line);) {
+        std::smatch found;
+        if (std::regex_match(line, found, option)) name = found[1];
+        if (!name.empty()) texts[name] += line + ' ';
+    }
+    std::map<std::string, std::string> defaults;
+    for (const auto& [option_name, text] : texts) {
+        std::smatch found;
+        if (std::regex_match(text, found, stated)) defaults[option_name] = found[1];
+    }
+    return defaults;
+}
+
+TEST_F(CommandErrors, TheManPageHasTheDefaultsOfHelp) {
+    const std::string manual =
+        std::regex_replace(read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/docs/aphotic.1"),
+                           std::regex(R"(\\-)"),
+                           "-");
+    std::vector<std::string> paragraphs;
+    for (std::size_t at = manual.find("\n.TP"); at != std::string::npos;) {
+        const std::size_t next = manual.find("\n.TP", at + 1);
+        paragraphs.push_back(manual.substr(at, next - at));
+        at = next;
+    }
+    std::size_t count = 0;
+    for (const std::string& command : kCommands) {
+        const std::string help = run_aphotic(folder_.path(), {command, "--help"}).out;
+        for (const auto& [option, value] : stated_defaults(help)) {
+            ++count;
+            EXPECT_TRUE(std::ranges::any_of(paragraphs,
+                                            [&](const std::string& paragraph) {
+                                                return paragraph.find(option + ' ') < 20 &&
+                                                       paragraph.find("default is " + value +
+                                                                      ".") != std::string::npos;
+                                            }))
+                << command << ": " << option << ": " << value;
+        }
+    }
+    EXPECT_GT(count, 40U);
+}
+
+TEST_F(CommandErrors, TheNamesOfTheFirstVersionGoOn) {
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"lightmap", "rig.toml", "-o", "a.exr", "--altitude-m", "2", "--pitch-deg", "3"},
+             {"lightmap", "rig.toml", "-o", "a.exr", "--roll-deg", "1", "--threads", "1"}}) {
+        EXPECT_EQ(run_aphotic(folder_.path(), arguments).status, 0)
+            << testing::PrintToString(arguments);
+    }
+    EXPECT_NE(run_aphotic(folder_.path(),
+                          {"correct", "raw", "--map", "m.exr", "-o", "out", "--altitudes-m", "4,1"})
+                  .err.find("--altitude: found 4,1; allowed: the lower first"),
+              std::string::npos);
 }
 
 TEST_F(CommandErrors, MissingPovRay) {
@@ -283,7 +348,7 @@ TEST_F(CommandErrors, PovRayKilledMidway) {
 
 TEST_F(CommandErrors, OutputThatCannotBeAFolder) {
     write_file(folder_.path() / "out", "a file");
-    expect_one_message(render(), kRunFailed, "out: cannot be made");
+    expect_one_message(render(), kRunFailed, "out: cannot be created");
     EXPECT_EQ(read_text_file(folder_.path() / "out"), "a file");
 }
 

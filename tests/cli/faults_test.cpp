@@ -465,8 +465,8 @@ TEST_F(Faults, AManifestThatCannotBeReadIsNotWrittenOver) {
                 run_aphotic(folder_.path(),
                             {command, "rig.toml", "-o", "out", "--wavelengths", "450,500,550,600"});
             expect_message(run, kBadInput, "out/manifest.json");
-            EXPECT_NE(run.err.find("nothing was touched. Without that file everything is rendered "
-                                   "afresh"),
+            EXPECT_NE(run.err.find("nothing was changed. Remove that file to render "
+                                   "everything again"),
                       std::string::npos)
                 << run.err;
         }
@@ -517,7 +517,7 @@ TEST_F(BadPovRay, GarbageForAnImage) {
 }
 
 TEST_F(BadPovRay, NoImage) {
-    expect_failure("exit 0\n", "made no image, though it ended well", kOneJob);
+    expect_failure("exit 0\n", "exited normally without an image", kOneJob);
 }
 
 TEST_F(BadPovRay, ThatHangsAndHeedsNoSignal) {
@@ -552,7 +552,7 @@ TEST_F(BadPovRay, ThatLiesAboutItself) {
         std::string body;
         std::string part;
     };
-    const std::string no_povray = ": it does not introduce itself as POV-Ray";
+    const std::string no_povray = ": it does not identify itself as POV-Ray";
     for (const Lie& lie :
          {Lie{"printf 'POV-Ray 3.7'\n" + much + "7\n", no_povray},
           Lie{"printf 'POV-Ray '\n" + much + "7\n", no_povray},

@@ -191,8 +191,8 @@ class Lane {
         if (said.empty()) return;  // before there was anything to put in order
         ++counts.lines;
         EXPECT_EQ(said,
-                  fmt::format("aphotic: interrupted ({}); what was done is kept, and the "
-                              "same command goes on from there\n",
+                  fmt::format("aphotic: interrupted ({}); finished work is kept: run the "
+                              "same command again to continue\n",
                               ::strsignal(blow.signal)));
     }
 

@@ -71,7 +71,7 @@ TEST(PovRay, BuildWithoutOpenExrIsRefused) {
 TEST(PovRay, OtherProgramIsRefused) {
     const std::string message = message_of([] { (void)find_povray("/bin/true"); });
     EXPECT_NE(message.find("/bin/true"), std::string::npos) << message;
-    EXPECT_NE(message.find("does not introduce itself"), std::string::npos) << message;
+    EXPECT_NE(message.find("does not identify itself"), std::string::npos) << message;
 }
 
 // Of what cannot be, however much of it there is, nothing is made.
@@ -90,7 +90,7 @@ TEST(PovRay, LiesAboutTheVersionAreRefused) {
         EXPECT_EQ(message_of([&] {
                       (void)version_from(replaced(kPrinted, "3.7.0.10.unofficial", version));
                   }),
-                  "it does not introduce itself as POV-Ray")
+                  "it does not identify itself as POV-Ray")
             << version.substr(0, 40);
     }
     EXPECT_EQ(message_of([&] {
@@ -98,7 +98,7 @@ TEST(PovRay, LiesAboutTheVersionAreRefused) {
               }),
               "it was built without OpenEXR, in which frames are written");
     EXPECT_EQ(message_of([&] { (void)version_from(std::string(3'000'000, 'x') + kPrinted); }),
-              "it does not introduce itself as POV-Ray");
+              "it does not identify itself as POV-Ray");
 }
 
 TEST(PovRay, ComplaintsBeforeItsNameArePassedOver) {

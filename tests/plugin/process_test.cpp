@@ -180,7 +180,7 @@ TEST(Process, WithoutItsFolderOrLogIsARunErrorThatNamesIt) {
     elsewhere.request().folder = elsewhere.file("missing");
     EXPECT_EQ(
         run_error([&] { elsewhere.run(); }),
-        "/bin/sh: cannot be started: " + elsewhere.file("missing").string() + " is no folder");
+        "/bin/sh: cannot be started: " + elsewhere.file("missing").string() + " is not a folder");
     Script unheard("touch ran");
     unheard.request().log = unheard.file("missing") / "log.txt";
     EXPECT_EQ(run_error([&] { unheard.run(); }),
@@ -193,7 +193,7 @@ TEST(Process, IsKilledWhenItsTimeIsUp) {
     constexpr double kTimeoutS = 0.5;
     const auto before = Clock::now();
     EXPECT_EQ(run_error([&] { static_cast<void>(run_process(script.request(), kTimeoutS)); }),
-              "/bin/sh: gave no answer within 0.5 s");
+              "/bin/sh: did not answer within 0.5 s");
     EXPECT_LT(Clock::now() - before, kPatience);
     const pid_t pid = pid_in(script.file("pid"));
     ASSERT_GT(pid, 0);

@@ -92,7 +92,7 @@ TEST(MeshReader, RefusesWhatIsNoMesh) {
     EXPECT_EQ(error_of(""), "rock.obj: found no faces; allowed: 1 to 1000000 triangles");
     EXPECT_EQ(error_of(kTriangle), "rock.obj: found no faces; allowed: 1 to 1000000 triangles");
     const std::string flat =
-        "rock.obj: found a triangle of no area, of the vertices 1, 2 and 3, counted from 1; "
+        "rock.obj: found a triangle without area, of the vertices 1, 2 and 3, counted from 1; "
         "allowed: three corners that do not lie on one line";
     EXPECT_EQ(error_of("v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n"), flat);
     EXPECT_EQ(error_of("v 0 0 0\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"), flat);

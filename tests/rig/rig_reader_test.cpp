@@ -266,7 +266,7 @@ TEST(RigReader, TakesEitherAimOrDirection) {
     EXPECT_EQ(error_of(with(16, "")), "rig.toml:13: strobe[0].aim: is missing; " + allowed);
     EXPECT_EQ(
         error_of(with(16, "aim = { direction = [0, 0, 1] }")),
-        "rig.toml:16: strobe[0].aim.direction: is no known key. Known here: tilt_deg, toward");
+        "rig.toml:16: strobe[0].aim.direction: is not a known key. Known here: tilt_deg, toward");
     EXPECT_EQ(error_of(with(16, "aim = 26")), "rig.toml:16: strobe[0].aim: found 26; " + allowed);
     EXPECT_EQ(error_of(with(16, "direction = [0, 0, 0]")),
               "rig.toml:16: strobe[0].direction: found [0, 0, 0]; allowed: a vector that is not "
@@ -480,19 +480,21 @@ TEST(RigReader, NamesMissingTablesOfLists) {
 }
 
 TEST(RigReader, UnknownKeyNamesTheNearest) {
-    EXPECT_EQ(error_of("tittle = \"x\"\n" + std::string(kMinimal)),
-              "rig.toml:1: tittle: is no known key; did you mean 'title'? Known here: title, sled, "
-              "camera, water, seafloor, beam, strobe, materials, object, scene");
+    EXPECT_EQ(
+        error_of("tittle = \"x\"\n" + std::string(kMinimal)),
+        "rig.toml:1: tittle: is not a known key; did you mean 'title'? Known here: title, sled, "
+        "camera, water, seafloor, beam, strobe, materials, object, scene");
     EXPECT_EQ(error_of(with(2, "altitude_m = 2\nrol_deg = 1")),
-              "rig.toml:3: sled.rol_deg: is no known key; did you mean 'roll_deg'? Known here: "
+              "rig.toml:3: sled.rol_deg: is not a known key; did you mean 'roll_deg'? Known here: "
               "altitude_m, pitch_deg, roll_deg");
     EXPECT_EQ(
         error_of(with(9, "[water]\nsalinity_ppt = 35")),
-        "rig.toml:10: water.salinity_ppt: is no known key; did you mean 'salinity_psu'? Known "
+        "rig.toml:10: water.salinity_ppt: is not a known key; did you mean 'salinity_psu'? Known "
         "here: absorption, multiple, uniform_loss_per_m, salinity_psu, temperature_c");
-    EXPECT_EQ(error_of(with(10, "[seafloor]\nphong_sice = 35")),
-              "rig.toml:11: seafloor.phong_sice: is no known key; did you mean 'phong_size'? Known "
-              "here: reflectance, phong, phong_size");
+    EXPECT_EQ(
+        error_of(with(10, "[seafloor]\nphong_sice = 35")),
+        "rig.toml:11: seafloor.phong_sice: is not a known key; did you mean 'phong_size'? Known "
+        "here: reflectance, phong, phong_size");
 }
 
 TEST(RigReader, UnknownKeysAreFoundInEveryTable) {
@@ -502,25 +504,27 @@ TEST(RigReader, UnknownKeysAreFoundInEveryTable) {
         std::string start;
     };
     for (const Unknown& unknown : {
-             Unknown{8,
-                     "response = \"nikon-d5100\"\nrange_mm = 1",
-                     "9: camera.range_mm: is no known key; did you mean 'range_nm'? Known here: "},
+             Unknown{
+                 8,
+                 "response = \"nikon-d5100\"\nrange_mm = 1",
+                 "9: camera.range_mm: is not a known key; did you mean 'range_nm'? Known here: "},
              {9,
               std::string(kPort) + "shap = 1\n[water]",
-              "14: camera.port.shap: is no known key; did you mean 'shape'? Known here: "},
+              "14: camera.port.shap: is not a known key; did you mean 'shape'? Known here: "},
              {11,
               "[beam.wide]\nweight = \"flux\"",
-              "12: beam.wide.weight: is no known key; did you mean 'weights'? Known here: "},
+              "12: beam.wide.weight: is not a known key; did you mean 'weights'? Known here: "},
              {17,
               "beam = \"wide\"\npwer = 1",
-              "18: strobe[0].pwer: is no known key; did you mean 'power'? Known here: "},
+              "18: strobe[0].pwer: is not a known key; did you mean 'power'? Known here: "},
              {16,
               "aim = { tilt_deg = 1, toward = \"axis\", towards = 1 }",
-              "16: strobe[0].aim.towards: is no known key; did you mean 'toward'? Known here: "
+              "16: strobe[0].aim.towards: is not a known key; did you mean 'toward'? Known here: "
               "tilt_deg, toward"},
              {12,
               "cones = [{ part = \"x\", half_angle_deg = 9, weight = 1, weigt = 2 }]",
-              "12: beam.wide.cones[0].weigt: is no known key; did you mean 'weight'? Known here: "
+              "12: beam.wide.cones[0].weigt: is not a known key; did you mean 'weight'? Known "
+              "here: "
               "part, half_angle_deg, weight"},
          }) {
         const std::string message = error_of(with(unknown.line, unknown.text));
@@ -530,19 +534,20 @@ TEST(RigReader, UnknownKeysAreFoundInEveryTable) {
 
 TEST(RigReader, UnknownKeyFarFromAllListsTheKnown) {
     EXPECT_EQ(error_of(with(2, "altitude_m = 2\nxyzzy = 1")),
-              "rig.toml:3: sled.xyzzy: is no known key. Known here: altitude_m, pitch_deg, "
+              "rig.toml:3: sled.xyzzy: is not a known key. Known here: altitude_m, pitch_deg, "
               "roll_deg");
 }
 
 // The slip of the pen that is made most: a key that must be there, misspelt.
 TEST(RigReader, MisspeltRequiredKeyIsNamed) {
     EXPECT_EQ(error_of(with(2, "altitud_m = 2")),
-              "rig.toml:2: sled.altitud_m: is no known key; did you mean 'altitude_m'?");
+              "rig.toml:2: sled.altitud_m: is not a known key; did you mean 'altitude_m'?");
     EXPECT_EQ(error_of(with(1, "[sledd]")),
-              "rig.toml:1: sledd: is no known key; did you mean 'sled'?");
-    EXPECT_EQ(error_of(with(16, "aim = { tilt_de = 26, toward = \"axis\" }")),
-              "rig.toml:16: strobe[0].aim.tilt_de: is no known key; did you mean 'tilt_deg'? Known "
-              "here: tilt_deg, toward");
+              "rig.toml:1: sledd: is not a known key; did you mean 'sled'?");
+    EXPECT_EQ(
+        error_of(with(16, "aim = { tilt_de = 26, toward = \"axis\" }")),
+        "rig.toml:16: strobe[0].aim.tilt_de: is not a known key; did you mean 'tilt_deg'? Known "
+        "here: tilt_deg, toward");
 }
 
 TEST(RigReader, UnknownBeamNamesTheBeamsThereAre) {
@@ -776,7 +781,7 @@ TEST(RigReader, AResponseFileMustSayItsKind) {
     const std::string unknown = error_of(
         with(8, "response = { table = \"rgb.csv\", kind = \"energy\", kinds = 1 }"), folder.path());
     EXPECT_TRUE(
-        unknown.starts_with("rig.toml:8: camera.response.kinds: is no known key; did you "
+        unknown.starts_with("rig.toml:8: camera.response.kinds: is not a known key; did you "
                             "mean 'kind'?"))
         << unknown;
     const std::string half =
@@ -987,15 +992,15 @@ TEST(RigReader, TellsWhatIsWrongWithAnObject) {
         {ball_with("0.25", "0"),
          "rig.toml:22: object[0].radius_m: found 0; allowed: a number from 0.001 to 1000"},
         {ball_with("radius_m", "radius_mm"),
-         "rig.toml:22: object[0].radius_mm: is no known key; did you mean 'radius_m'?"},
+         "rig.toml:22: object[0].radius_mm: is not a known key; did you mean 'radius_m'?"},
         {ball_with("reflectance = \"sand\"", ""),
          "rig.toml:18: object[0].reflectance: is missing; allowed: a built-in table's name "
          "(aphotic data) or a .csv file beside the rig"},
         {ball_with("[0.1, 0.2, 2]", "[0, 0, 0.2]"),
-         "rig.toml:21: object[0].centre_m: found the camera's pupil inside of the object; allowed: "
+         "rig.toml:21: object[0].centre_m: found the camera's pupil inside the object; allowed: "
          "outside"},
         {ball_with("[0.1, 0.2, 2]", "[0.5, 0.2505, 0]"),
-         "rig.toml:21: object[0].centre_m: found strobe 'fore' inside of the object or 0.0005 m "
+         "rig.toml:21: object[0].centre_m: found strobe 'fore' inside the object or 0.0005 m "
          "off "
          "it; allowed: at least 0.001 m off"},
         {minimal_and(std::string(kBall) + std::string(kBall)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/channel_pairs.h"
+#include "validation/channel_pairs.h"
 
 #include "base/error.h"
 #include "spectral/channel_wavelength.h"
@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace aphotic::cli {
+namespace aphotic {
 namespace {
 
 bool is_in(const std::vector<std::string>& channels, const std::string& name) {
@@ -96,4 +96,4 @@ ChannelPairs named_channels(const std::string& names,
                                  fmt::join(allowed, ", ")));
 }
 
-}  // namespace aphotic::cli
+}  // namespace aphotic

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic::cli {
+namespace aphotic {
 
 struct ChannelPair {
     std::string image;  // its name there
@@ -36,4 +36,4 @@ struct ChannelPairs {
                                           const std::vector<std::string>& image,
                                           const std::vector<std::string>& reference);
 
-}  // namespace aphotic::cli
+}  // namespace aphotic

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How --help looks: an option, what it takes, and what it does, in 80 columns.
+//
+//   --tolerance E           Largest relative error of any pixel's signal [0 to 1; default: 0.001]
+//
+// An option's first long name is shown; the others are old spellings that go on working.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace aphotic::cli {
+
+class HelpFormatter : public CLI::Formatter {
+  public:
+    HelpFormatter();
+
+    std::string make_usage(const CLI::App* app, std::string name) const override;
+    std::string make_positionals(const CLI::App* app) const override;
+    std::string make_group(std::string group,
+                           bool is_positional,
+                           std::vector<const CLI::Option*> options) const override;
+    std::string make_footer(const CLI::App* app) const override;
+    std::string make_option_name(const CLI::Option* option, bool is_positional) const override;
+    std::string make_option_opts(const CLI::Option* option) const override;
+    std::string make_option_desc(const CLI::Option* option) const override;
+    std::string make_subcommand(const CLI::App* command) const override;
+};
+
+}  // namespace aphotic::cli

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Options that several commands share, each declared once. An option's first long name is the one
+// that --help shows; the others are those of version 0.1.
+#pragma once
+
+#include "cli/option_checks.h"
+#include "image/preview.h"
+#include "plugin/povray.h"
+#include "scene_gen/render_plan.h"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace aphotic::cli {
+
+// One name for altitudes in every command, whether it takes one, a range or steps.
+inline constexpr const char* kAltitudeNames = "--altitude,--altitude-m,--altitudes-m";
+inline constexpr const char* kPitchNames = "--pitch,--pitch-deg";
+inline constexpr const char* kRollNames = "--roll,--roll-deg";
+
+// What a rig may have, and what stands for it.
+inline constexpr double kLeastAltitude_m = 0.001;
+inline constexpr double kMostAltitude_m = 10000.0;
+inline constexpr double kMostTilt_deg = 89.9;
+
+[[nodiscard]] int all_cores();
+
+void add_rig(CLI::App& app, std::string& file);
+void add_json(CLI::App& app, bool& json, const std::string& words = "Print the result as JSON");
+
+template <typename Path>
+CLI::Option* add_output_folder(CLI::App& app, Path& folder) {
+    return app.add_option("-o,--output", folder, "Write to this folder")->type_name("DIR");
+}
+
+template <typename Count>
+void add_jobs(CLI::App& app, Count& jobs, const std::string& words) {
+    constexpr int kMostJobs = 1024;
+    app.add_option("--jobs,--threads", jobs, words + "; by default one per core")
+        ->check(in_range(1, kMostJobs));
+}
+
+void add_preview_options(CLI::App& app, PreviewOptions& options);
+
+struct PlanningOptions {
+    std::string rig_file;
+    double tolerance = 1e-3;
+    int fitted = 0;  // 0: as the tolerance asks
+    int bands = 0;   // 0: fitted wavelengths
+    std::vector<double> wavelengths_nm;
+    std::vector<double> paths_m;
+    int per_frame = 3;
+    double pixel_shift = kPixelShift;
+    std::vector<int> emitter_lamps;
+    bool renders = false;  // otherwise a scene that the rig names is left alone
+    std::string scene;
+    std::vector<std::string> library_paths;
+    bool unchecked = false;
+    double clock = 0.0;
+    int antialias = 0;
+    std::vector<std::string> povray_ini;
+    std::string povray;
+    bool ignore_needs = false;
+    double stall_timeout_s = kStall_s;
+};
+
+// Which POV-Ray, and how long it may be silent.
+void add_povray_options(CLI::App& app, std::string& povray, double& stall_timeout_s);
+
+// The rig and its wavelengths, without POV-Ray.
+void add_wavelength_options(CLI::App& app, PlanningOptions& options);
+
+// These, and how POV-Ray is to render them.
+void add_planning_options(CLI::App& app, PlanningOptions& options);
+
+}  // namespace aphotic::cli

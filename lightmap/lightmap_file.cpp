@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lightmap/lightmap_file.h"
+
+#include "base/degrees.h"
+#include "image/exr.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <string_view>
+
+namespace aphotic {
+namespace {
+
+using LightmapClock = std::chrono::steady_clock;
+
+double seconds_since(LightmapClock::time_point start) {
+    return std::chrono::duration<double>(LightmapClock::now() - start).count();
+}
+
+// The planes of the file, one after another, and their names.
+struct NamedPlanes {
+    std::vector<std::string> names;
+    std::vector<float> samples;
+
+    void take(const std::string& layer, const Lightmap& map) {
+        for (const std::string_view channel : kChannelNames) {
+            names.push_back(layer.empty() ? std::string(channel)
+                                          : fmt::format("{}.{}", layer, channel));
+        }
+        samples.insert(samples.end(), map.samples.begin(), map.samples.end());
+    }
+};
+
+void write_planes(const Rig& rig, const LightmapRequest& request, const NamedPlanes& planes) {
+    ExrWriter writer(
+        request.file,
+        rig.camera.width_px,
+        rig.camera.height_px,
+        planes.names,
+        {{"aphotic:version", request.version},
+         {"aphotic:rig_title", rig.title},
+         {"aphotic:rig_sha256", rig.digest},
+         {"aphotic:renderer", "lightmap"},
+         {"aphotic:altitude_m", fmt::format("{}", rig.sled.altitude_m)},
+         {"aphotic:pitch_deg", fmt::format("{}", rig.sled.pitch_rad / kRadiansPerDegree)},
+         {"aphotic:roll_deg", fmt::format("{}", rig.sled.roll_rad / kRadiansPerDegree)},
+         {"aphotic:normalised", request.is_normalised ? "yes" : "no"},
+         {"aphotic:error", fmt::format("{}", request.map.error)}});
+    writer.write_rows(rig.camera.height_px, planes.samples);
+    writer.finish();
+}
+
+}  // namespace
+
+WrittenLightmap write_lightmap(const Rig& rig, const LightmapRequest& request) {
+    const auto start = LightmapClock::now();
+    const LightmapMaker maker(rig, std::nullopt, request.map);
+    const double tables_s = seconds_since(start);
+    const auto mapping = LightmapClock::now();
+    Lightmap map = maker.map(rig.sled);
+    const double map_s = seconds_since(mapping);
+
+    const std::array<float, kChannels> peaks = peaks_of(map);
+    if (request.is_normalised) divide_by(peaks, map);
+    NamedPlanes planes;
+    planes.samples.reserve((1 + request.parts.size()) * map.samples.size());
+    planes.take("", map);
+    for (const RigPart& part : request.parts) {
+        Lightmap share = LightmapMaker(part.rig, maker.paths(), request.map).map(rig.sled);
+        if (request.is_normalised) divide_by(peaks, share);
+        planes.take(part.name, share);
+    }
+    set_exr_threads(request.map.threads);
+    write_planes(rig, request, planes);
+    return {.map = std::move(map),
+            .channels = std::move(planes.names),
+            .peaks = peaks,
+            .paths = maker.paths(),
+            .grid_size = maker.grid_size(),
+            .table_steps = maker.table_steps(),
+            .tables_s = tables_s,
+            .map_s = map_s};
+}
+
+}  // namespace aphotic

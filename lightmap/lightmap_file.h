@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A lightmap as an OpenEXR file: R, G, B, and on request the same of the rig's parts, in channels
+// such as fore.R (planes.h). Its attributes say which rig, pose and error it is of.
+#pragma once
+
+#include "lightmap/planes.h"
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct LightmapRequest {
+    std::filesystem::path file;
+    std::vector<RigPart> parts;
+    bool is_normalised =
+        false;  // each channel is divided by its largest value, parts by the whole's
+    LightmapOptions map;
+    std::string version;  // of the program that makes it
+};
+
+struct WrittenLightmap {
+    Lightmap map;
+    std::vector<std::string> channels;
+    std::array<float, kChannels> peaks{};  // before they are divided by
+    PathRange paths;
+    std::size_t grid_size = 0;
+    int table_steps = 0;
+    double tables_s = 0.0;
+    double map_s = 0.0;
+};
+
+// Throws InputError where LightmapMaker does.
+[[nodiscard]] WrittenLightmap write_lightmap(const Rig& rig, const LightmapRequest& request);
+
+}  // namespace aphotic

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How far an image is from its reference, channel by channel, both of any format.
+//
+//   e = (a / scale - b) / max(|b|, black * largest |b|)
+//
+// a, b   samples of image and reference, of channels that are one quantity (channel_pairs.h)
+// scale  1, or what fits the image to the reference best (scaling.h)
+//
+// What either image says that it never observed (count.NAME of 0) is not compared.
+#pragma once
+
+#include "validation/comparison_page.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace aphotic {
+
+enum class ComparedScale { None, OfImage, OfEachChannel };
+
+struct ComparisonRequest {
+    std::string image;
+    std::string reference;
+    double bound = 6e-4;                  // of |e|
+    double black = 1e-6;                  // as a share of the reference's largest sample
+    std::optional<std::string> channels;  // that the user names; otherwise all
+    ComparedScale scale = ComparedScale::None;
+    bool keep_samples = false;  // for a page; otherwise one channel's are in memory at a time
+};
+
+// Throws InputError for images that cannot be compared.
+[[nodiscard]] ComparedImages compare_images(const ComparisonRequest& request);
+
+}  // namespace aphotic

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The reference tracer's images in a folder, with the names of a render's: image.exr, and
+// spectral.exr with the planes that the tracer was asked for. They say that it made them.
+#pragma once
+
+#include "image/output_images.h"
+#include "validation/tracer.h"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace aphotic {
+
+// options: the tracer's. progress: share of the rows. Returns the camera's signal.
+[[nodiscard]] CameraImage write_traced_images(const Tracer& tracer,
+                                              const TraceOptions& options,
+                                              const std::filesystem::path& folder,
+                                              const std::string& version,
+                                              const std::function<void(double)>& progress);
+
+}  // namespace aphotic
