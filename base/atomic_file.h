@@ -6,9 +6,9 @@
 //   ... write to out.temporary() ...
 //   out.commit();
 //
-// commit() puts the file's bytes on the disk (fsync) before its new name, and then the name, so that
-// a power cut too leaves the file of before or the new one, whole. Without commit() nothing is left
-// behind. A failed write, sync or rename is a RunError that names the file.
+// commit() puts the file's bytes on the disk (fsync) before its new name, and then the name, so
+// that a power cut too leaves the file of before or the new one, whole. Without commit() nothing is
+// left behind. A failed write, sync or rename is a RunError that names the file.
 #pragma once
 
 #include <cstddef>
