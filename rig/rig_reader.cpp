@@ -363,11 +363,9 @@ std::vector<Spectrum> RigReader::curves_named(const Section& section,
                                               const std::string& name,
                                               CurveRole role) {
     return section.at_key(key, [&] {
-        if (!names_a_file(name)) return load_curves(name, role, folder_);
-        const fs::path file = file_beside(folder_, name);
-        const std::string csv = read_text_file(file, kMostTableBytes);
-        digested_ += sha256_of_text(csv);
-        return curves_of(parse_table(file.string(), csv), role);
+        std::vector<Spectrum> curves = load_curves(name, role, folder_);
+        digested_ += curves.front().source().value().file_sha256;
+        return curves;
     });
 }
 

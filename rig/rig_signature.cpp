@@ -125,7 +125,7 @@ std::map<std::string, std::string> rig_signature(const Rig& rig) {
     for (const Strobe& strobe : strobes) sign(strobe, all);
     for (const Object& object : objects) sign(object, all);
     all["strobes"] = order_of(strobes);
-    all["objects"] = order_of(objects);
+    if (!objects.empty()) all["objects"] = order_of(objects);
     return all;
 }
 

@@ -23,22 +23,14 @@ namespace aphotic {
 namespace {
 
 void require_same_signature(const Rig& changed, const Manifest& manifest) {
-    const std::map<std::string, std::string> found = rig_signature(changed);
-    const std::map<std::string, std::string>& frames = manifest.rig_signature;
-    const auto text_in = [](const auto& signature, const std::string& key) {
-        const auto at = signature.find(key);
-        return at == signature.end() ? "none" : at->second;
-    };
-    std::map<std::string, std::string> all = found;
-    all.insert(frames.begin(), frames.end());
-    for (const auto& [key, text] : all) {
-        if (found.contains(key) && frames.contains(key) && found.at(key) == frames.at(key)) {
-            continue;
-        }
-        throw InputError(fmt::format("{}: found {}; allowed: {}, as the frames were rendered",
-                                     key,
-                                     text_in(found, key),
-                                     text_in(frames, key)));
+    std::map<std::string, std::string> found = rig_signature(changed);
+    std::map<std::string, std::string> allowed = manifest.rig_signature;
+    for (const auto& [key, text] : allowed) found.try_emplace(key, "none");
+    for (const auto& [key, text] : found) {
+        const std::string& frames = allowed.try_emplace(key, "none").first->second;
+        if (text == frames) continue;
+        throw InputError(fmt::format(
+            "{}: found {}; allowed: {}, as the frames were rendered", key, text, frames));
     }
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <span>
@@ -34,17 +35,8 @@ std::array<double, kChannels> lamp_signal(const Rig& rig, const LightFamily& fam
 
 namespace {
 
-std::string method_name(PlanMethod method) {
-    switch (method) {
-        case PlanMethod::Fitted:
-            return "fitted";
-        case PlanMethod::EqualBands:
-            return "equal bands";
-        case PlanMethod::Listed:
-            return "listed";
-    }
-    return "";
-}
+// In the order of PlanMethod.
+constexpr std::array kMethodNames{"fitted", "equal bands", "listed"};
 
 ManifestScene noted(const UserScene& scene, const LightFamily& family) {
     ManifestScene note{.file = scene.file.string(),
@@ -91,7 +83,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
                                     .lamps_along = lamps[s].along});
     }
     if (own != nullptr) manifest.scene = noted(*own, plan.family);
-    manifest.method = method_name(plan.method);
+    manifest.method = kMethodNames.at(static_cast<std::size_t>(plan.method));
     manifest.tolerance = plan.tolerance;
     manifest.frame_error = plan.frame_error;
     manifest.quality = plan.quality;
