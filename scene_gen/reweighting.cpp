@@ -2,7 +2,7 @@
 #include "scene_gen/reweighting.h"
 
 #include "base/error.h"
-#include "rig/rig_signature.h"
+#include "rig/geometry_signature.h"
 #include "rig/solid.h"
 #include "scene_gen/certificate.h"
 #include "scene_gen/half_underflow.h"
@@ -23,8 +23,8 @@ namespace aphotic {
 namespace {
 
 void require_same_signature(const Rig& changed, const Manifest& manifest) {
-    std::map<std::string, std::string> found = rig_signature(changed);
-    std::map<std::string, std::string> allowed = manifest.rig_signature;
+    std::map<std::string, std::string> found = geometry_signature(changed);
+    std::map<std::string, std::string> allowed = manifest.geometry;
     for (const auto& [key, text] : allowed) found.try_emplace(key, "none");
     for (const auto& [key, text] : found) {
         const std::string& frames = allowed.try_emplace(key, "none").first->second;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Frames outlive the rig: new weights make the frames of one rig the image of another that
-// differs in water, lamps, materials or sensor, but not in geometry (rig/rig_signature.h).
+// differs in water, lamps, materials or sensor, but not in geometry (rig/geometry_signature.h).
 //
 //   S_c = sum_j w_cj L_j,   w fitted to the changed rig's signals on the basis of the frames' light
 //

@@ -4,7 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/sha256.h"
-#include "rig/rig_signature.h"
+#include "rig/geometry_signature.h"
 #include "scene_gen/half_underflow.h"
 #include "scene_gen/include_library.h"
 
@@ -76,7 +76,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.rig_sha256 = rig.digest;
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
-    manifest.rig_signature = rig_signature(own != nullptr ? rig_of_scene(rig, *own) : rig);
+    manifest.geometry = geometry_signature(own != nullptr ? rig_of_scene(rig, *own) : rig);
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         manifest.strobes.push_back({.name = rig.strobes[s].name,
                                     .lamps_across = lamps[s].across,

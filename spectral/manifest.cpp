@@ -267,7 +267,7 @@ void fields(const Visit& visit, Whole& manifest) {
     visit("frame_error", manifest.frame_error);
     visit("no_promise", manifest.no_promise);
     if (manifest.has_promise()) visit.list("quality", manifest.quality);
-    visit("rig_signature", manifest.rig_signature);
+    visit("geometry", manifest.geometry);
     visit.list("strobes", manifest.strobes);
     visit.optional("scene", manifest.scene);
     std::set<std::string> names;

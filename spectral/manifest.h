@@ -76,8 +76,8 @@ struct Manifest {
     // is then that of the spectra which the scene names, and not written.
     std::vector<std::string> no_promise{};
     // By part of the rig, in words and numbers, all that its frames depend on but for sources and
-    // water: frames serve another rig when it is equal (rig/rig_signature.h).
-    std::map<std::string, std::string> rig_signature;
+    // water: frames serve another rig when it is equal (rig/geometry_signature.h).
+    std::map<std::string, std::string> geometry;
     std::vector<ManifestStrobe> strobes{};  // those of every wavelength's flux
     std::optional<ManifestScene> scene{};   // none: the rig's own floor
     std::vector<ManifestFrame> frames;

@@ -348,7 +348,7 @@ TEST(Reintegrate, NamesTheChangedRigAndLeavesTheFramesAlone) {
     EXPECT_EQ(weights.method, "fitted to frames of another rig");
     EXPECT_EQ(weights.tolerance, 9e-4);
     EXPECT_EQ(weights.frame_error, habcams().frame_error);
-    EXPECT_EQ(weights.rig_signature, habcams().rig_signature);
+    EXPECT_EQ(weights.geometry, habcams().geometry);
     ASSERT_EQ(weights.frames.size(), habcams().frames.size());
     EXPECT_EQ(weights.frames[0].name, habcams().frames[0].name);
     EXPECT_EQ(weights.frames[0].scene_sha256, habcams().frames[0].scene_sha256);

@@ -30,7 +30,7 @@ Manifest some_manifest() {
     manifest.tolerance = 1e-3;
     manifest.quality = {{{.error = 1.0 / 7.0, .amplification = 1.2}, {}, {.error = 1e-300}}};
     manifest.frame_error = 1.0 / 2048.0;
-    manifest.rig_signature = {{"sled.altitude_m", "2"}, {"strobe 'fore \"x\"'", "at 0.5 0 0 m"}};
+    manifest.geometry = {{"sled.altitude_m", "2"}, {"strobe 'fore \"x\"'", "at 0.5 0 0 m"}};
     manifest.strobes = {{.name = "fore \"x\"", .lamps_across = 5, .lamps_along = 3},
                         {.name = "aft"}};
     manifest.frames = {
@@ -109,7 +109,7 @@ TEST(Manifest, ComesBackWhole) {
     EXPECT_EQ(read.method, written.method);
     EXPECT_EQ(read.tolerance, written.tolerance);
     EXPECT_EQ(read.frame_error, written.frame_error);
-    EXPECT_EQ(read.rig_signature, written.rig_signature);
+    EXPECT_EQ(read.geometry, written.geometry);
     ASSERT_EQ(read.strobes.size(), written.strobes.size());
     for (std::size_t s = 0; s < read.strobes.size(); ++s) {
         EXPECT_EQ(read.strobes[s].name, written.strobes[s].name);
@@ -317,8 +317,8 @@ TEST(Manifest, NamesEachKeyOfTheWrongType) {
         EXPECT_EQ(wavelength_error(key, 7),
                   "wavelengths[1]: " + key + ": found 7; allowed: a list of numbers");
     }
-    EXPECT_EQ(error_with("rig_signature", Json{{"sled", 2}}),
-              "rig_signature: found {\"sled\":2}; allowed: an object of texts");
+    EXPECT_EQ(error_with("geometry", Json{{"sled", 2}}),
+              "geometry: found {\"sled\":2}; allowed: an object of texts");
     for (const std::string key : {"quality", "strobes", "frames", "wavelengths"}) {
         EXPECT_EQ(error_with(key, 7), key + ": found 7; allowed: a list of objects");
         EXPECT_EQ(error_with(key, Json::array({7})),

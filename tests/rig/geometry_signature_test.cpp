@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rig/rig_signature.h"
+#include "rig/geometry_signature.h"
 
 #include "rig/geometry.h"
 #include "rig/rig_reader.h"
@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic::rig_signature_test {
+namespace aphotic::geometry_signature_test {
 namespace {
 
 Rig rig_of(const std::string& scene) {
@@ -38,9 +38,9 @@ Rig changed(Rig rig, const Change& change) {
     return rig;
 }
 
-TEST(RigSignature, KnowsOnlyWhatMovesLight) {
-    const auto before = rig_signature(habcam());
-    EXPECT_EQ(rig_signature(habcam()), before);
+TEST(GeometrySignature, KnowsOnlyWhatMovesLight) {
+    const auto before = geometry_signature(habcam());
+    EXPECT_EQ(geometry_signature(habcam()), before);
     for (const Change& change : std::vector<Change>{
              [](Rig& rig) { rig.title = "another"; },
              [](Rig& rig) { rig.digest = "another"; },
@@ -62,14 +62,14 @@ TEST(RigSignature, KnowsOnlyWhatMovesLight) {
              [](Rig& rig) {
                  rig.camera.range = {450.0, 650.0};
              }}) {
-        EXPECT_EQ(rig_signature(changed(habcam(), change)), before);
+        EXPECT_EQ(geometry_signature(changed(habcam(), change)), before);
     }
 }
 
-TEST(RigSignature, KnowsObjectsByShapeAndGlossAndNotByColour) {
+TEST(GeometrySignature, KnowsObjectsByShapeAndGlossAndNotByColour) {
     const Rig rig = rig_of("objects.toml");
-    const auto before = rig_signature(rig);
-    EXPECT_EQ(rig_signature(
+    const auto before = geometry_signature(rig);
+    EXPECT_EQ(geometry_signature(
                   changed(rig, [](Rig& r) { r.objects[0].reflectance = material("red-algae"); })),
               before);
     for (const Change& change : std::vector<Change>{
@@ -82,12 +82,12 @@ TEST(RigSignature, KnowsObjectsByShapeAndGlossAndNotByColour) {
              [](Rig& r) { std::get<Box>(r.objects[2].shape).most_m.z() += 1e-9; },
              [](Rig& r) { r.objects[1].phong_size += 1.0; },
              [](Rig& r) { r.objects.pop_back(); }}) {
-        EXPECT_NE(rig_signature(changed(rig, change)), before);
+        EXPECT_NE(geometry_signature(changed(rig, change)), before);
     }
 }
 
 // A cone's intensity in either way of writing it.
-TEST(RigSignature, KnowsBeamsByTheirLight) {
+TEST(GeometrySignature, KnowsBeamsByTheirLight) {
     Rig literal = habcam();
     for (Strobe& strobe : literal.strobes) {
         for (Cone& cone : strobe.beam.cones) {
@@ -95,12 +95,12 @@ TEST(RigSignature, KnowsBeamsByTheirLight) {
         }
         strobe.beam.weights = ConeWeights::Literal;
     }
-    EXPECT_EQ(rig_signature(literal), rig_signature(habcam()));
+    EXPECT_EQ(geometry_signature(literal), geometry_signature(habcam()));
 }
 
-TEST(RigSignature, KnowsWhatMovesLight) {
-    const auto before = rig_signature(rig_of("port.toml"));
-    EXPECT_NE(before, rig_signature(habcam()));
+TEST(GeometrySignature, KnowsWhatMovesLight) {
+    const auto before = geometry_signature(rig_of("port.toml"));
+    EXPECT_NE(before, geometry_signature(habcam()));
     for (const Change& change :
          std::vector<Change>{[](Rig& rig) { rig.sled.altitude_m += 1e-9; },
                              [](Rig& rig) { rig.sled.pitch_rad += 1e-9; },
@@ -124,14 +124,14 @@ TEST(RigSignature, KnowsWhatMovesLight) {
                              [](Rig& rig) { rig.strobes[3].emitter = Emitter{}; },
                              [](Rig& rig) { std::swap(rig.strobes[0], rig.strobes[3]); },
                              [](Rig& rig) { rig.strobes.pop_back(); }}) {
-        EXPECT_NE(rig_signature(changed(rig_of("port.toml"), change)), before);
+        EXPECT_NE(geometry_signature(changed(rig_of("port.toml"), change)), before);
     }
     Rig glossy = habcam();
     glossy.seafloor.phong = 0.5;
-    const auto gloss = rig_signature(glossy);
+    const auto gloss = geometry_signature(glossy);
     glossy.seafloor.phong_size += 1e-9;
-    EXPECT_NE(rig_signature(glossy), gloss) << "where there is a highlight its size counts";
+    EXPECT_NE(geometry_signature(glossy), gloss) << "where there is a highlight its size counts";
 }
 
 }  // namespace
-}  // namespace aphotic::rig_signature_test
+}  // namespace aphotic::geometry_signature_test

@@ -16,6 +16,6 @@
 namespace aphotic {
 
 // By key: sled.altitude_m, camera.port, strobe 'NAME' and so on.
-[[nodiscard]] std::map<std::string, std::string> rig_signature(const Rig& rig);
+[[nodiscard]] std::map<std::string, std::string> geometry_signature(const Rig& rig);
 
 }  // namespace aphotic

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rig/rig_signature.h"
+#include "rig/geometry_signature.h"
 
 #include "base/sha256.h"
 #include "rig/geometry.h"
@@ -113,7 +113,7 @@ void sign(const Object& object, Signature& all) {
 
 }  // namespace
 
-std::map<std::string, std::string> rig_signature(const Rig& rig) {
+std::map<std::string, std::string> geometry_signature(const Rig& rig) {
     // The scene: a manifest notes it by itself.
     const auto& [title, sled, camera, water, seafloor, strobes, materials, objects, scene, digest] =
         rig;
