@@ -55,7 +55,7 @@ void TenMaterialsOverFortyMetres(benchmark::State& state) {
     PlanRequest request;
     request.paths = {.shortest_m = 0.3, .longest_m = 40.0};
     std::size_t wavelengths = 0;
-    for (auto _ : state) wavelengths = plan_render(rig, request).rule.wavelengths.size();
+    for (auto _ : state) wavelengths = plan_render(rig, request).wavelengths.size();
     state.counters["wavelengths"] = static_cast<double>(wavelengths);
 }
 BENCHMARK(TenMaterialsOverFortyMetres)->Unit(benchmark::kMillisecond);

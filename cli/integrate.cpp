@@ -81,7 +81,7 @@ Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest
                  {"frame_error", manifest.frame_error},
                  {"wavelengths", Json::array()}};
     put_promises(account, manifest);
-    for (const ManifestWavelength& w : manifest.wavelengths) {
+    for (const PlannedWavelength& w : manifest.wavelengths) {
         account["wavelengths"].push_back({{"lambda_nm", w.lambda_nm}, {"weight", w.weight}});
     }
     return account;

@@ -35,27 +35,29 @@ struct PortCost {
 };
 
 PortCost port_cost(const PlannedRender& planned) {
-    const auto& rule = planned.plan.rule.wavelengths;
-    const auto shift_px = [&](std::size_t a, std::size_t b) {
-        return corner_shift_px(planned.rig, rule[a].lambda_nm, rule[b].lambda_nm);
+    const std::vector<PlannedWavelength>& all = planned.plan.wavelengths;
+    const auto shift_px = [&](const PlannedWavelength& a, const PlannedWavelength& b) {
+        return corner_shift_px(planned.rig, a.lambda_nm, b.lambda_nm);
     };
-    PortCost cost{.spread_px = shift_px(0, rule.size() - 1)};
-    for (const FrameGroup& frame : planned.plan.frames) {
-        cost.shared_px =
-            std::max(cost.shared_px, shift_px(frame.first, frame.first + frame.count - 1));
+    PortCost cost{.spread_px = shift_px(all.front(), all.back())};
+    // In a frame the last is the farthest from the first.
+    const PlannedWavelength* first = &all.front();
+    for (const PlannedWavelength& w : all) {
+        if (w.frame != first->frame) first = &w;
+        cost.shared_px = std::max(cost.shared_px, shift_px(*first, w));
     }
     const auto per_frame = static_cast<std::size_t>(planned.plan.scene.wavelengths_per_frame);
-    cost.frames_without = (rule.size() + per_frame - 1) / per_frame;
+    cost.frames_without = (all.size() + per_frame - 1) / per_frame;
     return cost;
 }
 
 Json wavelengths_of(const Manifest& manifest) {
     Json all = Json::array();
-    for (const ManifestWavelength& w : manifest.wavelengths) {
+    for (const PlannedWavelength& w : manifest.wavelengths) {
         all.push_back({{"lambda_nm", w.lambda_nm},
                        {"weight", w.weight},
                        {"frame", manifest.frames[w.frame].name},
-                       {"channel", w.channel},
+                       {"channel", kChannelNames[w.channel]},
                        {"exposure_log2", w.exposure_log2},
                        {"index_nm", w.index_nm}});
     }
@@ -163,7 +165,7 @@ void print_promise(const RenderPlan& plan) {
     }
     fmt::print("{:>9}  {:>12}  {:>13}  {:>8}\n", "channel", "error", "amplification", "promise");
     for (std::size_t c = 0; c < kChannels; ++c) {
-        const RuleQuality& q = plan.rule.quality[c];
+        const RuleQuality& q = plan.quality[c];
         fmt::print("{:>9}  {:12.2g}  {:13.3f}  {:8.3g}\n",
                    kChannelNames[c],
                    q.error,
@@ -183,7 +185,7 @@ void print_wavelengths(const Manifest& manifest) {
                "weight G",
                "weight B",
                "exposure");
-    for (const ManifestWavelength& w : manifest.wavelengths) {
+    for (const PlannedWavelength& w : manifest.wavelengths) {
         fmt::print("{:12.3f}  {:12.6g} {:12.6g} {:12.6g}  {:>8}  {} {}\n",
                    w.lambda_nm,
                    w.weight[0],
@@ -191,7 +193,7 @@ void print_wavelengths(const Manifest& manifest) {
                    w.weight[2],
                    fmt::format("2^{}", w.exposure_log2),
                    manifest.frames[w.frame].name,
-                   w.channel);
+                   kChannelNames[w.channel]);
     }
 }
 
@@ -201,7 +203,7 @@ void print_port(const PlannedRender& planned) {
         "\nThe port spreads these wavelengths over {:.3g} pixels at the image's corner. {} instead "
         "of\n{} keep those of one frame within {:.3g} of each other.\n",
         cost.spread_px,
-        counted(planned.plan.frames.size(), "frame"),
+        counted(planned.plan.frames(), "frame"),
         cost.frames_without,
         planned.plan.scene.pixel_shift);
 }

@@ -46,7 +46,7 @@ Plot light_panel(const Rig& rig, const RenderPlan& plan) {
                .x_label = "wavelength (nm)",
                .y_label = "light, relative to its peak",
                .curves = {}};
-    for (const WeightedWavelength& w : plan.rule.wavelengths) panel.marks_x.push_back(w.lambda_nm);
+    for (const PlannedWavelength& w : plan.wavelengths) panel.marks_x.push_back(w.lambda_nm);
     for (std::size_t s = 0; s < family.sources.size(); ++s) {
         for (const double path_m : {family.shortest_path_m, family.longest_path_m}) {
             PlotCurve curve = light_on(family, family.sources[s], path_m, rig.camera.range);
@@ -69,20 +69,22 @@ double largest_error(const std::vector<QuadratureFitter::PathError>& errors) {
 
 Plot error_panel(const Rig& rig, const RenderPlan& plan) {
     const QuadratureFitter fitter(rig.camera.sensor, plan.family, rig.camera.range);
-    std::vector<double> lambda_nm;
-    for (const WeightedWavelength& w : plan.rule.wavelengths) lambda_nm.push_back(w.lambda_nm);
-    const std::vector<FrameLight> frames = frames_light(fitter, lambda_nm, plan.frames);
+    FittedRule rule{.wavelengths = {}, .quality = plan.quality};
+    for (const PlannedWavelength& w : plan.wavelengths) {
+        rule.wavelengths.push_back({.lambda_nm = w.lambda_nm, .weight = w.weight});
+    }
+    const std::vector<FrameLight> frames = frames_light(fitter, plan.wavelengths);
 
     std::vector<QuadratureFitter::PathError> worst;
     std::size_t of_source = 0;
     for (std::size_t s = 0; s < plan.family.sources.size(); ++s) {
-        auto errors = fitter.errors_over_path(plan.rule, frames, s);
+        auto errors = fitter.errors_over_path(rule, frames, s);
         if (!worst.empty() && largest_error(errors) <= largest_error(worst)) continue;
         worst = std::move(errors);
         of_source = s;
     }
     Plot panel{.title = fmt::format("{} wavelengths and their weights: {}",
-                                    lambda_nm.size(),
+                                    plan.wavelengths.size(),
                                     source_name(plan.family.sources[of_source])),
                .x_label = "path from lamp to floor to camera (m)",
                .y_label = "relative error of the signal",

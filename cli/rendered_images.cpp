@@ -4,11 +4,11 @@
 #include "base/error.h"
 #include "image/exr.h"
 #include "image/traced_image.h"
-#include "scene_gen/reweighting.h"
 #include "spectral/integrator.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -54,11 +54,14 @@ RenderedImages images_in(const fs::path& folder,
                           .radiance = {},
                           .signals = read_signals(folder / "image.exr"),
                           .lamps = {}};
-    for (const LampGrid& grid : rendered_lamps(rig, manifest)) {
-        images.lamps.push_back({.across = grid.across, .along = grid.along});
+    for (const Strobe& strobe : rig.strobes) {
+        // The frames may be of another rig, which knows no such strobe.
+        const auto known = std::ranges::find(manifest.strobes, strobe.name, &ManifestStrobe::name);
+        const ManifestStrobe lamps = known != manifest.strobes.end() ? *known : ManifestStrobe{};
+        images.lamps.push_back({.across = lamps.lamps_across, .along = lamps.lamps_along});
     }
     std::vector<std::string> channels;
-    for (const ManifestWavelength& w : manifest.wavelengths) {
+    for (const PlannedWavelength& w : manifest.wavelengths) {
         images.lambda_nm.push_back(w.lambda_nm);
         images.exposure_log2.push_back(w.exposure_log2);
         channels.push_back(spectral_channel(w.lambda_nm));

@@ -209,7 +209,7 @@ StudyMeasure measure(const Rig& rig,
     CameraImage image = integrate_signals(folder, frames.result.manifest, folder);
     if (setting.shrink > 1) image = enlarged(image, rig, setting.filter);
     StudyMeasure measure{.setting = setting,
-                         .wavelengths = plan.rule.wavelengths.size(),
+                         .wavelengths = plan.wavelengths.size(),
                          .frames = set.scenes.size(),
                          .promise = plan.promise(),
                          .render_s = frames.povray_s,

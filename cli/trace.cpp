@@ -122,7 +122,7 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
     }
     const Camera& camera = planned.rig.camera;
     TraceOptions request{.signals = true, .planes_nm = {}, .threads = options.threads};
-    for (const WeightedWavelength& w : planned.plan.rule.wavelengths) {
+    for (const PlannedWavelength& w : planned.plan.wavelengths) {
         request.planes_nm.push_back(w.lambda_nm);
     }
 

@@ -411,7 +411,7 @@ void Survey::require_ours(const Asked& asked) const {
 
 void Survey::require_rigs_lamps(const Asked& asked) const {
     std::set<std::string> known;
-    for (const Strobe& strobe : rig_.strobes) known.insert(short_name(strobe.spectrum));
+    for (const Strobe& strobe : rig_.strobes) known.insert(strobe.spectrum.short_name());
     for (const std::string& lamp : asked.lamps) {
         if (known.contains(lamp)) continue;
         refuse(

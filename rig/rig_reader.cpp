@@ -380,10 +380,10 @@ std::vector<Spectrum> RigReader::curves_named(const Section& section,
                                               const std::string& name,
                                               CurveRole role) {
     return section.at_key(key, [&] {
-        if (!names_a_file(name)) return load_curves(name, role, folder_);
-        const fs::path file = file_beside(folder_, name);
-        const std::string csv = read_beside(name, file, kMostTableBytes);
-        return curves_of(parse_table(file.string(), csv), role);
+        std::vector<Spectrum> curves = load_curves(name, role, folder_);
+        const CurveSource& source = curves.front().source().value();
+        if (source.is_file()) files_.push_back({.name = name, .sha256 = source.file_sha256});
+        return curves;
     });
 }
 

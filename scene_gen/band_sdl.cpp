@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace aphotic {
 
@@ -41,14 +40,6 @@ std::string spectra_sdl(std::string_view kind,
 
 }  // namespace
 
-std::string short_name(const Spectrum& spectrum) {
-    const std::string& name = spectrum.name();
-    const std::size_t first = name.find('\'');
-    const std::size_t last = name.rfind('\'');
-    const std::string quoted = first < last ? name.substr(first + 1, last - first - 1) : name;
-    return std::filesystem::path(quoted).filename().string();
-}
-
 std::string scene_name(std::string_view name) {
     return sdl_letters(name).substr(0, kMostNameLetters);
 }
@@ -57,12 +48,12 @@ std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra) {
     std::vector<NamedSpectrum> names;
     for (const Spectrum& spectrum : spectra) {
         // As POV-Ray reads it: two files that differ in their accents have one name there.
-        const std::string name = scene_name(short_name(spectrum));
+        const std::string name = scene_name(spectrum.short_name());
         int same_name = 1;
         bool is_there = false;
         for (const NamedSpectrum& other : names) {
-            if (scene_name(short_name(other.spectrum)) != name) continue;
-            is_there |= short_name(other.spectrum) == short_name(spectrum) &&
+            if (scene_name(other.spectrum.short_name()) != name) continue;
+            is_there |= other.spectrum.short_name() == spectrum.short_name() &&
                         is_same_curve(other.spectrum, spectrum);
             ++same_name;
         }
@@ -80,7 +71,7 @@ std::vector<NamedSpectrum> named(std::span<const Spectrum> spectra) {
 
 const std::string& name_of(const Spectrum& spectrum, std::span<const NamedSpectrum> names) {
     for (const NamedSpectrum& named : names) {
-        if (short_name(named.spectrum) == short_name(spectrum) &&
+        if (named.spectrum.short_name() == spectrum.short_name() &&
             is_same_curve(named.spectrum, spectrum)) {
             return named.name;
         }

@@ -23,9 +23,6 @@ struct NamedSpectrum {
     Spectrum spectrum;
 };
 
-// The name in a spectrum's own: sand of "reflectance 'sand'", mud.csv of a file.
-[[nodiscard]] std::string short_name(const Spectrum& spectrum);
-
 // What a scene can call it: sdl_letters, as many as aphotic.inc takes.
 [[nodiscard]] std::string scene_name(std::string_view name);
 

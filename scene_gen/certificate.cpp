@@ -2,6 +2,7 @@
 #include "scene_gen/certificate.h"
 
 #include "scene_gen/floor_light.h"
+#include "scene_gen/light_paths.h"
 #include "spectral/panel_quadrature.h"
 #include "spectral/quadrature_certificate.h"
 
@@ -23,7 +24,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 struct Node {
     std::size_t point = 0;  // of the geometry, and the share of the way to the next
     double share = 0.0;
-    FloorFrame light;
+    SourceLight light;
     std::array<double, kChannels> response{};  // times the node's width
 };
 
@@ -57,7 +58,7 @@ std::vector<Node> nodes_of(const Rig& rig) {
         const double point = std::min(std::floor(at), kGeometryPoints - 2.0);
         Node node{.point = static_cast<std::size_t>(point),
                   .share = at - point,
-                  .light = floor_frame(rig, lambda_nm, lambda_nm)};
+                  .light = source_light(rig, lambda_nm)};
         for (std::size_t c = 0; c < kChannels; ++c) {
             node.response[c] =
                 width_nm * rig.camera.sensor.response(static_cast<int>(c), lambda_nm);
@@ -67,8 +68,10 @@ std::vector<Node> nodes_of(const Rig& rig) {
     return nodes;
 }
 
-double radiance(const FloorFrame& light, std::size_t strobe, const FloorLight& lit) {
-    return light.spectrum[strobe] * (light.reflectance * lit.diffuse_per_m2 + lit.specular_per_m2) *
+// lit: by the strobe at power 1.
+double radiance(const SourceLight& light, std::size_t strobe, const FloorLight& lit) {
+    return light.flux[strobe] *
+           (light.reflectance.front() * lit.diffuse_per_m2 + lit.specular_per_m2) *
            std::exp(-light.attenuation_per_m * lit.path_m);
 }
 
@@ -113,8 +116,7 @@ class Pixel {
 std::optional<Signals> signals_of(const Rig& rig,
                                   const Pixel& pixel,
                                   std::span<const Node> nodes,
-                                  std::span<const WeightedWavelength> rule,
-                                  std::span<const FloorFrame> frames) {
+                                  std::span<const PlannedWavelength> rule) {
     Signals signals;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         const Strobe& strobe = rig.strobes[s];
@@ -129,11 +131,11 @@ std::optional<Signals> signals_of(const Rig& rig,
                 radiance(node.light, s, between(lit[node.point], lit[node.point + 1], node.share));
             for (std::size_t c = 0; c < kChannels; ++c) signals.right[c] += node.response[c] * L;
         }
-        for (std::size_t j = 0; j < rule.size(); ++j) {
-            const auto light = pixel.at(strobe, frames[j].index_nm);
+        for (const PlannedWavelength& w : rule) {
+            const auto light = pixel.at(strobe, w.index_nm);
             if (!light) return std::nullopt;
-            const double L = radiance(frames[j], s, *light);
-            for (std::size_t c = 0; c < kChannels; ++c) signals.found[c] += rule[j].weight[c] * L;
+            const double L = radiance(w.light, s, *light);
+            for (std::size_t c = 0; c < kChannels; ++c) signals.found[c] += w.weight[c] * L;
         }
     }
     return signals;
@@ -141,27 +143,17 @@ std::optional<Signals> signals_of(const Rig& rig,
 
 }  // namespace
 
-FloorFrame floor_frame(const Rig& rig, double lambda_nm, double index_nm) {
-    FloorFrame frame{.index_nm = index_nm,
-                     .attenuation_per_m = rig.water.attenuation_per_m(lambda_nm),
-                     .reflectance = rig.seafloor.reflectance.at(lambda_nm)};
-    for (const Strobe& strobe : rig.strobes) {
-        frame.spectrum.push_back(strobe.spectrum.at(lambda_nm));
-    }
-    return frame;
-}
-
-std::array<double, kChannels> port_error(const Rig& rig,
-                                         std::span<const WeightedWavelength> rule,
-                                         std::span<const FloorFrame> frames) {
+std::array<double, kChannels> port_error(const Rig& rig, std::span<const PlannedWavelength> rule) {
     const std::vector<Node> nodes = nodes_of(rig);
+    Rig at_power_1 = rig;
+    for (Strobe& strobe : at_power_1.strobes) strobe.power = 1.0;
     std::vector<Signals> image;
     for (int v = 0; v < kSide; ++v) {
         for (int u = 0; u < kSide; ++u) {
-            const Pixel pixel(rig,
+            const Pixel pixel(at_power_1,
                               rig.camera.width_px * (u / (kSide - 1.0)),
                               rig.camera.height_px * (v / (kSide - 1.0)));
-            const auto signals = signals_of(rig, pixel, nodes, rule, frames);
+            const auto signals = signals_of(at_power_1, pixel, nodes, rule);
             if (signals) image.push_back(*signals);
         }
     }
@@ -182,12 +174,12 @@ std::array<double, kChannels> port_error(const Rig& rig,
 void certify(const Rig& rig,
              const QuadratureFitter& fitter,
              std::span<const FrameLight> frames,
-             std::span<const FloorFrame> in_view,
+             std::span<const PlannedWavelength> in_view,
              FittedRule& rule) {
     const auto family = certified_quality(
         rig.camera.sensor, fitter.family(), rig.camera.range, rule.wavelengths, frames);
     std::array<double, kChannels> port{};
-    if (rig.camera.port && !in_view.empty()) port = port_error(rig, rule.wavelengths, in_view);
+    if (rig.camera.port && !in_view.empty()) port = port_error(rig, in_view);
     for (std::size_t c = 0; c < kChannels; ++c) {
         RuleQuality& quality = rule.quality[c];
         const double shape = family[c].amplification > 0.0 ? fitter.tilt_shape_error() : 0.0;

@@ -17,38 +17,27 @@
 #pragma once
 
 #include "rig/rig.h"
+#include "spectral/planned_wavelength.h"
 #include "spectral/quadrature_fit.h"
 
 #include <array>
 #include <span>
-#include <vector>
 
 namespace aphotic {
 
 // The grid's maximum may lie between its points.
 inline constexpr double kBetweenPixels = 1.02;
 
-// What one wavelength's frame holds of the bare floor.
-struct FloorFrame {
-    double index_nm = 0.0;  // whose refractive indices it has
-    double attenuation_per_m = 0.0;
-    double reflectance = 0.0;
-    std::vector<double> spectrum{};  // of each strobe at power 1
-};
-
-// Of the rig's own light.
-[[nodiscard]] FloorFrame floor_frame(const Rig& rig, double lambda_nm, double index_nm);
-
-// In view through the port, by channel.
+// In view through the port, by channel, of the bare floor by the light of the wavelengths.
 [[nodiscard]] std::array<double, kChannels> port_error(const Rig& rig,
-                                                       std::span<const WeightedWavelength> rule,
-                                                       std::span<const FloorFrame> frames);
+                                                       std::span<const PlannedWavelength> rule);
 
-// Raises the rule's quality to what is found. in_view: of a user's own scene, none.
+// Raises the rule's quality to what is found. in_view: the same rule's wavelengths where the bare
+// floor is in view; of a user's own scene, none.
 void certify(const Rig& rig,
              const QuadratureFitter& fitter,
              std::span<const FrameLight> frames,
-             std::span<const FloorFrame> in_view,
+             std::span<const PlannedWavelength> in_view,
              FittedRule& rule);
 
 }  // namespace aphotic

@@ -10,7 +10,7 @@
 // channel's, beside others that are held, what is lost has no bound.
 #pragma once
 
-#include "spectral/manifest.h"
+#include "spectral/planned_wavelength.h"
 
 #include <span>
 
@@ -18,6 +18,6 @@ namespace aphotic {
 
 // Throws InputError where a wavelength counts whose light is not held. What is less than
 // frame_error of the largest does not count.
-void require_light_that_counts(std::span<const ManifestWavelength> wavelengths, double frame_error);
+void require_light_that_counts(std::span<const PlannedWavelength> wavelengths, double frame_error);
 
 }  // namespace aphotic

@@ -149,6 +149,21 @@ std::vector<Spectrum> materials_of(const Rig& rig) {
     return materials;
 }
 
+SourceLight source_light(const Rig& rig, double lambda_nm) {
+    SourceLight light{.attenuation_per_m = rig.water.attenuation_per_m(lambda_nm)};
+    for (const Strobe& strobe : rig.strobes) {
+        light.flux.push_back(strobe.power * strobe.spectrum.at(lambda_nm));
+    }
+    light.reflectance.push_back(rig.seafloor.reflectance.at(lambda_nm));
+    for (const Spectrum& material : rig.materials) {
+        light.reflectance.push_back(material.at(lambda_nm));
+    }
+    for (const Object& object : rig.objects) {
+        light.reflectance.push_back(object.reflectance.at(lambda_nm));
+    }
+    return light;
+}
+
 LightFamily light_family(const Rig& rig) {
     return family_of(rig, sources_of(rig, distinct(lamps_of(rig)), distinct(materials_of(rig))));
 }

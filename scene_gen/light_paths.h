@@ -15,6 +15,7 @@
 #include "rig/path_range.h"
 #include "rig/rig.h"
 #include "spectral/light_family.h"
+#include "spectral/planned_wavelength.h"
 
 namespace aphotic {
 
@@ -28,8 +29,11 @@ inline constexpr double kObjectTilt = 0.05;
 // further ones, the objects'.
 [[nodiscard]] std::vector<Spectrum> materials_of(const Rig& rig);
 
-// The same with one set of sources per strobe, in their order: for each the materials and, where
-// anything has a highlight, the bare lamp.
+// At one wavelength, in the order of the rig's strobes and of materials_of().
+[[nodiscard]] SourceLight source_light(const Rig& rig, double lambda_nm);
+
+// The same family with one set of sources per strobe, in their order: for each the materials and,
+// where anything has a highlight, the bare lamp.
 [[nodiscard]] LightFamily light_family_by_strobe(const Rig& rig);
 
 }  // namespace aphotic

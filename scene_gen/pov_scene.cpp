@@ -31,13 +31,16 @@ constexpr double kFadeShare = 1e-3;
 constexpr double kUserFade_m = 0x1p-20;
 
 // Wavelengths as they stand in file names: with as few decimals as tell all of them apart.
-std::vector<std::string> wavelength_labels(std::span<const double> lambda_nm) {
+std::vector<std::string> wavelength_labels(std::span<const PlannedWavelength> wavelengths) {
     constexpr int kMostDecimals = 6;
-    const std::set<double> distinct(lambda_nm.begin(), lambda_nm.end());
+    std::set<double> distinct;
+    for (const PlannedWavelength& w : wavelengths) distinct.insert(w.lambda_nm);
     std::vector<std::string> labels;
     for (int decimals = 0; decimals <= kMostDecimals; ++decimals) {
         labels.clear();
-        for (const double l : lambda_nm) labels.push_back(fmt::format("{:.{}f}", l, decimals));
+        for (const PlannedWavelength& w : wavelengths) {
+            labels.push_back(fmt::format("{:.{}f}", w.lambda_nm, decimals));
+        }
         if (std::set(labels.begin(), labels.end()).size() == distinct.size()) break;
     }
     return labels;
@@ -81,11 +84,6 @@ Housing housing(const Camera& camera) {
     return h;
 }
 
-LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe, const SceneOptions& options) {
-    if (options.soft_edges) return {};
-    return options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_attenuation_per_m));
-}
-
 // Half the angle that an emitter spans, seen from the floor below it.
 double soft_edge_deg(const Rig& rig, const Strobe& strobe) {
     if (!strobe.emitter) return 0.0;
@@ -98,13 +96,11 @@ double soft_edge_deg(const Rig& rig, const Strobe& strobe) {
 // text.
 constexpr std::size_t kMostLights = 100'000;
 
-void require_few_enough_lights(const Rig& rig, const SceneOptions& options) {
+void require_few_enough_lights(const Rig& rig, std::span<const LampGrid> lamps) {
     std::size_t lights = 0;
-    for (const Strobe& strobe : rig.strobes) {
-        const LampGrid grid = grid_of_lamps(rig, strobe, options);
-        const auto lamps =
-            static_cast<std::size_t>(grid.across) * static_cast<std::size_t>(grid.along);
-        lights += strobe.beam.cones.size() * (strobe.emitter ? lamps : 1);
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        lights += rig.strobes[s].beam.cones.size() * static_cast<std::size_t>(lamps[s].across) *
+                  static_cast<std::size_t>(lamps[s].along);
     }
     const std::size_t most = rig.water.is_clear() ? kMostLights : std::size_t{kMostLightsInMedia};
     if (lights <= most) return;
@@ -163,10 +159,12 @@ void require_place_for_objects(const Rig& rig) {
 }
 
 // By strobe of the rig. A user's own scene may hold anything, so there all that shines is in it.
-std::vector<StrobeInScene> strobes_in_scene(const Rig& rig, const SceneOptions& options) {
+std::vector<StrobeInScene> strobes_in_scene(const Rig& rig,
+                                            std::span<const LampGrid> lamps,
+                                            const SceneOptions& options) {
     std::vector<StrobeInScene> strobes;
     for (const Strobe& strobe : rig.strobes) {
-        StrobeInScene in_scene{.cones = {}, .lamps = grid_of_lamps(rig, strobe, options)};
+        StrobeInScene in_scene{.cones = {}, .lamps = lamps[strobes.size()]};
         for (const Cone& cone : strobe.beam.cones) {
             const bool shines = strobe.power > 0.0 && cone.weight > 0.0 &&
                                 (options.user_scene || lights_the_view(rig, strobe, cone));
@@ -221,37 +219,39 @@ struct Parts {
     std::function<double(double)> brightest;  // bound of the radiance at a wavelength [nm]
 };
 
+// The wavelengths of one frame.
+using Frame = std::span<const PlannedWavelength>;
+
 // A frame of fewer than three wavelengths repeats its last one.
-template <typename Function>
-Channels per_channel(std::span<const FrameWavelength> wavelengths, Function function) {
-    Channels values{};
-    for (std::size_t c = 0; c < values.size(); ++c) {
-        values[c] = function(wavelengths[std::min(c, wavelengths.size() - 1)]);
-    }
-    return values;
+const PlannedWavelength& in_channel(Frame frame, std::size_t channel) {
+    return frame[std::min(channel, frame.size() - 1)];
 }
 
-Band band_of(const Rig& rig, const Parts& parts, const FrameScene& scene) {
-    const auto per = [&](auto function) { return per_channel(scene.wavelengths, function); };
-    Band band{
-        .lambda_nm = per([](const FrameWavelength& w) { return w.lambda_nm; }),
-        .exposure = per([](const FrameWavelength& w) { return std::ldexp(1.0, w.exposure_log2); }),
-        .attenuation_per_m =
-            per([&](const FrameWavelength& w) { return rig.water.attenuation_per_m(w.lambda_nm); }),
-        .water_index = 1.0,
-        .glasses = {},
-        .lamps = parts.lamps,
-        .reflectances = parts.reflectances};
+Band band_of(const Rig& rig, const Parts& parts, Frame frame) {
+    Band band{.lambda_nm = {},
+              .exposure = {},
+              .attenuation_per_m = {},
+              .water_index = 1.0,
+              .glasses = {},
+              .lamps = parts.lamps,
+              .reflectances = parts.reflectances};
+    for (std::size_t c = 0; c < band.lambda_nm.size(); ++c) {
+        const PlannedWavelength& w = in_channel(frame, c);
+        band.lambda_nm[c] = w.lambda_nm;
+        band.exposure[c] = std::ldexp(1.0, w.exposure_log2);
+        band.attenuation_per_m[c] = w.light.attenuation_per_m;
+    }
     if (!rig.camera.port) return band;
-    band.water_index =
-        seawater_index(scene.index_nm, rig.water.salinity_psu, rig.water.temperature_c);
+    const double index_nm = frame.front().index_nm;
+    band.water_index = seawater_index(index_nm, rig.water.salinity_psu, rig.water.temperature_c);
     const Glass& glass = rig.camera.port->glass;
-    band.glasses = {{.name = glass.name(), .index = glass.index(scene.index_nm)}};
+    band.glasses = {{.name = glass.name(), .index = glass.index(index_nm)}};
     return band;
 }
 
 std::string header_of(const Rig& rig,
-                      const FrameScene& scene,
+                      const std::string& name,
+                      Frame frame,
                       const SceneOptions& options,
                       double unit_m) {
     std::string header = fmt::format(
@@ -261,11 +261,11 @@ std::string header_of(const Rig& rig,
         "//\n"
         "// Written by aphotic. Each channel of the image is one wavelength's radiance, times the\n"
         "// power of two with which the frame is exposed:\n",
-        scene.name,
+        name,
         sdl_comment(rig.title));
     constexpr std::array kChannelWord{"red  ", "green", "blue "};
     for (std::size_t c = 0; c < kChannelWord.size(); ++c) {
-        const FrameWavelength& w = scene.wavelengths[std::min(c, scene.wavelengths.size() - 1)];
+        const PlannedWavelength& w = in_channel(frame, c);
         header += fmt::format(
             "//   {}  {} nm, times 2^{}\n", kChannelWord[c], w.lambda_nm, w.exposure_log2);
     }
@@ -278,7 +278,7 @@ std::string header_of(const Rig& rig,
                "//\n// Render in this folder with: povray render.ini +I{}.pov\n"
                "//\n// {}. x starboard, y forward, z down; the camera's entrance pupil is the "
                "origin.\n",
-               scene.name,
+               name,
                unit_m == 1.0 ? "Metres" : fmt::format("Units of {} m", sdl_number(unit_m)));
 }
 
@@ -304,22 +304,24 @@ std::string body_sdl(const Band& band,
 
 std::string scene_sdl(const Rig& rig,
                       const Parts& parts,
-                      const FrameScene& scene,
+                      const std::string& name,
+                      Frame frame,
                       const SceneOptions& options) {
     const std::string own =
         options.user_scene ? options.user_scene->file.filename().string() : std::string();
-    return header_of(rig, scene, options, parts.unit_m) + "\n#version 3.7;\n" +
-           body_sdl(band_of(rig, parts, scene), parts, options, own);
+    return header_of(rig, name, frame, options, parts.unit_m) + "\n#version 3.7;\n" +
+           body_sdl(band_of(rig, parts, frame), parts, options, own);
 }
 
-Parts parts_of(const Rig& rig, const SceneOptions& options) {
+Parts parts_of(const Rig& rig, std::span<const LampGrid> lamps, const SceneOptions& options) {
     Parts parts{.lamps = named_lamps_of(rig),
                 .reflectances = reflectances_of(rig, options),
                 .rig = "",
                 .fade_m = fade_distance_m(rig, options),
                 .unit_m = options.user_scene ? 1.0 : scene_unit_m(rig),
                 .brightest = {}};
-    parts.rig = rig_sdl(rig, strobes_in_scene(rig, options), parts.lamps, parts.reflectances);
+    parts.rig =
+        rig_sdl(rig, strobes_in_scene(rig, lamps, options), parts.lamps, parts.reflectances);
     if (options.user_scene) {
         parts.brightest = [&rig, &scene = *options.user_scene](double lambda_nm) {
             return scene.brightest_radiance(rig, lambda_nm);
@@ -343,55 +345,64 @@ double scene_unit_m(const Rig& rig) {
     return least_m < kLeastInMetres_m ? std::exp2(std::floor(std::log2(least_m))) : 1.0;
 }
 
-std::vector<FrameScene> make_scenes(const Rig& rig,
-                                    std::span<const double> lambda_nm,
-                                    const SceneOptions& asked) {
-    SceneOptions options = asked;
-    options.most_attenuation_per_m = most_attenuation_per_m(rig, lambda_nm);
-    require_few_enough_lights(rig, options);
-    require_place_for_objects(rig);
-    for (const Strobe& strobe : rig.strobes) {
-        require_place_for_lamps(rig, strobe, grid_of_lamps(rig, strobe, options));
+std::vector<LampGrid> scene_lamps(const Rig& rig,
+                                  std::span<const PlannedWavelength> wavelengths,
+                                  const SceneOptions& options) {
+    if (options.soft_edges) return std::vector<LampGrid>(rig.strobes.size());
+    double K_per_m = 0.0;
+    for (const PlannedWavelength& w : wavelengths) {
+        K_per_m = std::max(K_per_m, w.light.attenuation_per_m);
     }
-    const Parts parts = parts_of(rig, options);
-    const std::vector<std::string> labels = wavelength_labels(lambda_nm);
+    std::vector<LampGrid> lamps;
+    for (const Strobe& strobe : rig.strobes) {
+        lamps.push_back(!strobe.emitter         ? LampGrid{}
+                        : options.emitter_lamps ? *options.emitter_lamps
+                                                : lamp_grid(rig, strobe, K_per_m));
+    }
+    return lamps;
+}
+
+std::vector<FrameScene> make_scenes(const Rig& rig,
+                                    std::span<const LampGrid> lamps,
+                                    const SceneOptions& options,
+                                    std::span<PlannedWavelength> wavelengths) {
+    require_few_enough_lights(rig, lamps);
+    require_place_for_objects(rig);
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        require_place_for_lamps(rig, rig.strobes[s], lamps[s]);
+    }
+    const Parts parts = parts_of(rig, lamps, options);
+    const std::vector<std::string> labels = wavelength_labels(wavelengths);
     std::vector<FrameScene> scenes;
-    for (const FrameGroup& group :
-         frame_groups(rig, lambda_nm, options.wavelengths_per_frame, options.pixel_shift)) {
-        const auto first = labels.begin() + static_cast<std::ptrdiff_t>(group.first);
-        FrameScene scene{
-            .name = fmt::format(
-                "band_{}nm",
-                fmt::join(first, first + static_cast<std::ptrdiff_t>(group.count), "_")),
-            .wavelengths = {},
-            .index_nm = group.index_nm,
-            .sdl = ""};
-        for (const double l : lambda_nm.subspan(group.first, group.count)) {
-            const double radiance_bound = parts.brightest(l);
-            scene.wavelengths.push_back(
-                {.lambda_nm = l,
-                 .exposure_log2 = exposure_log2(
-                     radiance_bound, brightest_colour(rig, l, parts.fade_m), options.peak_log2),
-                 .radiance_bound = radiance_bound});
-        }
-        scene.sdl = scene_sdl(rig, parts, scene, options);
-        scenes.push_back(std::move(scene));
+    for (PlannedWavelength& w : wavelengths) {
+        w.radiance_bound = parts.brightest(w.lambda_nm);
+        w.exposure_log2 = exposure_log2(
+            w.radiance_bound, brightest_colour(rig, w.lambda_nm, parts.fade_m), options.peak_log2);
+    }
+    for (std::size_t first = 0, count = 0; first < wavelengths.size(); first += count) {
+        const auto is_of_it = [&](const PlannedWavelength& w) {
+            return w.frame == wavelengths[first].frame;
+        };
+        const auto rest = wavelengths.subspan(first);
+        count = static_cast<std::size_t>(std::ranges::find_if_not(rest, is_of_it) - rest.begin());
+        const std::string name =
+            fmt::format("band_{}nm", fmt::join(std::span(labels).subspan(first, count), "_"));
+        scenes.push_back(
+            {.name = name,
+             .sdl = scene_sdl(rig, parts, name, wavelengths.subspan(first, count), options)});
     }
     return scenes;
 }
 
 std::string survey_sdl(const Rig& rig, const std::string& scene_name, const SurveyFrame& frame) {
     SceneOptions options;
-    options.emitter_lamps = LampGrid{.across = 1, .along = 1};
     options.user_scene = std::make_shared<UserScene>();
     // Of paths that are told to a hundredth.
     options.bailout = kRayShare * 1e-1;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
-    const Parts parts = parts_of(rig, options);
-    Band band =
-        band_of(rig,
-                parts,
-                {.name = "", .wavelengths = {{middle_nm, 0}}, .index_nm = middle_nm, .sdl = ""});
+    const Parts parts = parts_of(rig, std::vector<LampGrid>(rig.strobes.size()), options);
+    const PlannedWavelength middle{.lambda_nm = middle_nm, .index_nm = middle_nm};
+    Band band = band_of(rig, parts, {&middle, 1});
     for (std::size_t c = 0; c < band.exposure.size(); ++c) {
         band.exposure[c] = std::ldexp(frame.strobes[c], frame.exposure_log2);
     }

@@ -26,6 +26,7 @@
 #include "scene_gen/exposure.h"
 #include "scene_gen/frame_groups.h"
 #include "scene_gen/user_scene.h"
+#include "spectral/planned_wavelength.h"
 
 #include <memory>
 #include <optional>
@@ -35,16 +36,8 @@
 
 namespace aphotic {
 
-struct FrameWavelength {
-    double lambda_nm = 0.0;
-    int exposure_log2 = 0;        // e: the frame holds 2^e L(lambda)
-    double radiance_bound = 0.0;  // of L in view
-};
-
 struct FrameScene {
-    std::string name;                          // such as band_478_576_638nm
-    std::vector<FrameWavelength> wavelengths;  // by channel: red, green, blue; one to three
-    double index_nm = 0.0;                     // whose refractive indices it has
+    std::string name;  // such as band_478_576_638nm
     std::string sdl;
 };
 
@@ -55,8 +48,7 @@ inline constexpr double kTargetError = 1e-3;
 struct SceneOptions {
     int wavelengths_per_frame = 3;          // 1 to 3
     double pixel_shift = kPixelShift;       // how far a shared frame may shift one behind a port
-    std::optional<LampGrid> emitter_lamps;  // none: lamp_grid() chooses per strobe, for
-    double most_attenuation_per_m = 0.0;    // of the wavelengths; make_scenes() finds it itself
+    std::optional<LampGrid> emitter_lamps;  // none: lamp_grid() chooses per strobe
     bool omit = true;                       // false: what changes nothing is written all the same
     int peak_log2 = kTargetLog2;            // where a frame's brightest pixel goes, or a bit under
     // One lamp for every emitter: each cone's edge falls from one end of what the emitter spans,
@@ -71,12 +63,18 @@ struct SceneOptions {
     std::vector<std::string> ini_lines{};
 };
 
-// The frames for these wavelengths, in their order. Throws InputError when a strobe stands
-// where it cannot light from (at or under the floor, inside the camera's housing), or when there
-// are more lights than POV-Ray takes in water.
+// By strobe of the rig, the lamps that stand for its emitter at these wavelengths.
+[[nodiscard]] std::vector<LampGrid> scene_lamps(const Rig& rig,
+                                                std::span<const PlannedWavelength> wavelengths,
+                                                const SceneOptions& options);
+
+// The scene of each frame; sets how each of the wavelengths is exposed. Throws InputError when a
+// strobe stands where it cannot light from (at or under the floor, inside the camera's housing), or
+// when there are more lights than POV-Ray takes in water.
 [[nodiscard]] std::vector<FrameScene> make_scenes(const Rig& rig,
-                                                  std::span<const double> lambda_nm,
-                                                  const SceneOptions& options = {});
+                                                  std::span<const LampGrid> lamps,
+                                                  const SceneOptions& options,
+                                                  std::span<PlannedWavelength> wavelengths);
 
 // Metres in one unit of the rig's scene: 1, or the power of two at or under the least distance that
 // counts (lamp to what it lights, pupil to the floor, the largest side of an object) where that is

@@ -34,13 +34,11 @@ std::vector<NamedSpectrum> lamps_for(const Rig& rig) {
 
 // As a scene in the rig's folder asks for it.
 std::string name_from(const std::filesystem::path& folder, const NamedSpectrum& material) {
-    const std::string& name = material.spectrum.name();
-    const std::size_t first = name.find('\'') + 1;
-    const std::string file = name.substr(first, name.rfind('\'') - first);
-    if (!names_a_file(file)) return material.name;
+    const std::optional<CurveSource>& source = material.spectrum.source();
+    if (!source || !source->is_file()) return material.name;
     // From the folder first: how long and how strange the way to it is, is not the scene's matter.
     const std::string here =
-        std::filesystem::path(file).lexically_proximate(folder).generic_string();
+        std::filesystem::path(source->table).lexically_proximate(folder).generic_string();
     // A scene cannot ask for a name that POV-Ray cannot hold: the one that is unique will do.
     return scene_name(here) == here ? here : material.name;
 }

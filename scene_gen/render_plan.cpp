@@ -22,9 +22,14 @@ std::vector<double> wavelengths_of(std::span<const WeightedWavelength> rule) {
     return lambda_nm;
 }
 
+// What the frames show.
+Rig lit_rig(const Rig& rig, const SceneOptions& options) {
+    return options.user_scene ? rig_of_scene(rig, *options.user_scene) : rig;
+}
+
 LightFamily family_of(const Rig& rig, const PlanRequest& request) {
     const UserScene* scene = request.scene.user_scene.get();
-    LightFamily family = light_family(scene != nullptr ? rig_of_scene(rig, *scene) : rig);
+    LightFamily family = light_family(lit_rig(rig, request.scene));
     std::optional<PathRange> paths = request.paths;
     if (!paths && scene != nullptr) paths = scene->paths;
     if (paths) {
@@ -52,27 +57,23 @@ int most_wavelengths(const LightFamily& family) {
     return std::max(kUsual, static_cast<int>(family.sources.size()) + kFewMore);
 }
 
-// Puts the wavelengths into frames, and fits or judges the weights with what these hold.
+// Puts the wavelengths into frames, and fits the weights to what these hold, or judges those of
+// bands.
 void share_frames(const Rig& rig,
                   const QuadratureFitter& fitter,
                   std::span<const double> lambda_nm,
-                  RenderPlan& plan) {
-    plan.frames =
-        frame_groups(rig, lambda_nm, plan.scene.wavelengths_per_frame, plan.scene.pixel_shift);
-    const std::vector<FrameLight> frames = frames_light(fitter, lambda_nm, plan.frames);
-    if (plan.method == PlanMethod::EqualBands) {
-        plan.rule.quality = fitter.judge(plan.rule.wavelengths, frames);
-    } else {
-        plan.rule = fitter.fit(frames, plan.frame_error);
-    }
-    std::vector<FloorFrame> in_view;
-    for (const FrameGroup& group : plan.frames) {
-        if (plan.scene.user_scene) break;
-        for (std::size_t i = group.first; i < group.first + group.count; ++i) {
-            in_view.push_back(floor_frame(rig, lambda_nm[i], group.index_nm));
-        }
-    }
-    certify(rig, fitter, frames, in_view, plan.rule);
+                  RenderPlan& plan,
+                  const std::vector<WeightedWavelength>& bands = {}) {
+    plan.wavelengths = in_frames(rig, lambda_nm, plan.scene);
+    const std::vector<FrameLight> frames = frames_light(fitter, plan.wavelengths);
+    FittedRule rule =
+        bands.empty() ? fitter.fit(frames, plan.frame_error)
+                      : FittedRule{.wavelengths = bands, .quality = fitter.judge(bands, frames)};
+    take_weights(rule, plan.wavelengths);
+    std::span<const PlannedWavelength> in_view;
+    if (!plan.scene.user_scene) in_view = plan.wavelengths;
+    certify(rig, fitter, frames, in_view, rule);
+    plan.quality = rule.quality;
     if (!std::isfinite(plan.promise())) {
         throw InputError(
             "found weights that show a channel light it is blind to, so that nothing can be "
@@ -131,7 +132,7 @@ void plan_to_tolerance(const Rig& rig,
         fmt::format("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
                     request.tolerance,
                     tolerance_to_ask_for(std::min(kept, 1.0)),
-                    plan.rule.wavelengths.size()));
+                    plan.wavelengths.size()));
 }
 
 // A slipped point in the focal length is the likelier cause of paths that no plan serves: no lens
@@ -161,17 +162,43 @@ double frame_error(const Rig& rig) {
     return kFrameError + (has_emitter ? kLampError : 0.0);
 }
 
-std::vector<FrameLight> frames_light(const QuadratureFitter& fitter,
-                                     std::span<const double> lambda_nm,
-                                     std::span<const FrameGroup> groups) {
-    std::vector<FrameLight> frames;
-    for (const FrameGroup& group : groups) {
-        for (std::size_t i = group.first; i < group.first + group.count; ++i) {
-            frames.push_back(fitter.frame_at(lambda_nm[i]));
-            if (fitter.family().tilt) frames.back().tilt = fitter.family().tilt->at(group.index_nm);
+std::vector<PlannedWavelength> in_frames(const Rig& rig,
+                                         std::span<const double> lambda_nm,
+                                         const SceneOptions& options) {
+    const Rig lit = lit_rig(rig, options);
+    std::vector<PlannedWavelength> wavelengths;
+    std::size_t frame = 0;
+    for (const FrameGroup& group :
+         frame_groups(rig, lambda_nm, options.wavelengths_per_frame, options.pixel_shift)) {
+        for (std::size_t channel = 0; channel < group.count; ++channel) {
+            const double nm = lambda_nm[group.first + channel];
+            wavelengths.push_back({.lambda_nm = nm,
+                                   .weight = {},
+                                   .frame = frame,
+                                   .channel = channel,
+                                   .index_nm = group.index_nm,
+                                   .light = source_light(lit, nm)});
         }
+        ++frame;
+    }
+    return wavelengths;
+}
+
+std::vector<FrameLight> frames_light(const QuadratureFitter& fitter,
+                                     std::span<const PlannedWavelength> wavelengths) {
+    const std::optional<Spectrum>& tilt = fitter.family().tilt;
+    std::vector<FrameLight> frames;
+    for (const PlannedWavelength& w : wavelengths) {
+        frames.push_back(fitter.frame_at(w.lambda_nm));
+        if (tilt) frames.back().tilt = tilt->at(w.index_nm);
     }
     return frames;
+}
+
+void take_weights(const FittedRule& rule, std::span<PlannedWavelength> wavelengths) {
+    for (std::size_t j = 0; j < wavelengths.size(); ++j) {
+        wavelengths[j].weight = rule.wavelengths[j].weight;
+    }
 }
 
 RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
@@ -179,19 +206,18 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
     RenderPlan plan{.method = PlanMethod::Fitted,
                     .tolerance = 0.0,
                     .family = family_of(rig, request),
-                    .rule = {},
                     .frame_error = frame_error(rig),
                     .scene = request.scene,
-                    .frames = {},
                     .omissions = omissions(rig, request.scene.user_scene != nullptr)};
     plan.scene.pixel_shift = pixel_shift(rig, request.scene);
     if (request.scene.user_scene) plan.no_promise = request.scene.user_scene->no_promise;
     const QuadratureFitter fitter(rig.camera.sensor, plan.family, range);
     std::vector<double> lambda_nm;
+    std::vector<WeightedWavelength> bands;
     if (request.bands) {
         plan.method = PlanMethod::EqualBands;
-        plan.rule.wavelengths = equal_bands(rig.camera.sensor, range, *request.bands);
-        lambda_nm = wavelengths_of(plan.rule.wavelengths);
+        bands = equal_bands(rig.camera.sensor, range, *request.bands);
+        lambda_nm = wavelengths_of(bands);
     } else if (!request.wavelengths_nm.empty()) {
         plan.method = PlanMethod::Listed;
         require_wavelengths(range, request.wavelengths_nm);
@@ -207,7 +233,7 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
         return plan;
     }
     plan.scene.bailout = kRayShare * plan.frame_error;
-    share_frames(rig, fitter, lambda_nm, plan);
+    share_frames(rig, fitter, lambda_nm, plan, bands);
     return plan;
 }
 

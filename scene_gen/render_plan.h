@@ -20,6 +20,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace aphotic {
@@ -43,14 +44,18 @@ struct RenderPlan {
     PlanMethod method = PlanMethod::Fitted;
     double tolerance = 0.0;  // 0: none was asked for
     LightFamily family;
-    FittedRule rule;
+    std::vector<PlannedWavelength> wavelengths{};  // increasing; not exposed yet
+    std::array<RuleQuality, kChannels> quality{};
     double frame_error = 0.0;
     SceneOptions scene;
-    std::vector<FrameGroup> frames;
     std::vector<Omission> omissions;
     std::vector<std::string> no_promise{};  // why what the scene shows has none; empty: it has
 
-    [[nodiscard]] double promise() const { return rule.promise(frame_error); }
+    [[nodiscard]] std::size_t frames() const {
+        return wavelengths.empty() ? 0 : wavelengths.back().frame + 1;
+    }
+    [[nodiscard]] double error() const { return worst_error(quality); }
+    [[nodiscard]] double promise() const { return worst_promise(quality, frame_error); }
 };
 
 [[nodiscard]] double frame_error(const Rig& rig);
@@ -59,9 +64,16 @@ struct RenderPlan {
 // Where sharing frames behind a port would break the tolerance, each wavelength has its own.
 [[nodiscard]] RenderPlan plan_render(const Rig& rig, const PlanRequest& request);
 
-// What each wavelength's frame knows of light.
+// The wavelengths, which are increasing, in frames, with the light of the rig or of its user's
+// scene; not weighted yet.
+[[nodiscard]] std::vector<PlannedWavelength> in_frames(const Rig& rig,
+                                                       std::span<const double> lambda_nm,
+                                                       const SceneOptions& options);
+
+// What each wavelength's frame knows of the fitter's family of light.
 [[nodiscard]] std::vector<FrameLight> frames_light(const QuadratureFitter& fitter,
-                                                   std::span<const double> lambda_nm,
-                                                   std::span<const FrameGroup> groups);
+                                                   std::span<const PlannedWavelength> wavelengths);
+
+void take_weights(const FittedRule& rule, std::span<PlannedWavelength> wavelengths);
 
 }  // namespace aphotic

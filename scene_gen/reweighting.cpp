@@ -2,7 +2,7 @@
 #include "scene_gen/reweighting.h"
 
 #include "base/error.h"
-#include "base/sha256.h"
+#include "rig/geometry_signature.h"
 #include "rig/solid.h"
 #include "scene_gen/certificate.h"
 #include "scene_gen/half_underflow.h"
@@ -13,97 +13,24 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
 
 namespace aphotic {
 
 namespace {
 
-// As short as reads back to the same number.
-std::string vector_text(const Eigen::Vector3d& v) {
-    return fmt::format("{} {} {}", v.x(), v.y(), v.z());
-}
-
-std::string beam_text(const Beam& beam) {
-    std::vector<std::string> cones;
-    for (const Cone& cone : beam.cones) {
-        cones.push_back(fmt::format(
-            "{} rad {} 1/sr", cone.half_angle_rad, axial_intensity(cone, beam.weights)));
-    }
-    return fmt::format("{}", fmt::join(cones, ", "));
-}
-
-// A mesh may be long: what it holds is told by its digest.
-std::string mesh_text(const Mesh& mesh) {
-    std::string text;
-    for (const Eigen::Vector3d& vertex_m : mesh.vertices_m) text += vector_text(vertex_m) + "\n";
-    for (const auto& [a, b, c] : mesh.triangles) text += fmt::format("{} {} {}\n", a, b, c);
-    return fmt::format(
-        "mesh of {} triangles, SHA-256 {}", mesh.triangles.size(), sha256_of_text(text));
-}
-
-std::string shape_text(const Shape& shape) {
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-        return fmt::format(
-            "sphere at {} m of radius {} m", vector_text(sphere->centre_m), sphere->radius_m);
-    }
-    if (const auto* box = std::get_if<Box>(&shape)) {
-        return fmt::format(
-            "box from {} m to {} m", vector_text(box->least_m), vector_text(box->most_m));
-    }
-    return mesh_text(std::get<Mesh>(shape));
-}
-
-std::string object_text(const Object& object) {
-    std::string text = shape_text(object.shape);
-    if (object.phong > 0.0) {
-        text += fmt::format(", phong {}, phong_size {}", object.phong, object.phong_size);
-    }
-    return text;
-}
-
-// Of geometry_of's text.
-LampGrid grid_in(const std::string& key, const std::string& text) {
-    constexpr int kMostLamps = 100'000;  // of a scene (scene_gen/pov_scene.cpp)
-    LampGrid grid{.across = 0, .along = 0};
-    const char* const end = text.data() + text.size();
-    const auto [cross, fault] = std::from_chars(text.data(), end, grid.across);
-    constexpr std::string_view kBy = " x ";
-    const char* rest = cross;
-    if (fault == std::errc() && std::string_view(cross, end).starts_with(kBy)) {
-        rest = std::from_chars(cross + kBy.size(), end, grid.along).ptr;
-    }
-    const auto is_few = [](int lamps) { return lamps >= 1 && lamps <= kMostLamps; };
-    if (rest != end || !is_few(grid.across) || !is_few(grid.along)) {
-        throw InputError(
-            fmt::format("{}: found '{}'; allowed: ACROSS x ALONG, from 1 x 1 to {} each",
-                        key,
-                        text,
-                        kMostLamps));
-    }
-    return grid;
-}
-
-void require_same_geometry(const Rig& changed, const Manifest& manifest) {
-    // How many lamps stand for an emitter is the frames' affair.
-    constexpr std::string_view kLamps = "lamps";
-    std::map<std::string, std::string> found = geometry_of(changed, {});
-    for (const auto& [key, value] : manifest.geometry) {
-        if (key.ends_with(kLamps)) found[key] = value;
-    }
-    for (const auto& [key, value] : found) {
-        const auto frames = manifest.geometry.find(key);
-        if (frames != manifest.geometry.end() && frames->second == value) continue;
-        throw InputError(fmt::format("{}: found {}; allowed: {}, as the frames were rendered",
-                                     key,
-                                     value,
-                                     frames == manifest.geometry.end() ? "none" : frames->second));
-    }
-    for (const auto& [key, value] : manifest.geometry) {
-        if (!found.contains(key)) {
-            throw InputError(fmt::format(
-                "{}: found none; allowed: {}, as the frames were rendered", key, value));
-        }
+void require_same_signature(const Rig& changed, const Manifest& manifest) {
+    std::map<std::string, std::string> found = geometry_signature(changed);
+    std::map<std::string, std::string> allowed = manifest.geometry;
+    for (const auto& [key, text] : allowed) found.try_emplace(key, "none");
+    for (const auto& [key, text] : found) {
+        const std::string& frames = allowed.try_emplace(key, "none").first->second;
+        if (text == frames) continue;
+        throw InputError(fmt::format(
+            "{}: found {}; allowed: {}, as the frames were rendered", key, text, frames));
     }
 }
 
@@ -113,49 +40,33 @@ std::vector<FrameLight> light_in(const Manifest& manifest,
                                  const LightFamily& family) {
     std::vector<FrameLight> frames;
     const std::size_t materials = materials_of(changed).size();
-    for (const ManifestWavelength& w : manifest.wavelengths) {
-        if (w.flux.size() != changed.strobes.size() || w.reflectance.size() != materials) {
+    for (const PlannedWavelength& w : manifest.wavelengths) {
+        const auto& [attenuation_per_m, flux, reflectances] = w.light;
+        if (flux.size() != changed.strobes.size() || reflectances.size() != materials) {
             throw InputError(
                 fmt::format("found {} strobes and {} further materials; allowed: {} and {}, as "
                             "the frames were rendered",
                             changed.strobes.size(),
                             materials - 1,
-                            w.flux.size(),
-                            static_cast<int>(w.reflectance.size()) - 1));
+                            flux.size(),
+                            static_cast<int>(reflectances.size()) - 1));
         }
         FrameLight frame{.lambda_nm = w.lambda_nm,
-                         .attenuation_per_m = w.attenuation_per_m,
+                         .attenuation_per_m = attenuation_per_m,
                          .sources = {},
                          .tilt = family.tilt ? family.tilt->at(w.index_nm) : 0.0};
         for (std::size_t s = 0; s < changed.strobes.size(); ++s) {
             const Strobe& strobe = changed.strobes[s];
             if (strobe.power == 0.0) {
-                if (w.flux[s] == 0.0) continue;
+                if (flux[s] == 0.0) continue;
                 throw InputError(fmt::format(
                     "strobe '{}': found power 0; allowed: more, for the frames hold its light",
                     strobe.name));
             }
-            for (const double reflectance : w.reflectance) {
-                frame.sources.push_back(w.flux[s] / strobe.power * reflectance);
+            for (const double reflectance : reflectances) {
+                frame.sources.push_back(flux[s] / strobe.power * reflectance);
             }
-            if (has_highlight(changed)) frame.sources.push_back(w.flux[s] / strobe.power);
-        }
-        frames.push_back(std::move(frame));
-    }
-    return frames;
-}
-
-// What they show of the bare floor; of a user's own scene, none.
-std::vector<FloorFrame> floor_frames(const Manifest& manifest, const Rig& changed) {
-    std::vector<FloorFrame> frames;
-    for (const ManifestWavelength& w : manifest.wavelengths) {
-        if (manifest.scene) break;
-        FloorFrame frame{.index_nm = w.index_nm,
-                         .attenuation_per_m = w.attenuation_per_m,
-                         .reflectance = w.reflectance.front()};
-        for (std::size_t s = 0; s < changed.strobes.size(); ++s) {
-            const double power = changed.strobes[s].power;
-            frame.spectrum.push_back(power > 0.0 ? w.flux[s] / power : 0.0);
+            if (has_highlight(changed)) frame.sources.push_back(flux[s] / strobe.power);
         }
         frames.push_back(std::move(frame));
     }
@@ -170,7 +81,7 @@ Rig with_lit_strobes_only(Rig rig) {
 // Behind a port the frames' wavelengths count too, which another sensor need not see.
 Rig covering_frames(Rig rig, const Manifest& manifest) {
     if (!rig.camera.port) return rig;
-    for (const ManifestWavelength& w : manifest.wavelengths) {
+    for (const PlannedWavelength& w : manifest.wavelengths) {
         rig.camera.range.first_nm = std::min(rig.camera.range.first_nm, w.index_nm);
         rig.camera.range.last_nm = std::max(rig.camera.range.last_nm, w.index_nm);
     }
@@ -199,62 +110,8 @@ std::string lacking(const QuadratureFitter& fitter,
 
 }  // namespace
 
-std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOptions& options) {
-    const Camera& camera = rig.camera;
-    std::map<std::string, std::string> all{
-        {"sled.altitude_m", fmt::format("{}", rig.sled.altitude_m)},
-        {"sled.pitch_rad", fmt::format("{}", rig.sled.pitch_rad)},
-        {"sled.roll_rad", fmt::format("{}", rig.sled.roll_rad)},
-        {"camera.resolution", fmt::format("{} {}", camera.width_px, camera.height_px)},
-        {"camera.pixel_pitch_m", fmt::format("{}", camera.pixel_pitch_m)},
-        {"camera.focal_length_m", fmt::format("{}", camera.focal_length_m)},
-        {"seafloor.phong", fmt::format("{}", rig.seafloor.phong)}};
-    if (rig.seafloor.phong > 0.0) {
-        all["seafloor.phong_size"] = fmt::format("{}", rig.seafloor.phong_size);
-    }
-    if (camera.port) {
-        all["camera.port"] = fmt::format("{} m off, {} m of {}",
-                                         camera.port->distance_m,
-                                         camera.port->thickness_m,
-                                         camera.port->glass.name());
-        all["water.salinity_psu"] = fmt::format("{}", rig.water.salinity_psu);
-        all["water.temperature_c"] = fmt::format("{}", rig.water.temperature_c);
-    }
-    for (const Strobe& strobe : rig.strobes) {
-        const std::string key = fmt::format("strobe '{}'", strobe.name);
-        all[key] = fmt::format("at {} m, axis {}, cones {}",
-                               vector_text(strobe.position_m),
-                               vector_text(strobe.axis),
-                               beam_text(strobe.beam));
-        if (!strobe.emitter) continue;
-        const LampGrid grid =
-            options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_attenuation_per_m));
-        all[key + " emitter"] =
-            fmt::format("{} x {} m", strobe.emitter->across_m, strobe.emitter->along_m);
-        all[key + " lamps"] = fmt::format("{} x {}", grid.across, grid.along);
-    }
-    for (const Object& object : rig.objects) {
-        all[fmt::format("object '{}'", object.name)] = object_text(object);
-    }
-    return all;
-}
-
-std::vector<LampGrid> rendered_lamps(const Rig& rig, const Manifest& manifest) {
-    std::vector<double> lambda_nm;
-    for (const ManifestWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
-    const double K_per_m = most_attenuation_per_m(rig, lambda_nm);
-    std::vector<LampGrid> lamps;
-    for (const Strobe& strobe : rig.strobes) {
-        const std::string key = fmt::format("strobe '{}' lamps", strobe.name);
-        const auto noted = manifest.geometry.find(key);
-        lamps.push_back(noted == manifest.geometry.end() ? lamp_grid(rig, strobe, K_per_m)
-                                                         : grid_in(key, noted->second));
-    }
-    return lamps;
-}
-
 Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolerance) {
-    require_same_geometry(changed, manifest);
+    require_same_signature(changed, manifest);
     LightFamily family =
         light_family_by_strobe(covering_frames(with_lit_strobes_only(changed), manifest));
     if (manifest.scene) {
@@ -264,7 +121,11 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
     const QuadratureFitter fitter(changed.camera.sensor, family, changed.camera.range);
     const std::vector<FrameLight> frames = light_in(manifest, changed, family);
     FittedRule rule = fitter.fit(frames, manifest.frame_error);
-    certify(changed, fitter, frames, floor_frames(manifest, changed), rule);
+    Manifest now = manifest;
+    take_weights(rule, now.wavelengths);
+    std::span<const PlannedWavelength> in_view;
+    if (!manifest.scene) in_view = now.wavelengths;
+    certify(changed, fitter, frames, in_view, rule);
     const double promise = rule.promise(manifest.frame_error);
     if (promise > tolerance) {
         throw InputError(
@@ -274,16 +135,12 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
                         tolerance,
                         lacking(fitter, changed, frames, manifest.frame_error, tolerance)));
     }
-    Manifest now = manifest;
     now.rig_title = changed.title;
     now.rig_sha256 = changed.digest;
     now.method = "fitted to frames of another rig";
     now.tolerance = tolerance;
     now.quality = rule.quality;
     now.lamp_signal = lamp_signal(changed, family);
-    for (std::size_t j = 0; j < now.wavelengths.size(); ++j) {
-        now.wavelengths[j].weight = rule.wavelengths[j].weight;
-    }
     require_light_that_counts(now.wavelengths, now.frame_error);
     return now;
 }

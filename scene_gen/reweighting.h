@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Frames outlive the rig: new weights make the frames of one rig the image of another that
-// differs in water, lamps, materials or sensor, but not in geometry.
+// differs in water, lamps, materials or sensor, but not in geometry (rig/geometry_signature.h).
 //
 //   S_c = sum_j w_cj L_j,   w fitted to the changed rig's signals on the basis of the frames' light
 //
@@ -14,19 +14,7 @@
 #include "scene_gen/render_plan.h"
 #include "spectral/manifest.h"
 
-#include <map>
-#include <string>
-#include <vector>
-
 namespace aphotic {
-
-// All that must be equal for frames to serve, as words and numbers by key.
-[[nodiscard]] std::map<std::string, std::string> geometry_of(const Rig& rig,
-                                                             const SceneOptions& options);
-
-// By strobe of the rig, the lamps that stand for its emitter in the manifest's frames; where these
-// do not tell, as many as lamp_grid() chooses.
-[[nodiscard]] std::vector<LampGrid> rendered_lamps(const Rig& rig, const Manifest& manifest);
 
 // For frames of a user's scene `changed` is what rig_of_scene makes of the changed rig.
 //

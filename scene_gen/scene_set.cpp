@@ -4,13 +4,14 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "rig/geometry_signature.h"
 #include "scene_gen/half_underflow.h"
 #include "scene_gen/include_library.h"
-#include "scene_gen/reweighting.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <span>
@@ -34,17 +35,8 @@ std::array<double, kChannels> lamp_signal(const Rig& rig, const LightFamily& fam
 
 namespace {
 
-std::string method_name(PlanMethod method) {
-    switch (method) {
-        case PlanMethod::Fitted:
-            return "fitted";
-        case PlanMethod::EqualBands:
-            return "equal bands";
-        case PlanMethod::Listed:
-            return "listed";
-    }
-    return "";
-}
+// In the order of PlanMethod.
+constexpr std::array kMethodNames{"fitted", "equal bands", "listed"};
 
 ManifestScene noted(const UserScene& scene, const LightFamily& family) {
     ManifestScene note{.file = scene.file.string(),
@@ -54,17 +46,6 @@ ManifestScene noted(const UserScene& scene, const LightFamily& family) {
                        .longest_path_m = family.longest_path_m};
     for (const NamedSpectrum& material : scene.materials) note.materials.push_back(material.name);
     return note;
-}
-
-// What a frame knows of light at a wavelength, for later weights (reintegration.h).
-void note_light(const Rig& rig, ManifestWavelength& w) {
-    w.attenuation_per_m = rig.water.attenuation_per_m(w.lambda_nm);
-    for (const Strobe& strobe : rig.strobes) {
-        w.flux.push_back(strobe.power * strobe.spectrum.at(w.lambda_nm));
-    }
-    for (const Spectrum& material : materials_of(rig)) {
-        w.reflectance.push_back(material.at(w.lambda_nm));
-    }
 }
 
 // All that the scenes include.
@@ -77,12 +58,11 @@ std::string include_text() {
 }  // namespace
 
 SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
-    const std::vector<WeightedWavelength>& rule = plan.rule.wavelengths;
-    std::vector<double> lambda_nm;
-    for (const WeightedWavelength& w : rule) lambda_nm.push_back(w.lambda_nm);
-
     SceneSet set;
-    set.scenes = make_scenes(rig, lambda_nm, plan.scene);
+    Manifest& manifest = set.manifest;
+    manifest.wavelengths = plan.wavelengths;
+    const std::vector<LampGrid> lamps = scene_lamps(rig, plan.wavelengths, plan.scene);
+    set.scenes = make_scenes(rig, lamps, plan.scene, manifest.wavelengths);
     set.ini = render_ini(rig, plan.scene);
     const UserScene* own = plan.scene.user_scene.get();
     if (own != nullptr) {
@@ -90,42 +70,30 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
         set.scene_files_digest = own->files_digest;
         set.scene_writes_files = own->writes_files;
     }
-    const Rig lit = own != nullptr ? rig_of_scene(rig, *own) : rig;
     const std::string around = set.ini + include_text() + (own != nullptr ? own->digest : "");
-    Manifest& manifest = set.manifest;
     manifest.aphotic_version = APHOTIC_VERSION;
     manifest.rig_title = rig.title;
     manifest.rig_sha256 = rig.digest;
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
-    SceneOptions options = plan.scene;
-    options.most_attenuation_per_m = most_attenuation_per_m(rig, lambda_nm);
-    manifest.geometry = geometry_of(lit, options);
+    manifest.geometry = geometry_signature(own != nullptr ? rig_of_scene(rig, *own) : rig);
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        manifest.strobes.push_back({.name = rig.strobes[s].name,
+                                    .lamps_across = lamps[s].across,
+                                    .lamps_along = lamps[s].along});
+    }
     if (own != nullptr) manifest.scene = noted(*own, plan.family);
-    manifest.method = method_name(plan.method);
+    manifest.method = kMethodNames.at(static_cast<std::size_t>(plan.method));
     manifest.tolerance = plan.tolerance;
     manifest.frame_error = plan.frame_error;
-    manifest.quality = plan.rule.quality;
+    manifest.quality = plan.quality;
     manifest.no_promise = plan.no_promise;
     manifest.lamp_signal = lamp_signal(rig, plan.family);
-    for (std::size_t f = 0; f < set.scenes.size(); ++f) {
-        const FrameScene& scene = set.scenes[f];
+    for (const FrameScene& scene : set.scenes) {
         // Settings and includes change pixels as much as the scene does: all make the checksum.
         manifest.frames.push_back({.name = scene.name,
                                    .scene_sha256 = sha256_of_text(scene.sdl + around),
                                    .image_sha256 = ""});
-        for (std::size_t c = 0; c < scene.wavelengths.size(); ++c) {
-            const WeightedWavelength& weighted = rule[manifest.wavelengths.size()];
-            ManifestWavelength w{.lambda_nm = weighted.lambda_nm,
-                                 .weight = weighted.weight,
-                                 .frame = f,
-                                 .channel = std::string(kChannelNames[c]),
-                                 .exposure_log2 = scene.wavelengths[c].exposure_log2,
-                                 .radiance_bound = scene.wavelengths[c].radiance_bound,
-                                 .index_nm = scene.index_nm};
-            note_light(lit, w);
-            manifest.wavelengths.push_back(std::move(w));
-        }
     }
     require_light_that_counts(manifest.wavelengths, manifest.frame_error);
     return set;

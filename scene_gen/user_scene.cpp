@@ -56,7 +56,7 @@ namespace {
 
 std::optional<Spectrum> of_the_rig(const std::string& name, const Rig& rig) {
     for (const Spectrum& material : materials_of(rig)) {
-        if (short_name(material) == name) return material;
+        if (material.short_name() == name) return material;
     }
     return std::nullopt;
 }
@@ -64,8 +64,8 @@ std::optional<Spectrum> of_the_rig(const std::string& name, const Rig& rig) {
 void require_known(const std::string& name, const Rig& rig) {
     std::vector<std::string> known = builtin_names(role_name(CurveRole::Reflectance));
     if (std::ranges::find(known, name) != known.end()) return;
-    known.push_back(short_name(rig.seafloor.reflectance));
-    for (const Spectrum& material : rig.materials) known.push_back(short_name(material));
+    known.push_back(rig.seafloor.reflectance.short_name());
+    for (const Spectrum& material : rig.materials) known.push_back(material.short_name());
     std::ranges::sort(known);
     known.erase(std::unique(known.begin(), known.end()), known.end());
     const std::string nearest = nearest_name(name, known);
@@ -177,8 +177,7 @@ void require_unchanged(const fs::path& scene_file, const std::string& files_dige
 
 Rig rig_of_scene(Rig rig, const UserScene& scene) {
     const WavelengthRange range = rig.camera.range;
-    rig.seafloor = {
-        .reflectance = {"reflectance 'white'", {range.first_nm, range.last_nm}, {1.0, 1.0}}};
+    rig.seafloor = {.reflectance = {"white", {range.first_nm, range.last_nm}, {1.0, 1.0}}};
     rig.materials.clear();
     rig.objects.clear();
     for (const NamedSpectrum& material : scene.materials) {

@@ -39,7 +39,8 @@ struct Block {
 
 // Reads every frame's rows, checks them, and takes the exposures out.
 void read_radiance(const fs::path& folder, const Manifest& manifest, Block& block) {
-    static const std::vector<std::string> kFrameChannels{"R", "G", "B"};
+    static const std::vector<std::string> kFrameChannels(kChannelNames.begin(),
+                                                         kChannelNames.end());
     // All channels at once: OpenEXR unpacks them together, whichever are asked for.
     std::vector<float> samples(kFrameChannels.size() * block.plane);
     for (std::size_t f = 0; f < manifest.frames.size(); ++f) {
@@ -49,14 +50,12 @@ void read_radiance(const fs::path& folder, const Manifest& manifest, Block& bloc
             file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
         reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
         for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
-            const ManifestWavelength& w = manifest.wavelengths[j];
+            const PlannedWavelength& w = manifest.wavelengths[j];
             if (w.frame != f) continue;
-            const auto channel =
-                std::find(kFrameChannels.begin(), kFrameChannels.end(), w.channel) -
-                kFrameChannels.begin();
-            const auto from = std::span<const float>(samples).subspan(
-                static_cast<std::size_t>(channel) * block.plane, block.plane);
-            check_samples(file, w.channel, from, manifest.width_px, block.first_row);
+            const auto from =
+                std::span<const float>(samples).subspan(w.channel * block.plane, block.plane);
+            check_samples(
+                file, kFrameChannels[w.channel], from, manifest.width_px, block.first_row);
             const double scale = std::ldexp(1.0, -w.exposure_log2);
             std::transform(
                 from.begin(), from.end(), block.radiance(j).begin(), [scale](float sample) {
@@ -123,20 +122,28 @@ std::string promise_in_words(const Manifest& manifest) {
     return fmt::format("{} {} {}", manifest.promise(0), manifest.promise(1), manifest.promise(2));
 }
 
-ExrAttributes attributes_of(const Manifest& manifest) {
+std::vector<double> wavelengths_of(const Manifest& manifest) {
     std::vector<double> lambda_nm;
-    for (const ManifestWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
+    for (const PlannedWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
+    return lambda_nm;
+}
+
+ExrAttributes attributes_of(const Manifest& manifest) {
     return {{"aphotic:version", manifest.aphotic_version},
             {"aphotic:rig_title", manifest.rig_title},
             {"aphotic:rig_sha256", manifest.rig_sha256},
-            {"aphotic:wavelengths_nm", fmt::format("{}", fmt::join(lambda_nm, " "))},
+            {"aphotic:wavelengths_nm", fmt::format("{}", fmt::join(wavelengths_of(manifest), " "))},
             {"aphotic:promise", promise_in_words(manifest)}};
 }
 
-void integrate_into(const fs::path& folder,
-                    const Manifest& manifest,
-                    OutputImages& images,
-                    const ProgressReport& report) {
+CameraImage integrate_into(const fs::path& images_folder,
+                           const std::vector<double>& planes_nm,
+                           const fs::path& folder,
+                           const Manifest& manifest,
+                           const ProgressReport& report) {
+    require_noted_frames(folder, manifest);
+    OutputImages images(
+        images_folder, manifest.width_px, manifest.height_px, planes_nm, attributes_of(manifest));
     const int height_px = manifest.height_px;
     const int block_rows = rows_per_block(manifest.width_px, manifest.wavelengths.size());
     for (int row = 0; row < height_px; row += block_rows) {
@@ -152,6 +159,7 @@ void integrate_into(const fs::path& folder,
         images.write_rows(block.rows, std::move(block.samples));
         if (report) report(static_cast<double>(row + block.rows) / height_px);
     }
+    return images.finish();
 }
 
 }  // namespace
@@ -164,24 +172,14 @@ int rows_per_block(int width_px, std::size_t wavelengths) {
 CameraImage integrate(const fs::path& folder,
                       const Manifest& manifest,
                       const ProgressReport& report) {
-    require_noted_frames(folder, manifest);
-    std::vector<double> lambda_nm;
-    for (const ManifestWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
-    OutputImages images(
-        folder, manifest.width_px, manifest.height_px, lambda_nm, attributes_of(manifest));
-    integrate_into(folder, manifest, images, report);
-    return images.finish();
+    return integrate_into(folder, wavelengths_of(manifest), folder, manifest, report);
 }
 
 CameraImage integrate_signals(const fs::path& folder,
                               const Manifest& manifest,
                               const fs::path& images_folder,
                               const ProgressReport& report) {
-    require_noted_frames(folder, manifest);
-    OutputImages images(
-        images_folder, manifest.width_px, manifest.height_px, {}, attributes_of(manifest));
-    integrate_into(folder, manifest, images, report);
-    return images.finish();
+    return integrate_into(images_folder, {}, folder, manifest, report);
 }
 
 }  // namespace aphotic

@@ -13,8 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <concepts>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace aphotic {
@@ -25,10 +26,12 @@ using OrderedJson = nlohmann::ordered_json;  // as a reader of the file would li
 
 namespace {
 
-constexpr const char* kFormat = "aphotic-manifest-4";
+constexpr const char* kFormat = "aphotic-manifest-5";
 // A thousand times what the manifest of 100 wavelengths takes.
 constexpr std::size_t kMostManifestBytes = 64 * kMebibyte;
 
+// A digit that changed would make an image of other weights under the same promise, and be of the
+// right type.
 constexpr const char* kChecksum = "sha256";
 
 // Titles are the user's: bytes that are no UTF-8 are replaced, not refused.
@@ -44,88 +47,116 @@ std::string checksum_of(Json json) {
     return sha256_of_text(text_of(json));
 }
 
-// Reads keys of one JSON object, and says which one is wrong.
+// Writes the fields of one JSON object.
+class Writer {
+  public:
+    explicit Writer(OrderedJson& object) : object_(object) { object_ = OrderedJson::object(); }
+
+    template <typename T, typename... Limits>
+    void operator()(const char* key, const T& value, Limits...) const {
+        object_[key] = value;
+    }
+    void one_of(const char* key, std::size_t index, std::span<const std::string_view> names) const {
+        object_[key] = names[index];
+    }
+    template <typename List, typename... Context>
+    void list(const char* key, const List& items, Context&... context) const {
+        OrderedJson& array = object_[key] = OrderedJson::array();
+        for (const auto& item : items) {
+            Writer writer(array.emplace_back());
+            fields(writer, item, context...);
+        }
+    }
+    template <typename T>
+    void optional(const char* key, const std::optional<T>& value) const {
+        if (!value) return;
+        Writer writer(object_[key]);
+        fields(writer, *value);
+    }
+    void require(const char*, std::string_view, bool) const {}
+
+  private:
+    OrderedJson& object_;
+};
+
+// What a value must be in JSON.
+template <typename T>
+constexpr std::string_view kWords = "a list of numbers";
+template <>
+constexpr std::string_view kWords<std::string> = "a text";
+template <>
+constexpr std::string_view kWords<double> = "a number";
+template <>
+constexpr std::string_view kWords<std::vector<std::string>> = "a list of texts";
+template <>
+constexpr std::string_view kWords<std::array<double, kChannels>> = "three numbers";
+template <>
+constexpr std::string_view kWords<std::map<std::string, std::string>> = "an object of texts";
+
+// Reads the fields of one JSON object, and says which one is wrong.
 class Reader {
   public:
     Reader(const Json& object, std::string where) : object_(object), where_(std::move(where)) {
         if (!object.is_object()) fail("", "an object");
     }
 
+    template <typename T>
+    void operator()(const std::string& key, T& value) const {
+        const Json& found = at(key, kWords<T>);
+        try {
+            value = found.get<T>();
+            if (Json(value).size() == found.size()) return;  // an array may hold more than ours
+        } catch (const Json::type_error&) {
+        } catch (const Json::out_of_range&) {
+        }
+        fail(key, kWords<T>);
+    }
+    template <typename T>
+    void operator()(const std::string& key, T& value, int least, int most) const {
+        const std::string allowed = fmt::format("a whole number from {} to {}", least, most);
+        const Json& found = at(key, allowed);
+        if (!is_whole_number(found, least, most)) fail(key, allowed);
+        value = found.get<T>();
+    }
+    void one_of(const std::string& key,
+                std::size_t& index,
+                std::span<const std::string_view> names) const {
+        std::string name;
+        (*this)(key, name);
+        index = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+        require(key, fmt::format("one of {}", fmt::join(names, ", ")), index < names.size());
+    }
+    template <typename T, typename... Context>
+    void list(const std::string& key, std::vector<T>& items, Context&... context) const {
+        const Json& found = at(key, "a list of objects");
+        if (!found.is_array()) fail(key, "a list of objects");
+        items.clear();
+        for (const Json& item : found) {
+            const Reader reader(item, fmt::format("{}: {}[{}]", where_, key, items.size()));
+            fields(reader, items.emplace_back(), context...);
+        }
+    }
+    template <typename T, std::size_t n>
+    void list(const std::string& key, std::array<T, n>& items) const {
+        std::vector<T> found;
+        list(key, found);
+        require(key, fmt::format("{} objects", n), found.size() == n);
+        std::ranges::copy(found, items.begin());
+    }
+    template <typename T>
+    void optional(const std::string& key, std::optional<T>& value) const {
+        if (!object_.contains(key)) return;
+        if (!object_.at(key).is_object()) fail(key, "an object");
+        fields(Reader(object_.at(key), fmt::format("{}: {}", where_, key)), value.emplace());
+    }
+    void require(const std::string& key, std::string_view allowed, bool is_kept) const {
+        if (!is_kept) fail(key, allowed);
+    }
+
+  private:
     [[nodiscard]] const Json& at(const std::string& key, std::string_view allowed) const {
         if (!object_.contains(key)) fail(key, allowed);
         return object_.at(key);
-    }
-
-    [[nodiscard]] std::string text(const std::string& key) const {
-        const Json& value = at(key, "a text");
-        if (!value.is_string()) fail(key, "a text");
-        return value.get<std::string>();
-    }
-
-    [[nodiscard]] int integer(const std::string& key, int least, int most) const {
-        const std::string allowed = fmt::format("a whole number from {} to {}", least, most);
-        const Json& value = at(key, allowed);
-        if (!is_whole_number(value, least, most)) fail(key, allowed);
-        return value.get<int>();
-    }
-
-    [[nodiscard]] double number(const std::string& key) const {
-        const Json& value = at(key, "a number");
-        if (!value.is_number()) fail(key, "a number");
-        return value.get<double>();
-    }
-
-    [[nodiscard]] std::vector<double> numbers(
-        const std::string& key, std::string_view allowed = "a list of numbers") const {
-        const Json& value = at(key, allowed);
-        const auto is_number = [](const Json& item) { return item.is_number(); };
-        if (!value.is_array() || !std::all_of(value.begin(), value.end(), is_number)) {
-            fail(key, allowed);
-        }
-        return value.get<std::vector<double>>();
-    }
-
-    [[nodiscard]] std::array<double, kChannels> channels(const std::string& key) const {
-        constexpr std::string_view kAllowed = "three numbers";
-        const std::vector<double> values = numbers(key, kAllowed);
-        if (values.size() != kChannels) fail(key, kAllowed);
-        return {values[0], values[1], values[2]};
-    }
-
-    [[nodiscard]] std::map<std::string, std::string> texts(const std::string& key) const {
-        const Json& value = at(key, "an object of texts");
-        const auto is_text = [](const Json& item) { return item.is_string(); };
-        if (!value.is_object() || !std::all_of(value.begin(), value.end(), is_text)) {
-            fail(key, "an object of texts");
-        }
-        return value.get<std::map<std::string, std::string>>();
-    }
-
-    [[nodiscard]] bool has(const std::string& key) const { return object_.contains(key); }
-
-    [[nodiscard]] Reader object(const std::string& key) const {
-        const Json& value = at(key, "an object");
-        if (!value.is_object()) fail(key, "an object");
-        return {value, fmt::format("{}: {}", where_, key)};
-    }
-
-    [[nodiscard]] std::vector<std::string> list_of_texts(const std::string& key) const {
-        const Json& value = at(key, "a list of texts");
-        const auto is_text = [](const Json& item) { return item.is_string(); };
-        if (!value.is_array() || !std::all_of(value.begin(), value.end(), is_text)) {
-            fail(key, "a list of texts");
-        }
-        return value.get<std::vector<std::string>>();
-    }
-
-    [[nodiscard]] std::vector<Reader> objects(const std::string& key) const {
-        const Json& value = at(key, "a list of objects");
-        if (!value.is_array()) fail(key, "a list of objects");
-        std::vector<Reader> all;
-        for (const Json& item : value) {
-            all.emplace_back(item, fmt::format("{}: {}[{}]", where_, key, all.size()));
-        }
-        return all;
     }
 
     [[noreturn]] void fail(const std::string& key, std::string_view allowed) const {
@@ -139,7 +170,6 @@ class Reader {
                                      allowed));
     }
 
-  private:
     const Json& object_;
     std::string where_;
 };
@@ -153,62 +183,98 @@ bool is_plain_name(std::string_view name) {
     return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), is_plain);
 }
 
-ManifestFrame frame_of(const Reader& reader) {
-    ManifestFrame frame{.name = reader.text("name"),
-                        .scene_sha256 = reader.text("scene_sha256"),
-                        .image_sha256 = ""};
-    if (!is_plain_name(frame.name)) {
-        reader.fail("name", "letters, digits, '_', '-' and '.', not first");
-    }
-    const std::string state = reader.text("state");
-    if (state != "done" && state != "pending") reader.fail("state", "\"done\" or \"pending\"");
-    if (state == "done") frame.image_sha256 = reader.text("image_sha256");
-    if (state == "done" && !frame.done()) reader.fail("image_sha256", "a checksum");
-    return frame;
+// --- The fields, each declared once, to be written and read ------------------------------------
+
+template <typename T, typename Plain>
+concept Is = std::same_as<std::remove_const_t<T>, Plain>;
+
+// names: of the frames before.
+template <typename Visit, Is<ManifestFrame> Frame>
+void fields(const Visit& visit, Frame& frame, std::set<std::string>& names) {
+    visit("name", frame.name);
+    visit.require(
+        "name", "letters, digits, '_', '-' and '.', not first", is_plain_name(frame.name));
+    visit.require("name", "a name that no other frame has", names.insert(frame.name).second);
+    visit("scene_sha256", frame.scene_sha256);
+    visit("image_sha256", frame.image_sha256);
 }
 
-ManifestScene scene_of(const Reader& reader) {
-    ManifestScene scene{.file = reader.text("file"),
-                        .sha256 = reader.text("sha256"),
-                        .materials = reader.list_of_texts("materials"),
-                        .shortest_path_m = reader.number("shortest_path_m"),
-                        .longest_path_m = reader.number("longest_path_m")};
-    if (!(scene.shortest_path_m > 0.0)) reader.fail("shortest_path_m", "a number over 0");
-    if (!(scene.longest_path_m >= scene.shortest_path_m)) {
-        reader.fail("longest_path_m", "a number not under shortest_path_m");
-    }
-    return scene;
+template <typename Visit, Is<ManifestStrobe> Strobe>
+void fields(const Visit& visit, Strobe& strobe) {
+    constexpr int kMostLamps = 100'000;  // of a scene (scene_gen/pov_scene.cpp)
+    visit("name", strobe.name);
+    visit("lamps_across", strobe.lamps_across, 1, kMostLamps);
+    visit("lamps_along", strobe.lamps_along, 1, kMostLamps);
 }
 
-// The frames by their names, and whose channels are taken: a manifest may name thousands.
-struct FrameBook {
-    std::map<std::string, std::size_t> index;
-    std::set<std::pair<std::size_t, std::string>> taken;
+template <typename Visit, Is<ManifestScene> Scene>
+void fields(const Visit& visit, Scene& scene) {
+    visit("file", scene.file);
+    visit("sha256", scene.sha256);
+    visit("materials", scene.materials);
+    visit("shortest_path_m", scene.shortest_path_m);
+    visit.require("shortest_path_m", "a number over 0", scene.shortest_path_m > 0.0);
+    visit("longest_path_m", scene.longest_path_m);
+    visit.require("longest_path_m",
+                  "a number not under shortest_path_m",
+                  scene.longest_path_m >= scene.shortest_path_m);
+}
+
+template <typename Visit, Is<RuleQuality> Quality>
+void fields(const Visit& visit, Quality& quality) {
+    visit("error", quality.error);
+    visit("amplification", quality.amplification);
+}
+
+// The wavelengths before.
+struct Before {
+    double lambda_nm = 0.0;
+    int frames = 0;
+    std::set<std::pair<std::size_t, std::size_t>> taken{};  // frames and channels
 };
 
-ManifestWavelength wavelength_of(const Reader& reader, double previous_nm, FrameBook& frames) {
-    ManifestWavelength w;
-    w.lambda_nm = reader.number("lambda_nm");
-    if (!(w.lambda_nm > previous_nm)) reader.fail("lambda_nm", "increasing wavelengths over 0");
-    w.weight = reader.channels("weight");
-    w.exposure_log2 = reader.integer("exposure_log2", -kMostExposureLog2, kMostExposureLog2);
-    w.channel = reader.text("channel");
-    if (w.channel != "R" && w.channel != "G" && w.channel != "B") {
-        reader.fail("channel", "\"R\", \"G\" or \"B\"");
-    }
-    w.radiance_bound = reader.number("radiance_bound");
-    if (!(w.radiance_bound >= 0.0)) reader.fail("radiance_bound", "0 or more");
-    w.index_nm = reader.number("index_nm");
-    w.attenuation_per_m = reader.number("attenuation_per_m");
-    w.flux = reader.numbers("flux");
-    w.reflectance = reader.numbers("reflectance");
-    const auto found = frames.index.find(reader.text("frame"));
-    if (found == frames.index.end()) reader.fail("frame", "the name of one of the frames");
-    w.frame = found->second;
-    if (!frames.taken.emplace(w.frame, w.channel).second) {
-        reader.fail("channel", "a channel of the frame that no other wavelength has");
-    }
-    return w;
+template <typename Visit, Is<PlannedWavelength> Wavelength>
+void fields(const Visit& visit, Wavelength& w, Before& before) {
+    visit("lambda_nm", w.lambda_nm);
+    visit.require("lambda_nm", "increasing wavelengths over 0", w.lambda_nm > before.lambda_nm);
+    before.lambda_nm = w.lambda_nm;
+    visit("weight", w.weight);
+    visit("frame", w.frame, 0, before.frames - 1);
+    visit.one_of("channel", w.channel, kChannelNames);
+    visit.require("channel",
+                  "a channel of the frame that no other wavelength has",
+                  before.taken.emplace(w.frame, w.channel).second);
+    visit("index_nm", w.index_nm);
+    visit("attenuation_per_m", w.light.attenuation_per_m);
+    visit("flux", w.light.flux);
+    visit("reflectance", w.light.reflectance);
+    visit("exposure_log2", w.exposure_log2, -kMostExposureLog2, kMostExposureLog2);
+    visit("radiance_bound", w.radiance_bound);
+    visit.require("radiance_bound", "0 or more", w.radiance_bound >= 0.0);
+}
+
+template <typename Visit, Is<Manifest> Whole>
+void fields(const Visit& visit, Whole& manifest) {
+    visit("aphotic_version", manifest.aphotic_version);
+    visit("povray_version", manifest.povray_version);
+    visit("rig_title", manifest.rig_title);
+    visit("rig_sha256", manifest.rig_sha256);
+    visit("width_px", manifest.width_px, 1, kLargestImagePx);
+    visit("height_px", manifest.height_px, 1, kLargestImagePx);
+    visit("lamp_signal", manifest.lamp_signal);
+    visit("method", manifest.method);
+    visit("tolerance", manifest.tolerance);
+    visit("frame_error", manifest.frame_error);
+    visit("no_promise", manifest.no_promise);
+    if (manifest.has_promise()) visit.list("quality", manifest.quality);
+    visit("geometry", manifest.geometry);
+    visit.list("strobes", manifest.strobes);
+    visit.optional("scene", manifest.scene);
+    std::set<std::string> names;
+    visit.list("frames", manifest.frames, names);
+    Before before{.frames = static_cast<int>(manifest.frames.size())};
+    visit.list("wavelengths", manifest.wavelengths, before);
+    visit.require("wavelengths", "at least one", !manifest.wavelengths.empty());
 }
 
 }  // namespace
@@ -216,7 +282,7 @@ ManifestWavelength wavelength_of(const Reader& reader, double previous_nm, Frame
 double Manifest::black(std::size_t channel) const {
     constexpr double kRoom = 64.0;
     double sum = 0.0;
-    for (const ManifestWavelength& w : wavelengths) {
+    for (const PlannedWavelength& w : wavelengths) {
         sum += std::ldexp(std::abs(w.weight[channel]), kSmallestNormalHalfLog2 - w.exposure_log2);
     }
     return kRoom * sum;
@@ -240,55 +306,9 @@ fs::path image_path(const fs::path& folder, const ManifestFrame& frame) {
 
 void write_manifest(const fs::path& folder, const Manifest& manifest) {
     OrderedJson json;
-    json["format"] = kFormat;
-    json["aphotic_version"] = manifest.aphotic_version;
-    json["povray_version"] = manifest.povray_version;
-    json["rig_title"] = manifest.rig_title;
-    json["rig_sha256"] = manifest.rig_sha256;
-    json["width_px"] = manifest.width_px;
-    json["height_px"] = manifest.height_px;
-    json["lamp_signal"] = manifest.lamp_signal;
-    json["method"] = manifest.method;
-    json["tolerance"] = manifest.tolerance;
-    json["frame_error"] = manifest.frame_error;
-    if (manifest.no_promise.empty()) {
-        json["error"] = OrderedJson::array();
-        json["amplification"] = OrderedJson::array();
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            json["error"].push_back(manifest.quality[c].error);
-            json["amplification"].push_back(manifest.quality[c].amplification);
-        }
-    } else {
-        json["no_promise"] = manifest.no_promise;
-    }
-    json["geometry"] = manifest.geometry;
-    if (manifest.scene) {
-        json["scene"] = {{"file", manifest.scene->file},
-                         {"sha256", manifest.scene->sha256},
-                         {"materials", manifest.scene->materials},
-                         {"shortest_path_m", manifest.scene->shortest_path_m},
-                         {"longest_path_m", manifest.scene->longest_path_m}};
-    }
-    json["frames"] = OrderedJson::array();
-    for (const ManifestFrame& frame : manifest.frames) {
-        json["frames"].push_back({{"name", frame.name},
-                                  {"state", frame.done() ? "done" : "pending"},
-                                  {"scene_sha256", frame.scene_sha256},
-                                  {"image_sha256", frame.image_sha256}});
-    }
-    json["wavelengths"] = OrderedJson::array();
-    for (const ManifestWavelength& w : manifest.wavelengths) {
-        json["wavelengths"].push_back({{"lambda_nm", w.lambda_nm},
-                                       {"weight", w.weight},
-                                       {"frame", manifest.frames[w.frame].name},
-                                       {"channel", w.channel},
-                                       {"exposure_log2", w.exposure_log2},
-                                       {"radiance_bound", w.radiance_bound},
-                                       {"index_nm", w.index_nm},
-                                       {"attenuation_per_m", w.attenuation_per_m},
-                                       {"flux", w.flux},
-                                       {"reflectance", w.reflectance}});
-    }
+    const Writer writer(json);
+    writer("format", std::string(kFormat));
+    fields(writer, manifest);
     json[kChecksum] = checksum_of(Json::parse(text_of(json)));
     write_text_file(manifest_path(folder), text_of(json) + "\n");
 }
@@ -298,7 +318,9 @@ Manifest read_manifest(const fs::path& folder) {
     const std::string text = read_text_file(file, kMostManifestBytes);
     Manifest manifest = parse_manifest(file.string(), text);
     const Json json = parse_json(text, file.string());
-    if (Reader(json, file.string()).text(kChecksum) != checksum_of(json)) {
+    std::string noted;
+    Reader(json, file.string())(kChecksum, noted);
+    if (noted != checksum_of(json)) {
         throw InputError(fmt::format(
             "{}: {}: is not that of the rest, which was changed since it was written; allowed: a "
             "manifest as aphotic wrote it",
@@ -311,44 +333,15 @@ Manifest read_manifest(const fs::path& folder) {
 Manifest parse_manifest(const std::string& file_name, std::string_view text) {
     const Json json = parse_json(text, file_name);
     const Reader reader(json, file_name);
-    if (reader.text("format") != kFormat) reader.fail("format", fmt::format("\"{}\"", kFormat));
-
+    std::string format;
+    reader("format", format);
+    reader.require("format",
+                   fmt::format("\"{}\", which this version writes: render again, into another "
+                               "folder",
+                               kFormat),
+                   format == kFormat);
     Manifest manifest;
-    manifest.aphotic_version = reader.text("aphotic_version");
-    manifest.povray_version = reader.text("povray_version");
-    manifest.rig_title = reader.text("rig_title");
-    manifest.rig_sha256 = reader.text("rig_sha256");
-    manifest.width_px = reader.integer("width_px", 1, kLargestImagePx);
-    manifest.height_px = reader.integer("height_px", 1, kLargestImagePx);
-    manifest.lamp_signal = reader.channels("lamp_signal");
-    manifest.method = reader.text("method");
-    manifest.tolerance = reader.number("tolerance");
-    manifest.frame_error = reader.number("frame_error");
-    if (reader.has("no_promise")) {
-        manifest.no_promise = reader.list_of_texts("no_promise");
-        if (manifest.no_promise.empty()) reader.fail("no_promise", "at least one reason");
-    } else {
-        const auto error = reader.channels("error");
-        const auto amplification = reader.channels("amplification");
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            manifest.quality[c] = {.error = error[c], .amplification = amplification[c]};
-        }
-    }
-    manifest.geometry = reader.texts("geometry");
-    if (reader.has("scene")) manifest.scene = scene_of(reader.object("scene"));
-    FrameBook frames;
-    for (const Reader& frame : reader.objects("frames")) {
-        manifest.frames.push_back(frame_of(frame));
-        if (!frames.index.emplace(manifest.frames.back().name, frames.index.size()).second) {
-            frame.fail("name", "a name that no other frame has");
-        }
-    }
-    double previous_nm = 0.0;
-    for (const Reader& w : reader.objects("wavelengths")) {
-        manifest.wavelengths.push_back(wavelength_of(w, previous_nm, frames));
-        previous_nm = manifest.wavelengths.back().lambda_nm;
-    }
-    if (manifest.wavelengths.empty()) reader.fail("wavelengths", "at least one");
+    fields(reader, manifest);
     return manifest;
 }
 

@@ -15,8 +15,8 @@
 // whose checksum stands beside it.
 #pragma once
 
+#include "spectral/planned_wavelength.h"
 #include "spectral/quadrature_fit.h"
-#include "spectral/sensor.h"
 
 #include <array>
 #include <filesystem>
@@ -39,18 +39,11 @@ struct ManifestFrame {
     [[nodiscard]] bool done() const { return !image_sha256.empty(); }
 };
 
-struct ManifestWavelength {
-    double lambda_nm = 0.0;
-    std::array<double, kChannels> weight{};  // of L(lambda) in the signals of R, G, B
-    std::size_t frame = 0;                   // index into Manifest::frames
-    std::string channel{};                   // of the frame: R, G or B
-    int exposure_log2 = 0;                   // the frame holds 2^exposure_log2 L(lambda)
-    double radiance_bound = 0.0;             // of L(lambda) in view
-    double index_nm = 0.0;                   // whose refractive indices the frame has
-    // The light that the frame was rendered with, for weights of another water, lamp or sensor.
-    double attenuation_per_m = 0.0;
-    std::vector<double> flux{};         // of each strobe, its power included
-    std::vector<double> reflectance{};  // of the floor, then of each further material
+// A strobe of the rig, and the grid of lamps that stands for its emitter.
+struct ManifestStrobe {
+    std::string name;
+    int lamps_across = 1;
+    int lamps_along = 1;
 };
 
 // A scene of the user's own that the frames show.
@@ -82,11 +75,13 @@ struct Manifest {
     // Why the image has no promise, for a scene of the user's that voids it; empty: it has. Quality
     // is then that of the spectra which the scene names, and not written.
     std::vector<std::string> no_promise{};
-    // The rig's geometry in words and numbers: frames serve another rig when it is equal.
+    // By part of the rig, in words and numbers, all that its frames depend on but for sources and
+    // water: frames serve another rig when it is equal (rig/geometry_signature.h).
     std::map<std::string, std::string> geometry;
-    std::optional<ManifestScene> scene{};         // none: the rig's own floor
-    std::vector<ManifestWavelength> wavelengths;  // increasing
+    std::vector<ManifestStrobe> strobes{};  // those of every wavelength's flux
+    std::optional<ManifestScene> scene{};   // none: the rig's own floor
     std::vector<ManifestFrame> frames;
+    std::vector<PlannedWavelength> wavelengths;  // increasing
 
     [[nodiscard]] bool has_promise() const { return no_promise.empty(); }
     [[nodiscard]] double promise(std::size_t channel) const {

@@ -55,13 +55,13 @@ double product_at(const std::vector<Spectrum>& curves, double lambda_nm) {
 
 }  // namespace
 
-double FittedRule::error() const {
-    return std::ranges::max(quality, {}, &RuleQuality::error).error;
+double worst_error(std::span<const RuleQuality> channels) {
+    return std::ranges::max(channels, {}, &RuleQuality::error).error;
 }
 
-double FittedRule::promise(double frame_error) const {
+double worst_promise(std::span<const RuleQuality> channels, double frame_error) {
     double worst = 0.0;
-    for (const RuleQuality& q : quality) worst = std::max(worst, q.promise(frame_error));
+    for (const RuleQuality& q : channels) worst = std::max(worst, q.promise(frame_error));
     return worst;
 }
 

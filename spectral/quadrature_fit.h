@@ -52,13 +52,18 @@ struct RuleQuality {
     }
 };
 
+// The worst channel's.
+[[nodiscard]] double worst_error(std::span<const RuleQuality> channels);
+[[nodiscard]] double worst_promise(std::span<const RuleQuality> channels, double frame_error);
+
 struct FittedRule {
     std::vector<WeightedWavelength> wavelengths;
     std::array<RuleQuality, kChannels> quality;  // zero for a channel that sees nothing
 
-    // The worst channel's.
-    [[nodiscard]] double error() const;
-    [[nodiscard]] double promise(double frame_error) const;
+    [[nodiscard]] double error() const { return worst_error(quality); }
+    [[nodiscard]] double promise(double frame_error) const {
+        return worst_promise(quality, frame_error);
+    }
 };
 
 // What the frame of one wavelength knows of light.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -46,8 +47,14 @@ std::string remedy_text(WavelengthRange common, WavelengthRange range) {
 
 }  // namespace
 
-Spectrum::Spectrum(std::string name, std::vector<double> lambda_nm, std::vector<double> values)
-    : name_(std::move(name)), lambda_nm_(std::move(lambda_nm)), values_(std::move(values)) {
+Spectrum::Spectrum(std::string name,
+                   std::vector<double> lambda_nm,
+                   std::vector<double> values,
+                   std::optional<CurveSource> source)
+    : name_(std::move(name)),
+      lambda_nm_(std::move(lambda_nm)),
+      values_(std::move(values)),
+      source_(std::move(source)) {
     if (lambda_nm_.size() != values_.size()) {
         throw InputError(fmt::format(
             "{}: {} wavelengths but {} values", name_, lambda_nm_.size(), values_.size()));
@@ -80,6 +87,10 @@ double Spectrum::at(double lambda_nm) const {
     const auto i = static_cast<std::size_t>(above - lambda_nm_.begin());
     const double t = (lambda_nm - lambda_nm_[i - 1]) / (lambda_nm_[i] - lambda_nm_[i - 1]);
     return std::lerp(values_[i - 1], values_[i], t);
+}
+
+std::string Spectrum::short_name() const {
+    return source_ ? std::filesystem::path(source_->table).filename().string() : name_;
 }
 
 WavelengthRange Spectrum::range() const {

@@ -11,6 +11,7 @@
 // InputError that names the curve.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,15 +28,31 @@ struct WavelengthRange {
     }
 };
 
+// The table that a curve was taken from.
+struct CurveSource {
+    std::string table;          // a built-in one's name, or the path of a file
+    std::string file_sha256{};  // empty: built in
+
+    [[nodiscard]] bool is_file() const { return !file_sha256.empty(); }
+};
+
 class Spectrum {
   public:
     // name says in messages whose curve this is, such as "water absorption 'pope-fry-1997'".
+    // source: none for a curve that the program made.
     // Throws InputError unless there are at least two knots, all finite and increasing.
-    Spectrum(std::string name, std::vector<double> lambda_nm, std::vector<double> values);
+    Spectrum(std::string name,
+             std::vector<double> lambda_nm,
+             std::vector<double> values,
+             std::optional<CurveSource> source = {});
 
     [[nodiscard]] double at(double lambda_nm) const;
 
     [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] const std::optional<CurveSource>& source() const { return source_; }
+    // What a user calls it: the built-in table's name, or the file's without its folder; of a curve
+    // that the program made, its name.
+    [[nodiscard]] std::string short_name() const;
     [[nodiscard]] WavelengthRange range() const;
     [[nodiscard]] std::span<const double> lambda_nm() const { return lambda_nm_; }
     [[nodiscard]] std::span<const double> values() const { return values_; }
@@ -44,6 +61,7 @@ class Spectrum {
     std::string name_;
     std::vector<double> lambda_nm_;
     std::vector<double> values_;
+    std::optional<CurveSource> source_;
 };
 
 // The same knots and values, under whatever names.

@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/sha256.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -258,7 +259,10 @@ Table parse_table(const std::string& name, std::string_view text) {
 }
 
 Table read_table(const std::filesystem::path& file) {
-    return parse_table(file.string(), read_text_file(file, kMostTableBytes));
+    const std::string text = read_text_file(file, kMostTableBytes);
+    Table table = parse_table(file.string(), text);
+    table.file_sha256 = sha256_of_text(text);
+    return table;
 }
 
 std::string_view role_name(CurveRole role) {
@@ -285,7 +289,10 @@ std::vector<Spectrum> curves_of(const Table& table, CurveRole role) {
     for (std::size_t i = 1; i < table.columns.size(); ++i) {
         std::string name = fmt::format("{} '{}'", rule.name, table.name);
         if (table.columns.size() > 2) name += fmt::format(" ({})", table.columns[i]);
-        curves.emplace_back(std::move(name), lambda_nm, column_of(table, i));
+        curves.emplace_back(std::move(name),
+                            lambda_nm,
+                            column_of(table, i),
+                            CurveSource{.table = table.name, .file_sha256 = table.file_sha256});
     }
     return curves;
 }

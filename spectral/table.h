@@ -43,7 +43,8 @@ struct TableRow {
 };
 
 struct Table {
-    std::string name;  // file path, or built-in name
+    std::string name;         // file path, or built-in name
+    std::string file_sha256;  // empty: of no file
     std::map<std::string, std::string> metadata;
     std::vector<std::string> columns;
     std::size_t header_line = 0;

@@ -625,7 +625,7 @@ TEST_F(OwnScene, IsLookedAtUnderTheSameGuards) {
 TEST_F(OwnScene, EditedWhileItRendersIsNotMixed) {
     const auto editing = povray_that(
         "case \"$1\" in *band_600nm*)\n"
-        "  until grep -q '\"done\"' out/manifest.json; do sleep 0.1; done\n"
+        "  until grep -q '\"image_sha256\": \"[0-9a-f]' out/manifest.json; do sleep 0.1; done\n"
         "  echo '// edited' >> reef.pov ;;\n"
         "esac\n"
         "exec povray \"$@\"\n");

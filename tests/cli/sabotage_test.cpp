@@ -274,7 +274,7 @@ TEST_F(Sabotage, AnObjectOfAnotherMaterial) {
 
 TEST_F(Sabotage, ExposuresNotTakenOut) {
     expect_no_when_integrated_with(kAnyWavelength, [](Manifest& manifest) {
-        for (ManifestWavelength& w : manifest.wavelengths) w.exposure_log2 = 0;
+        for (PlannedWavelength& w : manifest.wavelengths) w.exposure_log2 = 0;
     });
 }
 

@@ -59,13 +59,14 @@ Radiance rendered(const Rig& rig) {
     Radiance radiance;
     const auto pixels = static_cast<std::size_t>(rig.camera.width_px) *
                         static_cast<std::size_t>(rig.camera.height_px);
-    for (const ManifestWavelength& w : result.manifest.wavelengths) {
+    for (const PlannedWavelength& w : result.manifest.wavelengths) {
         const std::filesystem::path file =
             image_path(folder.path(), result.manifest.frames[w.frame]);
         radiance.frame_bytes = std::filesystem::file_size(file);
         ExrReader frame(file);
         std::vector<float> samples(pixels);
-        frame.read_rows(0, rig.camera.height_px, std::span(&w.channel, 1), samples);
+        const std::string channel(kChannelNames[w.channel]);
+        frame.read_rows(0, rig.camera.height_px, std::span(&channel, 1), samples);
         for (const float sample : samples) {
             radiance.samples.push_back(std::ldexp(static_cast<double>(sample), -w.exposure_log2));
             radiance.black.push_back(std::ldexp(kSmallestNormalHalf, -w.exposure_log2));

@@ -35,12 +35,13 @@ int pixels_off(const Rig& rig, const SceneSet& set) {
     const TempFolder folder;
     const Manifest manifest =
         render(find_povray(""), folder.path(), set, {.jobs = 2, .report = {}}).manifest;
-    const ManifestWavelength& w = manifest.wavelengths[0];
+    const PlannedWavelength& w = manifest.wavelengths[0];
     const Tracer tracer(rig, {.signals = false, .planes_nm = {kLambda_nm}});
     const std::vector<double> traced = tracer.rows(0, rig.camera.height_px);
     std::vector<float> samples(traced.size());
     ExrReader frame(image_path(folder.path(), manifest.frames[w.frame]));
-    frame.read_rows(0, rig.camera.height_px, std::span(&w.channel, 1), samples);
+    const std::string channel(kChannelNames[w.channel]);
+    frame.read_rows(0, rig.camera.height_px, std::span(&channel, 1), samples);
     const double brightest = std::ldexp(std::ranges::max(traced), w.exposure_log2);
     int off = 0;
     for (std::size_t i = 0; i < traced.size(); ++i) {

@@ -165,11 +165,12 @@ TEST(Traps, PackingChangesNoBit) {
     ASSERT_EQ(packed.frames.size(), 2U);
     ASSERT_EQ(mono.frames.size(), 4U);
     const auto samples_of = [&](const TempFolder& folder, const Manifest& manifest, std::size_t j) {
-        const ManifestWavelength& w = manifest.wavelengths[j];
+        const PlannedWavelength& w = manifest.wavelengths[j];
         ExrReader frame(image_path(folder.path(), manifest.frames[w.frame]));
         std::vector<float> samples(static_cast<std::size_t>(rig.camera.width_px) *
                                    static_cast<std::size_t>(rig.camera.height_px));
-        frame.read_rows(0, rig.camera.height_px, std::span(&w.channel, 1), samples);
+        const std::string channel(kChannelNames[w.channel]);
+        frame.read_rows(0, rig.camera.height_px, std::span(&channel, 1), samples);
         return samples;
     };
     for (std::size_t j = 0; j < lambda_nm.size(); ++j) {

@@ -11,21 +11,14 @@
 namespace aphotic::band_sdl_test {
 namespace {
 
-Spectrum line(const std::string& name, double first, double last) {
-    return {name, {400.0, 700.0}, {first, last}};
-}
-
-TEST(ShortName, IsWhatStandsInQuotesWithoutItsFolder) {
-    EXPECT_EQ(short_name(line("reflectance 'sand'", 0.0, 1.0)), "sand");
-    EXPECT_EQ(short_name(line("reflectance '/home/me/rigs/mud.csv'", 0.0, 1.0)), "mud.csv");
-    EXPECT_EQ(short_name(line("plain", 0.0, 1.0)), "plain");
+// Of the table that is called so.
+Spectrum line(const std::string& table, double first, double last) {
+    return {"a curve", {400.0, 700.0}, {first, last}, CurveSource{.table = table}};
 }
 
 TEST(Named, NamesEachSpectrumOnceAndNoTwoAlike) {
-    const std::vector<Spectrum> spectra{line("a 'x'", 0.1, 0.2),
-                                        line("a 'x'", 0.1, 0.2),
-                                        line("a 'x'", 0.1, 0.3),
-                                        line("a 'y'", 0.1, 0.3)};
+    const std::vector<Spectrum> spectra{
+        line("x", 0.1, 0.2), line("x", 0.1, 0.2), line("x", 0.1, 0.3), line("y", 0.1, 0.3)};
     const std::vector<NamedSpectrum> names = named(spectra);
     ASSERT_EQ(names.size(), 3U);
     EXPECT_EQ(names[0].name, "x");
@@ -33,18 +26,18 @@ TEST(Named, NamesEachSpectrumOnceAndNoTwoAlike) {
     EXPECT_EQ(names[2].name, "y");
     EXPECT_EQ(name_of(spectra[1], names), "x");
     EXPECT_EQ(name_of(spectra[2], names), "x 2");
-    EXPECT_THROW(static_cast<void>(name_of(line("a 'z'", 0.0, 0.0), names)), InputError);
+    EXPECT_THROW(static_cast<void>(name_of(line("z", 0.0, 0.0), names)), InputError);
 }
 
 // POV-Ray takes "Ã¤.csv" and "Ã¶.csv" for equal, and a quotation mark cannot stand in its texts.
 TEST(Named, TellsApartWhatPovRayWouldTakeForEqual) {
-    const std::vector<Spectrum> spectra{line("a '\xC3\xA4.csv'", 0.1, 0.2),
-                                        line("a '\xC3\xB6.csv'", 0.1, 0.3),
-                                        line("a '\xC3\xBC.csv'", 0.1, 0.2),
-                                        line("a 'x\".csv'", 0.1, 0.4),
-                                        line("a 'x'.csv'", 0.1, 0.5),
-                                        line("a '" + std::string(200, 'y') + "1'", 0.1, 0.6),
-                                        line("a '" + std::string(200, 'y') + "2'", 0.1, 0.7)};
+    const std::vector<Spectrum> spectra{line("\xC3\xA4.csv", 0.1, 0.2),
+                                        line("\xC3\xB6.csv", 0.1, 0.3),
+                                        line("\xC3\xBC.csv", 0.1, 0.2),
+                                        line("x\".csv", 0.1, 0.4),
+                                        line("x'.csv", 0.1, 0.5),
+                                        line(std::string(200, 'y') + "1", 0.1, 0.6),
+                                        line(std::string(200, 'y') + "2", 0.1, 0.7)};
     const std::vector<NamedSpectrum> names = named(spectra);
     ASSERT_EQ(names.size(), spectra.size());
     std::set<std::string> texts;

@@ -37,17 +37,13 @@ RenderPlan plan_of(const Rig& rig, std::vector<double> wavelengths_nm) {
 }
 
 std::array<double, kChannels> port_error_of(const Rig& rig, const RenderPlan& plan) {
-    std::vector<FloorFrame> frames;
-    for (const WeightedWavelength& w : plan.rule.wavelengths) {
-        frames.push_back(floor_frame(rig, w.lambda_nm, w.lambda_nm));
-    }
-    return port_error(rig, plan.rule.wavelengths, frames);
+    return port_error(rig, plan.wavelengths);
 }
 
 // Of every pixel, by the reference: its signals against the rule's sum of its radiances.
 std::array<double, kChannels> traced_error(const Rig& rig, const RenderPlan& plan) {
     TraceOptions options{.signals = true, .planes_nm = {}};
-    for (const WeightedWavelength& w : plan.rule.wavelengths) {
+    for (const PlannedWavelength& w : plan.wavelengths) {
         options.planes_nm.push_back(w.lambda_nm);
     }
     const std::vector<double> planes = Tracer(rig, options).rows(0, rig.camera.height_px);
@@ -56,8 +52,8 @@ std::array<double, kChannels> traced_error(const Rig& rig, const RenderPlan& pla
     for (std::size_t c = 0; c < kChannels; ++c) {
         for (std::size_t i = 0; i < pixels; ++i) {
             double found = 0.0;
-            for (std::size_t j = 0; j < plan.rule.wavelengths.size(); ++j) {
-                found += plan.rule.wavelengths[j].weight[c] * planes[(kChannels + j) * pixels + i];
+            for (std::size_t j = 0; j < plan.wavelengths.size(); ++j) {
+                found += plan.wavelengths[j].weight[c] * planes[(kChannels + j) * pixels + i];
             }
             error[c] = std::max(error[c], std::abs(found / planes[c * pixels + i] - 1.0));
         }
@@ -89,7 +85,7 @@ TEST(Certificate, IsTheErrorThatAPlanPromises) {
     const RenderPlan plan = plan_of(rig, {434.812, 449.188, 603.906, 684.719});
     const auto right = traced_error(rig, plan);
     EXPECT_GT(right[0], 3.6e-4);
-    for (std::size_t c = 0; c < kChannels; ++c) EXPECT_GE(plan.rule.quality[c].error, right[c]);
+    for (std::size_t c = 0; c < kChannels; ++c) EXPECT_GE(plan.quality[c].error, right[c]);
 }
 
 TEST(Certificate, MakesAPlanTakeAsManyWavelengthsAsItsToleranceNeeds) {
@@ -98,10 +94,10 @@ TEST(Certificate, MakesAPlanTakeAsManyWavelengthsAsItsToleranceNeeds) {
     request.scene.wavelengths_per_frame = 1;
     const RenderPlan plan = plan_render(rig, request);
     EXPECT_LE(plan.promise(), request.tolerance);
-    EXPECT_GT(plan.rule.wavelengths.size(), 4U);
+    EXPECT_GT(plan.wavelengths.size(), 4U);
     const auto right = traced_error(rig, plan);
     for (std::size_t c = 0; c < kChannels; ++c) {
-        EXPECT_LE(right[c], plan.rule.quality[c].error);
+        EXPECT_LE(right[c], plan.quality[c].error);
     }
 }
 

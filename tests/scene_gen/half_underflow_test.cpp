@@ -18,10 +18,10 @@ constexpr int kMostExposureOfColours_log2 = 100;  // about what POV-Ray's floats
 
 // Green in view, and red that is 2^red_log2 as bright and makes as much signal as green, or a share
 // of it.
-std::vector<ManifestWavelength> green_and_red(int red_log2, double share = 1.0) {
-    const ManifestWavelength green{
+std::vector<PlannedWavelength> green_and_red(int red_log2, double share = 1.0) {
+    const PlannedWavelength green{
         .lambda_nm = 550.0, .weight = {1.0, 1.0, 0.0}, .exposure_log2 = 13, .radiance_bound = 1.0};
-    const ManifestWavelength red{
+    const PlannedWavelength red{
         .lambda_nm = 650.0,
         .weight = {std::ldexp(share, -red_log2), 0.0, 0.0},
         .exposure_log2 = std::min(13 - red_log2, kMostExposureOfColours_log2),
@@ -29,7 +29,7 @@ std::vector<ManifestWavelength> green_and_red(int red_log2, double share = 1.0) 
     return {green, red};
 }
 
-std::string refusal_of(const std::vector<ManifestWavelength>& wavelengths) {
+std::string refusal_of(const std::vector<PlannedWavelength>& wavelengths) {
     try {
         require_light_that_counts(wavelengths, kFrameError);
         return "none";
@@ -55,16 +55,16 @@ TEST(LostLight, IsNoMatterWhereItCountsForNothing) {
 
 // A sign makes no difference: what is subtracted and lost is lost as well.
 TEST(LostLight, CountsByTheSizeOfItsWeight) {
-    std::vector<ManifestWavelength> wavelengths = green_and_red(-200);
+    std::vector<PlannedWavelength> wavelengths = green_and_red(-200);
     wavelengths[1].weight[0] *= -1.0;
     EXPECT_NE(refusal_of(wavelengths), "none");
 }
 
 TEST(LostLight, IsABlackImageWhereNothingIsHeld) {
-    std::vector<ManifestWavelength> wavelengths = green_and_red(-200);
+    std::vector<PlannedWavelength> wavelengths = green_and_red(-200);
     wavelengths[0].weight = {};
     EXPECT_EQ(refusal_of(wavelengths), "none");
-    for (ManifestWavelength& w : wavelengths) w.radiance_bound = 0.0;
+    for (PlannedWavelength& w : wavelengths) w.radiance_bound = 0.0;
     EXPECT_EQ(refusal_of(wavelengths), "none");
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "rig/rig_reader.h"
+#include "scene_gen/render_plan.h"
 #include "tests/support/closed_form.h"
 
 #include <gtest/gtest.h>
@@ -22,6 +23,7 @@ using Numbers = std::vector<double>;
 
 constexpr double kPi = std::numbers::pi;
 // Of a rig with one lamp spectrum, and of its floor.
+const std::string kLambda = "#declare Aphotic_Lambda = ";
 const std::string kLamps = "#declare Aphotic_Lamp_Values = array[1] ";
 const std::string kReflectances = "#declare Aphotic_Reflectance_Values = array[1] ";
 // A few products of doubles, each rounded once.
@@ -71,10 +73,24 @@ Rig with_port(Rig rig) {
     return rig;
 }
 
+struct Generated {
+    std::vector<PlannedWavelength> wavelengths;
+    std::vector<FrameScene> scenes;
+};
+
+Generated generated(const Rig& rig,
+                    const std::vector<double>& lambda_nm = {450.0, 550.0, 650.0},
+                    const SceneOptions& options = {}) {
+    Generated all{.wavelengths = in_frames(rig, lambda_nm, options), .scenes = {}};
+    const std::vector<LampGrid> lamps = scene_lamps(rig, all.wavelengths, options);
+    all.scenes = make_scenes(rig, lamps, options, all.wavelengths);
+    return all;
+}
+
 std::vector<FrameScene> scenes_of(const Rig& rig,
                                   const std::vector<double>& lambda_nm = {450.0, 550.0, 650.0},
                                   const SceneOptions& options = {}) {
-    return make_scenes(rig, lambda_nm, options);
+    return generated(rig, lambda_nm, options).scenes;
 }
 
 std::string sdl_of(const Rig& rig) {
@@ -156,8 +172,11 @@ TEST(PovScene, KeepsTheWavelengthsInTheirOrder) {
             odd_rig(), lambda_nm, {.wavelengths_per_frame = per_frame, .emitter_lamps = {}});
         std::vector<double> found_nm;
         for (const FrameScene& scene : scenes) {
-            EXPECT_LE(scene.wavelengths.size(), static_cast<std::size_t>(per_frame));
-            for (const FrameWavelength& w : scene.wavelengths) found_nm.push_back(w.lambda_nm);
+            Numbers in_frame_nm = one_after(scene.sdl, kLambda);
+            in_frame_nm.erase(std::unique(in_frame_nm.begin(), in_frame_nm.end()),
+                              in_frame_nm.end());
+            EXPECT_LE(in_frame_nm.size(), static_cast<std::size_t>(per_frame));
+            found_nm.insert(found_nm.end(), in_frame_nm.begin(), in_frame_nm.end());
         }
         EXPECT_EQ(found_nm, lambda_nm) << per_frame << " a frame";
         EXPECT_EQ(scenes.size(),
@@ -169,7 +188,7 @@ TEST(PovScene, OfFewerThanThreeWavelengthsRepeatsItsLast) {
     const Rig rig = odd_rig();
     const auto scenes = scenes_of(rig, {450.0, 650.0});
     ASSERT_EQ(scenes.size(), 1U);
-    ASSERT_EQ(scenes[0].wavelengths.size(), 2U);
+    EXPECT_EQ(one_after(scenes[0].sdl, kLambda), (Numbers{450.0, 650.0, 650.0}));
     const Numbers rho = one_after(scenes[0].sdl, kReflectances);
     EXPECT_EQ(rho,
               (Numbers{rig.seafloor.reflectance.at(450.0),
@@ -254,16 +273,17 @@ TEST(PovScene, HasEveryConeOfEveryStrobeInPovraysFrame) {
 
 TEST(PovScene, LightsWithTheLampsFluxTimesTheExposure) {
     const Rig rig = odd_rig();
-    const FrameScene scene = scenes_of(rig).front();
+    const Generated all = generated(rig);
+    const FrameScene& scene = all.scenes.front();
     Numbers flux;
     Numbers exposure;
     Numbers lambda_nm;
-    for (const FrameWavelength& w : scene.wavelengths) {
+    for (const PlannedWavelength& w : all.wavelengths) {
         lambda_nm.push_back(w.lambda_nm);
         flux.push_back(rig.strobes[0].spectrum.at(w.lambda_nm));
         exposure.push_back(std::exp2(w.exposure_log2));
     }
-    EXPECT_EQ(one_after(scene.sdl, "#declare Aphotic_Lambda = "), lambda_nm);
+    EXPECT_EQ(one_after(scene.sdl, kLambda), lambda_nm);
     EXPECT_EQ(one_after(scene.sdl, "#declare Aphotic_Exposure = "), exposure);
     EXPECT_EQ(one_after(scene.sdl, kLamps), flux);
 }
@@ -297,19 +317,17 @@ TEST(PovScene, FadesByTheInverseSquareFromTheNearestFloorOn) {
 // The exposed frame must use half floats well: peak over 2^10, and no more than 2^14.
 TEST(PovScene, ExposesEachWavelengthIntoTheUpperHalfFloats) {
     const Rig rig = odd_rig();
-    for (const FrameScene& scene : scenes_of(rig)) {
-        for (const FrameWavelength& w : scene.wavelengths) {
-            double peak = 0.0;
-            for (int row = 0; row < rig.camera.height_px; ++row) {
-                for (int column = 0; column < rig.camera.width_px; ++column) {
-                    peak = std::max(peak,
-                                    closed_form::radiance(rig, column, row, w.lambda_nm).radiance);
-                }
+    for (const PlannedWavelength& w : generated(rig).wavelengths) {
+        double peak = 0.0;
+        for (int row = 0; row < rig.camera.height_px; ++row) {
+            for (int column = 0; column < rig.camera.width_px; ++column) {
+                peak =
+                    std::max(peak, closed_form::radiance(rig, column, row, w.lambda_nm).radiance);
             }
-            const double exposed = std::ldexp(peak, w.exposure_log2);
-            EXPECT_GT(exposed, 0x1p10) << w.lambda_nm << " nm";
-            EXPECT_LE(exposed, 0x1p14) << w.lambda_nm << " nm";
         }
+        const double exposed = std::ldexp(peak, w.exposure_log2);
+        EXPECT_GT(exposed, 0x1p10) << w.lambda_nm << " nm";
+        EXPECT_LE(exposed, 0x1p14) << w.lambda_nm << " nm";
     }
 }
 
@@ -345,8 +363,9 @@ TEST(PovScene, BehindAPortHasOneWavelengthAndItsIndices) {
         scenes_of(rig, {450.0, 550.0, 650.0}, {.pixel_shift = 0.0, .emitter_lamps = {}});
     ASSERT_EQ(scenes.size(), 3U);
     for (const FrameScene& scene : scenes) {
-        ASSERT_EQ(scene.wavelengths.size(), 1U);
-        const double lambda_nm = scene.wavelengths[0].lambda_nm;
+        const Numbers all_nm = one_after(scene.sdl, kLambda);
+        const double lambda_nm = all_nm[0];
+        EXPECT_EQ(all_nm, Numbers(3, lambda_nm));
         EXPECT_EQ(one_after(scene.sdl, "#declare Aphotic_Water_Index = "),
                   Numbers{seawater_index(lambda_nm, 35.0, 10.0)});
         EXPECT_EQ(one_after(scene.sdl, "#declare Aphotic_Glass_Indices = array[1] "),
@@ -474,7 +493,7 @@ TEST(PovObjects, AreWrittenInPovRaysFrame) {
         object_of(Mesh{.vertices_m = {{0.0, 0.0, 2.0}, {0.5, 0.0, 2.0}, {0.0, 0.25, 2.0}},
                        .triangles = {{0, 1, 2}}})};
     rig.objects[0].phong = 0.5;
-    const std::string sdl = make_scenes(rig, std::vector{400.0, 550.0, 700.0})[0].sdl;
+    const std::string sdl = scenes_of(rig, {400.0, 550.0, 700.0})[0].sdl;
     // Their three spectra are one: it has one name, and one value.
     for (const char* text :
          {"sphere { <0.25, 0.5, 2>, 0.125\n   pigment { Aphotic_Pigment (\"",
@@ -492,9 +511,9 @@ TEST(PovObjects, AreWrittenInPovRaysFrame) {
 TEST(PovObjects, MayNotReachIntoTheHousing) {
     Rig rig = with_port(odd_rig());
     rig.objects = {object_of(Sphere{.centre_m = {0.0, 0.0, 1.0}, .radius_m = 0.1})};
-    EXPECT_NO_THROW((void)make_scenes(rig, std::vector{550.0}));
+    EXPECT_NO_THROW((void)scenes_of(rig, {550.0}));
     rig.objects = {object_of(Sphere{.centre_m = {0.0, 0.0, 0.2}, .radius_m = 0.19})};
-    EXPECT_THROW((void)make_scenes(rig, std::vector{550.0}), InputError);
+    EXPECT_THROW((void)scenes_of(rig, {550.0}), InputError);
 }
 
 }  // namespace

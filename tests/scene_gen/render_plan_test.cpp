@@ -41,7 +41,7 @@ Rig habcam() {
 
 std::vector<double> wavelengths_of(const RenderPlan& plan) {
     std::vector<double> lambda_nm;
-    for (const WeightedWavelength& w : plan.rule.wavelengths) lambda_nm.push_back(w.lambda_nm);
+    for (const PlannedWavelength& w : plan.wavelengths) lambda_nm.push_back(w.lambda_nm);
     return lambda_nm;
 }
 
@@ -62,14 +62,18 @@ void expect_order(const Rig& rig, const RenderPlan& plan) {
         if (j == 0) continue;
         EXPECT_LT(lambda_nm[j - 1], lambda_nm[j]);
     }
-    std::size_t next = 0;
-    for (const FrameGroup& group : plan.frames) {
-        EXPECT_EQ(group.first, next);
-        EXPECT_GE(group.count, 1U);
-        EXPECT_LE(group.count, static_cast<std::size_t>(plan.scene.wavelengths_per_frame));
-        next += group.count;
+    std::size_t frame = 0;
+    std::size_t channel = 0;
+    for (const PlannedWavelength& w : plan.wavelengths) {
+        if (w.frame != frame) {
+            EXPECT_EQ(w.frame, frame + 1);
+            frame = w.frame;
+            channel = 0;
+        }
+        EXPECT_EQ(w.channel, channel++);
+        EXPECT_LT(w.channel, static_cast<std::size_t>(plan.scene.wavelengths_per_frame));
     }
-    EXPECT_EQ(next, lambda_nm.size());
+    EXPECT_EQ(plan.frames(), frame + 1);
 }
 
 // --- The promise, pixel by pixel -------------------------------------------------------------
@@ -137,31 +141,26 @@ Signals exact_signals(const Rig& rig, Pixel pixel, int panels) {
 
 class PlannedSignals {
   public:
-    PlannedSignals(const Rig& rig, const RenderPlan& plan) : rule_(plan.rule) {
-        for (const FrameGroup& group : plan.frames) {
-            for (std::size_t j = group.first; j < group.first + group.count; ++j) {
-                rigs_.push_back(frozen_at(rig, rule_.wavelengths[j].lambda_nm));
-                index_nm_.push_back(group.index_nm);
-            }
+    PlannedSignals(const Rig& rig, const RenderPlan& plan) : wavelengths_(plan.wavelengths) {
+        for (const PlannedWavelength& w : wavelengths_) {
+            rigs_.push_back(frozen_at(rig, w.lambda_nm));
         }
     }
 
     [[nodiscard]] Signals at(Pixel pixel) const {
         Signals signals{};
         for (std::size_t j = 0; j < rigs_.size(); ++j) {
+            const PlannedWavelength& w = wavelengths_[j];
             const double L =
-                closed_form::radiance(rigs_[j], pixel.column, pixel.row, index_nm_[j]).radiance;
-            for (std::size_t c = 0; c < kChannels; ++c) {
-                signals[c] += rule_.wavelengths[j].weight[c] * L;
-            }
+                closed_form::radiance(rigs_[j], pixel.column, pixel.row, w.index_nm).radiance;
+            for (std::size_t c = 0; c < kChannels; ++c) signals[c] += w.weight[c] * L;
         }
         return signals;
     }
 
   private:
-    FittedRule rule_;
+    std::vector<PlannedWavelength> wavelengths_;
     std::vector<Rig> rigs_;
-    std::vector<double> index_nm_;
 };
 
 // The worst relative error of pixels off the cones' edges, by channel, and where.
@@ -238,10 +237,10 @@ void expect_promise_kept(const Rig& rig,
     const Worst worst = worst_pixels(rig, plan, pixels);
     EXPECT_GT(worst.pixels, pixels / 3) << what;
     for (std::size_t c = 0; c < kChannels; ++c) {
-        EXPECT_LE(worst.error[c], plan.rule.quality[c].error * (1.0 + kBetweenPaths) + kQuadrature)
+        EXPECT_LE(worst.error[c], plan.quality[c].error * (1.0 + kBetweenPaths) + kQuadrature)
             << what << ": channel " << kChannelNames[c] << ", column " << worst.pixel[c].column
-            << ", row " << worst.pixel[c].row << "; " << plan.rule.wavelengths.size()
-            << " wavelengths in " << plan.frames.size() << " frames";
+            << ", row " << worst.pixel[c].row << "; " << plan.wavelengths.size()
+            << " wavelengths in " << plan.frames() << " frames";
     }
 }
 
@@ -263,10 +262,9 @@ TEST(RenderPlan, OfHabCamIsOneFrameOfThreeWavelengths) {
     const RenderPlan plan = plan_render(habcam(), {});
     EXPECT_EQ(plan.method, PlanMethod::Fitted);
     EXPECT_EQ(plan.tolerance, 1e-3);
-    ASSERT_EQ(plan.frames.size(), 1U);
-    EXPECT_EQ(plan.frames[0].count, 3U);
-    EXPECT_EQ(plan.rule.wavelengths.size(), 3U);
-    EXPECT_LT(plan.rule.error(), 1e-5);
+    ASSERT_EQ(plan.frames(), 1U);
+    EXPECT_EQ(plan.wavelengths.size(), 3U);
+    EXPECT_LT(plan.error(), 1e-5);
     EXPECT_LT(plan.promise(), 1e-3);
     EXPECT_GE(plan.promise(), kFrameError) << "no image is better than its frames";
     EXPECT_EQ(plan.frame_error, kFrameError);
@@ -304,8 +302,8 @@ TEST(RenderPlan, IsTheSameEveryTime) {
         const RenderPlan first = plan_render(rig_of(scene), {});
         const RenderPlan second = plan_render(rig_of(scene), {});
         EXPECT_EQ(wavelengths_of(first), wavelengths_of(second)) << scene;
-        for (std::size_t j = 0; j < first.rule.wavelengths.size(); ++j) {
-            EXPECT_EQ(first.rule.wavelengths[j].weight, second.rule.wavelengths[j].weight);
+        for (std::size_t j = 0; j < first.wavelengths.size(); ++j) {
+            EXPECT_EQ(first.wavelengths[j].weight, second.wavelengths[j].weight);
         }
         EXPECT_EQ(first.promise(), second.promise());
     }
@@ -330,7 +328,7 @@ TEST(RenderPlan, CountsTheErrorOfAnEmittersLamps) {
     const RenderPlan plan = plan_render(rig, {});
     EXPECT_EQ(plan.frame_error, kFrameError + kLampError);
     EXPECT_GE(plan.promise(), kFrameError + kLampError);
-    EXPECT_EQ(plan.frames.size(), 1U);
+    EXPECT_EQ(plan.frames(), 1U);
 }
 
 // --- Equal bands, listed wavelengths ---------------------------------------------------------
@@ -342,11 +340,11 @@ TEST(RenderPlan, OfEqualBandsIsTheMidpointRule) {
     const Rig rig = habcam();
     const RenderPlan plan = plan_render(rig, request);
     EXPECT_EQ(plan.method, PlanMethod::EqualBands);
-    ASSERT_EQ(plan.rule.wavelengths.size(), 36U);
-    EXPECT_EQ(plan.frames.size(), 12U);
+    ASSERT_EQ(plan.wavelengths.size(), 36U);
+    EXPECT_EQ(plan.frames(), 12U);
     constexpr double kWidthNm = 320.0 / 36.0;
     for (std::size_t j = 0; j < 36; ++j) {
-        const WeightedWavelength& w = plan.rule.wavelengths[j];
+        const PlannedWavelength& w = plan.wavelengths[j];
         EXPECT_NEAR(w.lambda_nm, 400.0 + (static_cast<double>(j) + 0.5) * kWidthNm, 1e-9);
         for (int c = 0; c < kChannels; ++c) {
             EXPECT_NEAR(w.weight[static_cast<std::size_t>(c)],
@@ -354,8 +352,8 @@ TEST(RenderPlan, OfEqualBandsIsTheMidpointRule) {
                         1e-12);
         }
     }
-    EXPECT_NEAR(plan.rule.error(), 1.3e-3, 2e-4);
-    EXPECT_GT(plan.rule.error(), 50.0 * plan_render(rig, {}).rule.error());
+    EXPECT_NEAR(plan.error(), 1.3e-3, 2e-4);
+    EXPECT_GT(plan.error(), 50.0 * plan_render(rig, {}).error());
     expect_order(rig, plan);
     expect_promise_kept(rig, plan, 10, "36 bands");
 }
@@ -368,7 +366,7 @@ TEST(RenderPlan, StatesTheErrorOfEqualBandsClosely) {
         const RenderPlan plan = plan_render(habcam(), request);
         const Worst worst = worst_pixels(habcam(), plan, 20);
         for (std::size_t c = 0; c < kChannels; ++c) {
-            EXPECT_GE(worst.error[c], 0.9 * plan.rule.quality[c].error)
+            EXPECT_GE(worst.error[c], 0.9 * plan.quality[c].error)
                 << bands << " bands, channel " << kChannelNames[c];
         }
     }
@@ -380,16 +378,17 @@ TEST(RenderPlan, KeepsListedWavelengths) {
     const RenderPlan plan = plan_render(habcam(), request);
     EXPECT_EQ(plan.method, PlanMethod::Listed);
     EXPECT_EQ(wavelengths_of(plan), request.wavelengths_nm);
-    EXPECT_EQ(plan.frames.size(), 1U);
+    EXPECT_EQ(plan.frames(), 1U);
     expect_promise_kept(habcam(), plan, 20, "listed");
     // Better ones are not known than those that were looked for.
-    EXPECT_GT(plan.rule.error(), plan_render(habcam(), {}).rule.error());
+    EXPECT_GT(plan.error(), plan_render(habcam(), {}).error());
 
     request.wavelengths_nm = {450.0, 500.0, 550.0, 600.0, 650.0};
     const RenderPlan five = plan_render(habcam(), request);
     EXPECT_EQ(wavelengths_of(five), request.wavelengths_nm);
-    ASSERT_EQ(five.frames.size(), 2U);
-    EXPECT_EQ(five.frames[1].count, 2U);
+    ASSERT_EQ(five.frames(), 2U);
+    EXPECT_EQ(five.wavelengths[2].frame, 0U);
+    EXPECT_EQ(five.wavelengths[3].frame, 1U);
 }
 
 // However bad, they are what was asked for, and the promise says so.
@@ -398,7 +397,7 @@ TEST(RenderPlan, TakesListedWavelengthsThatCannotKeepATolerance) {
     request.wavelengths_nm = {550.0};
     const RenderPlan plan = plan_render(habcam(), request);
     EXPECT_GT(plan.promise(), 1e-2);
-    EXPECT_EQ(plan.frames.size(), 1U);
+    EXPECT_EQ(plan.frames(), 1U);
 }
 
 TEST(RenderPlan, RefusesListedWavelengthsOutOfOrderOrRange) {
@@ -427,13 +426,13 @@ TEST(RenderPlan, IsForThePathsThatAreAskedFor) {
     const RenderPlan plan = plan_render(rig, over_paths(1e-3));
     EXPECT_EQ(plan.family.shortest_path_m, 2.0);
     EXPECT_EQ(plan.family.longest_path_m, 16.0);
-    EXPECT_EQ(plan.rule.wavelengths.size(), 6U) << "three are not enough over 14 m";
-    EXPECT_EQ(plan.frames.size(), 2U);
-    EXPECT_LT(plan.rule.error(), 1e-6);
+    EXPECT_EQ(plan.wavelengths.size(), 6U) << "three are not enough over 14 m";
+    EXPECT_EQ(plan.frames(), 2U);
+    EXPECT_LT(plan.error(), 1e-6);
     EXPECT_LE(plan.promise(), 1e-3);
     const RenderPlan loose = plan_render(rig, over_paths(2e-3));
-    EXPECT_EQ(loose.rule.wavelengths.size(), 3U);
-    EXPECT_LT(loose.rule.error(), 1e-3);
+    EXPECT_EQ(loose.wavelengths.size(), 3U);
+    EXPECT_LT(loose.error(), 1e-3);
     EXPECT_LE(loose.promise(), 2e-3);
     EXPECT_EQ(loose.tolerance, 2e-3);
 }
@@ -467,8 +466,8 @@ TEST(RenderPlan, OfFiveMaterialsIsThreeFramesAtMost) {
     const Rig rig = rig_with_materials();
     const RenderPlan plan = plan_render(rig, {});
     EXPECT_EQ(plan.family.sources.size(), 5U);
-    EXPECT_LE(plan.rule.wavelengths.size(), 9U);
-    EXPECT_LE(plan.frames.size(), 3U);
+    EXPECT_LE(plan.wavelengths.size(), 9U);
+    EXPECT_LE(plan.frames(), 3U);
     EXPECT_LE(plan.promise(), 1e-3);
     expect_order(rig, plan);
 }
@@ -490,9 +489,9 @@ TEST(RenderPlan, OfClearWaterIsOneWavelength) {
     for (const double loss_per_m : {0.0, 0.4}) {
         rig.water.uniform_loss_per_m = loss_per_m;
         const RenderPlan plan = plan_render(rig, {});
-        EXPECT_EQ(plan.rule.wavelengths.size(), 1U) << loss_per_m;
-        EXPECT_EQ(plan.frames.size(), 1U);
-        EXPECT_LT(plan.rule.error(), kBlack);
+        EXPECT_EQ(plan.wavelengths.size(), 1U) << loss_per_m;
+        EXPECT_EQ(plan.frames(), 1U);
+        EXPECT_LT(plan.error(), kBlack);
         expect_promise_kept(rig, plan, 6, "clear water");
     }
 }
@@ -501,7 +500,7 @@ TEST(RenderPlan, OfADarkRigIsOneFrame) {
     Rig rig = habcam();
     rig.seafloor.reflectance = flat(0.0);
     const RenderPlan plan = plan_render(rig, {});
-    EXPECT_EQ(plan.frames.size(), 1U);
+    EXPECT_EQ(plan.frames(), 1U);
     EXPECT_EQ(plan.promise(), 0.0);
 }
 
@@ -575,7 +574,7 @@ TEST(RenderPlan, TakesNoMoreWavelengthsThanATightToleranceNeeds) {
         request.tolerance = three.promise() * room;
         const RenderPlan plan = plan_render(habcam(), request);
         EXPECT_LE(plan.promise(), request.tolerance);
-        EXPECT_LE(plan.rule.wavelengths.size(), 3U) << "tolerance " << request.tolerance;
+        EXPECT_LE(plan.wavelengths.size(), 3U) << "tolerance " << request.tolerance;
     }
 }
 
@@ -588,13 +587,13 @@ TEST(RenderPlan, BehindAPortKeepsItsToleranceAndItsSharing) {
         request.tolerance = tolerance;
         const RenderPlan plan = plan_render(rig, request);
         EXPECT_LE(plan.promise(), tolerance);
-        EXPECT_LE(plan.frames.size(), plan.rule.wavelengths.size());
-        const std::vector<double> lambda_nm = wavelengths_of(plan);
-        for (const FrameGroup& group : plan.frames) {
-            EXPECT_LE(corner_shift_px(
-                          rig, lambda_nm[group.first], lambda_nm[group.first + group.count - 1]),
-                      request.scene.pixel_shift)
-                << "tolerance " << tolerance;
+        EXPECT_LE(plan.frames(), plan.wavelengths.size());
+        for (const PlannedWavelength& a : plan.wavelengths) {
+            for (const PlannedWavelength& b : plan.wavelengths) {
+                if (a.frame != b.frame) continue;
+                EXPECT_LE(corner_shift_px(rig, a.lambda_nm, b.lambda_nm), request.scene.pixel_shift)
+                    << "tolerance " << tolerance;
+            }
         }
         expect_order(rig, plan);
     }
@@ -639,10 +638,10 @@ TEST(RenderPlan, BehindAPortKeepsItsToleranceOnPixels) {
         const Worst worst = worst_pixels(each.rig, plan, 120);
         EXPECT_GT(worst.pixels, 30) << each.name;
         for (std::size_t c = 0; c < kChannels; ++c) {
-            const double from_frames = plan.rule.quality[c].amplification * plan.frame_error;
+            const double from_frames = plan.quality[c].amplification * plan.frame_error;
             EXPECT_LE(worst.error[c] + from_frames, each.tolerance)
                 << each.name << ": channel " << kChannelNames[c] << " errs by " << worst.error[c]
-                << " of " << plan.rule.quality[c].error << ", column " << worst.pixel[c].column
+                << " of " << plan.quality[c].error << ", column " << worst.pixel[c].column
                 << ", row " << worst.pixel[c].row;
         }
     }
@@ -654,12 +653,12 @@ TEST(RenderPlan, KnowsWhatSharedFramesShift) {
     PlanRequest request;
     request.wavelengths_nm = {480.0, 550.0, 620.0};
     const RenderPlan apart = plan_render(rig, request);
-    EXPECT_EQ(apart.frames.size(), 3U);
+    EXPECT_EQ(apart.frames(), 3U);
     request.scene.pixel_shift = 10.0;
     const RenderPlan shared = plan_render(rig, request);
-    ASSERT_EQ(shared.frames.size(), 1U);
-    EXPECT_EQ(shared.frames[0].index_nm, 550.0);
-    EXPECT_GT(shared.rule.error(), apart.rule.error());
+    ASSERT_EQ(shared.frames(), 1U);
+    EXPECT_EQ(shared.wavelengths[0].index_nm, 550.0);
+    EXPECT_GT(shared.error(), apart.error());
     expect_promise_kept(rig, apart, 40, "apart");
     expect_promise_kept(rig, shared, 40, "shared");
 }
@@ -673,7 +672,7 @@ TEST(RenderPlan, BehindAPortGivesUpSharingForTheTolerance) {
         request.tolerance = tolerance;
         const RenderPlan plan = plan_render(rig, request);
         EXPECT_LE(plan.promise(), tolerance);
-        const bool is_shared = plan.frames.size() < plan.rule.wavelengths.size();
+        const bool is_shared = plan.frames() < plan.wavelengths.size();
         EXPECT_EQ(plan.scene.pixel_shift, is_shared ? 1000.0 : 0.0) << tolerance;
     }
 }
@@ -683,11 +682,13 @@ TEST(RenderPlan, FramesLightHasTheFramesIndices) {
     const LightFamily family = light_family(rig);
     const QuadratureFitter fitter(rig.camera.sensor, family, rig.camera.range);
     const std::vector<double> lambda_nm{450.0, 470.0, 600.0};
-    const std::vector<FrameGroup> groups{{.first = 0, .count = 2, .index_nm = 460.0},
-                                         {.first = 2, .count = 1, .index_nm = 600.0}};
-    const std::vector<FrameLight> frames = frames_light(fitter, lambda_nm, groups);
-    ASSERT_EQ(frames.size(), 3U);
     const std::array index_nm{460.0, 460.0, 600.0};
+    std::vector<PlannedWavelength> wavelengths;
+    for (std::size_t j = 0; j < 3; ++j) {
+        wavelengths.push_back({.lambda_nm = lambda_nm[j], .index_nm = index_nm[j]});
+    }
+    const std::vector<FrameLight> frames = frames_light(fitter, wavelengths);
+    ASSERT_EQ(frames.size(), 3U);
     for (std::size_t j = 0; j < 3; ++j) {
         EXPECT_EQ(frames[j].lambda_nm, lambda_nm[j]);
         EXPECT_EQ(frames[j].attenuation_per_m, rig.water.attenuation_per_m(lambda_nm[j]));

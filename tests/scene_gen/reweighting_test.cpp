@@ -157,7 +157,7 @@ double from_frames(const Manifest& weights,
                    double path_m,
                    std::size_t channel) {
     double sum = 0.0;
-    for (const ManifestWavelength& w : weights.wavelengths) {
+    for (const PlannedWavelength& w : weights.wavelengths) {
         sum += w.weight[channel] * shown.strobes[strobe].power *
                shown.strobes[strobe].spectrum.at(w.lambda_nm) *
                reflectance_of(shown, index, w.lambda_nm) *
@@ -354,15 +354,15 @@ TEST(Reintegrate, NamesTheChangedRigAndLeavesTheFramesAlone) {
     EXPECT_EQ(weights.frames[0].scene_sha256, habcams().frames[0].scene_sha256);
     ASSERT_EQ(weights.wavelengths.size(), habcams().wavelengths.size());
     for (std::size_t j = 0; j < weights.wavelengths.size(); ++j) {
-        const ManifestWavelength& found = weights.wavelengths[j];
-        const ManifestWavelength& frames = habcams().wavelengths[j];
+        const PlannedWavelength& found = weights.wavelengths[j];
+        const PlannedWavelength& frames = habcams().wavelengths[j];
         EXPECT_EQ(found.lambda_nm, frames.lambda_nm);
         EXPECT_EQ(found.frame, frames.frame);
         EXPECT_EQ(found.channel, frames.channel);
         EXPECT_EQ(found.exposure_log2, frames.exposure_log2);
-        EXPECT_EQ(found.attenuation_per_m, frames.attenuation_per_m);
-        EXPECT_EQ(found.flux, frames.flux);
-        EXPECT_EQ(found.reflectance, frames.reflectance);
+        EXPECT_EQ(found.light.attenuation_per_m, frames.light.attenuation_per_m);
+        EXPECT_EQ(found.light.flux, frames.light.flux);
+        EXPECT_EQ(found.light.reflectance, frames.light.reflectance);
         EXPECT_NE(found.weight, frames.weight);
     }
 }
@@ -374,17 +374,19 @@ TEST(Reintegrate, RestsOnWhatTheManifestNotes) {
     rig.strobes[2].power = 5.0;
     rig.water.uniform_loss_per_m = 0.25;
     const Manifest manifest = manifest_of(rig);
-    for (const ManifestWavelength& w : manifest.wavelengths) {
-        EXPECT_NEAR(
-            w.attenuation_per_m, rig.water.absorption_per_m.at(w.lambda_nm) + 0.25, kRounding);
-        ASSERT_EQ(w.flux.size(), 4U);
+    for (const PlannedWavelength& w : manifest.wavelengths) {
+        EXPECT_NEAR(w.light.attenuation_per_m,
+                    rig.water.absorption_per_m.at(w.lambda_nm) + 0.25,
+                    kRounding);
+        ASSERT_EQ(w.light.flux.size(), 4U);
         for (std::size_t s = 0; s < 4; ++s) {
             const double power = s == 2 ? 5.0 : 1.0;
-            EXPECT_NEAR(w.flux[s], power * rig.strobes[s].spectrum.at(w.lambda_nm), kRounding);
+            EXPECT_NEAR(
+                w.light.flux[s], power * rig.strobes[s].spectrum.at(w.lambda_nm), kRounding);
         }
-        ASSERT_EQ(w.reflectance.size(), 2U);
-        EXPECT_EQ(w.reflectance[0], rig.seafloor.reflectance.at(w.lambda_nm));
-        EXPECT_EQ(w.reflectance[1], rig.materials[0].at(w.lambda_nm));
+        ASSERT_EQ(w.light.reflectance.size(), 2U);
+        EXPECT_EQ(w.light.reflectance[0], rig.seafloor.reflectance.at(w.lambda_nm));
+        EXPECT_EQ(w.light.reflectance[1], rig.materials[0].at(w.lambda_nm));
     }
 }
 
@@ -471,12 +473,13 @@ TEST(Reintegrate, NamesTheFramesThatItLacks) {
         const QuadratureFitter fitter(
             now.camera.sensor, light_family_by_strobe(now), now.camera.range);
         std::vector<FrameLight> frames;
-        for (const ManifestWavelength& w : habcams().wavelengths) {
+        for (const PlannedWavelength& w : habcams().wavelengths) {
             FrameLight frame{.lambda_nm = w.lambda_nm,
-                             .attenuation_per_m = w.attenuation_per_m,
+                             .attenuation_per_m = w.light.attenuation_per_m,
                              .sources = {},
                              .tilt = 0.0};
-            for (const double flux : w.flux) frame.sources.push_back(flux * w.reflectance[0]);
+            for (const double flux : w.light.flux)
+                frame.sources.push_back(flux * w.light.reflectance[0]);
             frames.push_back(frame);
         }
         EXPECT_GT(fitter.fit(frames, kFrameError).promise(kFrameError), kTolerance);
@@ -584,6 +587,20 @@ TEST(Reintegrate, NamesThePortThatComesOrGoes) {
               "water.temperature_c: found 20; allowed: 10, as the frames were rendered");
 }
 
+// The frames' light is known by the order of strobes and objects.
+TEST(Reintegrate, NamesAnotherOrder) {
+    EXPECT_EQ(
+        error_of(changed(habcam(), [](Rig& rig) { std::swap(rig.strobes[0], rig.strobes[3]); }),
+                 habcams()),
+        "strobes: found starboard, aft, port, fore; allowed: fore, aft, port, starboard, as "
+        "the frames were rendered");
+    const Rig objects = rig_of("objects.toml");
+    EXPECT_TRUE(
+        error_of(changed(objects, [](Rig& rig) { std::swap(rig.objects[0], rig.objects[1]); }),
+                 manifest_of(objects))
+            .starts_with("objects: found "));
+}
+
 // How many lamps stand for it is the frames' own affair, its size is not.
 TEST(Reintegrate, NamesTheEmitterThatDiffers) {
     Rig shown = habcam();
@@ -591,7 +608,11 @@ TEST(Reintegrate, NamesTheEmitterThatDiffers) {
     PlanRequest request;
     request.scene.emitter_lamps = LampGrid{.across = 5, .along = 3};
     const Manifest manifest = manifest_of(shown, request);
-    EXPECT_EQ(manifest.geometry.at("strobe 'aft' lamps"), "5 x 3");
+    ASSERT_EQ(manifest.strobes.size(), 4U);
+    EXPECT_EQ(manifest.strobes[1].name, "aft");
+    EXPECT_EQ(manifest.strobes[1].lamps_across, 5);
+    EXPECT_EQ(manifest.strobes[1].lamps_along, 3);
+    EXPECT_EQ(manifest.strobes[0].lamps_across, 1) << "it has no emitter";
     EXPECT_EQ(error_of(shown, manifest), "no error");
     Rig larger = shown;
     larger.strobes[1].emitter->across_m = 0.125;
@@ -603,115 +624,6 @@ TEST(Reintegrate, NamesTheEmitterThatDiffers) {
               "rendered");
 }
 
-TEST(RenderedLamps, AreThoseThatTheManifestNotes) {
-    Rig shown = habcam();
-    shown.strobes[1].emitter = Emitter{.across_m = 0.0635, .along_m = 0.0302};
-    PlanRequest request;
-    request.scene.emitter_lamps = LampGrid{.across = 5, .along = 3};
-    Manifest manifest = manifest_of(shown, request);
-    const auto lamps = [&] { return rendered_lamps(shown, manifest); };
-    ASSERT_EQ(lamps().size(), shown.strobes.size());
-    EXPECT_EQ(lamps()[0].across, 1);
-    EXPECT_EQ(lamps()[1].across, 5);
-    EXPECT_EQ(lamps()[1].along, 3);
-    for (const char* text : {"", "5", "5 x", "0 x 3", "5 x 3 x 2", "-1 x 3", "5 x 99999999999"}) {
-        manifest.geometry["strobe 'aft' lamps"] = text;
-        EXPECT_THROW(static_cast<void>(lamps()), InputError) << text;
-    }
-}
-
-TEST(GeometryOf, KnowsOnlyWhatMovesLight) {
-    const auto before = geometry_of(habcam(), {});
-    EXPECT_EQ(geometry_of(habcam(), {}), before);
-    for (const Change& change :
-         std::vector<Change>{[](Rig& rig) { rig.title = "another"; },
-                             [](Rig& rig) { rig.digest = "another"; },
-                             [](Rig& rig) { rig.water.multiple = 3.0; },
-                             [](Rig& rig) { rig.water.uniform_loss_per_m = 3.0; },
-                             [](Rig& rig) { rig.water.salinity_psu = 3.0; },
-                             [](Rig& rig) { rig.water.temperature_c = 3.0; },
-                             [](Rig& rig) { rig.seafloor.reflectance = material("red-algae"); },
-                             [](Rig& rig) { rig.seafloor.phong_size = 3.0; },
-                             [](Rig& rig) { rig.materials = {material("red-algae")}; },
-                             [](Rig& rig) { rig.strobes[0].power = 3.0; },
-                             [](Rig& rig) { rig.strobes[0].spectrum = flash("xenon-arc"); },
-                             [](Rig& rig) { rig.strobes[0].beam.name = "another"; },
-                             [](Rig& rig) { rig.strobes[0].beam.cones[0].part = "another"; },
-                             [](Rig& rig) { rig.camera.sensor = bells(); },
-                             [](Rig& rig) {
-                                 rig.camera.range = {450.0, 650.0};
-                             }}) {
-        EXPECT_EQ(geometry_of(changed(habcam(), change), {}), before);
-    }
-}
-
-TEST(GeometryOf, KnowsObjectsByShapeAndGlossAndNotByColour) {
-    const Rig rig = rig_of("objects.toml");
-    const auto before = geometry_of(rig, {});
-    EXPECT_EQ(
-        geometry_of(changed(rig, [](Rig& r) { r.objects[0].reflectance = material("red-algae"); }),
-                    {}),
-        before);
-    for (const Change& change : std::vector<Change>{
-             [](Rig& r) { std::get<Mesh>(r.objects[0].shape).vertices_m[7].x() += 1e-6; },
-             [](Rig& r) {
-                 std::swap(std::get<Mesh>(r.objects[0].shape).triangles[0][0],
-                           std::get<Mesh>(r.objects[0].shape).triangles[9][1]);
-             },
-             [](Rig& r) { std::get<Sphere>(r.objects[1].shape).radius_m += 1e-9; },
-             [](Rig& r) { std::get<Box>(r.objects[2].shape).most_m.z() += 1e-9; },
-             [](Rig& r) { r.objects[1].phong_size += 1.0; },
-             [](Rig& r) { r.objects.pop_back(); }}) {
-        EXPECT_NE(geometry_of(changed(rig, change), {}), before);
-    }
-}
-
-// A cone's intensity in either way of writing it.
-TEST(GeometryOf, KnowsBeamsByTheirLight) {
-    Rig literal = habcam();
-    for (Strobe& strobe : literal.strobes) {
-        for (Cone& cone : strobe.beam.cones) {
-            cone.weight = axial_intensity(cone, strobe.beam.weights);
-        }
-        strobe.beam.weights = ConeWeights::Literal;
-    }
-    EXPECT_EQ(geometry_of(literal, {}), geometry_of(habcam(), {}));
-}
-
-TEST(GeometryOf, KnowsWhatMovesLight) {
-    const auto before = geometry_of(rig_of("port.toml"), {});
-    EXPECT_NE(before, geometry_of(habcam(), {}));
-    for (const Change& change :
-         std::vector<Change>{[](Rig& rig) { rig.sled.altitude_m += 1e-9; },
-                             [](Rig& rig) { rig.sled.pitch_rad += 1e-9; },
-                             [](Rig& rig) { rig.sled.roll_rad += 1e-9; },
-                             [](Rig& rig) { rig.camera.width_px += 1; },
-                             [](Rig& rig) { rig.camera.height_px += 1; },
-                             [](Rig& rig) { rig.camera.pixel_pitch_m *= 1.0 + 1e-9; },
-                             [](Rig& rig) { rig.camera.focal_length_m *= 1.0 + 1e-9; },
-                             [](Rig& rig) { rig.camera.port->distance_m += 1e-9; },
-                             [](Rig& rig) { rig.camera.port->thickness_m += 1e-9; },
-                             [](Rig& rig) { rig.camera.port->glass = builtin_glass("sapphire"); },
-                             [](Rig& rig) { rig.camera.port.reset(); },
-                             [](Rig& rig) { rig.water.salinity_psu += 1e-9; },
-                             [](Rig& rig) { rig.water.temperature_c += 1e-9; },
-                             [](Rig& rig) { rig.seafloor.phong += 1e-9; },
-                             [](Rig& rig) { rig.strobes[3].name = "another"; },
-                             [](Rig& rig) { rig.strobes[3].position_m.z() += 1e-9; },
-                             [](Rig& rig) { rig.strobes[3].axis.x() += 1e-9; },
-                             [](Rig& rig) { rig.strobes[3].beam.cones[2].weight += 1e-9; },
-                             [](Rig& rig) { rig.strobes[3].beam.cones[2].half_angle_rad -= 1e-9; },
-                             [](Rig& rig) { rig.strobes[3].emitter = Emitter{}; },
-                             [](Rig& rig) { rig.strobes.pop_back(); }}) {
-        EXPECT_NE(geometry_of(changed(rig_of("port.toml"), change), {}), before);
-    }
-    Rig glossy = habcam();
-    glossy.seafloor.phong = 0.5;
-    const auto gloss = geometry_of(glossy, {});
-    glossy.seafloor.phong_size += 1e-9;
-    EXPECT_NE(geometry_of(glossy, {}), gloss) << "where there is a highlight its size counts";
-}
-
 // --- Pixel by pixel --------------------------------------------------------------------------
 
 Spectrum flat(double value) {
@@ -720,7 +632,7 @@ Spectrum flat(double value) {
 
 // What the frame of a wavelength holds of a pixel: lamps, water and floor of the rig it shows at
 // that wavelength, and the rays of the frame's.
-double held(const Rig& shown, const ManifestWavelength& w, int column, int row) {
+double held(const Rig& shown, const PlannedWavelength& w, int column, int row) {
     Rig frozen = shown;
     if (shown.water.multiple != 0.0) {
         frozen.water.absorption_per_m = flat(shown.water.absorption_per_m.at(w.lambda_nm));
@@ -753,7 +665,7 @@ void expect_promise_kept(const Rig& now,
                        now.camera.sensor.response(static_cast<int>(c), nm);
             });
             double found = 0.0;
-            for (const ManifestWavelength& w : weights.wavelengths) {
+            for (const PlannedWavelength& w : weights.wavelengths) {
                 found += w.weight[c] * held(shown, w, column, row);
             }
             worst[c] = std::max(worst[c], std::abs(found / right - 1.0));

@@ -37,7 +37,7 @@ std::string refusal_of(double multiple, const RenderPlan& plan) {
 // POV-Ray's colours are floats, so no exposure lifts red out of such water.
 TEST(SceneSet, RefusesLightThatFramesDoNotHoldAndThatCounts) {
     RenderPlan plan = plan_in(100.0);
-    plan.rule.wavelengths.back().weight = {1e57, 0.0, 0.0};
+    plan.wavelengths.back().weight = {1e57, 0.0, 0.0};
     const std::string refusal = refusal_of(100.0, plan);
     EXPECT_TRUE(refusal.starts_with("found light of at most ")) << refusal;
     EXPECT_NE(
@@ -52,7 +52,7 @@ TEST(SceneSet, TakesEveryPlan) {
         const RenderPlan plan = plan_in(multiple);
         EXPECT_EQ(refusal_of(multiple, plan), "none") << multiple;
         if (multiple < 50.0) continue;
-        EXPECT_EQ(plan.rule.wavelengths.back().weight[0], 0.0) << multiple;
+        EXPECT_EQ(plan.wavelengths.back().weight[0], 0.0) << multiple;
         EXPECT_GT(plan.promise(), 1e-3) << multiple;
     }
 }

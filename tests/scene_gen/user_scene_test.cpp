@@ -59,13 +59,13 @@ TEST(UserScene, PlansForItsMaterialsAndForWhite) {
     EXPECT_EQ(rig.seafloor.reflectance.at(400.0), 1.0);
     EXPECT_EQ(rig.seafloor.reflectance.at(720.0), 1.0);
     ASSERT_EQ(rig.materials.size(), 1U);
-    EXPECT_EQ(short_name(rig.materials[0]), "red-algae");
+    EXPECT_EQ(rig.materials[0].short_name(), "red-algae");
 }
 
 // Beside the scene first: a rig elsewhere may have a table of the same name.
 TEST(UserScene, TakesAFileBesideTheSceneBeforeTheRigsOwn) {
     Rig rig = habcam();
-    rig.materials = {{"reflectance 'a/rust.csv'", {300.0, 800.0}, {0.25, 0.25}}};
+    rig.materials = {{"rust", {300.0, 800.0}, {0.25, 0.25}, CurveSource{.table = "a/rust.csv"}}};
     const TempFolder folder;
     const auto rust = [&] {
         const std::vector<std::string> names{"rust.csv"};

@@ -157,6 +157,23 @@ TEST(LoadCurve, LooksFilesUpInTheBaseFolder) {
                  InputError);
 }
 
+// SHA-256 of the text by sha256sum.
+TEST(LoadCurve, NotesItsSource) {
+    const TempFolder folder;
+    write_file(folder.path() / "mud.csv", "wavelength_nm,reflectance\n400,0.1\n700,0.2\n");
+    const Spectrum mud = load_curve("mud.csv", CurveRole::Reflectance, folder.path());
+    ASSERT_TRUE(mud.source());
+    EXPECT_EQ(mud.source()->table, (folder.path() / "mud.csv").string());
+    EXPECT_EQ(mud.source()->file_sha256,
+              "f673e072d28ac243bc99cc15c9f566b74681ea4226c73130cb9aab65a52e7f08");
+    EXPECT_TRUE(mud.source()->is_file());
+    EXPECT_EQ(mud.short_name(), "mud.csv");
+    const Spectrum sand = load_curve("sand", CurveRole::Reflectance, {});
+    ASSERT_TRUE(sand.source());
+    EXPECT_EQ(sand.source()->table, "sand");
+    EXPECT_FALSE(sand.source()->is_file());
+}
+
 TEST(LoadCurve, NeedsNoMetadataInAUsersFile) {
     const TempFolder folder;
     write_file(folder.path() / "a.csv",

@@ -56,6 +56,10 @@ void write_frame(const fs::path& file, int width_px, int height_px, const Conten
     out.writePixels(height_px);
 }
 
+std::size_t channel_named(std::string_view name) {
+    return static_cast<std::size_t>(std::ranges::find(kChannelNames, name) - kChannelNames.begin());
+}
+
 // A folder with frames and their manifest.
 class Render {
   public:
@@ -77,12 +81,12 @@ class Render {
     void add_wavelength(double lambda_nm,
                         std::array<double, kChannels> weight,
                         std::size_t frame,
-                        const std::string& channel,
+                        std::string_view channel,
                         int exposure_log2) {
         manifest_.wavelengths.push_back({.lambda_nm = lambda_nm,
                                          .weight = weight,
                                          .frame = frame,
-                                         .channel = channel,
+                                         .channel = channel_named(channel),
                                          .exposure_log2 = exposure_log2});
     }
 

@@ -137,5 +137,15 @@ TEST(UnionOfKnots, IsSortedWithoutRepeatsAndHoldsTheEnds) {
               (std::vector<double>{400.0, 450.0, 500.0, 600.0, 710.0}));
 }
 
+TEST(Spectrum, IsCalledAfterItsTable) {
+    const auto called = [](std::optional<CurveSource> source) {
+        return Spectrum("the floor's", {400.0, 700.0}, {0.0, 1.0}, std::move(source)).short_name();
+    };
+    EXPECT_EQ(called(CurveSource{.table = "sand"}), "sand");
+    EXPECT_EQ(called(CurveSource{.table = "/home/me/rigs/mud.csv", .file_sha256 = "ab12"}),
+              "mud.csv");
+    EXPECT_EQ(called(std::nullopt), "the floor's");
+}
+
 }  // namespace
 }  // namespace aphotic::spectrum_test

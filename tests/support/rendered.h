@@ -88,10 +88,11 @@ inline Difference against_closed_form(const Rig& rig,
     difference.darkest_sample = std::numeric_limits<double>::infinity();
     const auto pixels = static_cast<std::size_t>(rig.camera.width_px) *
                         static_cast<std::size_t>(rig.camera.height_px);
-    for (const ManifestWavelength& w : result.manifest.wavelengths) {
+    for (const PlannedWavelength& w : result.manifest.wavelengths) {
         ExrReader frame(image_path(folder.path(), result.manifest.frames[w.frame]));
         std::vector<float> samples(pixels);
-        frame.read_rows(0, rig.camera.height_px, std::span(&w.channel, 1), samples);
+        const std::string channel(kChannelNames[w.channel]);
+        frame.read_rows(0, rig.camera.height_px, std::span(&channel, 1), samples);
         for (std::size_t i = 0; i < pixels; ++i) {
             const int column = static_cast<int>(i) % rig.camera.width_px;
             const int row = static_cast<int>(i) / rig.camera.width_px;

@@ -93,7 +93,7 @@ Rig in_the_light_of(Rig rig, double lambda_nm) {
     return rig;
 }
 
-std::vector<double> frame_of(const Rig& rig, const ManifestWavelength& w) {
+std::vector<double> frame_of(const Rig& rig, const PlannedWavelength& w) {
     const Tracer tracer(in_the_light_of(rig, w.lambda_nm),
                         {.signals = false, .planes_nm = {w.index_nm}});
     return tracer.rows(0, rig.camera.height_px);
@@ -112,7 +112,7 @@ enum class Frames { Exact, Halves };
 using Signals = std::array<std::vector<double>, kChannels>;
 Signals signals_of(const Rig& rig, const Manifest& manifest, Frames kind) {
     Signals signals;
-    for (const ManifestWavelength& w : manifest.wavelengths) {
+    for (const PlannedWavelength& w : manifest.wavelengths) {
         const std::vector<double> frame = frame_of(rig, w);
         for (std::size_t c = 0; c < kChannels; ++c) {
             signals[c].resize(frame.size());

@@ -7,6 +7,7 @@
 // The exposures of POV-Ray's frames are held against the same images at the end.
 #include "image/frame_check.h"
 #include "scene_gen/pov_scene.h"
+#include "scene_gen/render_plan.h"
 #include "support/effort.h"
 #include "support/random_rig.h"
 #include "support/rig_changes.h"
@@ -369,18 +370,19 @@ TEST(Exposure, PutsThePeakOfEveryFrameWithinTheHalfFloatsRange) {
         const Image image = traced(rig);
         const std::size_t pixels = image.size() / lambda_nm.size();
         std::size_t plane = 0;
-        for (const FrameScene& scene : make_scenes(rig, lambda_nm, options)) {
-            for (const FrameWavelength& w : scene.wavelengths) {
-                const double peak =
-                    std::ldexp(std::ranges::max(std::span(image).subspan(plane * pixels, pixels)),
-                               w.exposure_log2);
-                ++plane;
-                EXPECT_LT(peak, kLargestHalf) << w.lambda_nm << " nm";
-                if (peak == 0.0) continue;
-                ++lit;
-                EXPECT_GT(peak, rig.objects.empty() ? kLeastPeak : kLeastPeakWithObjects)
-                    << w.lambda_nm << " nm, exposure " << w.exposure_log2;
-            }
+        std::vector<PlannedWavelength> wavelengths = in_frames(rig, lambda_nm, options);
+        static_cast<void>(
+            make_scenes(rig, scene_lamps(rig, wavelengths, options), options, wavelengths));
+        for (const PlannedWavelength& w : wavelengths) {
+            const double peak =
+                std::ldexp(std::ranges::max(std::span(image).subspan(plane * pixels, pixels)),
+                           w.exposure_log2);
+            ++plane;
+            EXPECT_LT(peak, kLargestHalf) << w.lambda_nm << " nm";
+            if (peak == 0.0) continue;
+            ++lit;
+            EXPECT_GT(peak, rig.objects.empty() ? kLeastPeak : kLeastPeakWithObjects)
+                << w.lambda_nm << " nm, exposure " << w.exposure_log2;
         }
         EXPECT_EQ(plane, lambda_nm.size());
     });

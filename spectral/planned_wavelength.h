@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// All that is planned for one wavelength, from its choice to the manifest: the plan sets what it
+// weighs and where it stands, the scenes set how it is exposed, the integrator uses both.
+//
+//   S_c = sum_j w_cj L(lambda_j),     L(lambda_j) = 2^-e_j F_j
+//
+// S_c  signal of channel c      L  spectral radiance      F_j  what the frame holds, in its channel
+#pragma once
+
+#include "image/camera_image.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace aphotic {
+
+// What sources and water do to light at one wavelength, apart from geometry: a pixel's radiance is
+// a sum of flux reflectance exp(-attenuation path), and of flux exp(-attenuation path) where
+// something has a highlight.
+struct SourceLight {
+    double attenuation_per_m = 0.0;
+    std::vector<double> flux{};         // of each strobe, its power included
+    std::vector<double> reflectance{};  // of the floor, then of each further material
+};
+
+struct PlannedWavelength {
+    double lambda_nm = 0.0;
+    std::array<double, kChannels> weight{};  // w_cj
+    std::size_t frame = 0;                   // which of the plan's frames, in order
+    std::size_t channel = 0;                 // of the frame, in the order of kChannelNames
+    double index_nm = 0.0;                   // whose refractive indices the frame has
+    SourceLight light{};                     // with which the frame is rendered
+    int exposure_log2 = 0;                   // e_j
+    double radiance_bound = 0.0;             // of L(lambda_j) in view
+};
+
+}  // namespace aphotic
