@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/row_light.h"
 
-#include "spectral/refractive_index.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -150,7 +148,7 @@ RayTerms ray_terms(const Rig& rig, const Plane& floor, double lambda_nm) {
     terms.distance_m = rig.camera.port->distance_m;
     terms.thickness_m = rig.camera.port->thickness_m;
     terms.glass_index = rig.camera.port->glass.index(lambda_nm);
-    terms.water_index = seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
+    terms.water_index = rig.water.refractive_index(lambda_nm);
     return terms;
 }
 
@@ -187,13 +185,12 @@ void find_cones(const LampTerms& lamp, LampBlock& block) {
     // A cone of 90 degrees ends where its cosine does, and has no edge to look for.
     constexpr double kNoEdge = 1e-15;
     double everywhere = 0.0;
-    for (std::size_t k = 0; k < lamp.cone_cosine.size(); ++k) {
-        if (lamp.cone_cosine[k] < kNoEdge) everywhere += lamp.cone_intensity[k];
+    for (const Lobe& lobe : lamp.lobes) {
+        if (lobe.edge_cosine < kNoEdge) everywhere += lobe.on_axis;
     }
     block.intensity.fill(everywhere);
-    for (std::size_t k = 0; k < lamp.cone_cosine.size(); ++k) {
-        if (lamp.cone_cosine[k] < kNoEdge) continue;
-        add_cone(lamp.cone_cosine[k], lamp.cone_intensity[k], block);
+    for (const Lobe& lobe : lamp.lobes) {
+        if (lobe.edge_cosine >= kNoEdge) add_cone(lobe.edge_cosine, lobe.on_axis, block);
     }
 }
 

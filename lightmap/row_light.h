@@ -84,9 +84,8 @@ void look_along(
 struct LampTerms {
     Eigen::Vector3d position_m;
     Eigen::Vector3d axis;
-    double height_m = 0.0;  // over the floor
-    std::vector<double> cone_cosine;
-    std::vector<double> cone_intensity;  // power A_k / (pi N)
+    double height_m = 0.0;    // over the floor
+    std::vector<Lobe> lobes;  // on_axis: power A_k / (pi N)
     double phong = 0.0;
     double phong_size = 0.0;
 };

@@ -2,7 +2,7 @@
 #include "scene_gen/reweighting.h"
 
 #include "base/error.h"
-#include "base/sha256.h"
+#include "rig/geometry_signature.h"
 #include "rig/solid.h"
 #include "scene_gen/certificate.h"
 #include "scene_gen/half_underflow.h"
@@ -18,49 +18,6 @@
 namespace aphotic {
 
 namespace {
-
-// As short as reads back to the same number.
-std::string vector_text(const Eigen::Vector3d& v) {
-    return fmt::format("{} {} {}", v.x(), v.y(), v.z());
-}
-
-std::string beam_text(const Beam& beam) {
-    std::vector<std::string> cones;
-    for (const Cone& cone : beam.cones) {
-        cones.push_back(fmt::format(
-            "{} rad {} 1/sr", cone.half_angle_rad, axial_intensity(cone, beam.weights)));
-    }
-    return fmt::format("{}", fmt::join(cones, ", "));
-}
-
-// A mesh may be long: what it holds is told by its digest.
-std::string mesh_text(const Mesh& mesh) {
-    std::string text;
-    for (const Eigen::Vector3d& vertex_m : mesh.vertices_m) text += vector_text(vertex_m) + "\n";
-    for (const auto& [a, b, c] : mesh.triangles) text += fmt::format("{} {} {}\n", a, b, c);
-    return fmt::format(
-        "mesh of {} triangles, SHA-256 {}", mesh.triangles.size(), sha256_of_text(text));
-}
-
-std::string shape_text(const Shape& shape) {
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-        return fmt::format(
-            "sphere at {} m of radius {} m", vector_text(sphere->centre_m), sphere->radius_m);
-    }
-    if (const auto* box = std::get_if<Box>(&shape)) {
-        return fmt::format(
-            "box from {} m to {} m", vector_text(box->least_m), vector_text(box->most_m));
-    }
-    return mesh_text(std::get<Mesh>(shape));
-}
-
-std::string object_text(const Object& object) {
-    std::string text = shape_text(object.shape);
-    if (object.phong > 0.0) {
-        text += fmt::format(", phong {}, phong_size {}", object.phong, object.phong_size);
-    }
-    return text;
-}
 
 // Of geometry_of's text.
 LampGrid grid_in(const std::string& key, const std::string& text) {
@@ -200,41 +157,13 @@ std::string lacking(const QuadratureFitter& fitter,
 }  // namespace
 
 std::map<std::string, std::string> geometry_of(const Rig& rig, const SceneOptions& options) {
-    const Camera& camera = rig.camera;
-    std::map<std::string, std::string> all{
-        {"sled.altitude_m", fmt::format("{}", rig.sled.altitude_m)},
-        {"sled.pitch_rad", fmt::format("{}", rig.sled.pitch_rad)},
-        {"sled.roll_rad", fmt::format("{}", rig.sled.roll_rad)},
-        {"camera.resolution", fmt::format("{} {}", camera.width_px, camera.height_px)},
-        {"camera.pixel_pitch_m", fmt::format("{}", camera.pixel_pitch_m)},
-        {"camera.focal_length_m", fmt::format("{}", camera.focal_length_m)},
-        {"seafloor.phong", fmt::format("{}", rig.seafloor.phong)}};
-    if (rig.seafloor.phong > 0.0) {
-        all["seafloor.phong_size"] = fmt::format("{}", rig.seafloor.phong_size);
-    }
-    if (camera.port) {
-        all["camera.port"] = fmt::format("{} m off, {} m of {}",
-                                         camera.port->distance_m,
-                                         camera.port->thickness_m,
-                                         camera.port->glass.name());
-        all["water.salinity_psu"] = fmt::format("{}", rig.water.salinity_psu);
-        all["water.temperature_c"] = fmt::format("{}", rig.water.temperature_c);
-    }
+    std::map<std::string, std::string> all = geometry_signature(rig);
     for (const Strobe& strobe : rig.strobes) {
-        const std::string key = fmt::format("strobe '{}'", strobe.name);
-        all[key] = fmt::format("at {} m, axis {}, cones {}",
-                               vector_text(strobe.position_m),
-                               vector_text(strobe.axis),
-                               beam_text(strobe.beam));
         if (!strobe.emitter) continue;
         const LampGrid grid =
             options.emitter_lamps.value_or(lamp_grid(rig, strobe, options.most_attenuation_per_m));
-        all[key + " emitter"] =
-            fmt::format("{} x {} m", strobe.emitter->across_m, strobe.emitter->along_m);
-        all[key + " lamps"] = fmt::format("{} x {}", grid.across, grid.along);
-    }
-    for (const Object& object : rig.objects) {
-        all[fmt::format("object '{}'", object.name)] = object_text(object);
+        all[fmt::format("strobe '{}' lamps", strobe.name)] =
+            fmt::format("{} x {}", grid.across, grid.along);
     }
     return all;
 }

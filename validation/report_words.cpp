@@ -228,20 +228,10 @@ std::string beam_in_words(const Beam& beam) {
                            : "an intensity on the axis, as the source paper prints it");
 }
 
-bool same(const Beam& a, const Beam& b) {
-    return a.name == b.name && a.weights == b.weights &&
-           std::ranges::equal(a.cones, b.cones, [](const Cone& c, const Cone& d) {
-               return c.part == d.part && c.half_angle_rad == d.half_angle_rad &&
-                      c.weight == d.weight;
-           });
-}
-
 std::vector<Beam> beams_of(const Rig& rig) {
     std::vector<Beam> beams;
     for (const Strobe& strobe : rig.strobes) {
-        const bool is_known =
-            std::ranges::any_of(beams, [&](const Beam& beam) { return same(beam, strobe.beam); });
-        if (!is_known) beams.push_back(strobe.beam);
+        if (std::ranges::find(beams, strobe.beam) == beams.end()) beams.push_back(strobe.beam);
     }
     return beams;
 }

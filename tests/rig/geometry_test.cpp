@@ -423,43 +423,6 @@ TEST(LampGrid, IsFinerInWaterThatAttenuatesMore) {
     EXPECT_NEAR(across(1e3) / static_cast<double>(across(1e2)), 10.0, 0.5);
 }
 
-// --- Cones -----------------------------------------------------------------------------------
-
-// Flux of the lobe A cos(theta) up to gamma, by the midpoint rule over the angle.
-double lobe_flux(double axial, double gamma_rad) {
-    constexpr int kSteps = 100'000;
-    double sum = 0.0;
-    for (int i = 0; i < kSteps; ++i) {
-        const double theta = (i + 0.5) / kSteps * gamma_rad;
-        sum += axial * std::cos(theta) * 2.0 * kPi * std::sin(theta) * gamma_rad / kSteps;
-    }
-    return sum;
-}
-
-TEST(AxialIntensity, OfAFluxWeightCarriesThatFlux) {
-    constexpr double kQuadrature = 1e-9;  // the midpoint rule's, with 100 000 steps
-    for (const double gamma_deg : {0.1, 10.0, 26.565, 60.0, 90.0}) {
-        const Cone cone{.part = "", .half_angle_rad = gamma_deg * kDegree, .weight = 0.165};
-        const double flux =
-            lobe_flux(axial_intensity(cone, ConeWeights::Flux), cone.half_angle_rad);
-        EXPECT_NEAR(flux, 0.165, kQuadrature) << gamma_deg << " degrees";
-    }
-}
-
-TEST(AxialIntensity, HasTheFiguresOfTheSourcePapersCones) {
-    constexpr double kThreeDecimals = 0.0005;  // to which they are given
-    struct Figure {
-        double gamma_deg, weight, axial;
-    };
-    for (const Figure& figure :
-         {Figure{10.0, 0.165, 1.742}, {26.565, 0.094, 0.150}, {90.0, 0.741, 0.236}}) {
-        const Cone cone{
-            .part = "", .half_angle_rad = figure.gamma_deg * kDegree, .weight = figure.weight};
-        EXPECT_NEAR(axial_intensity(cone, ConeWeights::Flux), figure.axial, kThreeDecimals);
-        EXPECT_EQ(axial_intensity(cone, ConeWeights::Literal), figure.weight);
-    }
-}
-
 // --- POV-Ray's frame -------------------------------------------------------------------------
 
 TEST(ToPovray, MapsForwardToYStarboardToXAndDownToZ) {
