@@ -115,7 +115,7 @@ std::vector<std::uint8_t> ConeEdges::mask(const Sled& sled, int within_px) const
         std::ranges::fill(below, 0);
         for (std::size_t k = 0; k < counts.size(); ++k) {
             const std::uint8_t* const now = counts[k].data();
-            note_parts(now, most_[k], width, marks);
+            if (most_[k] > 1) note_parts(now, most_[k], width, marks);
             note_differences(now, now + 1, width - 1, beside.data());
             if (row > 0) note_differences(now, above[k].data(), width, below.data());
         }
