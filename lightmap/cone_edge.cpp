@@ -15,7 +15,8 @@ namespace {
 // An emitter's rim at its corners and half way between them, and its middle; a point's own
 // position.
 std::vector<LampTerms> places_of(const Strobe& strobe) {
-    LampTerms place{.position_m = strobe.position_m, .axis = strobe.axis, .lobes = {}};
+    LampTerms place{
+        .position_m = strobe.position_m, .axis = strobe.axis, .lobes = {}, .other_exponents = {}};
     if (!strobe.emitter) return {place};
     // The centres of a grid of three by three cells lie two thirds of the way to the rim.
     constexpr double kToTheRim = 1.5;

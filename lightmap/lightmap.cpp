@@ -134,6 +134,7 @@ std::vector<LampTerms> lamps_of(const Rig& rig, const Strobe& strobe, const Plan
                     .axis = strobe.axis,
                     .height_m = 0.0,
                     .lobes = lobes_of(strobe.beam),
+                    .other_exponents = other_exponents(lobes_of(strobe.beam)),
                     .phong = rig.seafloor.phong,
                     .phong_size = rig.seafloor.phong_size};
     const auto positions_m = lamp_positions_m(strobe, grid_of_lamps(rig, strobe));
@@ -350,7 +351,8 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
         for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
             const RayBlock& rays = work.rays[j];
             shine(rays, lamp.terms, work.lit);
-            if (j == 0) find_cones(lamp.terms, work.lit);
+            if (j == 0) find_lobes(lamp.terms, work.lit);
+            follow_lobes(lamp.terms, work.lit);
             const Outside found = weigh(rays, lamp.terms, steps_, work.lit);
             work.outside.before += found.before;
             work.outside.beyond += found.beyond;
@@ -403,10 +405,11 @@ std::vector<double> LightmapMaker::cones(const Sled& sled) const {
             const auto first = static_cast<std::size_t>(column);
             for (const PlacedLamp& lamp : scene.lamps) {
                 shine(work->rays.front(), lamp.terms, work->lit);
-                find_cones(lamp.terms, work->lit);
+                find_lobes(lamp.terms, work->lit);
                 for (std::size_t i = 0; i < kRowBlock && first + i < width; ++i) {
-                    found[static_cast<std::size_t>(row) * width + first + i] +=
-                        work->lit.intensity[i];
+                    double& number = found[static_cast<std::size_t>(row) * width + first + i];
+                    number += work->lit.intensity[i];
+                    for (const RowBlock<double>& power : work->lit.powers) number += power[i];
                 }
             }
         }

@@ -19,10 +19,20 @@ namespace {
 
 constexpr double kRightAngle_rad = 0.5 * std::numbers::pi;
 
-// Of the lobe that is cos(theta) as far as the cone's edge.
+// cos^n, of a cosine that is not negative.
+double falloff(double cosine, double exponent) {
+    return exponent == 1.0 ? cosine : std::pow(cosine, exponent);
+}
+
+// Of the lobe that is cos^n(theta) as far as the cone's edge. 1 - cos^(n + 1) is a small difference
+// for narrow cones: expm1 and log1p keep its digits.
 double lobe_flux(const Cone& cone) {
     const double sin_gamma = std::sin(cone.half_angle_rad);
-    return std::numbers::pi * sin_gamma * sin_gamma;
+    if (cone.exponent == 1.0) return std::numbers::pi * sin_gamma * sin_gamma;
+    const double sin_half = std::sin(0.5 * cone.half_angle_rad);
+    const double ln_cos = std::log1p(-2.0 * sin_half * sin_half);
+    const double n = cone.exponent + 1.0;
+    return -2.0 * std::numbers::pi / n * std::expm1(n * ln_cos);
 }
 
 // A_k.
@@ -53,7 +63,7 @@ double continued_intensity(const Beam& beam,
     double intensity = 0.0;
     for (const Cone& cone : beam.cones) {
         if (cos_from < std::cos(cone.half_angle_rad)) continue;
-        intensity += axial_intensity(cone, beam.weights) * cos_theta;
+        intensity += axial_intensity(cone, beam.weights) * falloff(cos_theta, cone.exponent);
     }
     return intensity;
 }
@@ -63,13 +73,13 @@ double most_intensity(const Beam& beam,
                       const Vector3d& towards,
                       double within_rad) {
     const double theta_rad = angle_between(frame.axis, towards);
-    const double cos_nearest = std::cos(std::max(0.0, theta_rad - within_rad));
+    const double cos_nearest = std::max(0.0, std::cos(std::max(0.0, theta_rad - within_rad)));
     double intensity = 0.0;
     for (const Cone& cone : beam.cones) {
         if (theta_rad > cone.half_angle_rad + within_rad) continue;
-        intensity += axial_intensity(cone, beam.weights) * cos_nearest;
+        intensity += axial_intensity(cone, beam.weights) * falloff(cos_nearest, cone.exponent);
     }
-    return std::max(0.0, intensity);
+    return intensity;
 }
 
 double most_intensity(const Beam& beam) {
@@ -92,8 +102,8 @@ bool is_dark(const Beam& beam) {
 std::vector<double> edges_rad(const Beam& beam) {
     std::vector<double> edges;
     for (const Cone& cone : beam.cones) {
-        if (cone.weight == 0.0 || cone.half_angle_rad >= kRightAngle_rad) continue;
-        edges.push_back(cone.half_angle_rad);
+        const bool ends_smoothly = cone.half_angle_rad >= kRightAngle_rad && cone.exponent >= 1.0;
+        if (cone.weight > 0.0 && !ends_smoothly) edges.push_back(cone.half_angle_rad);
     }
     return edges;
 }
@@ -105,6 +115,12 @@ Beam without_edges(Beam beam) {
     }
     beam.weights = ConeWeights::Literal;
     return beam;
+}
+
+double steepest_exponent(const Beam& beam) {
+    double steepest = 0.0;
+    for (const Cone& cone : beam.cones) steepest = std::max(steepest, cone.exponent);
+    return steepest;
 }
 
 double flux_of(const Beam& beam) {
@@ -136,7 +152,8 @@ std::vector<Lobe> lobes_of(const Beam& beam) {
     lobes.reserve(beam.cones.size());
     for (const Cone& cone : beam.cones) {
         lobes.push_back({.edge_cosine = std::cos(cone.half_angle_rad),
-                         .on_axis = axial_intensity(cone, beam.weights)});
+                         .on_axis = axial_intensity(cone, beam.weights),
+                         .exponent = cone.exponent});
     }
     return lobes;
 }
@@ -145,9 +162,10 @@ std::string beam_signature(const Beam& beam) {
     std::vector<std::string> cones;
     for (const Cone& cone : beam.cones) {
         // Names every field: a further one has to be told here.
-        const auto& [part, half_angle_rad, weight] = cone;
+        const auto& [part, half_angle_rad, weight, exponent] = cone;
         cones.push_back(
             fmt::format("{} rad {} 1/sr", half_angle_rad, axial_intensity(cone, beam.weights)));
+        if (exponent != 1.0) cones.back() += fmt::format(" cos^{}", exponent);
     }
     return fmt::format("{}", fmt::join(cones, ", "));
 }

@@ -6,9 +6,10 @@
 //
 // A beam is a sum of cones about the strobe's axis. With theta the angle off it,
 //
-//   I = sum of A_k cos(theta) over the cones with theta <= gamma_k
+//   I = sum of A_k cos^n_k(theta) over the cones with theta <= gamma_k, theta < 90 degrees
 //
-//   flux:     A_k = alpha_k / (pi sin^2 gamma_k), so that the cone carries alpha_k of the flux
+//   flux:     A_k = alpha_k (n + 1) / (2 pi (1 - cos^(n + 1) gamma_k)), so that the cone carries
+//             alpha_k of the flux; for n = 1, alpha_k / (pi sin^2 gamma_k)
 //   literal:  A_k = alpha_k, as the source paper prints it
 //
 // Whoever wants to know of a beam asks here, and knows no kind of it. Three read the cones
@@ -28,7 +29,8 @@ namespace aphotic {
 struct Cone {
     std::string part;
     double half_angle_rad = 0.0;
-    double weight = 0.0;  // alpha_k
+    double weight = 0.0;    // alpha_k
+    double exponent = 1.0;  // n
 
     [[nodiscard]] bool operator==(const Cone&) const = default;
 };
@@ -83,12 +85,15 @@ inline constexpr double kForeAndAftSine = 1e-6;
                            double within_rad);
 [[nodiscard]] bool is_dark(const Beam& beam);
 
-// The angles off the axis where I has a step. Where cos(theta) is 0 a cone's light ends as smoothly
-// as it may: one of 90 degrees has no edge.
+// The angles off the axis where I has a step, or falls as steeply as one: cos^n goes to 0 at 90
+// degrees, so there a cone has an edge if n < 1 alone.
 [[nodiscard]] std::vector<double> edges_rad(const Beam& beam);
 
-// The same light without a step, carried on to 90 degrees.
+// The same light carried on to 90 degrees.
 [[nodiscard]] Beam without_edges(Beam beam);
+
+// I falls no steeper off the axis than cos to this power: (ln I)' >= n (ln cos)', away from edges.
+[[nodiscard]] double steepest_exponent(const Beam& beam);
 
 // The flux of a lamp of power 1: the integral of I over all directions.
 [[nodiscard]] double flux_of(const Beam& beam);
@@ -100,10 +105,11 @@ inline constexpr double kForeAndAftSine = 1e-6;
 
 // The beam as plain numbers, for loops over many directions:
 //
-//   I = sum of on_axis cos(theta) over the lobes with cos(theta) >= edge_cosine
+//   I = sum of on_axis cos^exponent(theta) over the lobes with cos(theta) >= edge_cosine
 struct Lobe {
     double edge_cosine = 0.0;
     double on_axis = 0.0;  // [1/sr]
+    double exponent = 1.0;
 };
 [[nodiscard]] std::vector<Lobe> lobes_of(const Beam& beam);
 

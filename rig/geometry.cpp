@@ -88,15 +88,17 @@ LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m) {
     const double height_m = height_above(floor_plane(rig.sled), strobe.position_m);
     const double throw_m = least_throw_m(rig, strobe, strobe.position_m);
     constexpr double kSecondOrder = 24.0;
-    const auto spacing_for = [](double d_m, double bend) {
-        return d_m * std::sqrt(kSecondOrder * kGridError / bend);
+    const auto spacing_for = [](double d_m, double most_bend) {
+        return d_m * std::sqrt(kSecondOrder * kGridError / most_bend);
     };
-    const double k = K_per_m * height_m;
-    double spacing_m =
-        std::min(kLampSpacing * throw_m, spacing_for(height_m, (k + 6.0) * k + 12.0));
+    // (k + m)^2 + m
+    const auto bend = [](double k, double m) { return (k + 2.0 * m) * k + m * (m + 1.0); };
+    const double m_of_floor = steepest_exponent(strobe.beam) + 2.0;
+    double spacing_m = std::min(kLampSpacing * throw_m,
+                                spacing_for(height_m, bend(K_per_m * height_m, m_of_floor)));
     if (throw_m < height_m) {
-        const double near_k = K_per_m * throw_m;
-        spacing_m = std::min(spacing_m, spacing_for(throw_m, (near_k + 8.0) * near_k + 20.0));
+        spacing_m =
+            std::min(spacing_m, spacing_for(throw_m, bend(K_per_m * throw_m, m_of_floor + 1.0)));
     }
     constexpr double kMostLamps = 1e6;  // far more than any scene can hold: it will be refused
     const auto lamps = [&](double size_m) {

@@ -64,15 +64,18 @@ struct LampGrid {
 // The coarsest grid that keeps the smooth light right to kGridError where water attenuates by K,
 // and whose lamps are closer together than kLampSpacing times the distance d from the emitter to
 // the floor below it, or to an object that is nearer. A midpoint rule of spacing h errs by h^2
-// f''/24. For f = cos(theta) cos(i) exp(-K d) / d^2, the lamp moving in the emitter's plane, and k
-// = K d,
+// f''/24. For f = cos^n(theta) cos(i) exp(-K d) / d^2, the lamp moving in the emitter's plane, so
+// that cos(theta) d does not change, and k = K d,
 //
-//   on the floor, by its height d over it          f''/f <= (k^2 + 6 k + 12) / d^2
-//   on what faces the lamp, by its distance d      f''/f <= (k^2 + 8 k + 20) / d^2
+//   on the floor, by its height d over it          f''/f <= ((k + n + 2)^2 + n + 2) / d^2
+//   on what faces the lamp, by its distance d      f''/f <= ((k + n + 3)^2 + n + 3) / d^2
 //
-// so that h^2 = 24 kGridError f/f''. The first is reached straight below a vertical emitter, the
-// second towards the rim of what an emitter lights. In clear water over a floor kLampSpacing is
-// the narrower, up to k = 1.1. Shadows and cone edges turn from one step into as many as lamps;
+// with the beam's steepest n: k^2 + 6 k + 12 and k^2 + 8 k + 20 for cones of n = 1. For f is a^n H
+// exp(-K d) / d^(n + 3), a constant and H the lamp's height over the surface: it bends most where
+// the lamp moves straight away from what it lights, H with it (the first) or not (the second). So
+// h^2 = 24 kGridError f/f''. The first is reached straight below a vertical emitter, the second
+// towards the rim of what an emitter lights. For n = 1, in clear water over a floor, kLampSpacing
+// is the narrower, up to k = 1.1. Shadows and cone edges turn from one step into as many as lamps;
 // what a highlight bends is not counted.
 [[nodiscard]] LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m);
 inline constexpr double kGridError = 1e-4;

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace aphotic {
 
 std::size_t light_count(const Beam& beam) {
@@ -13,14 +15,18 @@ std::size_t light_count(const Beam& beam) {
 }
 
 std::string beam_sdl(const Beam& beam) {
-    std::string sdl = fmt::format("array[{}][2] {{\n", beam.cones.size());
     const std::vector<Beam> parts = parts_of(beam);
+    const bool has_exponents =
+        std::ranges::any_of(beam.cones, [](const Cone& cone) { return cone.exponent != 1.0; });
+    std::string sdl = fmt::format("array[{}][{}] {{\n", parts.size(), has_exponents ? 3 : 2);
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        sdl += fmt::format("      {{{}, {}}}{}   // {}\n",
-                           sdl_number(beam.cones[k].half_angle_rad * kDegreesPerRadian),
+        const Cone& cone = beam.cones[k];
+        sdl += fmt::format("      {{{}, {}{}}}{}   // {}\n",
+                           sdl_number(cone.half_angle_rad * kDegreesPerRadian),
                            sdl_number(flux_of(parts[k])),
+                           has_exponents ? ", " + sdl_number(cone.exponent) : "",
                            k + 1 == parts.size() ? "" : ",",
-                           sdl_comment(beam.cones[k].part));
+                           sdl_comment(cone.part));
     }
     return sdl + "   }";
 }

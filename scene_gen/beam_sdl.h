@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A beam in POV-Ray's words: the array that Aphotic_Strobe of plugin/include/aphotic.inc makes
-// spotlights of, {half angle in degrees, share of the lamp's flux} for each cone.
+// spotlights of, {half angle in degrees, share of the lamp's flux} for each cone, and its exponent
+// where one has another than 1.
 #pragma once
 
 #include "rig/beam.h"

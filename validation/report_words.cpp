@@ -214,10 +214,12 @@ std::string strobe_in_words(const Strobe& strobe) {
 std::string beam_in_words(const Beam& beam) {
     std::vector<std::string> cones;
     for (const Cone& cone : beam.cones) {
-        cones.push_back(fmt::format("{} within {} (weight {})",
-                                    user_text(cone.part),
-                                    deg(cone.half_angle_rad),
-                                    plain(cone.weight)));
+        cones.push_back(fmt::format(
+            "{} within {} (weight {}{})",
+            user_text(cone.part),
+            deg(cone.half_angle_rad),
+            plain(cone.weight),
+            cone.exponent == 1.0 ? "" : fmt::format(", exponent {}", plain(cone.exponent))));
     }
     return fmt::format("{}: {}; {} is {}.",
                        cones.size() == 1 ? "Cone" : "Cones",

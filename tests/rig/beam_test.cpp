@@ -119,6 +119,45 @@ TEST(FluxOf, IsTheIntegralOfTheIntensity) {
     EXPECT_NEAR(flux_of(literal(kPi / 6.0)), 0.5 * kPi, kRounding);
 }
 
+// 2 pi int cos^n sin = 2 pi (1 - cos^(n + 1))/(n + 1); of n = 0, the solid angle.
+TEST(FluxOf, IsThatOfAnyExponent) {
+    constexpr double kQuadrature = 2e-3;  // the midpoint rule's over a step, or a steep end
+    for (const double exponent : {0.0, 0.3, 1.0, 2.0, 7.3, 1000.0}) {
+        for (const double gamma_deg : {5.0, 40.0, 90.0}) {
+            const Cone cone{.part = "",
+                            .half_angle_rad = gamma_deg * kDegree,
+                            .weight = 0.4,
+                            .exponent = exponent};
+            EXPECT_EQ(flux_of(beam_of({cone})), 0.4);
+            EXPECT_NEAR(flux_by_quadrature(beam_of({cone})) / 0.4, 1.0, kQuadrature)
+                << exponent << ", " << gamma_deg;
+        }
+    }
+    const auto literal = [](double gamma_rad, double exponent) {
+        return beam_of(
+            {{.part = "", .half_angle_rad = gamma_rad, .weight = 2.0, .exponent = exponent}},
+            ConeWeights::Literal);
+    };
+    EXPECT_NEAR(flux_of(literal(kPi / 2.0, 0.0)), 4.0 * kPi, kRounding);
+    EXPECT_NEAR(flux_of(literal(kPi / 3.0, 0.0)), 2.0 * kPi, kRounding);
+    EXPECT_NEAR(flux_of(literal(kPi / 3.0, 3.0)), kPi * 15.0 / 16.0, kRounding);
+    // A narrow cone is as flat as its disc, pi gamma^2, whatever its exponent.
+    EXPECT_NEAR(flux_of(literal(1e-5, 3.0)) / (2.0 * kPi * 1e-10), 1.0, 1e-9);
+}
+
+TEST(Intensity, FallsAsTheExponentSays) {
+    const Beam beam = beam_of({{.part = "", .half_angle_rad = 1.2, .weight = 2.0, .exponent = 3.0}},
+                              ConeWeights::Literal);
+    EXPECT_NEAR(at(beam, kPi / 3.0), 2.0 / 8.0, kRounding);
+    EXPECT_NEAR(at(beam, 0.0), 2.0, kRounding);
+    EXPECT_EQ(at(beam, 1.21), 0.0);
+    EXPECT_EQ(steepest_exponent(beam), 3.0);
+    // FWHM of 60 degrees is n = ln(1/2)/ln(cos 30).
+    Beam sheet = beam;
+    sheet.cones[0].exponent = std::log(0.5) / std::log(std::cos(kPi / 6.0));
+    EXPECT_NEAR(at(sheet, kPi / 6.0), 1.0, kRounding);
+}
+
 TEST(MostIntensity, IsOnTheAxisOfAll) {
     EXPECT_NEAR(most_intensity(fresnel()), at(fresnel(), 0.0), kRounding);
 }
@@ -135,7 +174,8 @@ TEST(MostIntensity, IsABoundAndReachedByACone) {
         for (int k = 0; k < 3; ++k) {
             cones.push_back({.part = "",
                              .half_angle_rad = between(0.02, 0.5 * kPi),
-                             .weight = between(0.0, 1.0)});
+                             .weight = between(0.0, 1.0),
+                             .exponent = n % 2 == 0 ? 1.0 : between(0.0, 4.0)});
         }
         const Beam beam = beam_of(cones);
         const double theta_rad = between(0.0, 2.0);
@@ -178,6 +218,10 @@ TEST(Edges, AreOfConesThatShineAndEndBefore90Degrees) {
     EXPECT_EQ(edges_rad(beam), (std::vector{10.0 * kDegree, 26.565 * kDegree}));
     beam.cones[0].weight = 0.0;
     EXPECT_EQ(edges_rad(beam), (std::vector{26.565 * kDegree}));
+    beam.cones[2].exponent = 2.0;
+    EXPECT_EQ(edges_rad(beam).size(), 1U);
+    beam.cones[2].exponent = 0.5;  // which falls as steeply as a step
+    EXPECT_EQ(edges_rad(beam).size(), 2U);
 }
 
 TEST(Edges, GoneLeaveTheLightAsItWas) {
@@ -204,13 +248,15 @@ TEST(Parts, AddUpToTheBeamAndHaveItsConesNames) {
 }
 
 TEST(Lobes, AreTheIntensity) {
+    Beam beam = fresnel();
+    beam.cones[1].exponent = 4.0;
     for (const double theta_rad : {0.05, 0.3, 1.2}) {
         double sum = 0.0;
-        for (const Lobe& lobe : lobes_of(fresnel())) {
+        for (const Lobe& lobe : lobes_of(beam)) {
             const double cosine = std::cos(theta_rad);
-            if (cosine >= lobe.edge_cosine) sum += lobe.on_axis * cosine;
+            if (cosine >= lobe.edge_cosine) sum += lobe.on_axis * std::pow(cosine, lobe.exponent);
         }
-        EXPECT_NEAR(sum, at(fresnel(), theta_rad), kRounding);
+        EXPECT_NEAR(sum, at(beam, theta_rad), kRounding);
     }
 }
 
@@ -224,6 +270,9 @@ TEST(BeamSignature, IsTheLightsAndNotTheNames) {
     EXPECT_NE(beam_signature(beam), before);
     beam = fresnel();
     beam.cones[0].half_angle_rad -= 1e-9;
+    EXPECT_NE(beam_signature(beam), before);
+    beam = fresnel();
+    beam.cones[2].exponent += 1e-9;
     EXPECT_NE(beam_signature(beam), before);
     beam = fresnel();
     beam.weights = ConeWeights::Literal;
