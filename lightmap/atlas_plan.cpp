@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -28,15 +27,8 @@ Rig probe_of(const Rig& rig) {
     return probe;
 }
 
-// The same light without an edge: every cone goes on to 90 degrees.
 Rig smooth_of(Rig rig) {
-    for (Strobe& strobe : rig.strobes) {
-        for (Cone& cone : strobe.beam.cones) {
-            cone.weight = axial_intensity(cone, strobe.beam.weights);
-            cone.half_angle_rad = 0.5 * std::numbers::pi;
-        }
-        strobe.beam.weights = ConeWeights::Literal;
-    }
+    for (Strobe& strobe : rig.strobes) strobe.beam = without_edges(strobe.beam);
     return rig;
 }
 

@@ -6,22 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace aphotic {
 
 namespace {
 
-constexpr double kRightAngle = 0.5 * std::numbers::pi;
-
 // An emitter's rim at its corners and half way between them, and its middle; a point's own
 // position.
 std::vector<LampTerms> places_of(const Strobe& strobe) {
-    LampTerms place{.position_m = strobe.position_m,
-                    .axis = strobe.axis,
-                    .cone_cosine = {},
-                    .cone_intensity = {}};
+    LampTerms place{
+        .position_m = strobe.position_m, .axis = strobe.axis, .lobes = {}, .other_exponents = {}};
     if (!strobe.emitter) return {place};
     // The centres of a grid of three by three cells lie two thirds of the way to the rim.
     constexpr double kToTheRim = 1.5;
@@ -35,12 +30,8 @@ std::vector<LampTerms> places_of(const Strobe& strobe) {
 
 std::vector<double> cosines_of_edges(const Strobe& strobe) {
     std::vector<double> cosines;
-    for (const Cone& cone : strobe.beam.cones) {
-        if (cone.weight == 0.0 || strobe.power == 0.0 || cone.half_angle_rad >= kRightAngle) {
-            continue;
-        }
-        cosines.push_back(std::cos(cone.half_angle_rad));
-    }
+    if (strobe.power == 0.0) return cosines;
+    for (const double edge_rad : edges_rad(strobe.beam)) cosines.push_back(std::cos(edge_rad));
     return cosines;
 }
 
@@ -125,7 +116,7 @@ std::vector<std::uint8_t> ConeEdges::mask(const Sled& sled, int within_px) const
         std::ranges::fill(below, 0);
         for (std::size_t k = 0; k < counts.size(); ++k) {
             const std::uint8_t* const now = counts[k].data();
-            note_parts(now, most_[k], width, marks);
+            if (most_[k] > 1) note_parts(now, most_[k], width, marks);
             note_differences(now, now + 1, width - 1, beside.data());
             if (row > 0) note_differences(now, above[k].data(), width, below.data());
         }

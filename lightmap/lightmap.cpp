@@ -7,7 +7,6 @@
 #include "lightmap/row_light.h"
 #include "rig/geometry.h"
 #include "spectral/light_family.h"
-#include "spectral/refractive_index.h"
 
 #include <fmt/format.h>
 
@@ -53,17 +52,14 @@ std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
     return lamps;
 }
 
-double water_index(const Rig& rig, double lambda_nm) {
-    return seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
-}
-
 // The wavelength whose water index this is; the index falls with the wavelength.
 double wavelength_of_index(const Rig& rig, double index) {
     WavelengthRange between = rig.camera.range;
     constexpr int kHalvings = 60;
     for (int i = 0; i < kHalvings; ++i) {
         const double middle_nm = std::midpoint(between.first_nm, between.last_nm);
-        (water_index(rig, middle_nm) > index ? between.first_nm : between.last_nm) = middle_nm;
+        (rig.water.refractive_index(middle_nm) > index ? between.first_nm : between.last_nm) =
+            middle_nm;
     }
     return between.first_nm;
 }
@@ -71,8 +67,8 @@ double wavelength_of_index(const Rig& rig, double index) {
 // Chebyshev's points of the range of the index; the middle one is in the middle.
 std::vector<double> index_nodes_nm(const Rig& rig) {
     if (!rig.camera.port) return {rig.camera.range.first_nm};
-    const double first = water_index(rig, rig.camera.range.first_nm);
-    const double last = water_index(rig, rig.camera.range.last_nm);
+    const double first = rig.water.refractive_index(rig.camera.range.first_nm);
+    const double last = rig.water.refractive_index(rig.camera.range.last_nm);
     std::vector<double> nodes_nm;
     for (std::size_t j = 0; j < kIndexNodes; ++j) {
         const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / kIndexNodes;
@@ -87,8 +83,9 @@ double lagrange(const Rig& rig, const std::vector<double>& nodes_nm, std::size_t
     double value = 1.0;
     for (std::size_t m = 0; m < nodes_nm.size(); ++m) {
         if (m == j) continue;
-        const double n_m = water_index(rig, nodes_nm[m]);
-        value *= (water_index(rig, nm) - n_m) / (water_index(rig, nodes_nm[j]) - n_m);
+        const double n_m = rig.water.refractive_index(nodes_nm[m]);
+        value *= (rig.water.refractive_index(nm) - n_m) /
+                 (rig.water.refractive_index(nodes_nm[j]) - n_m);
     }
     return value;
 }
@@ -136,17 +133,14 @@ std::vector<LampTerms> lamps_of(const Rig& rig, const Strobe& strobe, const Plan
     LampTerms terms{.position_m = strobe.position_m,
                     .axis = strobe.axis,
                     .height_m = 0.0,
-                    .cone_cosine = {},
-                    .cone_intensity = {},
+                    .lobes = lobes_of(strobe.beam),
+                    .other_exponents = other_exponents(lobes_of(strobe.beam)),
                     .phong = rig.seafloor.phong,
                     .phong_size = rig.seafloor.phong_size};
     const auto positions_m = lamp_positions_m(strobe, grid_of_lamps(rig, strobe));
     const double share =
         strobe.power / (std::numbers::pi * static_cast<double>(positions_m.size()));
-    for (const Cone& cone : strobe.beam.cones) {
-        terms.cone_cosine.push_back(std::cos(cone.half_angle_rad));
-        terms.cone_intensity.push_back(share * axial_intensity(cone, strobe.beam.weights));
-    }
+    for (Lobe& lobe : terms.lobes) lobe.on_axis = share * lobe.on_axis;
     std::vector<LampTerms> lamps;
     for (const Eigen::Vector3d& position_m : positions_m) {
         terms.position_m = position_m;
@@ -193,10 +187,7 @@ std::vector<std::size_t> node_order(std::size_t nodes) {
 
 // Light that has gone from the shortest path to the longest, and as wide, is all but gone.
 bool ends_in_darkness(const Water& water, const PathRange& paths) {
-    double K_per_m = water.uniform_loss_per_m;
-    if (water.multiple > 0.0) {
-        K_per_m += water.multiple * *std::ranges::min_element(water.absorption_per_m.values());
-    }
+    const double K_per_m = water.least_attenuation_per_m();
     constexpr double kRounding = 1.1;
     return std::exp(-K_per_m * (paths.longest_m - paths.shortest_m)) *
                std::pow(paths.shortest_m / paths.longest_m, 3) <=
@@ -360,7 +351,8 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
         for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
             const RayBlock& rays = work.rays[j];
             shine(rays, lamp.terms, work.lit);
-            if (j == 0) find_cones(lamp.terms, work.lit);
+            if (j == 0) find_lobes(lamp.terms, work.lit);
+            follow_lobes(lamp.terms, work.lit);
             const Outside found = weigh(rays, lamp.terms, steps_, work.lit);
             work.outside.before += found.before;
             work.outside.beyond += found.beyond;
@@ -402,8 +394,8 @@ std::vector<double> LightmapMaker::cones(const Sled& sled) const {
     std::mt19937_64 engine(1);
     constexpr std::uint64_t kShift = 24;
     for (PlacedLamp& lamp : scene.lamps) {
-        for (double& intensity : lamp.terms.cone_intensity) {
-            intensity = static_cast<double>(engine() >> kShift);
+        for (Lobe& lobe : lamp.terms.lobes) {
+            lobe.on_axis = static_cast<double>(engine() >> kShift);
         }
     }
     const auto work = std::make_unique<Workspace>();
@@ -413,10 +405,11 @@ std::vector<double> LightmapMaker::cones(const Sled& sled) const {
             const auto first = static_cast<std::size_t>(column);
             for (const PlacedLamp& lamp : scene.lamps) {
                 shine(work->rays.front(), lamp.terms, work->lit);
-                find_cones(lamp.terms, work->lit);
+                find_lobes(lamp.terms, work->lit);
                 for (std::size_t i = 0; i < kRowBlock && first + i < width; ++i) {
-                    found[static_cast<std::size_t>(row) * width + first + i] +=
-                        work->lit.intensity[i];
+                    double& number = found[static_cast<std::size_t>(row) * width + first + i];
+                    number += work->lit.intensity[i];
+                    for (const RowBlock<double>& power : work->lit.powers) number += power[i];
                 }
             }
         }

@@ -17,10 +17,10 @@ std::span<const float> plane_of(const Lightmap& map, std::size_t channel) {
     return std::span(map.samples).subspan(channel * size, size);
 }
 
-std::string cone_name(const Beam& beam, std::size_t k) {
-    const std::string& part = beam.cones[k].part;
-    const auto bearers = std::ranges::count(beam.cones, part, &Cone::part);
-    return part.empty() || bearers > 1 ? fmt::format("cone{}", k + 1) : part;
+std::string cone_name(const std::vector<Beam>& cones, std::size_t k) {
+    const std::string& name = cones[k].name;
+    const auto bearers = std::ranges::count(cones, name, &Beam::name);
+    return name.empty() || bearers > 1 ? fmt::format("cone{}", k + 1) : name;
 }
 
 }  // namespace
@@ -37,10 +37,10 @@ std::vector<RigPart> parts_by_strobe(const Rig& rig) {
 std::vector<RigPart> parts_by_cone(const Rig& rig) {
     std::vector<RigPart> parts;
     for (const RigPart& strobe : parts_by_strobe(rig)) {
-        const Beam& beam = strobe.rig.strobes.front().beam;
-        for (std::size_t k = 0; k < beam.cones.size(); ++k) {
-            parts.push_back({.name = strobe.name + "." + cone_name(beam, k), .rig = strobe.rig});
-            parts.back().rig.strobes.front().beam.cones = {beam.cones[k]};
+        const std::vector<Beam> cones = parts_of(strobe.rig.strobes.front().beam);
+        for (std::size_t k = 0; k < cones.size(); ++k) {
+            parts.push_back({.name = strobe.name + "." + cone_name(cones, k), .rig = strobe.rig});
+            parts.back().rig.strobes.front().beam = cones[k];
         }
     }
     return parts;

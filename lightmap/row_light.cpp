@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/row_light.h"
 
-#include "spectral/refractive_index.h"
-
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numbers>
 
 // Where the loader can choose (ELF with glibc on x86-64), each loop is compiled for wider vectors
 // too. They change no bit: the same IEEE operations, and none is fused. Unoptimised code has no
@@ -78,11 +78,70 @@ APHOTIC_WIDE void meet_floor(const RayTerms& terms, const PathSteps& steps, RayB
 }
 
 // Signed squares are compared, which are in the order of the cosines and need no root.
-APHOTIC_WIDE void add_cone(double cosine, double intensity, LampBlock& block) {
-    const double square = cosine * cosine;
+APHOTIC_WIDE void add_lobe(const Lobe& lobe, const LampBlock& block, RowBlock<double>& sum) {
+    const double square = lobe.edge_cosine * lobe.edge_cosine;
+    const double on_axis = lobe.on_axis;
     for (std::size_t i = 0; i < kCount; ++i) {
         const double along = block.V_axis[i] * std::abs(block.V_axis[i]);
-        block.intensity[i] += along >= square * block.V2[i] ? intensity : 0.0;
+        sum[i] += along >= square * block.V2[i] ? on_axis : 0.0;
+    }
+}
+
+// The library's powers do not vectorise. These are right to 1e-9, and have no choices, which do not
+// either: with x = cos^2(theta) = m 2^e and m between 1/sqrt(2) and sqrt(2),
+//
+//   log2 x = e + ln m/ln 2,   ln m = 2 artanh t,   t = (m - 1)/(m + 1),   |t| < 0.172
+//
+// and 2^y of a whole number and the rest, both by their series.
+constexpr int kMantissaBits = 52;
+constexpr std::uint64_t kExponentBias = 1023;
+
+APHOTIC_WIDE void take_logarithm(LampBlock& block) {
+    constexpr std::uint64_t kMantissa = 0x000fffffffffffffU;
+    constexpr auto kOne = std::bit_cast<std::uint64_t>(1.0);
+    constexpr auto kRootOfHalf = std::bit_cast<std::uint64_t>(0.5 * std::numbers::sqrt2);
+    constexpr auto kTwo52 = std::bit_cast<std::uint64_t>(0x1p52);  // holds whole numbers at its end
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const double x = block.V_axis[i] * block.V_axis[i] / block.V2[i];
+        const std::uint64_t bits = std::bit_cast<std::uint64_t>(x) + (kOne - kRootOfHalf);
+        const double e = std::bit_cast<double>((bits >> kMantissaBits) | kTwo52) -
+                         (0x1p52 + static_cast<double>(kExponentBias));
+        const double m = std::bit_cast<double>((bits & kMantissa) + kRootOfHalf);
+        const double t = (m - 1.0) / (m + 1.0);
+        const double q = t * t;
+        double series = 1.0 / 11.0 + q / 13.0;
+        series = 1.0 / 9.0 + q * series;
+        series = 1.0 / 7.0 + q * series;
+        series = 1.0 / 5.0 + q * series;
+        series = 1.0 / 3.0 + q * series;
+        series = 1.0 + q * series;
+        block.log2_cosine[i] = 0.5 * e + t * series * std::numbers::log2e;
+    }
+}
+
+// Adds factors cos^power(theta).
+APHOTIC_WIDE void add_power(const RowBlock<double>& factors, double power, LampBlock& block) {
+    constexpr double kRound = 0x1.8p52;  // what is added to it loses all after the point
+    constexpr double kLeast = -1000.0;   // 2^-1000 is nothing
+    constexpr double kMost = 100.0;      // of a negative power, where cos(theta) is nothing
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const double asked = power * block.log2_cosine[i];
+        const double above = 0.5 * (asked + kLeast + std::abs(asked - kLeast));
+        const double y = 0.5 * (above + kMost - std::abs(above - kMost));
+        const double rounded = y + kRound;
+        const double f = (y - (rounded - kRound)) * std::numbers::ln2;
+        double series = 1.0 / 40320.0 + f / 362880.0;
+        series = 1.0 / 5040.0 + f * series;
+        series = 1.0 / 720.0 + f * series;
+        series = 1.0 / 120.0 + f * series;
+        series = 1.0 / 24.0 + f * series;
+        series = 1.0 / 6.0 + f * series;
+        series = 1.0 / 2.0 + f * series;
+        series = 1.0 + f * series;
+        series = 1.0 + f * series;
+        const double of_whole = std::bit_cast<double>(
+            (std::bit_cast<std::uint64_t>(rounded) + kExponentBias) << kMantissaBits);
+        block.intensity[i] += factors[i] * series * of_whole;
     }
 }
 
@@ -150,7 +209,7 @@ RayTerms ray_terms(const Rig& rig, const Plane& floor, double lambda_nm) {
     terms.distance_m = rig.camera.port->distance_m;
     terms.thickness_m = rig.camera.port->thickness_m;
     terms.glass_index = rig.camera.port->glass.index(lambda_nm);
-    terms.water_index = seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
+    terms.water_index = rig.water.refractive_index(lambda_nm);
     return terms;
 }
 
@@ -183,17 +242,46 @@ APHOTIC_WIDE void shine(const RayBlock& rays, const LampTerms& lamp, LampBlock& 
     }
 }
 
-void find_cones(const LampTerms& lamp, LampBlock& block) {
+std::vector<double> other_exponents(const std::vector<Lobe>& lobes) {
+    std::vector<double> others;
+    for (const Lobe& lobe : lobes) {
+        const bool is_known = std::ranges::find(others, lobe.exponent) != others.end();
+        if (lobe.exponent != 1.0 && !is_known) others.push_back(lobe.exponent);
+    }
+    return others;
+}
+
+void find_lobes(const LampTerms& lamp, LampBlock& block) {
     // A cone of 90 degrees ends where its cosine does, and has no edge to look for.
     constexpr double kNoEdge = 1e-15;
     double everywhere = 0.0;
-    for (std::size_t k = 0; k < lamp.cone_cosine.size(); ++k) {
-        if (lamp.cone_cosine[k] < kNoEdge) everywhere += lamp.cone_intensity[k];
+    for (const Lobe& lobe : lamp.lobes) {
+        if (lobe.exponent == 1.0 && lobe.edge_cosine < kNoEdge) everywhere += lobe.on_axis;
     }
     block.intensity.fill(everywhere);
-    for (std::size_t k = 0; k < lamp.cone_cosine.size(); ++k) {
-        if (lamp.cone_cosine[k] < kNoEdge) continue;
-        add_cone(lamp.cone_cosine[k], lamp.cone_intensity[k], block);
+    for (const Lobe& lobe : lamp.lobes) {
+        if (lobe.exponent == 1.0 && lobe.edge_cosine >= kNoEdge) {
+            add_lobe(lobe, block, block.intensity);
+        }
+    }
+    block.powers.resize(lamp.other_exponents.size());
+    if (block.powers.empty()) return;
+    block.cosines = block.intensity;
+    for (std::size_t k = 0; k < block.powers.size(); ++k) {
+        block.powers[k].fill(0.0);
+        for (const Lobe& lobe : lamp.lobes) {
+            if (lobe.exponent != lamp.other_exponents[k]) continue;
+            add_lobe(lobe, block, block.powers[k]);
+        }
+    }
+}
+
+void follow_lobes(const LampTerms& lamp, LampBlock& block) {
+    if (lamp.other_exponents.empty()) return;
+    block.intensity = block.cosines;
+    take_logarithm(block);
+    for (std::size_t k = 0; k < block.powers.size(); ++k) {
+        add_power(block.powers[k], lamp.other_exponents[k] - 1.0, block);
     }
 }
 

@@ -14,6 +14,9 @@
 //   d = |V|/w     cos(theta) = V.a/|V|     cos(i) = h w/|V|     r = |D| H/w
 //   cos(theta) cos(i) / d^2 = h w^3 (V.a) / |V|^4
 //
+// A lobe of a beam that falls as another power of the cosine, n, has its intensity on the axis
+// times cos^(n - 1)(theta) in place of that on the axis.
+//
 // and for the highlight, with m the ray mirrored at the floor and l the way to the lamp,
 //
 //   m.l = (2 w^2 h - D.V) / (|D| |V|)
@@ -84,19 +87,26 @@ void look_along(
 struct LampTerms {
     Eigen::Vector3d position_m;
     Eigen::Vector3d axis;
-    double height_m = 0.0;  // over the floor
-    std::vector<double> cone_cosine;
-    std::vector<double> cone_intensity;  // power A_k / (pi N)
+    double height_m = 0.0;                // over the floor
+    std::vector<Lobe> lobes;              // on_axis: power A_k / (pi N)
+    std::vector<double> other_exponents;  // of the lobes, than 1, each once
     double phong = 0.0;
     double phong_size = 0.0;
 };
+
+[[nodiscard]] std::vector<double> other_exponents(const std::vector<Lobe>& lobes);
 
 // What the rays get of one lamp, ready to be looked up.
 struct LampBlock {
     RowBlock<double> V_axis;     // V.a
     RowBlock<double> V2;         // |V|^2
-    RowBlock<double> intensity;  // of the cones that reach there
-    RowBlock<float> place;       // of the path in the table, in steps
+    RowBlock<double> intensity;  // I/cos(theta), of the lobes that reach there
+    // What the lobes of exponent 1 give of it; and for each other, those lobes' intensity on the
+    // axis as far as they reach.
+    RowBlock<double> cosines;
+    std::vector<RowBlock<double>> powers;
+    RowBlock<double> log2_cosine;
+    RowBlock<float> place;  // of the path in the table, in steps
     RowBlock<int> step;
     RowBlock<float> within_step;  // 0 to 1
     RowBlock<float> diffuse;      // factor of T
@@ -104,8 +114,10 @@ struct LampBlock {
 };
 
 void shine(const RayBlock& rays, const LampTerms& lamp, LampBlock& block);
-// Of the rays last shone on; it stays for rays of other indices.
-void find_cones(const LampTerms& lamp, LampBlock& block);
+// Which lobes reach the rays last shone on; it stays for rays of other indices.
+void find_lobes(const LampTerms& lamp, LampBlock& block);
+// The intensity, by the lobes that were found, for the rays last shone on.
+void follow_lobes(const LampTerms& lamp, LampBlock& block);
 // One more for each of kRowBlock pixels that see the floor; and that see it within a cone of this
 // cosine, of the rays last shone on.
 void count_seen(const RayBlock& rays, std::uint8_t* counts);

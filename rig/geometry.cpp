@@ -2,15 +2,14 @@
 #include "rig/geometry.h"
 
 #include "base/error.h"
+#include "rig/lens.h"
 #include "rig/solid.h"
-#include "spectral/refractive_index.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace aphotic {
 
@@ -29,28 +28,19 @@ double height_above(const Plane& floor, const Vector3d& point_m) {
 }
 
 WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm) {
-    const Camera& camera = rig.camera;
-    const Vector3d toward((0.5 * camera.height_px - row) * camera.pixel_pitch_m,
-                          (column - 0.5 * camera.width_px) * camera.pixel_pitch_m,
-                          camera.focal_length_m);
-    const Vector3d in_air = toward.normalized();
-    if (!camera.port) return {.origin_m = Vector3d::Zero(), .direction = in_air};
+    const Port& port = rig.camera.port;
+    return ray_into_water(port,
+                          direction_in_air(rig.camera, column, row),
+                          lambda_nm,
+                          port ? rig.water.refractive_index(lambda_nm) : 1.0);
+}
 
-    const Eigen::Vector2d sin_air = in_air.head<2>();
-    const double n_glass = camera.port->glass.index(lambda_nm);
-    const double n_water =
-        seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c);
-    const Eigen::Vector2d sin_glass = sin_air / n_glass;
-    const Eigen::Vector2d sin_water = sin_air / n_water;
-    const double cos_glass = std::sqrt(1.0 - sin_glass.squaredNorm());
-    const double cos_water = std::sqrt(1.0 - sin_water.squaredNorm());
-
-    WaterRay ray;
-    ray.origin_m.head<2>() = camera.port->distance_m * sin_air / in_air.z() +
-                             camera.port->thickness_m * sin_glass / cos_glass;
-    ray.origin_m.z() = camera.port->distance_m + camera.port->thickness_m;
-    ray.direction << sin_water, cos_water;
-    return ray;
+double port_reach_m(const Rig& rig) {
+    if (!rig.camera.port) return 0.0;
+    // Rays run farthest out at the corners, and a bit farther in blue or red than in between.
+    constexpr double kRoom = 1.05;
+    const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
+    return kRoom * pixel_ray(rig, 0.0, 0.0, middle_nm).origin_m.norm();
 }
 
 std::optional<double> distance_to(const Plane& plane, const WaterRay& ray) {
@@ -88,20 +78,27 @@ double most_attenuation_per_m(const Rig& rig, std::span<const double> lambda_nm)
     return most_per_m;
 }
 
+double emitter_reach_m(const Strobe& strobe) {
+    if (!strobe.emitter) return 0.0;
+    return 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
+}
+
 LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m) {
     if (!strobe.emitter) return {};
     const double height_m = height_above(floor_plane(rig.sled), strobe.position_m);
     const double throw_m = least_throw_m(rig, strobe, strobe.position_m);
     constexpr double kSecondOrder = 24.0;
-    const auto spacing_for = [](double d_m, double bend) {
-        return d_m * std::sqrt(kSecondOrder * kGridError / bend);
+    const auto spacing_for = [](double d_m, double most_bend) {
+        return d_m * std::sqrt(kSecondOrder * kGridError / most_bend);
     };
-    const double k = K_per_m * height_m;
-    double spacing_m =
-        std::min(kLampSpacing * throw_m, spacing_for(height_m, (k + 6.0) * k + 12.0));
+    // (k + m)^2 + m
+    const auto bend = [](double k, double m) { return (k + 2.0 * m) * k + m * (m + 1.0); };
+    const double m_of_floor = steepest_exponent(strobe.beam) + 2.0;
+    double spacing_m = std::min(kLampSpacing * throw_m,
+                                spacing_for(height_m, bend(K_per_m * height_m, m_of_floor)));
     if (throw_m < height_m) {
-        const double near_k = K_per_m * throw_m;
-        spacing_m = std::min(spacing_m, spacing_for(throw_m, (near_k + 8.0) * near_k + 20.0));
+        spacing_m =
+            std::min(spacing_m, spacing_for(throw_m, bend(K_per_m * throw_m, m_of_floor + 1.0)));
     }
     constexpr double kMostLamps = 1e6;  // far more than any scene can hold: it will be refused
     const auto lamps = [&](double size_m) {
@@ -112,18 +109,15 @@ LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m) {
 
 std::vector<Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid) {
     if (!strobe.emitter) return {strobe.position_m};
-    const bool is_fore_and_aft = strobe.axis.cross(Vector3d::UnitX()).norm() < kForeAndAftSine;
-    const Vector3d reference = is_fore_and_aft ? Vector3d::UnitZ() : Vector3d::UnitX();
-    const Vector3d along = (reference - reference.dot(strobe.axis) * strobe.axis).normalized();
-    const Vector3d across = strobe.axis.cross(along);
-
+    const BeamFrame frame = frame_about(strobe.axis);
     std::vector<Vector3d> positions_m;
     for (int i = 0; i < grid.across; ++i) {
         for (int j = 0; j < grid.along; ++j) {
             const double u = (i + 0.5) / grid.across - 0.5;
             const double v = (j + 0.5) / grid.along - 0.5;
-            positions_m.emplace_back(strobe.position_m + u * strobe.emitter->across_m * across +
-                                     v * strobe.emitter->along_m * along);
+            positions_m.emplace_back(strobe.position_m +
+                                     u * strobe.emitter->across_m * frame.across +
+                                     v * strobe.emitter->along_m * frame.along);
         }
     }
     return positions_m;
@@ -147,12 +141,6 @@ void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid) {
                         strobe.name,
                         -height_above(floor, lamp_m)));
     }
-}
-
-double axial_intensity(const Cone& cone, ConeWeights weights) {
-    if (weights == ConeWeights::Literal) return cone.weight;
-    const double sin_gamma = std::sin(cone.half_angle_rad);
-    return cone.weight / (std::numbers::pi * sin_gamma * sin_gamma);
 }
 
 double angle_between(const Vector3d& a, const Vector3d& b) {

@@ -34,19 +34,11 @@ struct Plane {
 // Height of a point above the floor, measured along its normal [m].
 [[nodiscard]] double height_above(const Plane& floor, const Eigen::Vector3d& point_m);
 
-// Where light enters the water on its way to a pixel, reversed: origin and unit direction.
-struct WaterRay {
-    Eigen::Vector3d origin_m;
-    Eigen::Vector3d direction;
-};
-
-// The ray of the point (column, row) of the image; pixel (0, 0)'s centre is (0.5, 0.5).
-// Without a port it starts at the pupil. Through a flat port it obeys Snell at both faces:
-//
-//   sin(air) = n_glass sin(glass) = n_water sin(water)
-//
-// with both indices relative to air and taken at lambda_nm.
+// The ray in water of the point (column, row) of the image: rig/lens.h's, through rig/port.h.
 [[nodiscard]] WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm);
+
+// How far behind the pupil's place, along a ray of the image, the water may begin [m].
+[[nodiscard]] double port_reach_m(const Rig& rig);
 
 // Distance along the ray to the plane [m], or nothing when the ray does not come down on it.
 [[nodiscard]] std::optional<double> distance_to(const Plane& plane, const WaterRay& ray);
@@ -60,6 +52,9 @@ struct FloorSample {
 [[nodiscard]] std::vector<std::optional<FloorSample>> floor_samples(const Rig& rig,
                                                                     std::size_t side);
 
+// From a strobe's position to the farthest place that its light comes from [m].
+[[nodiscard]] double emitter_reach_m(const Strobe& strobe);
+
 // How many lamps an emitter is made of, across x along.
 struct LampGrid {
     int across = 1;
@@ -69,15 +64,18 @@ struct LampGrid {
 // The coarsest grid that keeps the smooth light right to kGridError where water attenuates by K,
 // and whose lamps are closer together than kLampSpacing times the distance d from the emitter to
 // the floor below it, or to an object that is nearer. A midpoint rule of spacing h errs by h^2
-// f''/24. For f = cos(theta) cos(i) exp(-K d) / d^2, the lamp moving in the emitter's plane, and k
-// = K d,
+// f''/24. For f = cos^n(theta) cos(i) exp(-K d) / d^2, the lamp moving in the emitter's plane, so
+// that cos(theta) d does not change, and k = K d,
 //
-//   on the floor, by its height d over it          f''/f <= (k^2 + 6 k + 12) / d^2
-//   on what faces the lamp, by its distance d      f''/f <= (k^2 + 8 k + 20) / d^2
+//   on the floor, by its height d over it          f''/f <= ((k + n + 2)^2 + n + 2) / d^2
+//   on what faces the lamp, by its distance d      f''/f <= ((k + n + 3)^2 + n + 3) / d^2
 //
-// so that h^2 = 24 kGridError f/f''. The first is reached straight below a vertical emitter, the
-// second towards the rim of what an emitter lights. In clear water over a floor kLampSpacing is
-// the narrower, up to k = 1.1. Shadows and cone edges turn from one step into as many as lamps;
+// with the beam's steepest n: k^2 + 6 k + 12 and k^2 + 8 k + 20 for cones of n = 1. For f is a^n H
+// exp(-K d) / d^(n + 3), a constant and H the lamp's height over the surface: it bends most where
+// the lamp moves straight away from what it lights, H with it (the first) or not (the second). So
+// h^2 = 24 kGridError f/f''. The first is reached straight below a vertical emitter, the second
+// towards the rim of what an emitter lights. For n = 1, in clear water over a floor, kLampSpacing
+// is the narrower, up to k = 1.1. Shadows and cone edges turn from one step into as many as lamps;
 // what a highlight bends is not counted.
 [[nodiscard]] LampGrid lamp_grid(const Rig& rig, const Strobe& strobe, double K_per_m);
 inline constexpr double kGridError = 1e-4;
@@ -85,10 +83,7 @@ inline constexpr double kLampSpacing = 0.011;
 // K at the most attenuated of the wavelengths.
 [[nodiscard]] double most_attenuation_per_m(const Rig& rig, std::span<const double> lambda_nm);
 
-// Centres of the grid's cells [m]. `along` is the sled's forward direction as the emitter's
-// plane sees it (down, for a strobe that shines within a millionth of a radian of fore or aft,
-// where forward is all but lost in rounding), `across` completes it. aphotic.inc has the same rule.
-inline constexpr double kForeAndAftSine = 1e-6;
+// Centres of the grid's cells [m], along and across as the beam's frame has them.
 [[nodiscard]] std::vector<Eigen::Vector3d> lamp_positions_m(const Strobe& strobe, LampGrid grid);
 
 // How far off what it lights a strobe must stand [m].
@@ -97,12 +92,6 @@ inline constexpr double kLeastDistance_m = 0.001;
 // Throws InputError, which names the strobe, unless it stands so high over the floor and all of its
 // lamps are over it: an emitter may reach under it.
 void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid);
-
-// A_k of the cone: its intensity on the axis per unit of lamp power [1/sr].
-//
-//   flux:     A_k = alpha_k / (pi sin^2 gamma_k), so that the cone carries alpha_k of the flux
-//   literal:  A_k = alpha_k, as the source paper prints it
-[[nodiscard]] double axial_intensity(const Cone& cone, ConeWeights weights);
 
 // [rad], of directions of any length.
 [[nodiscard]] double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);

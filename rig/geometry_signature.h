@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the frames of a rig depend on, part by part, in words and numbers: its geometry. Sources of
-// light, materials, water and sensor are none of it, for weights can change those
-// (scene_gen/reweighting.h); but behind a port the water's indices are, for they bend rays.
+// All of a rig that decides where its light goes, whatever its colour: rigs of the same signature
+// differ in lamp spectra, powers, the water's losses, reflectances and the sensor at most. By key,
+// as words and numbers, each as short as reads back to the same.
 //
-// Numbers are as short as reads back to the same. Every field of the rig is visited, so that a new
-// one does not compile before it is said whether frames depend on it.
+// Put together of the parts' own signatures: beam, port, lens, the water's index, which bends rays
+// behind a port. Every field of the rig is visited, so that a new one does not compile before it is
+// said whether frames depend on it.
 #pragma once
 
 #include "rig/rig.h"

@@ -49,18 +49,9 @@ double shortest_path_m(const Rig& rig, const Strobe& strobe, double lambda_nm) {
         .second;
 }
 
-double half_diagonal_m(const Strobe& strobe) {
-    return strobe.emitter ? 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m)
-                          : 0.0;
-}
-
 // Where light that falls as exp(-K l) / l^3, no faster than any here, is down to kDarkShare.
 double darkest_path_m(const Rig& rig, double shortest_m) {
-    double K_per_m = rig.water.uniform_loss_per_m;
-    if (rig.water.multiple > 0.0) {
-        const auto absorption = rig.water.absorption_per_m.values();
-        K_per_m += rig.water.multiple * *std::ranges::min_element(absorption);
-    }
+    const double K_per_m = rig.water.least_attenuation_per_m();
     double l_m = shortest_m;
     while (std::exp(-K_per_m * (l_m - shortest_m)) * std::pow(shortest_m / l_m, 3) > kDarkShare) {
         constexpr double kStep = 1.02;
@@ -69,9 +60,8 @@ double darkest_path_m(const Rig& rig, double shortest_m) {
     return l_m;
 }
 
-// The corners; behind a port, where rays bend, points all along the image's rim.
 std::vector<std::array<double, 2>> rim_of(const Camera& camera) {
-    const int steps = camera.port ? 512 : 1;
+    const int steps = steps_along_rim(camera.port);
     std::vector<std::array<double, 2>> rim;
     for (int i = 0; i <= steps; ++i) {
         const double share = static_cast<double>(i) / steps;
@@ -85,7 +75,7 @@ std::vector<std::array<double, 2>> rim_of(const Camera& camera) {
     return rim;
 }
 
-// The shortest path by way of floor that a cone lights; 0 when the grid finds none.
+// The shortest path by way of floor that is lit; 0 when the grid finds none.
 double first_lit_path_m(const Rig& rig) {
     constexpr std::size_t kGrid = 65;
     double first_m = std::numeric_limits<double>::infinity();
@@ -93,11 +83,8 @@ double first_lit_path_m(const Rig& rig) {
         if (!sample) continue;
         for (const Strobe& strobe : rig.strobes) {
             const Vector3d towards = sample->point_m - strobe.position_m;
-            const double theta_rad =
-                std::acos(std::clamp(strobe.axis.dot(towards.normalized()), -1.0, 1.0));
-            const bool is_lit = std::ranges::any_of(strobe.beam.cones, [&](const Cone& cone) {
-                return strobe.power * cone.weight > 0.0 && theta_rad <= cone.half_angle_rad;
-            });
+            const bool is_lit =
+                strobe.power > 0.0 && reaches(strobe.beam, frame_about(strobe.axis), towards, 0.0);
             if (is_lit) first_m = std::min(first_m, towards.norm() + sample->camera_leg_m);
         }
     }
@@ -115,7 +102,7 @@ void widen_by(const Rig& rig, const Object& object, PathRange& paths) {
     const double nearest_leg_m = std::max(0.0, box.exteriorDistance(pupil_m) - port_m);
     const double farthest_leg_m = farthest_m(box, pupil_m) + port_m;
     for (const Strobe& strobe : rig.strobes) {
-        const double room_m = half_diagonal_m(strobe);
+        const double room_m = emitter_reach_m(strobe);
         const double shortest_m = box.exteriorDistance(strobe.position_m) + nearest_leg_m - room_m;
         const double longest_m = farthest_m(box, strobe.position_m) + farthest_leg_m + room_m;
         paths.shortest_m = std::min(paths.shortest_m, std::max(kLeastPath_m, shortest_m));
@@ -132,7 +119,7 @@ PathRange floor_path_range(const Rig& rig) {
     }
     PathRange paths{.shortest_m = std::numeric_limits<double>::infinity()};
     for (const Strobe& strobe : rig.strobes) {
-        const double room_m = half_diagonal_m(strobe);
+        const double room_m = emitter_reach_m(strobe);
         for (const double nm : wavelengths) {
             const double shortest_m = shortest_path_m(rig, strobe, nm);
             if (shortest_m >= kNoFloor_m) continue;

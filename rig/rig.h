@@ -9,7 +9,8 @@
 // Both renderers start from this struct and share nothing else of geometry or light.
 #pragma once
 
-#include "spectral/refractive_index.h"
+#include "rig/beam.h"
+#include "rig/port.h"
 #include "spectral/sensor.h"
 #include "spectral/spectrum.h"
 #include "spectral/water.h"
@@ -34,13 +35,6 @@ struct Sled {
     double roll_rad = 0.0;
 };
 
-// Air inside, glass, water outside; both faces perpendicular to the camera's axis.
-struct FlatPort {
-    double distance_m = 0.0;  // pupil to the inner face
-    double thickness_m = 0.0;
-    Glass glass;
-};
-
 struct Camera {
     int width_px = 0;
     int height_px = 0;
@@ -48,30 +42,13 @@ struct Camera {
     double focal_length_m = 0.0;
     WavelengthRange range;
     Sensor sensor;
-    std::optional<FlatPort> port;  // none: the pupil is in the water
+    Port port;
 };
 
 struct Seafloor {
     Spectrum reflectance;
     double phong = 0.0;  // POV-Ray's own Phong highlight; see docs/physics.md
     double phong_size = 40.0;
-};
-
-// One lobe of a beam: light within half_angle_rad of the strobe's axis, as cos(theta).
-struct Cone {
-    std::string part;
-    double half_angle_rad = 0.0;
-    double weight = 0.0;  // alpha_k
-};
-
-// What a cone's weight means: its share of the lamp's flux, or its intensity on the axis as
-// the source paper prints it.
-enum class ConeWeights { Flux, Literal };
-
-struct Beam {
-    std::string name;
-    ConeWeights weights = ConeWeights::Flux;
-    std::vector<Cone> cones;
 };
 
 // A lit rectangle centred on the strobe's position, perpendicular to its axis.

@@ -70,6 +70,7 @@ constexpr Bounds kPhong{0.0, 1e6};
 constexpr Bounds kPhongSize{0.0, 1e6};
 constexpr Bounds kHalfAngleDeg{0.001, 90.0};
 constexpr Bounds kConeWeight{0.0, 1e12};
+constexpr Bounds kConeExponent{0.0, 1000.0};
 constexpr Bounds kPositionM{-1000.0, 1000.0};
 constexpr Bounds kDirection{-1e6, 1e6};
 constexpr Bounds kAimTiltDeg{0.0, 180.0};
@@ -513,7 +514,8 @@ Beam RigReader::read_beam(Section section, std::string name) {
         beam.cones.push_back(
             {.part = cone.text("part", "a name in quotes"),
              .half_angle_rad = cone.number("half_angle_deg", kHalfAngleDeg) * kRadiansPerDegree,
-             .weight = cone.number("weight", kConeWeight)});
+             .weight = cone.number("weight", kConeWeight),
+             .exponent = cone.number_or("exponent", kConeExponent, 1.0)});
         cone.refuse_unknown_keys();
     }
     section.refuse_unknown_keys();

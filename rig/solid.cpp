@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/solid.h"
 
+#include "rig/lens.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,12 +23,6 @@ struct Ball {
 Ball ball_about(const Shape& shape) {
     const AlignedBox3d box = bounds_m(shape);
     return {.centre_m = box.center(), .radius_m = 0.5 * box.diagonal().norm()};
-}
-
-Ball ball_of(const Strobe& strobe) {
-    const double reach_m =
-        strobe.emitter ? 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m) : 0.0;
-    return {.centre_m = strobe.position_m, .radius_m = reach_m};
 }
 
 std::array<Vector3d, 3> corners_m(const Mesh& mesh, const std::array<int, 3>& triangle) {
@@ -130,45 +126,31 @@ bool has_highlight(const Rig& rig) {
            std::ranges::any_of(rig.objects, [](const Object& o) { return o.phong > 0.0; });
 }
 
-double port_reach_m(const Rig& rig) {
-    if (!rig.camera.port) return 0.0;
-    // Rays run farthest out at the corners, and a bit farther in blue or red than in between.
-    constexpr double kRoom = 1.05;
-    const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
-    return kRoom * pixel_ray(rig, 0.0, 0.0, middle_nm).origin_m.norm();
-}
-
 // The image's rays lie within a cone about the camera's axis, in water no wider than in air, and
 // with a port they start no farther from the pupil than its reach.
 bool may_be_in_view(const Rig& rig, const Object& object) {
-    const Camera& camera = rig.camera;
     const Ball ball = ball_about(object.shape);
     const double radius_m = ball.radius_m + port_reach_m(rig);
     const double range_m = ball.centre_m.norm();
     if (range_m <= radius_m) return true;
-    const double half_view_rad = std::atan(0.5 * std::hypot(camera.width_px, camera.height_px) *
-                                           camera.pixel_pitch_m / camera.focal_length_m);
     const double off_axis_rad = std::acos(std::clamp(ball.centre_m.z() / range_m, -1.0, 1.0));
-    return off_axis_rad <= half_view_rad + std::asin(radius_m / range_m);
+    return off_axis_rad <= half_view_rad(rig.camera) + std::asin(radius_m / range_m);
 }
 
-bool may_light(const Strobe& strobe, const Cone& cone, const Object& object) {
-    if (strobe.power * cone.weight == 0.0) return false;
+bool may_light(const Strobe& strobe, const Beam& beam, const Object& object) {
+    if (strobe.power == 0.0 || is_dark(beam)) return false;
     const Ball ball = ball_about(object.shape);
     const Vector3d towards = ball.centre_m - strobe.position_m;
-    const double radius_m = ball.radius_m + ball_of(strobe).radius_m;
+    const double radius_m = ball.radius_m + emitter_reach_m(strobe);
     const double range_m = towards.norm();
     if (range_m <= radius_m) return true;
-    const double theta_rad = std::acos(std::clamp(strobe.axis.dot(towards) / range_m, -1.0, 1.0));
-    return theta_rad <= cone.half_angle_rad + std::asin(radius_m / range_m);
+    return reaches(beam, frame_about(strobe.axis), towards, std::asin(radius_m / range_m));
 }
 
 double least_throw_m(const Rig& rig, const Strobe& strobe, const Vector3d& lamp_m) {
     double least_m = height_above(floor_plane(rig.sled), lamp_m);
     for (const Object& object : rig.objects) {
-        const bool is_lit = std::ranges::any_of(
-            strobe.beam.cones, [&](const Cone& cone) { return may_light(strobe, cone, object); });
-        if (is_lit && may_be_in_view(rig, object)) {
+        if (may_light(strobe, strobe.beam, object) && may_be_in_view(rig, object)) {
             least_m = std::min(least_m, distance_m(object.shape, lamp_m));
         }
     }

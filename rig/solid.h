@@ -28,7 +28,8 @@ namespace aphotic {
 
 // A no is sure, a yes may be wrong.
 [[nodiscard]] bool may_be_in_view(const Rig& rig, const Object& object);
-[[nodiscard]] bool may_light(const Strobe& strobe, const Cone& cone, const Object& object);
+// By the strobe's own beam, or by a part of it.
+[[nodiscard]] bool may_light(const Strobe& strobe, const Beam& beam, const Object& object);
 
 // From a point of the strobe to the nearest thing in view that it may light, the floor under it
 // among them [m].
@@ -37,8 +38,5 @@ namespace aphotic {
                                    const Eigen::Vector3d& lamp_m);
 
 [[nodiscard]] bool has_highlight(const Rig& rig);
-
-// How far behind the pupil's place, along a ray of the image, the water may begin [m].
-[[nodiscard]] double port_reach_m(const Rig& rig);
 
 }  // namespace aphotic

@@ -2,6 +2,7 @@
 #include "scene_gen/exposure.h"
 
 #include "rig/geometry.h"
+#include "rig/lens.h"
 #include "rig/solid.h"
 #include "spectral/manifest.h"
 
@@ -22,23 +23,6 @@ namespace {
 constexpr std::size_t kGridOfFloor = 33;  // points along each side of the image
 constexpr double kMarginView = 1.5;       // a point this far outside the image may still count
 constexpr int kColourLimitLog2 = 120;     // colours are single precision: 2^128 overflows
-
-bool may_be_in_view(const Camera& camera, const Vector3d& point_m) {
-    const double reach = kMarginView * 0.5 * camera.pixel_pitch_m / camera.focal_length_m;
-    return point_m.z() > 0.0 && std::abs(point_m.x()) <= reach * camera.height_px * point_m.z() &&
-           std::abs(point_m.y()) <= reach * camera.width_px * point_m.z();
-}
-
-// Intensity towards theta per unit of lamp power, over all cones, each widened by the margin.
-double widened_intensity(const Beam& beam, double theta_rad, double margin_rad) {
-    double intensity = 0.0;
-    for (const Cone& cone : beam.cones) {
-        if (theta_rad > cone.half_angle_rad + margin_rad) continue;
-        intensity +=
-            axial_intensity(cone, beam.weights) * std::cos(std::max(0.0, theta_rad - margin_rad));
-    }
-    return std::max(0.0, intensity);
-}
 
 // How far another point of the same cell of the grid may lie, in angle, as seen from a place.
 double reach_rad(const std::vector<Vector3d>& neighbours_m,
@@ -91,7 +75,7 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
     for (const Strobe& strobe : rig.strobes) {
         const Vector3d foot_m =
             strobe.position_m - height_above(floor, strobe.position_m) * floor.normal;
-        if (!may_be_in_view(rig.camera, foot_m)) continue;
+        if (!is_in_view(rig.camera, foot_m, kMarginView)) continue;
         double nearest_m = std::numeric_limits<double>::infinity();
         std::vector<Vector3d> neighbours_m;
         for (std::size_t index = 0; index < samples.size(); ++index) {
@@ -103,9 +87,8 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
                 neighbours_m.push_back(foot_m - next_m + samples[index]->point_m);
             }
         }
-        const double port_m =
-            rig.camera.port ? rig.camera.port->distance_m + rig.camera.port->thickness_m : 0.0;
-        add_point(foot_m, std::max(0.0, foot_m.norm() - 2.0 * port_m), neighbours_m);
+        const double camera_leg_m = std::max(0.0, foot_m.norm() - 2.0 * front_m(rig.camera.port));
+        add_point(foot_m, camera_leg_m, neighbours_m);
     }
     for (const Object& object : rig.objects) {
         if (may_be_in_view(rig, object)) add_object(object);
@@ -128,8 +111,8 @@ void RadianceBound::add_point(const Vector3d& point_m,
         const Vector3d towards = point_m - strobe.position_m;
         const double d_m = towards.norm();
         const double margin_rad = reach_rad(neighbours_m, point_m, strobe.position_m);
-        const double theta_rad = angle_between(strobe.axis, towards);
-        const double intensity = widened_intensity(strobe.beam, theta_rad, margin_rad);
+        const double intensity =
+            most_intensity(strobe.beam, frame_about(strobe.axis), towards, margin_rad);
         const double irradiance = strobe.power * intensity / (d_m * d_m);
         const double cos_incidence = std::max(0.0, -floor.normal.dot(towards) / d_m);
         const double highlight = widened_highlight(
@@ -149,9 +132,8 @@ void RadianceBound::add_object(const Object& object) {
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
         const Strobe& strobe = rig_.strobes[s];
         double intensity = 0.0;
-        for (const Cone& cone : strobe.beam.cones) {
-            if (!may_light(strobe, cone, object)) continue;
-            intensity += axial_intensity(cone, strobe.beam.weights);
+        for (const Beam& part : parts_of(strobe.beam)) {
+            if (may_light(strobe, part, object)) intensity += most_intensity(part);
         }
         if (intensity == 0.0) continue;
         const double d_m = least_object_distance_m(strobe, object);

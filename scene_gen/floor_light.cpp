@@ -12,22 +12,17 @@ using Eigen::Vector3d;
 std::optional<FloorLight> floor_light(const Rig& rig,
                                       const Strobe& strobe,
                                       const WaterRay& ray,
-                                      const Vector3d& cones_at_m) {
+                                      const Vector3d& lobes_at_m) {
     const Plane floor = floor_plane(rig.sled);
     const auto distance_m = distance_to(floor, ray);
     if (!distance_m) return std::nullopt;
     const Vector3d towards = ray.origin_m + *distance_m * ray.direction - strobe.position_m;
     const double d_m = towards.norm();
-    const double cos_theta = strobe.axis.dot(towards) / d_m;
     const double cos_i = -floor.normal.dot(towards) / d_m;
     FloorLight light{.path_m = d_m + *distance_m};
-    if (cos_theta <= 0.0 || cos_i <= 0.0) return light;
-    const double cos_of_cones = strobe.axis.dot((cones_at_m - strobe.position_m).normalized());
-    double intensity = 0.0;
-    for (const Cone& cone : strobe.beam.cones) {
-        if (cos_of_cones < std::cos(cone.half_angle_rad)) continue;
-        intensity += axial_intensity(cone, strobe.beam.weights) * cos_theta;
-    }
+    if (cos_i <= 0.0) return light;
+    const double intensity = continued_intensity(
+        strobe.beam, frame_about(strobe.axis), towards, lobes_at_m - strobe.position_m);
     const double facing = strobe.power * intensity / (std::numbers::pi * d_m * d_m);
     light.diffuse_per_m2 = facing * cos_i;
     if (rig.seafloor.phong > 0.0) {

@@ -4,11 +4,12 @@
 //
 //   L = Phi (rho diffuse + specular) exp(-K path)
 //
-//   diffuse   = power sum_k A_k cos(theta) cos(i) / (pi d^2)                        [1/m^2]
-//   specular  = power sum_k A_k cos(theta) phong max(0, m.l)^size / (pi d^2)
-//   path      = d + r                                                               [m]
+//   diffuse   = power I cos(i) / (pi d^2)                        [1/m^2]
+//   specular  = power I phong max(0, m.l)^size / (pi d^2)
+//   path      = d + r                                            [m]
 //
-// with the letters of docs/physics.md. The strobe is a point.
+// with the letters of docs/physics.md and I the beam's intensity (rig/beam.h). The strobe is a
+// point.
 #pragma once
 
 #include "rig/geometry.h"
@@ -22,11 +23,12 @@ struct FloorLight {
     double path_m = 0.0;
 };
 
-// Of the cones that light the point cones_at_m: rays that differ by a port's dispersion alone keep
-// to the same cones. Nothing when the ray shows no floor; dark when the strobe does not light it.
+// By what lights the point lobes_at_m, carried on: rays that differ by a port's dispersion alone
+// keep to the same side of the beam's edges. Nothing when the ray shows no floor; dark when the
+// strobe does not light it.
 [[nodiscard]] std::optional<FloorLight> floor_light(const Rig& rig,
                                                     const Strobe& strobe,
                                                     const WaterRay& ray,
-                                                    const Eigen::Vector3d& cones_at_m);
+                                                    const Eigen::Vector3d& lobes_at_m);
 
 }  // namespace aphotic

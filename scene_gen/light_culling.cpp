@@ -28,20 +28,20 @@ constexpr double kWideRad = 1.0;
 // The angle off by which other wavelengths' rays and other lamps of an emitter may see a floor
 // point.
 double margin_rad(const Rig& rig, const Strobe& strobe, double distance_m, double camera_leg_m) {
-    double reach_m = rig.camera.port ? kPortShift * camera_leg_m : 0.0;
-    if (strobe.emitter) {
-        reach_m += 0.5 * std::hypot(strobe.emitter->across_m, strobe.emitter->along_m);
-    }
+    const double reach_m =
+        (rig.camera.port ? kPortShift * camera_leg_m : 0.0) + emitter_reach_m(strobe);
     return reach_m > 0.0 ? std::atan2(reach_m, std::max(0.0, distance_m - reach_m)) : 0.0;
 }
 
 }  // namespace
 
-bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone) {
+bool lights_the_view(const Rig& rig, const Strobe& strobe, const Beam& beam) {
+    if (is_dark(beam)) return false;
     const bool lights_an_object = std::ranges::any_of(rig.objects, [&](const Object& object) {
-        return may_light(strobe, cone, object) && may_be_in_view(rig, object);
+        return may_light(strobe, beam, object) && may_be_in_view(rig, object);
     });
     if (lights_an_object) return true;
+    const BeamFrame frame = frame_about(strobe.axis);
     const std::vector<std::optional<FloorSample>> samples = floor_samples(rig, kGridOfView);
     for (std::size_t row = 0; row + 1 < kGridOfView; ++row) {
         for (std::size_t column = 0; column + 1 < kGridOfView; ++column) {
@@ -65,9 +65,8 @@ bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone) {
                 nearest_m = std::min(nearest_m, to_corner.norm());
                 camera_leg_m = std::max(camera_leg_m, (*sample)->camera_leg_m);
             }
-            const double margin = margin_rad(rig, strobe, nearest_m, camera_leg_m);
-            if (reach_rad + margin > kWideRad ||
-                angle_between(strobe.axis, towards) <= cone.half_angle_rad + reach_rad + margin) {
+            reach_rad += margin_rad(rig, strobe, nearest_m, camera_leg_m);
+            if (reach_rad > kWideRad || reaches(beam, frame, towards, reach_rad)) {
                 return true;
             }
         }
@@ -96,12 +95,12 @@ std::vector<Omission> omissions(const Rig& rig, bool is_user_scene) {
             left_out.push_back({fmt::format("strobe '{}'", strobe.name), "its power is 0"});
             continue;
         }
-        for (const Cone& cone : strobe.beam.cones) {
+        for (const Beam& part : parts_of(strobe.beam)) {
             const std::string what =
-                fmt::format("the {} cone of strobe '{}'", cone.part, strobe.name);
-            if (cone.weight == 0.0) {
+                fmt::format("the {} cone of strobe '{}'", part.name, strobe.name);
+            if (is_dark(part)) {
                 left_out.push_back({what, "its weight is 0"});
-            } else if (!is_user_scene && !lights_the_view(rig, strobe, cone)) {
+            } else if (!is_user_scene && !lights_the_view(rig, strobe, part)) {
                 left_out.push_back({what, "it lights nothing in view"});
             }
         }

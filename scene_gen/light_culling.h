@@ -19,9 +19,9 @@ struct Omission {
 // is left out.
 [[nodiscard]] std::vector<Omission> omissions(const Rig& rig, bool is_user_scene = false);
 
-// Whether the cone's light can fall on floor or on an object that the image sees. The image is
-// looked at in cells of a grid: a cell counts as lit when any of it may be within the cone, so that
-// a yes may be wrong at the cone's edge and a no is not.
-[[nodiscard]] bool lights_the_view(const Rig& rig, const Strobe& strobe, const Cone& cone);
+// Whether light of the strobe's beam, or of a part of it, can fall on floor or on an object that
+// the image sees. The image is looked at in cells of a grid: a cell counts as lit when the beam may
+// reach any of it, so that a yes may be wrong at the beam's edge and a no is not.
+[[nodiscard]] bool lights_the_view(const Rig& rig, const Strobe& strobe, const Beam& beam);
 
 }  // namespace aphotic

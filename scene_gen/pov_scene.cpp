@@ -4,9 +4,9 @@
 #include "base/error.h"
 #include "rig/solid.h"
 #include "scene_gen/band_sdl.h"
+#include "scene_gen/beam_sdl.h"
 #include "scene_gen/light_culling.h"
 #include "scene_gen/rig_sdl.h"
-#include "spectral/refractive_index.h"
 
 #include <fmt/format.h>
 
@@ -99,7 +99,7 @@ constexpr std::size_t kMostLights = 100'000;
 void require_few_enough_lights(const Rig& rig, std::span<const LampGrid> lamps) {
     std::size_t lights = 0;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        lights += rig.strobes[s].beam.cones.size() * static_cast<std::size_t>(lamps[s].across) *
+        lights += light_count(rig.strobes[s].beam) * static_cast<std::size_t>(lamps[s].across) *
                   static_cast<std::size_t>(lamps[s].along);
     }
     const std::size_t most = rig.water.is_clear() ? kMostLights : std::size_t{kMostLightsInMedia};
@@ -164,12 +164,13 @@ std::vector<StrobeInScene> strobes_in_scene(const Rig& rig,
                                             const SceneOptions& options) {
     std::vector<StrobeInScene> strobes;
     for (const Strobe& strobe : rig.strobes) {
-        StrobeInScene in_scene{.cones = {}, .lamps = lamps[strobes.size()]};
-        for (const Cone& cone : strobe.beam.cones) {
-            const bool shines = strobe.power > 0.0 && cone.weight > 0.0 &&
-                                (options.user_scene || lights_the_view(rig, strobe, cone));
-            if (shines || !options.omit) in_scene.cones.push_back(cone);
-        }
+        const auto is_wanted = [&](const Beam& part) {
+            const bool shines = strobe.power > 0.0 && !is_dark(part) &&
+                                (options.user_scene || lights_the_view(rig, strobe, part));
+            return shines || !options.omit;
+        };
+        StrobeInScene in_scene{.beam = parts_that(strobe.beam, is_wanted),
+                               .lamps = lamps[strobes.size()]};
         if (options.soft_edges) in_scene.soft_edge_deg = soft_edge_deg(rig, strobe);
         strobes.push_back(std::move(in_scene));
     }
@@ -200,10 +201,9 @@ std::vector<NamedSpectrum> reflectances_of(const Rig& rig, const SceneOptions& o
 double brightest_colour(const Rig& rig, double lambda_nm, double fade_m) {
     double brightest = 0.0;
     for (const Strobe& strobe : rig.strobes) {
-        for (const Cone& cone : strobe.beam.cones) {
-            brightest = std::max(brightest,
-                                 strobe.spectrum.at(lambda_nm) * strobe.power *
-                                     axial_intensity(cone, strobe.beam.weights));
+        for (const Beam& part : parts_of(strobe.beam)) {
+            brightest = std::max(
+                brightest, strobe.spectrum.at(lambda_nm) * strobe.power * most_intensity(part));
         }
     }
     return brightest / (2.0 * std::numbers::pi * fade_m * fade_m);
@@ -243,7 +243,7 @@ Band band_of(const Rig& rig, const Parts& parts, Frame frame) {
     }
     if (!rig.camera.port) return band;
     const double index_nm = frame.front().index_nm;
-    band.water_index = seawater_index(index_nm, rig.water.salinity_psu, rig.water.temperature_c);
+    band.water_index = rig.water.refractive_index(index_nm);
     const Glass& glass = rig.camera.port->glass;
     band.glasses = {{.name = glass.name(), .index = glass.index(index_nm)}};
     return band;

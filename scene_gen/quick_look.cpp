@@ -79,7 +79,7 @@ std::vector<StrobeInScene> strobes_of(const Rig& rig) {
     const double K_per_m = most_attenuation_per_m(rig, kQuickLambda_nm);
     std::vector<StrobeInScene> strobes;
     for (const Strobe& strobe : rig.strobes) {
-        strobes.push_back({.cones = strobe.beam.cones, .lamps = lamp_grid(rig, strobe, K_per_m)});
+        strobes.push_back({.beam = strobe.beam, .lamps = lamp_grid(rig, strobe, K_per_m)});
     }
     return strobes;
 }
@@ -87,14 +87,13 @@ std::vector<StrobeInScene> strobes_of(const Rig& rig) {
 }  // namespace
 
 std::string quick_look_sdl(const Rig& rig, const std::filesystem::path& rig_folder) {
-    Band band{
-        .lambda_nm = kQuickLambda_nm,
-        .exposure = exposure_of(rig),
-        .attenuation_per_m = {},
-        .water_index = seawater_index(kIndex_nm, rig.water.salinity_psu, rig.water.temperature_c),
-        .glasses = glasses(),
-        .lamps = lamps_for(rig),
-        .reflectances = reflectances_for(rig, rig_folder)};
+    Band band{.lambda_nm = kQuickLambda_nm,
+              .exposure = exposure_of(rig),
+              .attenuation_per_m = {},
+              .water_index = rig.water.refractive_index(kIndex_nm),
+              .glasses = glasses(),
+              .lamps = lamps_for(rig),
+              .reflectances = reflectances_for(rig, rig_folder)};
     for (std::size_t c = 0; c < kQuickLambda_nm.size(); ++c) {
         band.attenuation_per_m[c] = rig.water.attenuation_per_m(kQuickLambda_nm[c]);
     }

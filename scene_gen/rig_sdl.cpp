@@ -2,23 +2,14 @@
 #include "scene_gen/rig_sdl.h"
 
 #include "base/degrees.h"
+#include "scene_gen/beam_sdl.h"
 #include "scene_gen/pov_objects.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 namespace aphotic {
 
 namespace {
-
-// The share of its lamp's flux that a cone carries.
-double flux_share(const Cone& cone, ConeWeights weights) {
-    const double sine = std::sin(cone.half_angle_rad);
-    return axial_intensity(cone, weights) * std::numbers::pi * sine * sine;
-}
 
 std::string camera_sdl(const Camera& camera) {
     std::string sdl = fmt::format("#macro Aphotic_Rig_Camera ()\n   Aphotic_Camera ({}, {})\n",
@@ -46,16 +37,8 @@ std::string strobe_sdl(const Strobe& strobe,
                        const StrobeInScene& in_scene,
                        std::span<const NamedSpectrum> lamps) {
     std::string sdl = fmt::format("   // Strobe: {}\n", sdl_comment(strobe.name));
-    if (in_scene.cones.empty()) return sdl + "   // lights nothing in view\n";
-    sdl += fmt::format("   #local Beam = array[{}][2] {{\n", in_scene.cones.size());
-    for (const Cone& cone : in_scene.cones) {
-        sdl += fmt::format("      {{{}, {}}}{}   // {}\n",
-                           sdl_number(cone.half_angle_rad * kDegreesPerRadian),
-                           sdl_number(flux_share(cone, strobe.beam.weights)),
-                           &cone == &in_scene.cones.back() ? "" : ",",
-                           sdl_comment(cone.part));
-    }
-    sdl += "   }\n";
+    if (light_count(in_scene.beam) == 0) return sdl + "   // lights nothing in view\n";
+    sdl += "   #local Beam = " + beam_sdl(in_scene.beam) + "\n";
     if (in_scene.soft_edge_deg) {
         sdl += fmt::format("   #declare Aphotic_Soft_Edge = {};\n",
                            sdl_number(*in_scene.soft_edge_deg));

@@ -24,8 +24,8 @@ namespace aphotic {
 
 // One strobe as the scene is to have it.
 struct StrobeInScene {
-    std::vector<Cone> cones;  // none: it lights nothing in view
-    LampGrid lamps;           // of its emitter
+    Beam beam;       // what of its own lights the view, if anything does
+    LampGrid lamps;  // of its emitter
     std::optional<double> soft_edge_deg{};
 };
 

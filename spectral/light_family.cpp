@@ -119,7 +119,7 @@ std::vector<double> knots_of(const Sensor& sensor,
     for (const auto& source : family.sources) {
         for (const Spectrum& curve : source) curves.push_back(&curve);
     }
-    if (family.water.multiple != 0.0) curves.push_back(&family.water.absorption_per_m);
+    std::ranges::copy(family.water.curves(), std::back_inserter(curves));
     if (family.tilt) curves.push_back(&*family.tilt);
     std::vector<double> knots = union_of_knots(curves, range);
     // kExactPoints are exact where light falls by exp(-8) and less. Where it falls farther between

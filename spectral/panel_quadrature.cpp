@@ -39,7 +39,7 @@ std::vector<WavelengthRange> light_panels(std::span<const Spectrum* const> table
                                           const Spectrum* tilt,
                                           WavelengthRange range) {
     std::vector<const Spectrum*> all(tables.begin(), tables.end());
-    if (water.multiple != 0.0) all.push_back(&water.absorption_per_m);
+    std::ranges::copy(water.curves(), std::back_inserter(all));
     if (tilt != nullptr) all.push_back(tilt);
     const std::vector<double> knots_nm = union_of_knots(all, range);
     std::vector<WavelengthRange> panels;

@@ -3,7 +3,7 @@
 // The light of a rig's bare floor, pixel by pixel, in a number type of the caller's choice: the
 // answer to which both renderers are held where double or single precision ends.
 //
-//   L(lambda) = sum  Phi power A_k cos(theta) / (pi d^2)
+//   L(lambda) = sum  Phi power A_k cos^n(theta) / (pi d^2)
 //                    (rho cos(i) + phong max(0, m.l)^size)  exp(-K (d + r))
 //   S_c       = sum over panels of Gauss-Legendre of L(lambda) Q_c(lambda)
 //
@@ -90,7 +90,7 @@ class ExactLight {
     // What one strobe does to a point as the camera sees it, without wavelength.
     struct Lit {
         const Strobe* strobe;
-        Real diffuse;   // sum of power A_k cos(theta) cos(i) / (pi d^2)
+        Real diffuse;   // sum of power A_k cos^n(theta) cos(i) / (pi d^2)
         Real specular;  // the same with phong max(0, m.l)^size for cos(i)
         Real path_m;    // d + r
     };
@@ -185,8 +185,7 @@ class ExactLight {
         Lit lit{.strobe = &strobe, .diffuse = 0, .specular = 0, .path_m = d + view.distance_m};
         if (!(cos_incidence > 0) || !(cos_theta > 0)) return lit;
         const Real pi = boost::math::constants::pi<Real>();
-        const Real arriving =
-            strobe.power * axial_intensity(strobe.beam, cos_theta) * cos_theta / (pi * d * d);
+        const Real arriving = strobe.power * intensity(strobe.beam, cos_theta) / (pi * d * d);
         lit.diffuse = arriving * cos_incidence;
         // m = v - 2 (v.n) n with n = -down, and l = -path / d
         const Real aligned =
@@ -198,8 +197,11 @@ class ExactLight {
         return lit;
     }
 
-    [[nodiscard]] static Real axial_intensity(const Beam& beam, const Real& cos_theta) {
+    [[nodiscard]] static Real intensity(const Beam& beam, const Real& cos_theta) {
         using std::cos;
+        using std::expm1;
+        using std::log1p;
+        using std::pow;
         using std::sin;
         Real sum = 0;
         for (const Cone& cone : beam.cones) {
@@ -208,7 +210,13 @@ class ExactLight {
             const Real sine = sin(half_angle);
             const Real pi = boost::math::constants::pi<Real>();
             const bool is_flux = beam.weights == ConeWeights::Flux;
-            sum += is_flux ? Real(cone.weight / (pi * sine * sine)) : Real(cone.weight);
+            // The integral of cos^n, 2 pi (1 - cos^(n + 1)) / (n + 1), without a small difference.
+            const Real power = Real(cone.exponent) + 1;
+            const Real lobe = cone.exponent == 1.0
+                                  ? Real(pi * sine * sine)
+                                  : Real(-2 * pi * expm1(power / 2 * log1p(-sine * sine)) / power);
+            const Real axial = is_flux ? Real(cone.weight / lobe) : Real(cone.weight);
+            sum += axial * (cone.exponent == 1.0 ? cos_theta : Real(pow(cos_theta, cone.exponent)));
         }
         return sum;
     }

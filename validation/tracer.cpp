@@ -46,18 +46,19 @@ double light_left(double depth) {
 // ray v and s = e.n the rise over the surface, cos(theta) d does not change, cos(i) d grows by s,
 // and
 //
-//   f''/f = (c^2 (k^2 + 9 k + 24) - (k + 4)) / d^2 + 2 s c (k + 4) / (d h),   k = K d
+//   f''/f = (c^2 (M^2 + M + m) - M) / d^2 + 2 s c M / (d h),   M = m + K d,  m = n + 3
 //
-// On a floor, of which the lamp is h over every point, that is at most (k^2 + 6 k + 12) / h^2 with
-// k = K h, where a vertical emitter is straight above; on anything that is d away, at most
-// k^2 + 8 k + 20 with s = 0. Both sides of an emitter together have no more than one, for their c^2
-// add up to no more than 1. A highlight, cos^n of an angle that turns by 1/d, bends by n at its top
-// to both sides, and on its flank it slopes by (n/e)^(1/2) at most, which counts twice with the
-// light's own slope k + 4.
-double bend_of_light(double k, bool is_floor, double phong_size) {
-    const double diffuse = is_floor ? (k + 6.0) * k + 12.0 : (k + 8.0) * k + 20.0;
+// for a beam that falls as cos^n: k^2 + 9 k + 24 and k + 4 for n = 1. On a floor, of which the lamp
+// is h over every point, that is at most ((M - 1)^2 + m - 1) / h^2 with k = K h, where a vertical
+// emitter is straight above; on anything that is d away, at most M^2 + m with s = 0. Both sides of
+// an emitter together have no more than one, for their c^2 add up to no more than 1. A highlight,
+// cos^n of an angle that turns by 1/d, bends by n at its top to both sides, and on its flank it
+// slopes by (n/e)^(1/2) at most, which counts twice with the light's own slope M.
+double bend_of_light(double k, double n, bool is_floor, double phong_size) {
+    const double m = is_floor ? n + 2.0 : n + 3.0;
+    const double diffuse = (k + 2.0 * m) * k + m * (m + 1.0);
     const double flank = std::sqrt(phong_size / std::numbers::e);
-    return diffuse + 2.0 * phong_size + 2.0 * flank * (k + 4.0);
+    return diffuse + 2.0 * phong_size + 2.0 * flank * (k + (n + 3.0));
 }
 
 // Of an emitter, in shares of its sides from its middle.
@@ -88,7 +89,13 @@ Tracer::Tracer(const Rig& rig, const TraceOptions& options)
         axial_intensity_.emplace_back();
         cos_edge_.emplace_back();
         for (const Cone& cone : strobe.beam.cones) {
-            const double lobe = std::numbers::pi * std::pow(std::sin(cone.half_angle_rad), 2);
+            // The integral of cos^n over the cone; narrow ones leave next to nothing of 1 - cos^n.
+            const double sine2 = std::pow(std::sin(cone.half_angle_rad), 2);
+            const double power = cone.exponent + 1.0;
+            const double lobe = cone.exponent == 1.0
+                                    ? std::numbers::pi * sine2
+                                    : -2.0 * std::numbers::pi *
+                                          std::expm1(0.5 * power * std::log1p(-sine2)) / power;
             const bool is_flux = strobe.beam.weights == ConeWeights::Flux;
             axial_intensity_.back().push_back(is_flux ? cone.weight / lobe : cone.weight);
             cos_edge_.back().push_back(std::cos(cone.half_angle_rad));
@@ -133,13 +140,15 @@ double Tracer::spacing_m(std::size_t s, double d_m, bool is_floor) const {
     for (const Surface& surface : surfaces_) {
         if (surface.phong > 0.0) phong_size = std::max(phong_size, surface.phong_size);
     }
+    double n = 0.0;
+    for (const Cone& cone : rig_.strobes[s].beam.cones) n = std::max(n, cone.exponent);
     const ArrayXd depth = attenuation_per_m_ * d_m;
     const ArrayXd bend =
-        depth.unaryExpr([&](double k) { return bend_of_light(k, is_floor, phong_size); });
+        depth.unaryExpr([&](double k) { return bend_of_light(k, n, is_floor, phong_size); });
     const auto grid = static_cast<Eigen::Index>(signal_nodes_);
     // Lamps 3.5 mm apart for each metre: the steps of a cone's edge are as fine as the lamps.
     constexpr double kLeastBend = 40.0;
-    double most = std::max(kLeastBend, bend_of_light(0.0, is_floor, phong_size));
+    double most = std::max(kLeastBend, bend_of_light(0.0, n, is_floor, phong_size));
     if (bend.size() > grid) most = std::max(most, bend.tail(bend.size() - grid).maxCoeff());
     const auto take_in = [&](const ArrayXd& light) {
         const ArrayXd left = light.head(grid) * light_left(depth.head(grid));
@@ -398,12 +407,20 @@ Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
     Contribution found{.diffuse = 0.0, .specular = 0.0, .path_m = d + view.distance_m};
     if (cos_incidence <= 0.0 || cos_theta <= 0.0) return found;
 
-    double axial = 0.0;
+    double axial = 0.0;  // of cones that fall as the cosine
+    double other = 0.0;
     for (std::size_t k = 0; k < strobe.beam.cones.size(); ++k) {
-        if (cos_theta >= cos_edge_[lamp.strobe][k]) axial += axial_intensity_[lamp.strobe][k];
+        if (cos_theta < cos_edge_[lamp.strobe][k]) continue;
+        const double exponent = strobe.beam.cones[k].exponent;
+        if (exponent == 1.0) {
+            axial += axial_intensity_[lamp.strobe][k];
+        } else {
+            other += axial_intensity_[lamp.strobe][k] * std::pow(cos_theta, exponent);
+        }
     }
-    if (axial == 0.0 || is_blocked(lamp, view)) return found;
-    const double arriving = axial * cos_theta / (lamps_of_strobe_[lamp.strobe] * d2);
+    const double intensity = axial * cos_theta + other;
+    if (intensity == 0.0 || is_blocked(lamp, view)) return found;
+    const double arriving = intensity / (lamps_of_strobe_[lamp.strobe] * d2);
     found.diffuse = arriving * cos_incidence;
     const Surface& surface = surfaces_[view.surface];
     if (surface.phong > 0.0) {
@@ -486,9 +503,10 @@ bool Tracer::is_on_cone_edge(double column,
     for (const Apex& apex : apexes_) {
         const Strobe& strobe = rig_.strobes[apex.strobe];
         for (const Cone& cone : strobe.beam.cones) {
-            // A cone of 90 degrees ends where its cosine does: there is no step. Nor is there one
-            // where there is no light.
-            const bool has_step = cone.half_angle_rad < 0.5 * std::numbers::pi - rounding_rad &&
+            // A cone of 90 degrees ends where its cosine does: there is no step, unless it falls
+            // more steeply than that. Nor is there one where there is no light.
+            const bool has_step = (cone.half_angle_rad < 0.5 * std::numbers::pi - rounding_rad ||
+                                   cone.exponent < 1.0) &&
                                   cone.weight * strobe.power > 0.0;
             if (has_step && is_on_edge_of(apex, cone)) return true;
         }

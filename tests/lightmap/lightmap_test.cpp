@@ -203,6 +203,34 @@ TEST(Lightmap, IsThatOfTheTracerForEmittersThatShineNearlyForeOrAft) {
     }
 }
 
+// Of cones that fall as other powers of the cosine.
+TEST(Lightmap, IsThatOfTheTracerForOtherExponents) {
+    std::mt19937 engine(20260101);
+    for (const double exponent : {0.0, 0.5, 2.0, 3.7, 30.0, 400.0}) {
+        for (const bool has_highlight : {false, true}) {
+            Rig rig = random_rig(engine);
+            if (has_highlight) rig.seafloor.phong = 0.5;
+            for (Strobe& strobe : rig.strobes) strobe.beam.cones[1].exponent = exponent;
+            rig.strobes[0].beam.cones = {{.part = "",
+                                          .half_angle_rad = 90.0 * kDegree,
+                                          .weight = 1.0,
+                                          .exponent = exponent}};
+            expect_equal(rig, kWithoutPort, "exponent " + std::to_string(exponent));
+        }
+    }
+    Rig rig = scene("port", 64, 48);
+    for (Strobe& strobe : rig.strobes) {
+        for (Cone& cone : strobe.beam.cones) cone.exponent = 3.0;
+    }
+    expect_equal(rig, kPromise, "exponent 3 behind a port");
+    rig = scene("habcam", 48, 36);
+    for (Strobe& strobe : rig.strobes) {
+        strobe.emitter = {.across_m = 0.0635, .along_m = 0.0302};
+        strobe.beam.cones[2].exponent = 8.0;
+    }
+    expect_equal(rig, kWithoutPort, "emitters of exponent 8");
+}
+
 TEST(Lightmap, IsThatOfTheTracerForGlossyFloors) {
     Rig rig = scene("habcam", 96, 72);
     rig.seafloor.phong = 0.7;

@@ -105,6 +105,9 @@ TEST_F(AphoticInc, AxialIntensityCarriesItsShareOfTheFlux) {
     constexpr double kDigits = 1e-12;  // of those printed
     EXPECT_NEAR(value("Aphotic_Axial_Intensity (90, 0.5)"), 0.5 / kPi, kDigits);
     EXPECT_NEAR(value("Aphotic_Axial_Intensity (30, 1)"), 4.0 / kPi, kDigits);
+    // The integral of cos^3 over 60 degrees is 2 pi/4 (1 - 1/16).
+    EXPECT_NEAR(value("Aphotic_Lobe_Intensity (60, 1, 3)"), 32.0 / (15.0 * kPi), kDigits);
+    EXPECT_NEAR(value("Aphotic_Lobe_Intensity (90, 1, 0)"), 0.5 / kPi, kDigits);
 }
 
 TEST_F(AphoticInc, ReflectanceIsTheBandsAsAVector) {
@@ -143,7 +146,8 @@ TEST_F(AphoticInc, AnEmittersLampsAreTheGenerators) {
     const Emitter emitter{.across_m = 0.2, .along_m = 0.1};
     std::vector<Eigen::Vector3d> wanted_m;
     std::string scene =
-        "#macro Aphotic_Light (Position, Axis, Half_Angle, Axial_Intensity, Lamp, Power, Caller)\n"
+        "#macro Aphotic_Light (Position, Axis, Half_Angle, Axial_Intensity, Exponent, Lamp, Power, "
+        "Caller)\n"
         "   #debug concat(\"lamp \", vstr(3, Position, \" \", 0, 15), \"\\n\")\n#end\n"
         "#declare Beam = array[1][2] {{60, 1}}\n";
     for (const double end : {1.0, -1.0}) {
@@ -527,9 +531,12 @@ const std::vector<Misuse> kMisuses{
     {"BeamOfOneDimension",
      "#declare Beam = array[2] {60, 1}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
      "Aphotic_Strobe: Beam must be an array [n][2]"},
-    {"BeamOfThreeColumns",
-     "#declare Beam = array[1][3] {{60, 1, 2}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
+    {"BeamOfFourColumns",
+     "#declare Beam = array[1][4] {{60, 1, 2, 3}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
      "Aphotic_Strobe: Beam must be an array [n][2]"},
+    {"NegativeExponent",
+     "#declare Beam = array[1][3] {{60, 1, -0.5}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
+     "Aphotic_Strobe: found an exponent of -0.5"},
     {"StrobeWithoutAxis",
      kBeam + "Aphotic_Strobe (0, <0, 0, 0>, Beam, \"arc\", 1, 0)",
      "Aphotic_Strobe: found an Axis of length 0"},

@@ -56,6 +56,15 @@ const std::vector<Scene> kScenes{
     {"FocusedAlone", [](Rig& rig) { keep_cone(rig, "focused"); }},
     {"DiffuseAlone", [](Rig& rig) { keep_cone(rig, "diffuse"); }},
     {"LiteralWeights", use_literal_weights},
+    {"Exponents",
+     [](Rig& rig) {
+         make_asymmetric(rig);
+         for (Strobe& strobe : rig.strobes) {
+             strobe.beam.cones[0].exponent = 20.0;
+             strobe.beam.cones[1].exponent = 0.0;
+             strobe.beam.cones[2].exponent = 2.5;
+         }
+     }},
     {"Air", [](Rig& rig) { rig.water.multiple = 0.0; }},
     {"HalfAbsorption", [](Rig& rig) { rig.water.multiple = 0.5; }},
     {"TenTimesAbsorption", [](Rig& rig) { rig.water.multiple = 10.0; }},

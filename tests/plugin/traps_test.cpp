@@ -55,7 +55,7 @@ const std::vector<Trap> kTraps{
     {"RightOfTheWrongSign", {{"right x *", "right -x *"}}},
     {"GammaOfTheDisplay", {{"assumed_gamma 1.0", "assumed_gamma 2.2"}}},
     {"SoftConeEdge", {{"falloff min(90, Half_Angle", "falloff min(90, 5 + Half_Angle"}}},
-    {"NoCosineInTheCone", {{"tightness 1", "tightness 0"}}},
+    {"NoCosineInTheCone", {{"tightness Exponent", "tightness 0"}}},
     {"PointAtIsNoDirection", {{"point_at Position + Axis", "point_at Axis"}}},
     {"WaterInTheHousing", {{"no_shadow\n", "no_shadow hollow\n"}}, give_port},
     {"IndexOfAirForWater", {{"1 / Aphotic_Water_Index", "1"}}, give_port},

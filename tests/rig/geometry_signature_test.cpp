@@ -91,7 +91,7 @@ TEST(GeometrySignature, KnowsBeamsByTheirLight) {
     Rig literal = habcam();
     for (Strobe& strobe : literal.strobes) {
         for (Cone& cone : strobe.beam.cones) {
-            cone.weight = axial_intensity(cone, strobe.beam.weights);
+            cone.weight /= std::numbers::pi * std::pow(std::sin(cone.half_angle_rad), 2);
         }
         strobe.beam.weights = ConeWeights::Literal;
     }

@@ -50,7 +50,9 @@ Strobe strobe_with(const Vector3d& axis, std::optional<Emitter> emitter) {
     return {.name = "s",
             .position_m = {0.3, -0.4, 0.1},
             .axis = axis.normalized(),
-            .beam = {},
+            .beam = {.name = "",
+                     .weights = ConeWeights::Flux,
+                     .cones = {{.part = "", .half_angle_rad = 0.5 * kPi, .weight = 1.0}}},
             .spectrum = flat(1.0),
             .power = 1.0,
             .emitter = emitter};
@@ -353,16 +355,17 @@ TEST(LampGrid, IsTheCoarsestThatKeepsTheSpacing) {
     EXPECT_EQ(lamps(0.0635, 0.0302).along, 2);
 }
 
-// Irradiance of a floor point by equal lamps that shine as cos(theta), through water of K.
+// Irradiance of a floor point by equal lamps that shine as cos^n(theta), through water of K.
 double irradiance(const std::vector<Vector3d>& lamps_m,
                   const Strobe& strobe,
                   const Vector3d& at,
                   double K_per_m) {
+    const double n = strobe.beam.cones.front().exponent;
     double sum = 0.0;
     for (const Vector3d& lamp : lamps_m) {
         const Vector3d path = at - lamp;
         const double d = path.norm();
-        sum += std::max(0.0, strobe.axis.dot(path) / d) * (path.z() / d) / (d * d) *
+        sum += std::pow(std::max(0.0, strobe.axis.dot(path) / d), n) * (path.z() / d) / (d * d) *
                std::exp(-K_per_m * d);
     }
     return sum / static_cast<double>(lamps_m.size());
@@ -374,7 +377,14 @@ TEST(LampGrid, KeepsTheErrorThatItsHeaderStates) {
     // The error falls with the square of the spacing: this grid's own is a sixteenth of that.
     constexpr int kFiner = 4;
     const Rig rig = camera_rig();
-    for (const double K_per_m : {0.0, 0.5, 2.0, 5.0, 10.5}) {
+    for (const auto& [K_per_m, exponent] : std::vector<std::pair<double, double>>{{0.0, 1.0},
+                                                                                  {0.5, 1.0},
+                                                                                  {2.0, 1.0},
+                                                                                  {5.0, 1.0},
+                                                                                  {10.5, 1.0},
+                                                                                  {0.0, 0.3},
+                                                                                  {0.0, 3.0},
+                                                                                  {0.5, 12.0}}) {
         double nearly = 0.0;
         for (const Vector3d& axis : {Vector3d(0.0, 0.0, 1.0),
                                      Vector3d(-0.44, 0.0, 0.9),
@@ -382,7 +392,8 @@ TEST(LampGrid, KeepsTheErrorThatItsHeaderStates) {
                                      Vector3d(1.0, 0.0, 0.1)}) {
             for (const Emitter& emitter : {Emitter{.across_m = 0.0635, .along_m = 0.0302},
                                            Emitter{.across_m = 0.3, .along_m = 0.3}}) {
-                const Strobe strobe = strobe_with(axis.normalized(), emitter);
+                Strobe strobe = strobe_with(axis.normalized(), emitter);
+                strobe.beam.cones.front().exponent = exponent;
                 const LampGrid grid = lamp_grid(rig, strobe, K_per_m);
                 const auto lamps_m = lamp_positions_m(strobe, grid);
                 const auto fine_m = lamp_positions_m(
@@ -401,14 +412,24 @@ TEST(LampGrid, KeepsTheErrorThatItsHeaderStates) {
                             std::abs(irradiance(lamps_m, strobe, at, K_per_m) / exact - 1.0));
                     }
                 }
-                EXPECT_LT(worst, kGridError) << "emitter " << emitter.across_m << " m, axis "
-                                             << axis.transpose() << ", K " << K_per_m << "/m";
+                EXPECT_LT(worst, kGridError)
+                    << "emitter " << emitter.across_m << " m, axis " << axis.transpose() << ", K "
+                    << K_per_m << "/m, exponent " << exponent;
                 EXPECT_GT(worst, 0.0) << "the grids are the same";
                 nearly = std::max(nearly, worst);
             }
         }
         EXPECT_GT(nearly, 0.1 * kGridError) << "more lamps than it takes at K " << K_per_m;
     }
+}
+
+// By the height of 1.9 m, sqrt(24e-4/((n + 2) (n + 3))) of it apart: for n = 10, 7.45 mm.
+TEST(LampGrid, IsFinerForBeamsThatFallMoreSteeply) {
+    Strobe strobe = strobe_with({0.0, 0.0, 1.0}, Emitter{.across_m = 0.3, .along_m = 0.1});
+    strobe.beam.cones.front().exponent = 10.0;
+    EXPECT_EQ(lamp_grid(camera_rig(), strobe, 0.0).across, 41);  // 300 mm over 7.45 mm is 40.3
+    strobe.beam.cones.front().exponent = 0.0;
+    EXPECT_EQ(lamp_grid(camera_rig(), strobe, 0.0).across, 15) << "kLampSpacing, 20.9 mm";
 }
 
 // The strobe stands 1.9 m above the floor.
@@ -421,43 +442,6 @@ TEST(LampGrid, IsFinerInWaterThatAttenuatesMore) {
     EXPECT_LT(across(1.1 / 1.9), across(2.0));
     // h falls as 1 / K in the end: the bound is K^2 alone.
     EXPECT_NEAR(across(1e3) / static_cast<double>(across(1e2)), 10.0, 0.5);
-}
-
-// --- Cones -----------------------------------------------------------------------------------
-
-// Flux of the lobe A cos(theta) up to gamma, by the midpoint rule over the angle.
-double lobe_flux(double axial, double gamma_rad) {
-    constexpr int kSteps = 100'000;
-    double sum = 0.0;
-    for (int i = 0; i < kSteps; ++i) {
-        const double theta = (i + 0.5) / kSteps * gamma_rad;
-        sum += axial * std::cos(theta) * 2.0 * kPi * std::sin(theta) * gamma_rad / kSteps;
-    }
-    return sum;
-}
-
-TEST(AxialIntensity, OfAFluxWeightCarriesThatFlux) {
-    constexpr double kQuadrature = 1e-9;  // the midpoint rule's, with 100 000 steps
-    for (const double gamma_deg : {0.1, 10.0, 26.565, 60.0, 90.0}) {
-        const Cone cone{.part = "", .half_angle_rad = gamma_deg * kDegree, .weight = 0.165};
-        const double flux =
-            lobe_flux(axial_intensity(cone, ConeWeights::Flux), cone.half_angle_rad);
-        EXPECT_NEAR(flux, 0.165, kQuadrature) << gamma_deg << " degrees";
-    }
-}
-
-TEST(AxialIntensity, HasTheFiguresOfTheSourcePapersCones) {
-    constexpr double kThreeDecimals = 0.0005;  // to which they are given
-    struct Figure {
-        double gamma_deg, weight, axial;
-    };
-    for (const Figure& figure :
-         {Figure{10.0, 0.165, 1.742}, {26.565, 0.094, 0.150}, {90.0, 0.741, 0.236}}) {
-        const Cone cone{
-            .part = "", .half_angle_rad = figure.gamma_deg * kDegree, .weight = figure.weight};
-        EXPECT_NEAR(axial_intensity(cone, ConeWeights::Flux), figure.axial, kThreeDecimals);
-        EXPECT_EQ(axial_intensity(cone, ConeWeights::Literal), figure.weight);
-    }
 }
 
 // --- POV-Ray's frame -------------------------------------------------------------------------

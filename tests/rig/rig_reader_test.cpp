@@ -159,6 +159,13 @@ TEST(RigReader, ConvertsDegreesToRadians) {
     EXPECT_NEAR(narrow.strobes[0].beam.cones[0].half_angle_rad, kPi / 3.0, kRounding);
 }
 
+TEST(RigReader, ReadsAConesExponent) {
+    EXPECT_EQ(parse(kMinimal).strobes[0].beam.cones[0].exponent, 1.0);
+    const Rig steep = parse(
+        with(12, "cones = [{ part = \"x\", half_angle_deg = 60, weight = 0.5, exponent = 2.5 }]"));
+    EXPECT_EQ(steep.strobes[0].beam.cones[0].exponent, 2.5);
+}
+
 TEST(RigReader, ReadsEverythingThatMayBeSaid) {
     std::string text = "title = \"All of it\"\n" + with(9,
                                                         std::string(kPort) +
@@ -408,6 +415,9 @@ TEST(RigReader, ChecksConesInTheirArray) {
         {12,
          "cones = [{ part = \"all\", half_angle_deg = 90, weight = -1 }]",
          "beam.wide.cones[0].weight: found -1; allowed: a number from 0 to 1000000000000"},
+        {12,
+         "cones = [{ part = \"all\", half_angle_deg = 90, weight = 1, exponent = 1001 }]",
+         "beam.wide.cones[0].exponent: found 1001; allowed: a number from 0 to 1000"},
         {12,
          "cones = [{ half_angle_deg = 90, weight = 1 }]",
          "beam.wide.cones[0].part: is missing; allowed: a name in quotes"},

@@ -71,16 +71,19 @@ TEST(Solid, IsLitByConesThatReachIt) {
     Strobe strobe = habcam().strobes.front();
     strobe.position_m = Vector3d::Zero();
     strobe.axis = Vector3d::UnitZ();
-    const Cone cone{.part = "cone", .half_angle_rad = 0.3, .weight = 1.0};
+    const auto cone_of = [](double weight) {
+        return Beam{.name = "",
+                    .weights = ConeWeights::Flux,
+                    .cones = {{.part = "cone", .half_angle_rad = 0.3, .weight = weight}}};
+    };
     const auto ball_at = [](double angle_rad) {
         return object_of(
             Sphere{.centre_m = {2.0 * std::sin(angle_rad), 0.0, 2.0 * std::cos(angle_rad)},
                    .radius_m = 0.1});
     };
-    EXPECT_TRUE(may_light(strobe, cone, ball_at(0.34)));
-    EXPECT_FALSE(may_light(strobe, cone, ball_at(0.4)));
-    EXPECT_FALSE(
-        may_light(strobe, {.part = "", .half_angle_rad = 0.3, .weight = 0.0}, ball_at(0.0)));
+    EXPECT_TRUE(may_light(strobe, cone_of(1.0), ball_at(0.34)));
+    EXPECT_FALSE(may_light(strobe, cone_of(1.0), ball_at(0.4)));
+    EXPECT_FALSE(may_light(strobe, cone_of(0.0), ball_at(0.0)));
 }
 
 TEST(Solid, LeastThrowIsToTheFloorOrToANearerObjectInTheLight) {

@@ -122,8 +122,10 @@ TEST(Omissions, NameEveryConeThatLightsNothingInView) {
 
 // --- What lights the view --------------------------------------------------------------------
 
-Cone cone_of(double half_angle_rad) {
-    return {.part = "c", .half_angle_rad = half_angle_rad, .weight = 1.0};
+Beam cone_of(double half_angle_rad) {
+    return {.name = "c",
+            .weights = ConeWeights::Flux,
+            .cones = {{.part = "c", .half_angle_rad = half_angle_rad, .weight = 1.0}}};
 }
 
 // HabCam's camera over a level floor, with one strobe.
@@ -170,7 +172,7 @@ TEST(LightsTheView, OfABeamInsideItIsYes) {
 // A beam that passes over the floor in view, and meets a ball on its way.
 TEST(LightsTheView, OfABeamThatMeetsAnObjectIsYes) {
     Rig rig = rig_with_strobe({-3.0, 0.0, 1.0}, Vector3d::UnitX());
-    const Cone cone{.part = "narrow", .half_angle_rad = 3.0 * kDegree, .weight = 1.0};
+    const Beam cone = cone_of(3.0 * kDegree);
     EXPECT_FALSE(lights_the_view(rig, rig.strobes.front(), cone));
     rig.objects = {{.name = "ball",
                     .shape = Sphere{.centre_m = {0.0, 0.0, 1.0}, .radius_m = 0.1},
@@ -267,7 +269,7 @@ std::pair<double, double> random_place(const Rig& rig, Dice& dice) {
 // Puts the strobe anywhere, or close to the floor near what the image sees, and aims a narrow cone
 // so that it just takes in a floor point that the image sees at this wavelength. Nothing, where
 // the place shows no floor.
-std::optional<Cone> aim_at_the_view(Rig& rig, double lambda_nm, Dice& dice) {
+std::optional<Beam> aim_at_the_view(Rig& rig, double lambda_nm, Dice& dice) {
     const auto [column, row] = random_place(rig, dice);
     const auto [near_column, near_row] = random_place(rig, dice);
     const auto target_m = floor_at(rig, column, row, lambda_nm);
@@ -309,7 +311,8 @@ void expect_no_light_is_left_out(bool has_port, int rigs) {
         if (!first.empty()) continue;
         first = "rig " + std::to_string(n) + " at " + std::to_string(nm) + " nm, strobe " +
                 std::to_string(height_above(floor_plane(rig.sled), rig.strobes[0].position_m)) +
-                " m above the floor, cone of " + std::to_string(cone->half_angle_rad) + " rad";
+                " m above the floor, cone of " + std::to_string(cone->cones[0].half_angle_rad) +
+                " rad";
     }
     EXPECT_EQ(left_out, 0) << "of " << aimed << " cones; the first is that of " << first;
     EXPECT_GT(aimed, rigs / 2);

@@ -404,7 +404,9 @@ double light_of(const Rig& rig, const Strobe& strobe, const Seen& seen, double K
     double light = 0.0;
     for (const Cone& cone : strobe.beam.cones) {
         if (std::acos(std::min(1.0, cos_theta)) > cone.half_angle_rad) continue;
-        light += axial_intensity(cone, strobe.beam.weights) * cos_theta;
+        const double lobe = std::numbers::pi * std::pow(std::sin(cone.half_angle_rad), 2);
+        const bool is_flux = strobe.beam.weights == ConeWeights::Flux;
+        light += cone.weight / (is_flux ? lobe : 1.0) * cos_theta;
     }
     return strobe.power * light * cos_i / (d_m * d_m) * std::exp(-K_per_m * (d_m + seen.leg_m));
 }

@@ -123,14 +123,18 @@ inline Answer radiance(
             for (const Cone& cone : strobe.beam.cones) {
                 answer.edge_rad = std::min(answer.edge_rad, std::abs(theta - cone.half_angle_rad));
                 if (theta > cone.half_angle_rad || cos_theta <= 0.0 || cos_i <= 0.0) continue;
+                const double n = cone.exponent;
                 const double flux_of_lobe =
-                    std::numbers::pi * std::pow(std::sin(cone.half_angle_rad), 2.0);
+                    n == 1.0 ? std::numbers::pi * std::pow(std::sin(cone.half_angle_rad), 2.0)
+                             : 2.0 * std::numbers::pi / (n + 1.0) *
+                                   (1.0 - std::pow(std::cos(cone.half_angle_rad), n + 1.0));
                 const double A = strobe.beam.weights == ConeWeights::Flux
                                      ? cone.weight / flux_of_lobe
                                      : cone.weight;
-                answer.radiance += strobe.spectrum.at(lambda_nm) * strobe.power * A * cos_theta /
-                                   (n_across * n_along * d * d) * (rho * cos_i + highlight) /
-                                   std::numbers::pi * std::exp(-K_per_m * (d + r));
+                answer.radiance += strobe.spectrum.at(lambda_nm) * strobe.power * A *
+                                   std::pow(cos_theta, n) / (n_across * n_along * d * d) *
+                                   (rho * cos_i + highlight) / std::numbers::pi *
+                                   std::exp(-K_per_m * (d + r));
             }
         }
     }

@@ -76,6 +76,8 @@ TEST(ExactLight, AgreesWithTheClosedFormOffTheAxisAndBehindAPort) {
     Rig rig = habcam();
     rig.sled.roll_rad = -0.2;
     rig.seafloor.phong = 0.4;
+    rig.strobes[1].beam.cones[0].exponent = 7.5;
+    rig.strobes[2].beam.cones[2].exponent = 0.5;
     for (const bool has_port : {false, true}) {
         if (has_port) {
             rig.camera.port = {

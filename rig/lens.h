@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which way a pixel looks, in the air behind the port: a pinhole with square pixels.
+//
+//   (x, y, z) ~ (height/2 - row, column - width/2, focal length/pixel pitch)
+//
+// in the sled's frame: the top row forward, the right column starboard. Pixel (0, 0)'s centre is
+// (0.5, 0.5).
+//
+// Who needs a lens's rays asks here. Known besides: to the rig's reader, to scene_gen/rig_sdl.h,
+// which says it to POV-Ray, to lightmap/row_light.h and to the reference (validation/).
+#pragma once
+
+#include "rig/rig.h"
+
+#include <map>
+#include <string>
+
+namespace aphotic {
+
+// Unit vector of the point (column, row) of the image.
+[[nodiscard]] Eigen::Vector3d direction_in_air(const Camera& camera, double column, double row);
+
+// The largest angle of any pixel off the camera's axis [rad]: in water it is no larger.
+[[nodiscard]] double half_view_rad(const Camera& camera);
+
+// Whether the image, made larger about its middle by a factor, shows a point in the water without a
+// port.
+[[nodiscard]] bool is_in_view(const Camera& camera, const Eigen::Vector3d& point_m, double factor);
+
+// Lenses of the same signature see alike; by key, as words and numbers.
+[[nodiscard]] std::map<std::string, std::string> lens_signature(const Camera& camera);
+
+}  // namespace aphotic

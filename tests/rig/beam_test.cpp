@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rig/beam.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace aphotic::beam_test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kDegree = kPi / 180.0;
+constexpr double kRounding = 1e-13;
+
+Beam beam_of(std::vector<Cone> cones, ConeWeights weights = ConeWeights::Flux) {
+    return {.name = "b", .weights = weights, .cones = std::move(cones)};
+}
+
+// The source paper's.
+Beam fresnel() {
+    return beam_of({{.part = "collimated", .half_angle_rad = 10.0 * kDegree, .weight = 0.165},
+                    {.part = "focused", .half_angle_rad = 26.565 * kDegree, .weight = 0.094},
+                    {.part = "diffuse", .half_angle_rad = 90.0 * kDegree, .weight = 0.741}});
+}
+
+const Vector3d kAxis = Vector3d(0.3, -0.5, 0.8).normalized();
+
+Vector3d off_axis(double theta_rad, double phi_rad = 0.0, double length = 1.0) {
+    const BeamFrame frame = frame_about(kAxis);
+    return length * (std::cos(theta_rad) * frame.axis +
+                     std::sin(theta_rad) *
+                         (std::cos(phi_rad) * frame.along + std::sin(phi_rad) * frame.across));
+}
+
+double at(const Beam& beam, double theta_rad, double phi_rad = 0.0, double length = 1.0) {
+    return intensity_towards(beam, frame_about(kAxis), off_axis(theta_rad, phi_rad, length));
+}
+
+// Over all directions, by the midpoint rule over the angle off the axis.
+double flux_by_quadrature(const Beam& beam) {
+    constexpr int kSteps = 20'000;
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double theta_rad = (i + 0.5) / kSteps * 0.5 * kPi;
+        sum += at(beam, theta_rad) * kPi * kPi * std::sin(theta_rad) / kSteps;
+    }
+    return sum;
+}
+
+TEST(FrameAbout, IsRightHandedAndLooksForward) {
+    for (const Vector3d& axis : {kAxis, Vector3d(0.0, 0.0, 1.0), Vector3d(0.0, -1.0, 0.0)}) {
+        const BeamFrame frame = frame_about(axis);
+        EXPECT_NEAR((frame.along.cross(frame.across) - axis).norm(), 0.0, kRounding);
+        EXPECT_NEAR(frame.along.norm(), 1.0, kRounding);
+        EXPECT_GT(frame.along.x(), 0.0);
+        EXPECT_NEAR(frame.across.x(), 0.0, kRounding) << "across is level with forward";
+    }
+    EXPECT_EQ(frame_about(Vector3d::UnitX()).along, Vector3d::UnitZ());
+}
+
+// 0.165/(pi sin^2 10) = 1.742, 0.094/(pi sin^2 26.565) = 0.150, 0.741/pi = 0.236: the figures that
+// the source paper prints.
+TEST(Intensity, HasTheFiguresOfTheSourcePapersCones) {
+    constexpr double kThreeDecimals = 0.001;
+    EXPECT_NEAR(at(fresnel(), 0.0), 1.742 + 0.150 + 0.236, kThreeDecimals);
+    EXPECT_NEAR(
+        at(fresnel(), 20.0 * kDegree), (0.150 + 0.236) * std::cos(20.0 * kDegree), kThreeDecimals);
+    EXPECT_NEAR(at(fresnel(), 60.0 * kDegree), 0.118, kThreeDecimals);
+    EXPECT_EQ(at(fresnel(), 100.0 * kDegree), 0.0);
+}
+
+TEST(Intensity, IsTheSameAllRoundAndAtAnyDistance) {
+    for (const double phi_rad : {0.0, 1.0, 4.0}) {
+        EXPECT_NEAR(at(fresnel(), 0.3, phi_rad, 7.0) / at(fresnel(), 0.3), 1.0, kRounding);
+    }
+}
+
+TEST(Intensity, OfALiteralConeIsItsWeightOnTheAxis) {
+    const Beam beam =
+        beam_of({{.part = "", .half_angle_rad = 0.5, .weight = 0.75}}, ConeWeights::Literal);
+    EXPECT_NEAR(at(beam, 0.0), 0.75, kRounding);
+    EXPECT_NEAR(at(beam, 0.4), 0.75 * std::cos(0.4), kRounding);
+    EXPECT_EQ(at(beam, 0.6), 0.0);
+}
+
+TEST(Intensity, ContinuedIsOfTheSideOfTheEdgesThatIsAsked) {
+    const Beam beam =
+        beam_of({{.part = "", .half_angle_rad = 0.5, .weight = 0.75}}, ConeWeights::Literal);
+    const auto continued = [&](double theta_rad, double from_rad) {
+        return continued_intensity(
+            beam, frame_about(kAxis), off_axis(theta_rad), off_axis(from_rad));
+    };
+    EXPECT_NEAR(continued(0.51, 0.49), 0.75 * std::cos(0.51), kRounding);
+    EXPECT_EQ(continued(0.49, 0.51), 0.0);
+    EXPECT_EQ(continued(2.0, 0.49), 0.0) << "behind the lamp";
+}
+
+TEST(FluxOf, IsTheIntegralOfTheIntensity) {
+    constexpr double kQuadrature = 5e-4;  // the midpoint rule's over a step, with 20 000 of them
+    for (const double gamma_deg : {0.5, 10.0, 26.565, 60.0, 90.0}) {
+        const Beam beam =
+            beam_of({{.part = "", .half_angle_rad = gamma_deg * kDegree, .weight = 0.165}});
+        EXPECT_EQ(flux_of(beam), 0.165) << "to the last bit, as the rig says it";
+        EXPECT_NEAR(flux_by_quadrature(beam) / 0.165, 1.0, kQuadrature / gamma_deg * 90.0);
+    }
+    EXPECT_NEAR(flux_of(fresnel()), 1.0, kRounding);
+    // int cos(theta) over a half space is pi; within 30 degrees, a quarter of it.
+    const auto literal = [](double gamma_rad) {
+        return beam_of({{.part = "", .half_angle_rad = gamma_rad, .weight = 2.0}},
+                       ConeWeights::Literal);
+    };
+    EXPECT_NEAR(flux_of(literal(kPi / 2.0)), 2.0 * kPi, kRounding);
+    EXPECT_NEAR(flux_of(literal(kPi / 6.0)), 0.5 * kPi, kRounding);
+}
+
+// 2 pi int cos^n sin = 2 pi (1 - cos^(n + 1))/(n + 1); of n = 0, the solid angle.
+TEST(FluxOf, IsThatOfAnyExponent) {
+    constexpr double kQuadrature = 2e-3;  // the midpoint rule's over a step, or a steep end
+    for (const double exponent : {0.0, 0.3, 1.0, 2.0, 7.3, 1000.0}) {
+        for (const double gamma_deg : {5.0, 40.0, 90.0}) {
+            const Cone cone{.part = "",
+                            .half_angle_rad = gamma_deg * kDegree,
+                            .weight = 0.4,
+                            .exponent = exponent};
+            EXPECT_EQ(flux_of(beam_of({cone})), 0.4);
+            EXPECT_NEAR(flux_by_quadrature(beam_of({cone})) / 0.4, 1.0, kQuadrature)
+                << exponent << ", " << gamma_deg;
+        }
+    }
+    const auto literal = [](double gamma_rad, double exponent) {
+        return beam_of(
+            {{.part = "", .half_angle_rad = gamma_rad, .weight = 2.0, .exponent = exponent}},
+            ConeWeights::Literal);
+    };
+    EXPECT_NEAR(flux_of(literal(kPi / 2.0, 0.0)), 4.0 * kPi, kRounding);
+    EXPECT_NEAR(flux_of(literal(kPi / 3.0, 0.0)), 2.0 * kPi, kRounding);
+    EXPECT_NEAR(flux_of(literal(kPi / 3.0, 3.0)), kPi * 15.0 / 16.0, kRounding);
+    // A narrow cone is as flat as its disc, pi gamma^2, whatever its exponent.
+    EXPECT_NEAR(flux_of(literal(1e-5, 3.0)) / (2.0 * kPi * 1e-10), 1.0, 1e-9);
+}
+
+TEST(Intensity, FallsAsTheExponentSays) {
+    const Beam beam = beam_of({{.part = "", .half_angle_rad = 1.2, .weight = 2.0, .exponent = 3.0}},
+                              ConeWeights::Literal);
+    EXPECT_NEAR(at(beam, kPi / 3.0), 2.0 / 8.0, kRounding);
+    EXPECT_NEAR(at(beam, 0.0), 2.0, kRounding);
+    EXPECT_EQ(at(beam, 1.21), 0.0);
+    EXPECT_EQ(steepest_exponent(beam), 3.0);
+    // FWHM of 60 degrees is n = ln(1/2)/ln(cos 30).
+    Beam sheet = beam;
+    sheet.cones[0].exponent = std::log(0.5) / std::log(std::cos(kPi / 6.0));
+    EXPECT_NEAR(at(sheet, kPi / 6.0), 1.0, kRounding);
+}
+
+TEST(MostIntensity, IsOnTheAxisOfAll) {
+    EXPECT_NEAR(most_intensity(fresnel()), at(fresnel(), 0.0), kRounding);
+}
+
+// Held against every direction of a fine fan within the angle, for beams and directions at random.
+TEST(MostIntensity, IsABoundAndReachedByACone) {
+    std::mt19937_64 engine(1);
+    const auto between = [&](double least, double most) {
+        return std::uniform_real_distribution<double>(least, most)(engine);
+    };
+    const BeamFrame frame = frame_about(kAxis);
+    for (int n = 0; n < 200; ++n) {
+        std::vector<Cone> cones;
+        for (int k = 0; k < 3; ++k) {
+            cones.push_back({.part = "",
+                             .half_angle_rad = between(0.02, 0.5 * kPi),
+                             .weight = between(0.0, 1.0),
+                             .exponent = n % 2 == 0 ? 1.0 : between(0.0, 4.0)});
+        }
+        const Beam beam = beam_of(cones);
+        const double theta_rad = between(0.0, 2.0);
+        const double within_rad = between(0.0, 0.4);
+        const double most = most_intensity(beam, frame, off_axis(theta_rad, 1.0), within_rad);
+        double found = 0.0;
+        for (int i = -200; i <= 200; ++i) {
+            found = std::max(found, at(beam, std::abs(theta_rad + within_rad * i / 200.0), 1.0));
+        }
+        EXPECT_GE(most, found * (1.0 - kRounding)) << n;
+        EXPECT_EQ(reaches(beam, frame, off_axis(theta_rad, 1.0), within_rad), most > 0.0) << n;
+        const Beam one = beam_of({cones.front()});
+        double of_one = 0.0;
+        for (int i = -200; i <= 200; ++i) {
+            of_one = std::max(of_one, at(one, std::abs(theta_rad + within_rad * i / 200.0), 1.0));
+        }
+        if (of_one > 0.0 && theta_rad > within_rad) {
+            const double most_of_one =
+                most_intensity(one, frame, off_axis(theta_rad, 1.0), within_rad);
+            EXPECT_NEAR(most_of_one / of_one, 1.0, 0.02) << n;
+        }
+    }
+}
+
+TEST(Reaches, GoesToTheEdgeAndTheAngleBeyondIt) {
+    const BeamFrame frame = frame_about(kAxis);
+    const Beam beam = beam_of({{.part = "", .half_angle_rad = 0.5, .weight = 1.0}});
+    EXPECT_TRUE(reaches(beam, frame, off_axis(0.4999), 0.0));
+    EXPECT_FALSE(reaches(beam, frame, off_axis(0.5001), 0.0));
+    EXPECT_TRUE(reaches(beam, frame, off_axis(0.6), 0.1001));
+    EXPECT_FALSE(reaches(beam, frame, off_axis(0.6), 0.0999));
+    const Beam dark = beam_of({{.part = "", .half_angle_rad = 0.5, .weight = 0.0}});
+    EXPECT_FALSE(reaches(dark, frame, kAxis, 1.0));
+    EXPECT_TRUE(is_dark(dark));
+    EXPECT_FALSE(is_dark(beam));
+}
+
+TEST(Edges, AreOfConesThatShineAndEndBefore90Degrees) {
+    Beam beam = fresnel();
+    EXPECT_EQ(edges_rad(beam), (std::vector{10.0 * kDegree, 26.565 * kDegree}));
+    beam.cones[0].weight = 0.0;
+    EXPECT_EQ(edges_rad(beam), (std::vector{26.565 * kDegree}));
+    beam.cones[2].exponent = 2.0;
+    EXPECT_EQ(edges_rad(beam).size(), 1U);
+    beam.cones[2].exponent = 0.5;  // which falls as steeply as a step
+    EXPECT_EQ(edges_rad(beam).size(), 2U);
+}
+
+TEST(Edges, GoneLeaveTheLightAsItWas) {
+    const Beam smooth = without_edges(fresnel());
+    EXPECT_TRUE(edges_rad(smooth).empty());
+    EXPECT_NEAR(at(smooth, 0.1), at(fresnel(), 0.1), kRounding);
+    // Of 1.742 + 0.150 + 0.236 on the axis, half at 60 degrees.
+    EXPECT_NEAR(at(smooth, kPi / 3.0), 0.5 * at(fresnel(), 0.0), kRounding);
+}
+
+TEST(Parts, AddUpToTheBeamAndHaveItsConesNames) {
+    const std::vector<Beam> parts = parts_of(fresnel());
+    ASSERT_EQ(parts.size(), 3U);
+    EXPECT_EQ(parts[1].name, "focused");
+    for (const double theta_rad : {0.1, 0.3, 1.0}) {
+        double sum = 0.0;
+        for (const Beam& part : parts) sum += at(part, theta_rad);
+        EXPECT_NEAR(sum, at(fresnel(), theta_rad), kRounding);
+    }
+    const Beam wide =
+        parts_that(fresnel(), [](const Beam& part) { return part.name == "diffuse"; });
+    EXPECT_EQ(wide.name, "b");
+    EXPECT_NEAR(flux_of(wide), 0.741, kRounding);
+}
+
+TEST(Lobes, AreTheIntensity) {
+    Beam beam = fresnel();
+    beam.cones[1].exponent = 4.0;
+    for (const double theta_rad : {0.05, 0.3, 1.2}) {
+        double sum = 0.0;
+        for (const Lobe& lobe : lobes_of(beam)) {
+            const double cosine = std::cos(theta_rad);
+            if (cosine >= lobe.edge_cosine) sum += lobe.on_axis * std::pow(cosine, lobe.exponent);
+        }
+        EXPECT_NEAR(sum, at(beam, theta_rad), kRounding);
+    }
+}
+
+TEST(BeamSignature, IsTheLightsAndNotTheNames) {
+    Beam beam = fresnel();
+    const std::string before = beam_signature(beam);
+    beam.name = "another";
+    beam.cones[0].part = "another";
+    EXPECT_EQ(beam_signature(beam), before);
+    beam.cones[2].weight += 1e-9;
+    EXPECT_NE(beam_signature(beam), before);
+    beam = fresnel();
+    beam.cones[0].half_angle_rad -= 1e-9;
+    EXPECT_NE(beam_signature(beam), before);
+    beam = fresnel();
+    beam.cones[2].exponent += 1e-9;
+    EXPECT_NE(beam_signature(beam), before);
+    beam = fresnel();
+    beam.weights = ConeWeights::Literal;
+    EXPECT_NE(beam_signature(beam), before);
+}
+
+}  // namespace
+}  // namespace aphotic::beam_test
