@@ -93,9 +93,7 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     const fs::path images = images_folder(options);
     require_own_folder(images, options);
     // Frames that cannot serve, and images that have no room, leave no folder behind.
-    const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    require_room(
-        integration_needs(image_size(manifest_of(options)), threads), images, options.ignore_needs);
+    require_room(images_needs(image_size(manifest_of(options))), images, options.ignore_needs);
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
     const Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
     Json outcome = integrate_folder(options.folder, manifest, options.preview, images);

@@ -124,8 +124,7 @@ ExitStatus make_lightmap(const LightmapCommandOptions& options) {
     require_room(lightmap_needs({.width_px = rig.camera.width_px,
                                  .height_px = rig.camera.height_px,
                                  .parts = parts.size(),
-                                 .has_preview = !options.preview_file.empty(),
-                                 .threads = options.map.threads}),
+                                 .has_preview = !options.preview_file.empty()}),
                  std::filesystem::absolute(options.file).parent_path(),
                  options.ignore_needs);
     const auto start = std::chrono::steady_clock::now();
