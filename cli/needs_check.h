@@ -20,7 +20,9 @@ void require_room(const DiskNeeds& needs, const std::filesystem::path& folder, b
 
 // Of a render of these scenes into the folder. Frames that an earlier run left there of the same
 // scenes are kept, and take no more room. Without a folder, none are there.
-[[nodiscard]] DiskNeeds needs_of(const SceneSet& scenes, const std::filesystem::path& folder, int jobs);
+[[nodiscard]] DiskNeeds needs_of(const SceneSet& scenes,
+                                 const std::filesystem::path& folder,
+                                 int jobs);
 
 // Of scenes and manifest alone.
 [[nodiscard]] DiskNeeds needs_of_scenes(const SceneSet& scenes);
