@@ -90,8 +90,7 @@ AtlasWork work_of(const AtlasCommandOptions& options, const Rig& rig, const MapA
     return {.size = {.width_px = rig.camera.width_px, .height_px = rig.camera.height_px},
             .altitudes = finest.altitude_m.size(),
             .has_mosaics = is_exported(options, "bayer"),
-            .has_fits = is_exported(options, "exponential"),
-            .threads = options.map.threads};
+            .has_fits = is_exported(options, "exponential")};
 }
 
 // Says what is to come, and refuses it where the disk has no room for it.
@@ -99,7 +98,7 @@ void announce(const AtlasCommandOptions& options, const MapAxes& chosen, AtlasWo
     const std::size_t all = bin_count(chosen);
     // One more, for a bin is written beside the one that it replaces.
     work.bins = std::min(all, bins_missing(options.folder, chosen) + 1);
-    const Needs needs = atlas_needs(work);
+    const DiskNeeds needs = atlas_needs(work);
     if (!options.json) {
         fmt::print("{} of {} x {} pixels: up to {} to write to {}\n",
                    counted(all, "bin"),

@@ -91,9 +91,7 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     const fs::path images = images_folder(options);
     require_own_folder(images, options);
     // Frames that cannot serve, and images that have no room, leave no folder behind.
-    require_room(integration_needs(image_size(manifest_of(options)), all_cores()),
-                 images,
-                 options.ignore_needs);
+    require_room(images_needs(image_size(manifest_of(options))), images, options.ignore_needs);
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
     const Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
     const Integration integration =

@@ -55,31 +55,30 @@ std::size_t frames_to_render(const SceneSet& scenes, const fs::path& folder) {
 }  // namespace
 
 void add_needs_option(CLI::App& app, bool& ignore_needs) {
-    app.add_flag("--ignore-needs", ignore_needs, "Start even if disk or memory looks insufficient");
+    app.add_flag("--ignore-needs", ignore_needs, "Start even if disk looks insufficient");
 }
 
-void require_room(const Needs& needs, const fs::path& folder, bool ignore_needs) {
+void require_room(const DiskNeeds& needs, const fs::path& folder, bool ignore_needs) {
     if (ignore_needs) return;
-    const FreeRoom room{.folder_bytes = free_disk_bytes(folder),
+    const FreeDisk free{.folder_bytes = free_disk_bytes(folder),
                         .temporary_bytes = free_disk_bytes(kPovrayTemporary),
-                        .is_one_disk = on_one_disk(folder, kPovrayTemporary),
-                        .memory_bytes = free_memory_bytes()};
-    const std::string lacking = shortage(needs, room, folder.string());
+                        .is_one_disk = on_one_disk(folder, kPovrayTemporary)};
+    const std::string lacking = shortage(needs, free, folder.string());
     if (lacking.empty()) return;
     throw RunError(fmt::format(
         "{}. Nothing was begun; --ignore-needs begins all the same, for images often compress",
         lacking));
 }
 
-Needs needs_of(const SceneSet& scenes, const fs::path& folder, int jobs) {
+DiskNeeds needs_of(const SceneSet& scenes, const fs::path& folder, int jobs) {
     return render_needs({.size = image_size(scenes.manifest),
                          .frames = frames_to_render(scenes, folder),
                          .scenes_bytes = scenes_bytes(scenes),
                          .jobs = jobs});
 }
 
-Needs needs_of_scenes(const SceneSet& scenes) {
-    return {.folder_bytes = scenes_bytes(scenes), .temporary_bytes = 0, .memory_bytes = 0};
+DiskNeeds needs_of_scenes(const SceneSet& scenes) {
+    return {.folder_bytes = scenes_bytes(scenes)};
 }
 
 ImageSize image_size(const Manifest& manifest) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Before any work: whether the machine has the disk and the memory that it will take
-// (scene_gen/resource_estimate.h). What cannot be told beforehand, it does not refuse.
+// Before any work: whether there is the disk that it may take (scene_gen/disk_estimate.h).
 #pragma once
 
-#include "scene_gen/resource_estimate.h"
+#include "scene_gen/disk_estimate.h"
 #include "scene_gen/scene_set.h"
 
 #include <CLI/CLI.hpp>
@@ -17,14 +16,16 @@ namespace aphotic::cli {
 void add_needs_option(CLI::App& app, bool& ignore_needs);
 
 // Throws RunError, which says what is needed and what is free, unless it is to be ignored.
-void require_room(const Needs& needs, const std::filesystem::path& folder, bool ignore_needs);
+void require_room(const DiskNeeds& needs, const std::filesystem::path& folder, bool ignore_needs);
 
 // Of a render of these scenes into the folder. Frames that an earlier run left there of the same
 // scenes are kept, and take no more room. Without a folder, none are there.
-[[nodiscard]] Needs needs_of(const SceneSet& scenes, const std::filesystem::path& folder, int jobs);
+[[nodiscard]] DiskNeeds needs_of(const SceneSet& scenes,
+                                 const std::filesystem::path& folder,
+                                 int jobs);
 
 // Of scenes and manifest alone.
-[[nodiscard]] Needs needs_of_scenes(const SceneSet& scenes);
+[[nodiscard]] DiskNeeds needs_of_scenes(const SceneSet& scenes);
 
 [[nodiscard]] ImageSize image_size(const Manifest& manifest);
 

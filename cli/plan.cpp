@@ -66,41 +66,27 @@ Json wavelengths_of(const Manifest& manifest) {
 
 // What a render into an empty folder would take, as many frames at a time as there are cores.
 struct PlannedNeeds {
-    Needs render;
+    DiskNeeds render;
     FileSizes files;
-    ProcessNeeds process;
     int jobs = 1;
-    std::size_t processes = 0;
-    std::uint64_t integration_bytes = 0;
-    std::uint64_t trace_bytes = 0;
 };
 
 PlannedNeeds planned_needs(const SceneSet& scenes) {
-    const ImageSize size = image_size(scenes.manifest);
     const int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     return {.render = needs_of(scenes, "", jobs),
-            .files = largest_files(size),
-            .process = povray_needs(size),
-            .jobs = jobs,
-            .processes = std::min(scenes.manifest.frames.size(), static_cast<std::size_t>(jobs)),
-            .integration_bytes = integration_memory_bytes(size, jobs),
-            .trace_bytes = trace_memory_bytes(size, jobs)};
+            .files = largest_files(image_size(scenes.manifest)),
+            .jobs = jobs};
 }
 
 Json json_of(const PlannedNeeds& needs) {
     return {{"jobs", needs.jobs},
             {"folder_bytes", needs.render.folder_bytes},
             {"temporary_bytes", needs.render.temporary_bytes},
-            {"memory_bytes", needs.render.memory_bytes},
             {"files",
              {{"frame", needs.files.frame_bytes},
               {"image.exr", needs.files.image_bytes},
               {"spectral.exr", needs.files.spectral_bytes},
-              {"preview.png", needs.files.preview_bytes}}},
-            {"memory",
-             {{"povray_process", needs.process.memory_bytes},
-              {"integration", needs.integration_bytes},
-              {"trace", needs.trace_bytes}}}};
+              {"preview.png", needs.files.preview_bytes}}}};
 }
 
 void print_needs(const PlannedNeeds& needs, std::size_t frames) {
@@ -119,12 +105,6 @@ void print_needs(const PlannedNeeds& needs, std::size_t frames) {
         fmt::print("  {} of disk in /tmp, while POV-Ray renders\n",
                    words(needs.render.temporary_bytes));
     }
-    fmt::print("  {} of memory: {} of POV-Ray of {} each, then {} to integrate; {} to trace\n",
-               words(needs.render.memory_bytes),
-               needs.processes == 1 ? "1 process" : fmt::format("{} processes", needs.processes),
-               words(needs.process.memory_bytes),
-               words(needs.integration_bytes),
-               words(needs.trace_bytes));
 }
 
 void print_json(const PlannedRender& planned, const SceneSet& scenes) {

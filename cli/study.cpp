@@ -279,7 +279,7 @@ void print_study(const Study& study, const fs::path& folder) {
 }
 
 // Of the setting that has most. Behind a port each wavelength may take a frame of its own.
-Needs needs_of_renders(const Rig& rig, const std::vector<StudySetting>& settings, int cores) {
+DiskNeeds needs_of_renders(const Rig& rig, const std::vector<StudySetting>& settings, int cores) {
     int wavelengths = 0;
     int frames = 0;
     for (const StudySetting& s : settings) {

@@ -126,10 +126,9 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
         request.planes_nm.push_back(w.lambda_nm);
     }
 
-    require_room(trace_needs({.width_px = camera.width_px,
-                              .height_px = camera.height_px,
-                              .wavelengths = request.planes_nm.size()},
-                             options.threads),
+    require_room(images_needs({.width_px = camera.width_px,
+                               .height_px = camera.height_px,
+                               .wavelengths = request.planes_nm.size()}),
                  options.folder,
                  options.planning.ignore_needs);
 

@@ -145,17 +145,11 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
 }
 
 void require_place_and_room(const ValidateCommandOptions& options, const PlannedRender& planned) {
-    Needs needs;
-    if (options.rendered_folder.empty()) {
-        const SceneSet scenes = scenes_of(planned, options.planning);
-        require_place_for_scenes(options.folder, scenes);
-        needs = larger_of(needs_of(scenes, options.folder, options.jobs),
-                          validation_needs(image_size(scenes.manifest), options.jobs));
-    } else {
-        const Manifest rendered = rendered_manifest(options.rendered_folder, planned.rig);
-        needs = validation_needs(image_size(rendered), options.jobs);
-    }
-    require_room(needs, options.folder, options.planning.ignore_needs);
+    const SceneSet scenes = scenes_of(planned, options.planning);
+    require_place_for_scenes(options.folder, scenes);
+    require_room(needs_of(scenes, options.folder, options.jobs),
+                 options.folder,
+                 options.planning.ignore_needs);
 }
 
 ExitStatus validate_rig(const ValidateCommandOptions& options) {
@@ -165,9 +159,13 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
         require_promise(scene->file.string(), scene->no_promise);
     }
     // All that can be refused is refused before there is a folder.
-    const PovRay povray =
-        is_rendered ? PovRay{} : povray_for(planned, options.planning, options.folder);
-    require_place_and_room(options, planned);
+    PovRay povray;
+    if (is_rendered) {
+        (void)rendered_manifest(options.rendered_folder, planned.rig);
+    } else {
+        povray = povray_for(planned, options.planning, options.folder);
+        require_place_and_room(options, planned);
+    }
     const std::vector<FolderLock> locks =
         claim_folders(options.folder, is_rendered ? options.rendered_folder : options.folder);
     Rendering rendering;

@@ -34,10 +34,6 @@ double longest_step_m(double m_1, double m_4, double error) {
 
 }  // namespace
 
-Array3d signal_of(const SpectralSum& sum, double path_m) {
-    return moment(sum, path_m, 0, 0.0);
-}
-
 PathSteps path_steps(const SpectralSum& sum, const PathRange& paths, double error) {
     // Scaled by the least loss, for of long paths nothing else would be left.
     const double K_0_per_m = sum.K_per_m.minCoeff();

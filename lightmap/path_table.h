@@ -34,9 +34,6 @@ struct SpectralSum {
     Eigen::ArrayXXd weights;  // by node and channel
 };
 
-// T_R, T_G, T_B of a path.
-[[nodiscard]] Eigen::Array3d signal_of(const SpectralSum& sum, double path_m);
-
 struct PathSteps {
     double first_m = 0.0;
     double steps_per_m = 0.0;

@@ -5,13 +5,15 @@
 #include "base/printable.h"
 
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
+#include <fmt/ranges.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
+#include <limits>
+#include <optional>
+#include <span>
 #include <sstream>
 
 namespace aphotic {
@@ -19,6 +21,8 @@ namespace aphotic {
 using Eigen::Vector3d;
 
 namespace {
+
+using Triangle = std::array<int, 3>;
 
 // The words of a line, comments and line ends aside.
 std::vector<std::string_view> words_of(std::string_view line) {
@@ -43,70 +47,24 @@ std::string shown(const std::vector<std::string_view>& words) {
                                        : printable(line.substr(0, kMostLetters)) + " ...";
 }
 
-bool is_finite_number(std::string_view word) {
+std::optional<double> finite_number(std::string_view word) {
     double value = 0.0;
     if (word.starts_with('+')) word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
+    const bool is_whole = error == std::errc() && end == word.data() + word.size();
+    return is_whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-// Of a face's corner such as "3", "3/1" or "-1//2": texture and normal do not count.
-std::string_view vertex_of(std::string_view corner) {
-    return corner.substr(0, corner.find('/'));
-}
-
-// The vertex of a face's corner such as "3", "3/1" or "-1//2" is there.
-bool is_vertex_before(std::string_view corner, long vertices) {
-    long index = 0;
-    const std::string_view word = vertex_of(corner);
+// The vertex, from 0, of a face's corner such as "3", "3/1" or "-1//2", whose texture and normal do
+// not count. None where no vertex above it has that number.
+std::optional<int> vertex_of(std::string_view corner, int vertices) {
+    const std::string_view word = corner.substr(0, corner.find('/'));
+    int index = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
-    return error == std::errc() && end == word.data() + word.size() && index != 0 &&
-           std::abs(index) <= vertices;
-}
-
-struct SoundLines {
-    std::string text;
-    std::size_t triangles = 0;  // into which their polygons are to be cut
-};
-
-// The lines that count, and of their words those that do. The library takes what it cannot read for
-// 0, and leaves out what does not fit, without a word: so it gets these alone, each looked at
-// first.
-SoundLines sound_lines(const std::string& text, const std::string& file_name) {
-    std::istringstream lines(text);
-    std::string line;
-    SoundLines sound;
-    long vertices = 0;
-    for (int number = 1; std::getline(lines, line); ++number) {
-        const std::vector<std::string_view> words = words_of(line);
-        if (words.empty()) continue;
-        const auto require = [&](bool is_sound, std::string_view allowed) {
-            if (is_sound) return;
-            throw InputError(fmt::format(
-                "{}:{}: found {}; allowed: {}", file_name, number, shown(words), allowed));
-        };
-        const std::span values = std::span(words).subspan(1);
-        if (words[0] == "v") {
-            require(values.size() >= 3 && std::ranges::all_of(values, is_finite_number),
-                    "v and three finite numbers");
-            sound.text += fmt::format("v {} {} {}\n", values[0], values[1], values[2]);
-            ++vertices;
-        } else if (words[0] == "f") {
-            const auto is_there = [&](std::string_view corner) {
-                return is_vertex_before(corner, vertices);
-            };
-            require(values.size() >= 3 && values.size() <= kMostCorners &&
-                        std::ranges::all_of(values, is_there),
-                    fmt::format(
-                        "f and from 3 to {} of the {} vertices above it", kMostCorners, vertices));
-            sound.text += 'f';
-            for (const std::string_view corner : values)
-                sound.text += fmt::format(" {}", vertex_of(corner));
-            sound.text += '\n';
-            sound.triangles += values.size() - 2;
-        }
-    }
-    return sound;
+    const bool is_there = error == std::errc() && end == word.data() + word.size() && index != 0 &&
+                          index <= vertices && index >= -vertices;
+    if (!is_there) return std::nullopt;
+    return index > 0 ? index - 1 : vertices + index;
 }
 
 // volatile: where GCC 12 turns several of these into vector instructions, it leaves out the
@@ -114,6 +72,59 @@ SoundLines sound_lines(const std::string& text, const std::string& file_name) {
 double to_single(double value) {
     const volatile float rounded = static_cast<float>(value);
     return rounded;
+}
+
+struct Polygon {
+    int line = 0;
+    std::vector<int> corners;
+};
+
+struct Faces {
+    std::vector<Polygon> polygons;  // without those that are too many
+    std::size_t triangles = 0;      // into which all are to be cut
+};
+
+// The lines that count, and of their words those that do.
+Faces read_lines(const std::string& text,
+                 const std::string& file_name,
+                 const Vector3d& position_m,
+                 std::vector<Vector3d>& vertices_m) {
+    std::istringstream lines(text);
+    std::string line;
+    Faces faces;
+    for (int number = 1; std::getline(lines, line); ++number) {
+        const std::vector<std::string_view> words = words_of(line);
+        if (words.empty()) continue;
+        const auto refuse = [&](std::string_view allowed) {
+            throw InputError(fmt::format(
+                "{}:{}: found {}; allowed: {}", file_name, number, shown(words), allowed));
+        };
+        const std::span values = std::span(words).subspan(1);
+        if (words[0] == "v") {
+            std::vector<double> xyz;
+            for (const std::string_view word : values) {
+                if (const auto value = finite_number(word)) xyz.push_back(*value);
+            }
+            if (xyz.size() != values.size() || xyz.size() < 3) refuse("v and three finite numbers");
+            const Vector3d vertex_m = position_m + Vector3d(xyz[0], xyz[1], xyz[2]);
+            vertices_m.emplace_back(vertex_m.unaryExpr(&to_single));
+        } else if (words[0] == "f") {
+            Polygon polygon{.line = number, .corners = {}};
+            const auto vertices = static_cast<int>(vertices_m.size());
+            for (const std::string_view word : values) {
+                if (const auto vertex = vertex_of(word, vertices))
+                    polygon.corners.push_back(*vertex);
+            }
+            const std::size_t corners = polygon.corners.size();
+            if (corners != values.size() || corners < 3 || corners > kMostCorners) {
+                refuse(fmt::format(
+                    "f and from 3 to {} of the {} vertices above it", kMostCorners, vertices));
+            }
+            faces.triangles += corners - 2;
+            if (faces.triangles <= kMostTriangles) faces.polygons.push_back(std::move(polygon));
+        }
+    }
+    return faces;
 }
 
 // Before any polygon is cut: that takes the longer the more there are.
@@ -126,70 +137,81 @@ void require_room(std::size_t triangles, const std::string& file_name) {
                     kMostTriangles));
 }
 
-// Of a polygon that it cannot cut, the library leaves out the rest without a word.
-void require_whole(const std::vector<tinyobj::shape_t>& shapes,
-                   std::size_t triangles,
-                   const std::string& file_name) {
-    std::size_t made = 0;
-    for (const tinyobj::shape_t& shape : shapes) made += shape.mesh.indices.size() / 3;
-    if (made == triangles) return;
-    throw InputError(
-        fmt::format("{}: found polygons of which {} of {} triangles could be made; allowed: "
-                    "triangles in place of those that are not convex",
-                    file_name,
-                    made,
-                    triangles));
+bool has_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    const double longest2 =
+        std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
+    return (b - a).cross(c - a).norm() > kLeastTriangleHeight * longest2;
 }
 
-void require_area(const Mesh& mesh,
-                  const std::array<int, 3>& corners,
-                  const std::string& file_name) {
-    const auto vertex = [&](int i) -> const Vector3d& {
-        return mesh.vertices_m[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])];
+// A polygon as triangles from one corner to the others: from one that sees them all, so that all
+// triangles are the same way round, and of these from the one with the shortest diagonals.
+// Triangles of no area are left out. None where no corner sees all others.
+std::vector<Triangle> cut(const Mesh& mesh, std::vector<int> corners) {
+    const auto at = [&](std::size_t i) {
+        return mesh.vertices_m[static_cast<std::size_t>(corners[i])];
     };
-    const Vector3d ab = vertex(1) - vertex(0);
-    const Vector3d ac = vertex(2) - vertex(0);
-    const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    if (ab.cross(ac).norm() > kLeastTriangleHeight * longest2) return;
-    throw InputError(fmt::format(
-        "{}: found a triangle without area, of the vertices {}, {} and {}, counted from "
-        "1; allowed: three corners that do not lie on one line",
-        file_name,
-        corners[0] + 1,
-        corners[1] + 1,
-        corners[2] + 1));
+    const auto span = [&](std::size_t i) -> Vector3d {
+        return (at(i) - at(0)).cross(at(i + 1) - at(0));
+    };
+    Vector3d normal = Vector3d::Zero();
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) normal += span(i);
+    std::vector<Triangle> best;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t turn = 0; turn < corners.size(); ++turn) {
+        std::vector<Triangle> fan;
+        double diagonals = 0.0;
+        bool sees_all = true;
+        for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+            if (i > 1) diagonals += (at(i) - at(0)).squaredNorm();
+            if (!has_area(at(0), at(i), at(i + 1))) continue;
+            sees_all = sees_all && normal.dot(span(i)) > 0.0;
+            fan.push_back({corners[0], corners[i], corners[i + 1]});
+        }
+        if (sees_all && diagonals <= shortest) {
+            shortest = diagonals;
+            best = std::move(fan);
+        }
+        std::ranges::rotate(corners, corners.begin() + 1);
+    }
+    return best;
+}
+
+Triangle checked_triangle(const Mesh& mesh,
+                          const std::vector<int>& corners,
+                          const std::string& file_name) {
+    const auto at = [&](std::size_t i) {
+        return mesh.vertices_m[static_cast<std::size_t>(corners[i])];
+    };
+    if (has_area(at(0), at(1), at(2))) return {corners[0], corners[1], corners[2]};
+    throw InputError(
+        fmt::format("{}: found a triangle of no area, of the vertices {}, {} and {}, counted from "
+                    "1; allowed: three corners that do not lie on one line",
+                    file_name,
+                    corners[0] + 1,
+                    corners[1] + 1,
+                    corners[2] + 1));
 }
 
 }  // namespace
 
 Mesh parse_mesh(const std::string& file_name, const std::string& obj, const Vector3d& position_m) {
-    const SoundLines lines = sound_lines(obj, file_name);
-    require_room(lines.triangles, file_name);
-    std::istringstream in(lines.text);
-    tinyobj::attrib_t attributes;
-    std::vector<tinyobj::shape_t> shapes;
-    std::vector<tinyobj::material_t> materials;
-    std::string warnings;
-    std::string errors;
-    if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &in)) {
-        throw InputError(fmt::format("{}: cannot be read: {}", file_name, errors));
-    }
-    require_whole(shapes, lines.triangles, file_name);
-
     Mesh mesh;
-    const std::vector<double>& xyz = attributes.vertices;
-    for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) {
-        const Vector3d vertex_m = position_m + Vector3d(xyz[i], xyz[i + 1], xyz[i + 2]);
-        mesh.vertices_m.emplace_back(vertex_m.unaryExpr(&to_single));
-    }
-    for (const tinyobj::shape_t& shape : shapes) {
-        const std::vector<tinyobj::index_t>& corners = shape.mesh.indices;
-        for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-            mesh.triangles.push_back({corners[i].vertex_index,
-                                      corners[i + 1].vertex_index,
-                                      corners[i + 2].vertex_index});
-            require_area(mesh, mesh.triangles.back(), file_name);
+    const Faces faces = read_lines(obj, file_name, position_m, mesh.vertices_m);
+    require_room(faces.triangles, file_name);
+    for (const auto& [line, corners] : faces.polygons) {
+        if (corners.size() == 3) {
+            mesh.triangles.push_back(checked_triangle(mesh, corners, file_name));
+            continue;
         }
+        const std::vector<Triangle> triangles = cut(mesh, corners);
+        if (triangles.empty()) {
+            throw InputError(fmt::format(
+                "{}:{}: found a polygon that cannot be cut into triangles from one of its corners; "
+                "allowed: one with a corner that sees all others, or triangles in its place",
+                file_name,
+                line));
+        }
+        mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
     }
     return mesh;
 }

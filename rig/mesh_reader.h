@@ -2,8 +2,9 @@
 //
 // Reads a mesh of triangles from the text of a Wavefront OBJ file: lines "v x y z", metres in the
 // sled frame (x forward, y starboard, z down), and lines "f a b c ...", whose polygons are cut into
-// triangles. Groups, materials, normals and texture coordinates are passed over: an object is of
-// one material, and flat.
+// triangles from one corner, which must see all others; quadrilaterals along the shorter diagonal.
+// Groups, materials, normals and texture coordinates are passed over: an object is of one material,
+// and flat.
 //
 // position_m is added to every vertex. The sum is rounded to single precision, 0.1 um at 2 m:
 // that is how POV-Ray keeps the vertices of a mesh, so that both renderers see the same ones.

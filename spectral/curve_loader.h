@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The tables that the program carries (spectral/data/*.csv, put into it by
-// cmake/EmbedTexts.cmake), and the loading of a table or curve by built-in name or file.
+// cmake/Embed.cmake), and the loading of a table or curve by built-in name or file.
 //
 // Each built-in table states in its comments its title, role, quantity, unit, source, how the
 // numbers were obtained, their uncertainty, range and terms.

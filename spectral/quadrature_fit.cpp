@@ -456,8 +456,4 @@ std::vector<QuadratureFitter::PathError> QuadratureFitter::errors_over_path(
     return errors;
 }
 
-bool QuadratureFitter::is_dark() const {
-    return !(checking_.signals > 0.0).any();
-}
-
 }  // namespace aphotic

@@ -129,9 +129,6 @@ class QuadratureFitter {
     // What the shapes of pixels' own tilts add to the error; 0 without a port.
     [[nodiscard]] double tilt_shape_error() const;
 
-    // No member gives any channel a signal.
-    [[nodiscard]] bool is_dark() const;
-
     [[nodiscard]] const LightFamily& family() const { return family_; }
 
   private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the commands take, as the kernel counts it, against what is foretold; and that they refuse
-// before they begin where there is too little.
-#include "scene_gen/resource_estimate.h"
+// What the commands take of disk, against what is foretold, and that they refuse before they begin
+// where there is too little; what they take of memory, as the kernel counts it.
+#include "scene_gen/disk_estimate.h"
 
 #include "image/exr.h"
 #include "rig/rig_reader.h"
@@ -31,16 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSide_px = 1024;
 constexpr int kThreads = 2;
-// What is foretold is enough, and not far more: it has room for images that do not compress, and
-// for other libraries.
-constexpr double kMostOverFound = 2.0;
-
-// With as many threads the command compresses, unless it is told otherwise.
-int cores() {
-    return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-}
 
 fs::path rig_of(const fs::path& folder, int width_px, int height_px) {
     const std::string text =
@@ -86,14 +77,6 @@ Measured measured(const fs::path& folder, std::vector<std::string> arguments) {
             .peak_bytes = kKibibyte * static_cast<std::uint64_t>(used.ru_maxrss)};
 }
 
-void expect_foretold(const Measured& found, std::uint64_t foretold_bytes) {
-    ASSERT_EQ(found.status, 0);
-    EXPECT_LE(found.peak_bytes, foretold_bytes);
-    EXPECT_LE(static_cast<double>(foretold_bytes),
-              kMostOverFound * static_cast<double>(found.peak_bytes));
-    testing::Test::RecordProperty("peak_bytes", std::to_string(found.peak_bytes));
-}
-
 // Frames that no compression makes smaller, in place of POV-Ray's.
 void write_frames_of_noise(const fs::path& folder, const Manifest& manifest) {
     std::mt19937 random(11);
@@ -111,32 +94,28 @@ void write_frames_of_noise(const fs::path& folder, const Manifest& manifest) {
     }
 }
 
-// A whole image of few wavelengths; and of many, rows so long that what is held of them outweighs
-// it.
-TEST(MemoryOfIntegrate, IsForetold) {
+// Rows come and go in blocks: what a higher image takes more are its signals and its preview, 25
+// bytes a pixel (image/row_blocks.h). All of its radiance would be 120 bytes a pixel.
+TEST(MemoryOfIntegrate, GrowsWithTheHeightByTheSignalsAlone) {
     if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
-    struct Case {
-        int width_px;
-        int height_px;
-        std::vector<std::string> wavelengths;
-    };
-    for (const Case& c :
-         {Case{kSide_px, kSide_px, {"--fitted", "3"}}, Case{4 * kSide_px, 32, {"--bands", "60"}}}) {
+    constexpr int kWidth_px = 512;
+    constexpr int kLow_px = 128;
+    constexpr int kHigh_px = 640;
+    constexpr std::uint64_t kPixel_bytes = 25;
+    constexpr std::uint64_t kNoise_bytes = 8ULL << 20U;  // from run to run
+    const auto peak_bytes = [](int height_px) {
         const TempFolder folder;
-        rig_of(folder.path(), c.width_px, c.height_px);
-        std::vector<std::string> arguments{"generate", "rig.toml", "-o", "out"};
-        arguments.insert(arguments.end(), c.wavelengths.begin(), c.wavelengths.end());
-        ASSERT_EQ(run_aphotic(folder.path(), arguments).status, 0);
-        const Manifest manifest = read_manifest(folder.path() / "out");
-        write_frames_of_noise(folder.path() / "out", manifest);
-        const ImageSize size{.width_px = c.width_px,
-                             .height_px = c.height_px,
-                             .wavelengths = manifest.wavelengths.size()};
-        expect_foretold(measured(folder.path(), {"integrate", "out", "--json"}),
-                        integration_memory_bytes(size, cores()));
-        EXPECT_LE(fs::file_size(folder.path() / "out" / "spectral.exr"),
-                  largest_files(size).spectral_bytes);
-    }
+        rig_of(folder.path(), kWidth_px, height_px);
+        const CommandResult made =
+            run_aphotic(folder.path(), {"generate", "rig.toml", "-o", "out", "--bands", "30"});
+        EXPECT_EQ(made.status, 0) << made.err;
+        write_frames_of_noise(folder.path() / "out", read_manifest(folder.path() / "out"));
+        const Measured found = measured(folder.path(), {"integrate", "out", "--json"});
+        EXPECT_EQ(found.status, 0);
+        return found.peak_bytes;
+    };
+    constexpr std::uint64_t kMore_px = std::uint64_t{kWidth_px} * (kHigh_px - kLow_px);
+    EXPECT_LE(peak_bytes(kHigh_px), peak_bytes(kLow_px) + kPixel_bytes * kMore_px + kNoise_bytes);
 }
 
 Measured traced(const fs::path& folder, const std::vector<std::string>& wavelengths) {
@@ -144,17 +123,6 @@ Measured traced(const fs::path& folder, const std::vector<std::string>& waveleng
         "trace", "rig.toml", "-o", "out", "--threads", std::to_string(kThreads), "--json"};
     arguments.insert(arguments.end(), wavelengths.begin(), wavelengths.end());
     return measured(folder, arguments);
-}
-
-TEST(MemoryOfTrace, IsForetold) {
-    if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
-    constexpr int kSmaller_px = 640;
-    const TempFolder folder;
-    rig_of(folder.path(), kSmaller_px, kSmaller_px);
-    expect_foretold(
-        traced(folder.path(), {"--fitted", "3"}),
-        trace_memory_bytes({.width_px = kSmaller_px, .height_px = kSmaller_px, .wavelengths = 3},
-                           kThreads));
 }
 
 // A hundred times as many may take a block of rows, of kTracedSamples, and rows under compression
@@ -169,69 +137,31 @@ TEST(MemoryOfTrace, DoesNotGrowWithTheWavelengths) {
     rig_of(folder.path(), kWidth_px, kHeight_px);
     const Measured few = traced(folder.path(), {"--bands", "3"});
     const Measured many = traced(folder.path(), {"--bands", "300"});
+    EXPECT_EQ(few.status, 0);
+    EXPECT_EQ(many.status, 0);
     EXPECT_LE(many.peak_bytes, few.peak_bytes + kMostMore_bytes);
-    expect_foretold(
-        many,
-        trace_memory_bytes({.width_px = kWidth_px, .height_px = kHeight_px, .wavelengths = 300},
-                           kThreads));
 }
 
 // Of bins, mosaics and a fit over altitude.
 TEST(NeedsOfAtlas, AreForetold) {
-    if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
-    constexpr int kSmaller_px = 640;
+    constexpr int kSide_px = 64;
     const TempFolder folder;
-    rig_of(folder.path(), kSmaller_px, kSmaller_px);
-    const Measured found = measured(folder.path(),
-                                    {"atlas",
-                                     "rig.toml",
-                                     "-o",
-                                     "out",
-                                     "--altitude",
-                                     "1:4:1",
-                                     "--export",
-                                     "bayer,exponential",
-                                     "--threads",
-                                     std::to_string(kThreads),
-                                     "--json"});
-    const Needs needs = atlas_needs({.size = {.width_px = kSmaller_px, .height_px = kSmaller_px},
-                                     .bins = 4,
-                                     .altitudes = 4,
-                                     .has_mosaics = true,
-                                     .has_fits = true,
-                                     .threads = kThreads});
-    expect_foretold(found, needs.memory_bytes);
+    rig_of(folder.path(), kSide_px, kSide_px);
+    const CommandResult made = run_aphotic(
+        folder.path(),
+        {"atlas", "rig.toml", "-o", "out", "--altitude", "1:4:1", "--export", "bayer,exponential"});
+    ASSERT_EQ(made.status, 0) << made.err;
+    const DiskNeeds needs = atlas_needs({.size = {.width_px = kSide_px, .height_px = kSide_px},
+                                         .bins = 4,
+                                         .altitudes = 4,
+                                         .has_mosaics = true,
+                                         .has_fits = true});
     std::uint64_t written = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "out")) {
         if (entry.is_regular_file()) written += entry.file_size();
     }
     EXPECT_LE(written, needs.folder_bytes);
-}
-
-TEST(MemoryOfLightmap, IsForetold) {
-    if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
-    const TempFolder folder;
-    rig_of(folder.path(), 2 * kSide_px, kSide_px);
-    constexpr std::uint64_t kMap_bytes = std::uint64_t{12} * 2 * kSide_px * kSide_px;
-    const auto size = [](std::size_t wavelengths) {
-        return ImageSize{
-            .width_px = 2 * kSide_px, .height_px = kSide_px, .wavelengths = wavelengths};
-    };
-    const std::string threads = std::to_string(kThreads);
-    expect_foretold(
-        measured(folder.path(), {"lightmap", "rig.toml", "-o", "a.exr", "--threads", threads}),
-        integration_memory_bytes(size(1), kThreads) + kMap_bytes);
-    expect_foretold(measured(folder.path(),
-                             {"lightmap",
-                              "rig.toml",
-                              "-o",
-                              "b.exr",
-                              "--per-strobe",
-                              "--preview",
-                              "b.png",
-                              "--threads",
-                              threads}),
-                    integration_memory_bytes(size(3), kThreads) + 4 * kMap_bytes);
+    EXPECT_GE(written, needs.folder_bytes / 4);  // smooth, and floats all the same
 }
 
 // A folder with a disk of its own that holds so much, for one command: its status and what it said.
@@ -288,7 +218,7 @@ TEST(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
 TEST(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
     const TempFolder folder;
     rig_of(folder.path(), 64, 48);
-    const Needs needs = trace_needs({.width_px = 64, .height_px = 48, .wavelengths = 3}, kThreads);
+    const DiskNeeds needs = images_needs({.width_px = 64, .height_px = 48, .wavelengths = 3});
     // In whole pages: of tmpfs, every file and folder takes one more than it fills.
     const std::uint64_t size_kib = needs.folder_bytes / 1024 + 64;
     const std::string command = "trace rig.toml --fitted 3 -o disk/out";
@@ -304,34 +234,24 @@ TEST(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
     EXPECT_EQ(ignored.status, 0) << ignored.said;
 }
 
-// What a shell or a scheduler allows is less than what the machine has.
-TEST(Needs, AreHeldAgainstTheLimitsOfTheProcess) {
+// The limit of a shell or a scheduler.
+TEST(Memory, ThatDoesNotDoIsSaid) {
     if (kIsSanitized) GTEST_SKIP() << "sanitizers take more addresses than any limit";
     const TempFolder folder;
-    rig_of(folder.path(), 4096, 4096);
-    ASSERT_EQ(
-        run_aphotic(folder.path(), {"generate", "rig.toml", "--fitted", "3", "-o", "out"}).status,
-        0);
-    for (const std::string command :
-         {"ulimit -v 300000; exec '{}' integrate out -o images",
-          "ulimit -d 300000; exec '{}' integrate out -o images",
-          "ulimit -v 300000; exec '{}' lightmap rig.toml -o images.exr"}) {
-        const ProcessEnd end =
-            run_process({.executable = "/bin/sh",
-                         .arguments = {"-c", fmt::format(fmt::runtime(command), APHOTIC_COMMAND)},
-                         .folder = folder.path(),
-                         .environment = {},
-                         .log = folder.path() / "said"},
-                        280.0);
-        EXPECT_EQ(end.exit_code, 3) << command;
-        const std::string said = read_text_file(folder.path() / "said");
-        EXPECT_TRUE(std::regex_search(
-            said,
-            std::regex(R"(needs up to [0-9.]+ MB of memory, 307 MB are free\. Nothing was begun)")))
-            << said;
-        EXPECT_FALSE(fs::exists(folder.path() / "images"));
-        EXPECT_FALSE(fs::exists(folder.path() / "images.exr"));
-    }
+    rig_of(folder.path(), 8192, 8192);
+    const ProcessEnd end = run_process(
+        {.executable = "/bin/sh",
+         .arguments = {"-c",
+                       fmt::format("ulimit -v 300000; exec '{}' lightmap rig.toml -o images.exr",
+                                   APHOTIC_COMMAND)},
+         .folder = folder.path(),
+         .environment = {},
+         .log = folder.path() / "said"},
+        280.0);
+    EXPECT_EQ(end.exit_code, 3);
+    EXPECT_EQ(read_text_file(folder.path() / "said"),
+              "aphotic: there is not enough memory for this\n");
+    EXPECT_FALSE(fs::exists(folder.path() / "images.exr"));
 }
 
 // 12 bands take 7.8 MB at most, of which the images are 5.9 MB; 13 bands take 8.5 MB; 7.2 MB are

@@ -3,7 +3,7 @@
 // What must hold of every rig's frames by POV-Ray, whatever the rig: the laws of
 // tests/validation/tracer_properties_test.cpp, on a few tiny images, within the rounding of half
 // floats. The radiance is what the frames hold less their exposure.
-#include "scene_gen/resource_estimate.h"
+#include "scene_gen/disk_estimate.h"
 #include "support/random_rig.h"
 #include "support/rendered.h"
 #include "support/rig_changes.h"

@@ -7,9 +7,12 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace aphotic::mesh_reader_test {
 namespace {
@@ -48,24 +51,25 @@ TEST(MeshReader, ReadsVerticesAndFaces) {
     EXPECT_EQ(mesh.triangles[1], (std::array{0, 2, 1}));
 }
 
+double area_of(const Mesh& mesh) {
+    double sum = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const auto at = [&](int i) { return mesh.vertices_m[static_cast<std::size_t>(i)]; };
+        sum += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
+    }
+    return sum;
+}
+
 // The area of a unit square and of a regular hexagon of side 1, 3 sqrt(3)/2, however they are cut.
 TEST(MeshReader, CutsPolygonsIntoTriangles) {
-    const auto area = [](const Mesh& mesh) {
-        double sum = 0.0;
-        for (const auto& [a, b, c] : mesh.triangles) {
-            const auto at = [&](int i) { return mesh.vertices_m[static_cast<std::size_t>(i)]; };
-            sum += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
-        }
-        return sum;
-    };
     const Mesh square = read("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
     EXPECT_EQ(square.triangles.size(), 2U);
-    EXPECT_EQ(area(square), 1.0);
+    EXPECT_EQ(area_of(square), 1.0);
     const Mesh hexagon = read(
         "v 1 0 0\nv 0.5 0.8660254 0\nv -0.5 0.8660254 0\nv -1 0 0\nv -0.5 -0.8660254 0\n"
         "v 0.5 -0.8660254 0\nf 1 2 3 4 5 6\n");
     EXPECT_EQ(hexagon.triangles.size(), 4U);
-    EXPECT_NEAR(area(hexagon), 2.5980762, 1e-6);
+    EXPECT_NEAR(area_of(hexagon), 2.5980762, 1e-6);
 }
 
 TEST(MeshReader, AddsThePositionAndRoundsToSinglePrecision) {
@@ -124,13 +128,57 @@ TEST(MeshReader, RefusesPolygonsOfMoreCornersThanItsLimit) {
                     .ends_with(" ...; allowed: f and from 3 to 256 of the 257 vertices above it"));
 }
 
-// Sides that cross: the library that cuts polygons gives up, and says nothing.
+// By the shoelace formula; corners on one line, a corner twice.
+TEST(MeshReader, CutsPolygonsThatAreNotConvex) {
+    struct Case {
+        std::vector<std::pair<double, double>> corners;
+    };
+    for (const auto& [corners] :
+         {Case{{{0.926498, 0.144645},
+                {0.698354, 0.237795},
+                {0.024322, 0.038550},
+                {0.324720, 0.330341},
+                {0.057062, 0.690567}}},
+          Case{{{0, 0}, {4, 1}, {0, 2}, {1, 1}}},
+          Case{{{3, 3}, {7, 4}, {3, 5}, {4, 4}}},
+          Case{{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}},
+          Case{{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 3}, {2, 3}, {1, 3}, {0, 3}}},
+          Case{{{0, 0}, {1, 0}, {1, 1}, {1, 1}}}}) {
+        std::string obj;
+        std::string face = "f";
+        double twice = 0.0;
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const auto& [x, y] = corners[i];
+            const auto& [next_x, next_y] = corners[(i + 1) % corners.size()];
+            twice += x * next_y - next_x * y;
+            obj += fmt::format("v {} {} 1\n", x, y);
+            face += fmt::format(" {}", i + 1);
+        }
+        EXPECT_NEAR(area_of(read(obj + face)), 0.5 * std::abs(twice), 1e-6) << obj << face;
+    }
+}
+
+// A quadrilateral that is not flat has two shapes.
+TEST(MeshReader, CutsQuadrilateralsAlongTheShorterDiagonal) {
+    const std::string shorter = "v 0 0 0\nv 1 0 0.5\nv 1 1 0\nv 0 1 0\n";
+    for (const auto& triangle : read(shorter + "f 1 2 3 4\n").triangles) {
+        EXPECT_EQ(std::ranges::count(triangle, 0) + std::ranges::count(triangle, 2), 2);
+    }
+    for (const auto& triangle : read(shorter + "f 2 3 4 1\n").triangles) {
+        EXPECT_EQ(std::ranges::count(triangle, 0) + std::ranges::count(triangle, 2), 2);
+    }
+}
+
+// Sides that cross, no area at all, and a comb, of which no corner sees all teeth.
 TEST(MeshReader, LeavesNoHoleWhereAPolygonCannotBeCut) {
-    EXPECT_EQ(
-        error_of("v 0.926498 0.144645 1\nv 0.698354 0.237795 1\nv 0.024322 0.038550 1\n"
-                 "v 0.324720 0.330341 1\nv 0.057062 0.690567 1\nf 1 2 3 4 5\n"),
-        "rock.obj: found polygons of which 1 of 3 triangles could be made; allowed: triangles "
-        "in place of those that are not convex");
+    const std::string error =
+        ": found a polygon that cannot be cut into triangles from one of its corners; allowed: one "
+        "with a corner that sees all others, or triangles in its place";
+    EXPECT_EQ(error_of("v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4\n"), "rock.obj:5" + error);
+    EXPECT_EQ(error_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n"), "rock.obj:5" + error);
+    EXPECT_EQ(error_of("v 0 0 0\nv 9 0 0\nv 8 4 0\nv 7 1 0\nv 5 1 0\nv 4 4 0\nv 3 1 0\n"
+                       "v 1 1 0\nv 0.5 4 0\nf 1 2 3 4 5 6 7 8 9\n"),
+              "rock.obj:10" + error);
 }
 
 // Cut before they are counted, these would take minutes.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The sizes of real files against those foretold, and the rule by which work is refused. Memory is
-// measured where it is used, by the command (tests/cli/needs_test.cpp).
-#include "scene_gen/resource_estimate.h"
+// The sizes of real files against those foretold, and the rule by which work is refused.
+#include "scene_gen/disk_estimate.h"
 
 #include "image/output_images.h"
 #include "image/preview.h"
@@ -86,116 +85,88 @@ constexpr double kOverhead = 0.01;
 // One frame, 6 bytes a pixel; then 12 of image.exr, 24 of spectral.exr and 3 of the preview, which
 // is more than the 21 of POV-Ray's notes.
 TEST(RenderNeeds, OfTheLargestImageAreByHand) {
-    const Needs needs = render_needs({.size = kLargest, .frames = 1, .scenes_bytes = 0, .jobs = 2});
+    const DiskNeeds needs =
+        render_needs({.size = kLargest, .frames = 1, .scenes_bytes = 0, .jobs = 2});
     const double bytes = (6.0 + 12.0 + 24.0 + 3.0) * static_cast<double>(kPixelsOfLargest);
     EXPECT_NEAR(static_cast<double>(needs.folder_bytes), bytes, kOverhead * bytes);
     EXPECT_NEAR(
         static_cast<double>(needs.temporary_bytes), 20.0 * kPixelsOfLargest, kOverhead * bytes);
-    // The preview, 25 bytes a pixel, outweighs POV-Ray's one process of 8.
-    EXPECT_NEAR(
-        static_cast<double>(needs.memory_bytes), 25.0 * kPixelsOfLargest, kOverhead * bytes);
 }
 
 TEST(RenderNeeds, GrowWithTheProcessesThatRun) {
     RenderWork work{.size = kLargest, .frames = 12, .scenes_bytes = 0, .jobs = 1};
-    const Needs one = render_needs(work);
+    const DiskNeeds one = render_needs(work);
     work.jobs = 6;
-    const Needs six = render_needs(work);
+    const DiskNeeds six = render_needs(work);
     EXPECT_EQ(six.temporary_bytes, 6 * one.temporary_bytes);
     EXPECT_GT(six.folder_bytes, one.folder_bytes);
-    EXPECT_GT(six.memory_bytes, one.memory_bytes);
     work.frames = 1;  // there is no work for the others
     EXPECT_EQ(render_needs(work).temporary_bytes, one.temporary_bytes);
 }
 
 TEST(RenderNeeds, OfKeptFramesAreTheImagesAlone) {
     const FileSizes files = largest_files(kSize);
-    const Needs needs = render_needs({.size = kSize, .frames = 0, .scenes_bytes = 99, .jobs = 4});
+    const DiskNeeds needs =
+        render_needs({.size = kSize, .frames = 0, .scenes_bytes = 99, .jobs = 4});
     EXPECT_EQ(needs.folder_bytes,
               99 + files.image_bytes + files.spectral_bytes + files.preview_bytes);
     EXPECT_EQ(needs.temporary_bytes, 0U);
-    EXPECT_EQ(needs.memory_bytes, integration_memory_bytes(kSize, 4));
 }
 
-TEST(IntegrationNeeds, AreThoseOfKeptFrames) {
-    const Needs kept = render_needs({.size = kSize, .frames = 0, .scenes_bytes = 0, .jobs = 4});
-    const Needs needs = integration_needs(kSize, 4);
+TEST(ImagesNeeds, AreThoseOfKeptFrames) {
+    const DiskNeeds kept = render_needs({.size = kSize, .frames = 0, .scenes_bytes = 0, .jobs = 4});
+    const DiskNeeds needs = images_needs(kSize);
     EXPECT_EQ(needs.folder_bytes, kept.folder_bytes);
     EXPECT_EQ(needs.temporary_bytes, 0U);
-    EXPECT_EQ(needs.memory_bytes, kept.memory_bytes);
 }
 
-// Three floats a pixel and part, and as many of the sum; in memory the same beside what writing
-// takes, and a part's map on its own before it is one of them.
+// Three floats a pixel and part, and as many of the sum.
 TEST(LightmapNeeds, OfTheLargestImageAreByHand) {
-    LightmapWork work{.width_px = 16384, .height_px = 16384, .parts = 0, .threads = 1};
+    LightmapWork work{.width_px = 16384, .height_px = 16384, .parts = 0};
     const auto near_px = [](std::uint64_t bytes, double bytes_of_pixel) {
         EXPECT_NEAR(static_cast<double>(bytes),
                     bytes_of_pixel * kPixelsOfLargest,
                     kOverhead * bytes_of_pixel * kPixelsOfLargest);
     };
     near_px(lightmap_needs(work).folder_bytes, 12.0);
-    near_px(lightmap_needs(work).memory_bytes, 25.0 + 12.0);
     work.parts = 4;
     near_px(lightmap_needs(work).folder_bytes, 5.0 * 12.0);
-    near_px(lightmap_needs(work).memory_bytes, 25.0 + 6.0 * 12.0);
     work.has_preview = true;
     near_px(lightmap_needs(work).folder_bytes, 5.0 * 12.0 + 3.0);
-    near_px(lightmap_needs(work).memory_bytes, 25.0 + 7.0 * 12.0);
     EXPECT_EQ(lightmap_needs(work).temporary_bytes, 0U);
-}
-
-// Rows come and go in blocks: what a higher image takes more are its signals and its preview,
-// however many the wavelengths.
-TEST(IntegrationMemory, GrowsWithTheHeightByTheSignalsAlone) {
-    constexpr std::uint64_t kMost_bytes = 25;  // a pixel
-    for (const std::size_t wavelengths : {3U, 300U}) {
-        const ImageSize low{.width_px = 4096, .height_px = 512, .wavelengths = wavelengths};
-        const ImageSize high{.width_px = 4096, .height_px = 16384, .wavelengths = wavelengths};
-        const std::uint64_t more_px = 4096ULL * (16384 - 512);
-        EXPECT_LE(integration_memory_bytes(high, 2),
-                  integration_memory_bytes(low, 2) + kMost_bytes * more_px);
-    }
 }
 
 // --- The rule
 // -------------------------------------------------------------------------------------
 
 constexpr std::uint64_t kGB = 1'000'000'000;
-const Needs kNeeds{
-    .folder_bytes = 12 * kGB + 300'000'000, .temporary_bytes = 5 * kGB, .memory_bytes = 7 * kGB};
+const DiskNeeds kNeeds{.folder_bytes = 12 * kGB + 300'000'000, .temporary_bytes = 5 * kGB};
 
-FreeRoom room_of(double folder_gb, double temporary_gb, double memory_gb, bool is_one_disk) {
+FreeDisk free_of(double folder_gb, double temporary_gb, bool is_one_disk) {
     const auto bytes = [](double amount_gb) { return static_cast<std::uint64_t>(1e9 * amount_gb); };
     return {.folder_bytes = bytes(folder_gb),
             .temporary_bytes = bytes(temporary_gb),
-            .is_one_disk = is_one_disk,
-            .memory_bytes = bytes(memory_gb)};
+            .is_one_disk = is_one_disk};
 }
 
 TEST(Shortage, IsNoneWhereThereIsJustEnough) {
-    EXPECT_EQ(shortage(kNeeds, room_of(12.3, 5.0, 7.0, false), "out"), "");
-    EXPECT_EQ(shortage(kNeeds, room_of(17.3, 0.0, 7.0, true), "out"), "");
+    EXPECT_EQ(shortage(kNeeds, free_of(12.3, 5.0, false), "out"), "");
+    EXPECT_EQ(shortage(kNeeds, free_of(17.3, 0.0, true), "out"), "");
 }
 
 TEST(Shortage, OfTheFolderSaysWhatIsNeededAndFree) {
-    EXPECT_EQ(shortage(kNeeds, room_of(4.1, 9.0, 9.0, false), "out"),
+    EXPECT_EQ(shortage(kNeeds, free_of(4.1, 9.0, false), "out"),
               "needs up to 12.3 GB in out, 4.1 GB are free");
 }
 
 TEST(Shortage, OfOneDiskIsOfBothTogether) {
-    EXPECT_EQ(shortage(kNeeds, room_of(13.0, 13.0, 9.0, true), "out"),
+    EXPECT_EQ(shortage(kNeeds, free_of(13.0, 13.0, true), "out"),
               "needs up to 17.3 GB in out and /tmp, 13 GB are free");
 }
 
 TEST(Shortage, OfTheTemporaryFolderNamesIt) {
-    EXPECT_EQ(shortage(kNeeds, room_of(99.0, 4.9, 9.0, false), "out"),
+    EXPECT_EQ(shortage(kNeeds, free_of(99.0, 4.9, false), "out"),
               "needs up to 5 GB in /tmp, 4.9 GB are free");
-}
-
-TEST(Shortage, OfMemoryNamesIt) {
-    EXPECT_EQ(shortage(kNeeds, room_of(99.0, 99.0, 0.5, false), "out"),
-              "needs up to 7 GB of memory, 500 MB are free");
 }
 
 TEST(BytesInWords, HaveThreeDigits) {
