@@ -95,7 +95,17 @@ void add_object(const Object& object, Signature& all) {
 
 Signature geometry_signature(const Rig& rig) {
     // A user's own scene is told by its files (spectral/manifest.h).
-    const auto& [title, sled, camera, water, floor, strobes, materials, objects, scene, digest, toml,
+    const auto& [title,
+                 sled,
+                 camera,
+                 water,
+                 floor,
+                 strobes,
+                 materials,
+                 objects,
+                 scene,
+                 digest,
+                 toml,
                  files] = rig;
     Signature all;
     add_sled(sled, all);
