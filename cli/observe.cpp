@@ -12,6 +12,7 @@
 #include "survey/observation.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <memory>

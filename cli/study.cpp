@@ -2,11 +2,9 @@
 //
 // aphotic study RIG -o DIR: settings of a render tried side by side, their time here and their
 // error against the reference.
-#include "validation/study.h"
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/progress.h"
-#include "base/sha256.h"
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/needs_check.h"
@@ -19,26 +17,21 @@
 #include "image/exr.h"
 #include "rig/rig_reader.h"
 #include "scene_gen/scene_set.h"
-#include "spectral/integrator.h"
-#include "validation/saved_measure.h"
-#include "validation/tracer.h"
+#include "validation/study_run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <thread>
-#include <tuple>
 #include <utility>
 
 namespace aphotic::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 // A 16-bit PNG ends at 1: the brightest pixel stays under a half, whatever the bound's margin.
 constexpr int kPngPeakLog2 = -1;
@@ -53,75 +46,6 @@ struct StudyCommandOptions {
     bool json = false;
     bool ignore_needs = false;
 };
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-struct Reference {
-    CameraImage image;
-    std::vector<unsigned char> on_edge;
-    std::size_t grid_size = 0;
-    double trace_s = 0.0;
-};
-
-// The time of a trace is kept in its image: a study that goes on later does not trace again.
-// Nothing when the image is of something else, or not as we wrote it.
-std::optional<std::pair<CameraImage, double>> kept_trace(const fs::path& file,
-                                                         const std::string& key) {
-    if (!fs::exists(file)) return std::nullopt;
-    try {
-        const ExrReader traced(file);
-        if (traced.attribute("aphotic:key") != key) return std::nullopt;
-        const std::string trace_s = traced.attribute("aphotic:trace_s");
-        return std::pair(read_signals(file), std::stod(trace_s));
-    } catch (const RunError&) {
-        return std::nullopt;
-    } catch (const std::logic_error&) {  // of stod
-        return std::nullopt;
-    }
-}
-
-Reference reference_of(const Rig& rig, const fs::path& folder, const std::string& key, int cores) {
-    const Tracer tracer(rig, {.signals = true, .planes_nm = {}, .threads = cores});
-    Reference reference{
-        .image = {}, .on_edge = tracer.on_edges(rig.camera.range), .grid_size = tracer.grid_size()};
-    const fs::path file = folder / "image.exr";
-    if (auto kept = kept_trace(file, key)) {
-        std::tie(reference.image, reference.trace_s) = std::move(*kept);
-        return reference;
-    }
-    make_folder(folder);
-    const auto start = Clock::now();
-    constexpr int kRows = 32;
-    const int height_px = rig.camera.height_px;
-    std::vector<std::vector<double>> blocks;
-    ProgressLine line;
-    for (int row = 0; row < height_px; row += kRows) {
-        blocks.push_back(tracer.rows(row, std::min(kRows, height_px - row)));
-        line.show("tracing", static_cast<double>(row) / height_px);
-    }
-    reference.trace_s = seconds_since(start);
-    OutputImages images(
-        folder,
-        rig.camera.width_px,
-        height_px,
-        {},
-        {{"aphotic:key", key}, {"aphotic:trace_s", fmt::format("{}", reference.trace_s)}});
-    for (const std::vector<double>& block : blocks) {
-        const auto rows = static_cast<int>(block.size()) / kChannels / rig.camera.width_px;
-        images.write_rows(rows, {block.begin(), block.end()});
-    }
-    reference.image = images.finish();
-    return reference;
-}
-
-Rig shrunk(Rig rig, int shrink) {
-    rig.camera.width_px /= shrink;
-    rig.camera.height_px /= shrink;
-    rig.camera.pixel_pitch_m *= shrink;
-    return rig;
-}
 
 RenderPlan plan_for(const Rig& rig, const StudySetting& setting) {
     PlanRequest request;
@@ -159,39 +83,14 @@ void png_to_exr(const fs::path& file) {
     fs::remove(png_file);
 }
 
-CameraImage enlarged(const CameraImage& image, const Rig& rig, const std::string& filter) {
-    const PlaneSize from{.width_px = image.width_px, .height_px = image.height_px};
-    const PlaneSize to{.width_px = rig.camera.width_px, .height_px = rig.camera.height_px};
-    CameraImage large{.width_px = to.width_px, .height_px = to.height_px, .samples = {}};
-    const std::size_t plane = image.samples.size() / kChannels;
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        const auto first = image.samples.begin() + static_cast<std::ptrdiff_t>(c * plane);
-        const std::vector<float> result =
-            resized({first, first + static_cast<std::ptrdiff_t>(plane)}, from, to, filter);
-        large.samples.insert(large.samples.end(), result.begin(), result.end());
-    }
-    return large;
-}
-
-// Pixels that the setting mixes with what lies beyond an edge.
-std::vector<unsigned char> blurred_edges(const Rig& rig, const StudySetting& setting) {
-    // The widest filter, lanczos3, reaches three pixels of the small image.
-    constexpr double kReach_px = 4.0;
-    const Tracer tracer(rig, {.signals = false, .planes_nm = {}});
-    return tracer.on_edges(rig.camera.range, setting.shrink > 1 ? kReach_px * setting.shrink : 1.0);
-}
-
-// Renders the setting in the folder, from nothing, and takes the folder away again.
-StudyMeasure measure(const Rig& rig,
-                     const StudySetting& setting,
-                     const Reference& reference,
-                     const PovRay& povray,
-                     double stall_s,
-                     const fs::path& folder) {
-    fs::remove_all(folder);
-    const Rig small = shrunk(rig, setting.shrink);
-    const RenderPlan plan = plan_for(small, setting);
-    SceneSet set = make_scene_set(small, plan);
+// The frames of one setting by POV-Ray.
+StudyFrames render_setting(const PovRay& povray,
+                           double stall_s,
+                           const Rig& rig,
+                           const StudySetting& setting,
+                           const fs::path& folder) {
+    const RenderPlan plan = plan_for(rig, setting);
+    SceneSet set = make_scene_set(rig, plan);
     RunOptions options{.jobs = setting.jobs, .report = {}, .stall_s = stall_s};
     if (setting.antialias) {
         change_setting(set.ini,
@@ -203,43 +102,10 @@ StudyMeasure measure(const Rig& rig,
         change_setting(set.ini, "Output_File_Type=E", "Output_File_Type=N\nBits_Per_Color=16");
         options.convert = png_to_exr;
     }
-    const RenderedFrames frames = render_frames(povray, folder, set, options);
-
-    const auto start = Clock::now();
-    CameraImage image = integrate_signals(folder, frames.result.manifest, folder);
-    if (setting.shrink > 1) image = enlarged(image, rig, setting.filter);
-    StudyMeasure measure{.setting = setting,
-                         .wavelengths = plan.wavelengths.size(),
-                         .frames = set.scenes.size(),
-                         .promise = plan.promise(),
-                         .render_s = frames.povray_s,
-                         .integrate_s = seconds_since(start)};
-    measure.channels =
-        compare_signals(image,
-                        reference.image,
-                        measure.blurs_edges() ? blurred_edges(rig, setting) : reference.on_edge);
-    fs::remove_all(folder);
-    return measure;
-}
-
-std::string key_of(const Study& study, const StudySetting& s) {
-    return sha256_of_text(fmt::format("{} {} {} {} {} {} {}/{}/{}/{}/{}/{}/{}/{}/{}/{}",
-                                      study.rig_sha256,
-                                      study.width_px,
-                                      study.height_px,
-                                      study.aphotic_version,
-                                      study.povray_version,
-                                      study.cores,
-                                      s.name,
-                                      s.fitted,
-                                      s.bands,
-                                      s.per_frame,
-                                      s.shrink,
-                                      s.filter,
-                                      s.one_soft_lamp,
-                                      s.png,
-                                      s.antialias,
-                                      s.jobs));
+    RenderedFrames frames = render_frames(povray, folder, set, options);
+    return {.manifest = std::move(frames.result.manifest),
+            .promise = plan.promise(),
+            .render_s = frames.povray_s};
 }
 
 void print_study(const Study& study, const fs::path& folder) {
@@ -320,32 +186,20 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
     require_room(needs_of_renders(rig, settings, study.cores), folder, options.ignore_needs);
     set_exr_threads(study.cores);
     const FolderLock lock = claim_folder(folder);
-    make_folder(folder / "settings");
-    const Reference reference =
-        reference_of(rig, folder / "reference", key_of(study, {}), study.cores);
-    study.grid_size = reference.grid_size;
-    study.trace_s = reference.trace_s;
-
-    for (const StudySetting& setting : settings) {
-        const fs::path file = folder / "settings" / (setting.name + ".json");
-        const std::string key = key_of(study, setting);
-        std::optional<StudyMeasure> measured = saved_measure(setting, key, file);
-        if (!measured) {
-            fmt::print(stderr,
-                       "{} of {}: {}\n",
-                       study.measures.size() + 1,
-                       settings.size(),
-                       setting.words);
-            measured = measure(rig,
-                               setting,
-                               reference,
-                               povray,
-                               options.stall_timeout_s,
-                               folder / "settings" / setting.name);
-            save_measure(*measured, key, file);
-        }
-        study.measures.push_back(std::move(*measured));
-    }
+    StudyHands hands;
+    hands.render = [&](const Rig& small, const StudySetting& setting, const fs::path& its_folder) {
+        return render_setting(povray, options.stall_timeout_s, small, setting, its_folder);
+    };
+    std::optional<ProgressLine> line(std::in_place);
+    hands.progress = [&](std::string_view what, double share) {
+        if (line) line->show(what, share);
+    };
+    hands.begins = [&](const StudySetting& setting, std::size_t index) {
+        line.reset();
+        fmt::print(stderr, "{} of {}: {}\n", index + 1, settings.size(), setting.words);
+    };
+    run_study(study, rig, settings, folder, hands);
+    line.reset();
     write_study(study, folder);
     if (options.json) {
         fmt::print("{}", read_text_file(folder / "study.json"));
