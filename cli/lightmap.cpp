@@ -133,8 +133,7 @@ WrittenLightmap write_map(const LightmapCommandOptions& options, const Rig& rig)
         require_room(lightmap_needs({.width_px = rig.camera.width_px,
                                      .height_px = rig.camera.height_px,
                                      .parts = request.parts.size(),
-                                     .has_preview = !options.preview_file.empty(),
-                                     .threads = options.map.threads}),
+                                     .has_preview = !options.preview_file.empty()}),
                      std::filesystem::absolute(options.file).parent_path(),
                      options.ignore_needs);
         return write_lightmap(rig, request);

@@ -86,7 +86,7 @@ const ImagePose& Navigation::pose_of(const std::filesystem::path& image) const {
     require(source_, pose, "pitch_deg", sled.pitch_rad / kRadiansPerDegree, kTilt_deg);
     require(source_, pose, "roll_deg", sled.roll_rad / kRadiansPerDegree, kTilt_deg);
     if (sled.altitude_m < least_m_ || sled.altitude_m > most_m_) {
-        throw InputError(fmt::format("altitude_m: found {}; allowed by --altitudes-m: {} to {}",
+        throw InputError(fmt::format("altitude_m: found {}; allowed by --altitude: {} to {}",
                                      sled.altitude_m,
                                      least_m_,
                                      most_m_));

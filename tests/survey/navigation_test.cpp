@@ -55,7 +55,7 @@ TEST(Navigation, BeyondItsLimitsAnImageHasNoPose) {
     track.limit_altitude(1.0, 4.0);
     EXPECT_EQ(track.pose_of("a").sled.altitude_m, 1.0);
     EXPECT_EQ(track.pose_of("b").sled.altitude_m, 2.0);
-    EXPECT_EQ(fault_of(track, "c"), "altitude_m: found 4.5; allowed by --altitudes-m: 1 to 4");
+    EXPECT_EQ(fault_of(track, "c"), "altitude_m: found 4.5; allowed by --altitude: 1 to 4");
 }
 
 }  // namespace
