@@ -183,13 +183,13 @@ Triangle checked_triangle(const Mesh& mesh,
         return mesh.vertices_m[static_cast<std::size_t>(corners[i])];
     };
     if (has_area(at(0), at(1), at(2))) return {corners[0], corners[1], corners[2]};
-    throw InputError(
-        fmt::format("{}: found a triangle of no area, of the vertices {}, {} and {}, counted from "
-                    "1; allowed: three corners that do not lie on one line",
-                    file_name,
-                    corners[0] + 1,
-                    corners[1] + 1,
-                    corners[2] + 1));
+    throw InputError(fmt::format(
+        "{}: found a triangle without area, of the vertices {}, {} and {}, counted from "
+        "1; allowed: three corners that do not lie on one line",
+        file_name,
+        corners[0] + 1,
+        corners[1] + 1,
+        corners[2] + 1));
 }
 
 }  // namespace

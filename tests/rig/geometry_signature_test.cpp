@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,7 +93,8 @@ TEST(GeometrySignature, KnowsBeamsByTheirLight) {
     Rig literal = habcam();
     for (Strobe& strobe : literal.strobes) {
         for (Cone& cone : strobe.beam.cones) {
-            cone.weight /= std::numbers::pi * std::pow(std::sin(cone.half_angle_rad), 2);
+            const double sine = std::sin(cone.half_angle_rad);
+            cone.weight /= std::numbers::pi * sine * sine;
         }
         strobe.beam.weights = ConeWeights::Literal;
     }
