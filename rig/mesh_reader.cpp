@@ -171,7 +171,7 @@ std::vector<Triangle> cut(const Mesh& mesh, std::vector<int> corners) {
             shortest = diagonals;
             best = std::move(fan);
         }
-        std::ranges::rotate(corners, corners.begin() + 1);
+        std::rotate(corners.begin(), corners.begin() + 1, corners.end());
     }
     return best;
 }

@@ -112,7 +112,7 @@ TEST(Trace, SaysWhereItsErrorsDoNotHold) {
         const auto json =
             nlohmann::json::parse(read_text_file(folder.path() / "out" / "trace.json"));
         const bool has_emitters = scene == "habcam-emitters";
-        EXPECT_EQ(run.out.find("pixels on edges") != std::string::npos, scene != "habcam")
+        EXPECT_EQ(run.out.find("pixels on the edge of") != std::string::npos, scene != "habcam")
             << run.out;
         EXPECT_EQ(json.at("on_edges").get<int>() > 0, scene != "habcam") << scene;
         EXPECT_EQ(json.contains("emitters"), has_emitters) << scene;

@@ -54,7 +54,7 @@ TEST_F(FrameRunner, KilledPovRayIsNamedAndLeavesNoFrame) {
 
 TEST_F(FrameRunner, SuccessWithoutAnImageIsAFailure) {
     const std::string message = failure_of("exit 0\n");
-    EXPECT_NE(message.find("made no image"), std::string::npos) << message;
+    EXPECT_NE(message.find("exited normally without an image"), std::string::npos) << message;
 }
 
 TEST_F(FrameRunner, ImageOfTheWrongSizeIsRefused) {
