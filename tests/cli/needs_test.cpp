@@ -249,8 +249,7 @@ TEST(Memory, ThatDoesNotDoIsSaid) {
          .log = folder.path() / "said"},
         280.0);
     EXPECT_EQ(end.exit_code, 3);
-    EXPECT_EQ(read_text_file(folder.path() / "said"),
-              "aphotic: there is not enough memory for this\n");
+    EXPECT_EQ(read_text_file(folder.path() / "said"), "aphotic: out of memory\n");
     EXPECT_FALSE(fs::exists(folder.path() / "images.exr"));
 }
 
