@@ -7,7 +7,9 @@
 #           same label and is optimised, see below
 #   povray  runs POV-Ray. Under the name povray_of_few_pixels it gets the same label and weighs half
 #   cli     runs the command as a user would
-#   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser
+#   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser. Under
+#           the name slow_as_one the program is one test to CTest, which would else start it anew for
+#           each: for tests that share what takes long, a rendered survey
 #
 # A test weighs two of CTest's processors, one where it mostly waits: POV-Ray spends two thirds of a
 # second on a few pixels, asleep. So scripts/test gives CTest twice as many as there are cores.
@@ -32,7 +34,8 @@ function(aphotic_tests label)
     elseif(label STREQUAL "povray_of_few_pixels")
         set(label povray)
         set(limits TIMEOUT 600)
-    elseif(label STREQUAL "slow")
+    elseif(label MATCHES "^slow")
+        set(label slow)
         set(limits TIMEOUT 600 PROCESSORS 2)
     endif()
 
@@ -59,6 +62,11 @@ function(aphotic_tests label)
             aphotic_sanitizers aphotic_warnings)
         add_dependencies(${target} aphotic)
 
+        if(program STREQUAL "slow_as_one")
+            add_test(NAME ${folder}/all COMMAND ${target})
+            set_tests_properties(${folder}/all PROPERTIES LABELS ${label} ${limits})
+            continue()
+        endif()
         # Discovered when CTest starts, so that a test program that crashes fails as a test
         # and not as a build.
         gtest_discover_tests(${target}
