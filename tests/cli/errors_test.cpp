@@ -260,8 +260,10 @@ TEST_F(CommandErrors, TheManPageHasTheDefaultsOfHelp) {
     std::size_t count = 0;
     for (const std::string& command : kCommands) {
         const std::string help = run_aphotic(folder_.path(), {command, "--help"}).out;
-        for (const auto& [option, value] : stated_defaults(help)) {
+        for (const auto& stated : stated_defaults(help)) {
             ++count;
+            const std::string& option = stated.first;
+            const std::string& value = stated.second;
             EXPECT_TRUE(std::ranges::any_of(paragraphs,
                                             [&](const std::string& paragraph) {
                                                 return paragraph.find(option + ' ') < 20 &&
