@@ -7,7 +7,7 @@
 // v, keeps v.a >= |v| cos g with the strobe's axis a. An edge passes between neighbouring pixels of
 // which one is within and the other is not, and over a pixel where the places of an emitter's rim,
 // or behind a port the two ends of the wavelength range, disagree. A cone of 90 degrees has no
-// edge: its light ends as cos 90 = 0. The horizon is an edge too.
+// edge, for its light ends as cos^n 90 = 0, unless n < 1. The horizon is an edge too.
 #pragma once
 
 #include "lightmap/row_light.h"

@@ -2,7 +2,7 @@
 //
 // The signal of the rig's camera on its bare flat floor, at the camera's pace.
 //
-//   S_c = sum_s sum_k  A_k cos(theta) cos(i) / (pi d^2) T_sc(d + r)  +  highlight
+//   S_c = sum_s sum_k  A_k cos^n(theta) cos(i) / (pi d^2) T_sc(d + r)  +  highlight
 //
 // as docs/physics.md has it, with T the signal over the path's length (path_table.h). Once per
 // water T is tabulated; then a map of any altitude and attitude is geometry and a look-up a pixel,

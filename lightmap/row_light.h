@@ -14,12 +14,12 @@
 //   d = |V|/w     cos(theta) = V.a/|V|     cos(i) = h w/|V|     r = |D| H/w
 //   cos(theta) cos(i) / d^2 = h w^3 (V.a) / |V|^4
 //
-// A lobe of a beam that falls as another power of the cosine, n, has its intensity on the axis
-// times cos^(n - 1)(theta) in place of that on the axis.
-//
 // and for the highlight, with m the ray mirrored at the floor and l the way to the lamp,
 //
 //   m.l = (2 w^2 h - D.V) / (|D| |V|)
+//
+// A lobe of a beam that falls as another power of the cosine, n, has its intensity on the axis
+// times cos^(n - 1)(theta) in place of that on the axis.
 //
 // Through a flat port, (u, v) the slopes of the pixel's ray in air, D = (u a, v a, 1) and
 // o = (u b, v b, distance + thickness), for tan = sin/cos on both sides of Snell's law gives

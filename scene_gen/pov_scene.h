@@ -5,7 +5,7 @@
 // A frame carries up to three wavelengths, one in each of the image's channels red, green and
 // blue: POV-Ray never mixes them. A pixel of the frame is, in the channel of lambda,
 //
-//   2^e Phi power A_k cos(theta) / (pi d^2) (rho cos(i) + phong max(0, r.l)^phong_size)
+//   2^e Phi power A_k cos^n(theta) / (pi d^2) (rho cos(i) + phong max(0, r.l)^phong_size)
 //       exp(-K (d + r))                           summed over strobes, cones and lamps
 //
 // the radiance L(lambda) of docs/physics.md times 2^e, the frame's exposure (exposure.h).
@@ -13,8 +13,8 @@
 // Behind a port a frame is rendered with the refractive indices of one wavelength
 // (frame_groups.h).
 //
-// What a scene does not hold is not in it (omissions.h): no media in clear water, no port, no cone
-// of weight or power 0 or that lights nothing in view, no highlight of strength 0.
+// What a rig does not hold is not in its scenes (light_culling.h): no media in clear water, no
+// port, no cone of weight or power 0 or that lights nothing in view, no highlight of strength 0.
 //
 // A scene says what stands in the water; water, strobes, camera and port come to it through the
 // macros of plugin/include/aphotic.inc (include_library.h), fed with the frame's band (band_sdl.h).

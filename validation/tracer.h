@@ -7,14 +7,15 @@
 // there is one (each wavelength bent by its own indices), to the floor or to the object before it
 // (shapes.h); from there every strobe, every lamp of its emitter that no object hides, every cone:
 //
-//   L(lambda) = sum  Phi power A_k cos(theta) / (N d^2)
+//   L(lambda) = sum  Phi power A_k cos^n(theta) / (N d^2)
 //                    (rho cos(i) + phong max(0, m.l)^size) / pi  exp(-K (d + r))
 //   S_c       = sum_j w_cj L(lambda_j)
 //
 // theta  angle off the strobe's axis, within the cone      d  lamp to surface [m]
 // i      angle of incidence at the surface                 r  surface to port or pupil [m]
 // m      the camera's ray mirrored at the surface          l  from the surface to the lamp
-// N      lamps of the emitter                              A_k  pi sin^2(gamma) A_k = alpha_k
+// N      lamps of the emitter                              n    the cone's exponent
+// A_k    (n + 1) alpha_k / (2 pi (1 - cos^(n + 1)(gamma))), alpha_k / (pi sin^2(gamma)) if n = 1
 //
 // Double precision, but for heights over the floor and the angle to the horizon, which are small
 // differences at the extremes: these are taken in long double. Light of which the water leaves less
@@ -139,8 +140,8 @@ class Tracer {
     };
     // What a lamp does to a point as the camera sees it, without wavelength.
     struct Contribution {
-        double diffuse = 0.0;   // sum of A cos(theta) cos(i) / (N d^2)    [1/m^2]
-        double specular = 0.0;  // sum of A cos(theta) (m.l)^size phong / (N d^2)
+        double diffuse = 0.0;   // sum of A cos^n(theta) cos(i) / (N d^2)  [1/m^2]
+        double specular = 0.0;  // sum of A cos^n(theta) (m.l)^size phong / (N d^2)
         double path_m = 0.0;    // d + r
     };
     struct View {

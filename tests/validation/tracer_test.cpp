@@ -270,7 +270,7 @@ TEST(TracerClosedForm, LosesTheSameShareAtEveryWavelengthByUniformLoss) {
     }
 }
 
-// field-notes.md, check 10, from Pope and Fry's table: transmission over 2 m + 2 m on the axis.
+// From Pope and Fry's table: transmission over 2 m + 2 m on the axis.
 TEST(TracerClosedForm, TransmitsWhatPopeAndFryMeasuredOverTwiceTwoMetres) {
     constexpr double kHalfDigit = 0.0005;  // three are given
     Rig air = plain_rig();
@@ -358,7 +358,7 @@ TEST(TracerFlux, OfAConeOnTheFloorIsItsWeight) {
     }
 }
 
-// field-notes.md, check 5: pi sin^2 of the half angle.
+// pi sin^2 of the half angle.
 TEST(TracerFlux, OfALiteralConeIsItsWeightTimesThatOfItsLobe) {
     const auto literal = [](double half_angle_deg, double weight) {
         return flux_on_floor(
@@ -399,7 +399,7 @@ TEST(TracerFlux, OfALambertianLampOnARectangleIsItsConfigurationFactor) {
     expect_ratio(flux_on_floor(rig), share, kMidpoint);
 }
 
-// pi sin^2 of 10, 26.5 and 90 degrees, field-notes.md, check 5.
+// pi sin^2 of 10, 26.5 and 90 degrees.
 TEST(TracerFlux, LiteralAndFluxWeightsDifferByTheFluxOfTheLobe) {
     constexpr double kHalfDigit = 0.00005;
     const std::array<std::pair<double, double>, 3> expected{
@@ -440,7 +440,7 @@ std::vector<Strobe> disc(double radius_m, int lamps_per_ring) {
 // Irradiance h below the centre of a Lambertian disc of radiance 1 and half angle A:
 //   E = 2 pi int_0^A cos t sin t exp(-a h / cos t) dt
 //     = 2 pi [E3(a h) - cos^2 A E3(a h / cos A)]
-// (field-notes.md, check 3). The camera, at the disc's centre, sees L = E / pi exp(-a h).
+// The camera, at the disc's centre, sees L = E / pi exp(-a h).
 TEST(TracerDisc, LightsThroughAbsorbingWaterByExponentialIntegrals) {
     constexpr double kGauss = 1e-10;  // 30 points over a smooth function of the radius
     for (const double half_angle_deg : {20.0, 60.0, 75.0}) {
@@ -748,9 +748,9 @@ Rig port_rig(int width_px, int height_px, double pixel_um) {
     return rig;
 }
 
-// field-notes.md, checks 11 and 12: f = 12 mm, 6.45 um, an object far away. Cones of 5, 10, 15
-// and 20 degrees at the pupil draw circles on a floor 10 km below, where the 62 mm of air and
-// glass are nothing; the image of a circle has the radius f tan(asin(n sin t)).
+// f = 12 mm, 6.45 um, an object far away. Cones of 5, 10, 15 and 20 degrees at the pupil draw
+// circles on a floor 10 km below, where the 62 mm of air and glass are nothing; the image of a
+// circle has the radius f tan(asin(n sin t)).
 TEST(TracerPort, SpreadsColoursAsTheTableOfLateralColourSays) {
     constexpr int kSubpixels = 50;
     constexpr int kWidth = 2 * 1000 * kSubpixels;
@@ -778,7 +778,7 @@ TEST(TracerPort, SpreadsColoursAsTheTableOfLateralColourSays) {
     constexpr std::array<double, 4> kBlueLessRed_px{1.4, 2.9, 4.8, 7.5};
     constexpr double kHalfDigit_px = 0.05;
     constexpr double kSubpixel_px = 1.0 / kSubpixels;
-    const std::array<double, 2> n{1.34676, 1.33853};  // at 450 and 650 nm, check 11
+    const std::array<double, 2> n{1.34676, 1.33853};  // Quan and Fry, 450 and 650 nm
     constexpr double kIndexDigits_px = 0.02;          // 5e-6 of n at 1000 pixels, and the port
     for (std::size_t k = 0; k < circles_deg.size(); ++k) {
         EXPECT_NEAR(
