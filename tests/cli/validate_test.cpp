@@ -122,7 +122,8 @@ TEST(Trace, SaysWhereItsErrorsDoNotHold) {
         ASSERT_EQ(json.at("emitters").size(), 4U);
         EXPECT_EQ(json.at("emitters")[0].at("strobe"), "fore");
         EXPECT_GT(json.at("emitters")[0].at("lamps_across").get<int>(), 1);
-        EXPECT_NE(run.out.find("strobe 'fore' has a size"), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find("strobe 'fore' is traced as 10 x 5 lamps"), std::string::npos)
+            << run.out;
     }
 }
 
