@@ -2,6 +2,7 @@
 #include "base/atomic_file.h"
 
 #include "base/error.h"
+#include "base/interruption.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -97,6 +98,7 @@ void remove_abandoned_of(const fs::path& file) {
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {
+    const InterruptionHold hold;
     AtomicFile file(path);
     std::ofstream out(file.temporary(), std::ios::binary);
     out.write(text.data(), static_cast<std::streamsize>(text.size()));

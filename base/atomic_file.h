@@ -42,6 +42,7 @@ class AtomicFile {
 void remove_abandoned_files(const std::filesystem::path& folder);
 void remove_abandoned_of(const std::filesystem::path& file);
 
+// A signal that would end us waits until the file is whole.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 inline constexpr std::size_t kMebibyte = std::size_t{1} << 20U;

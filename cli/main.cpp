@@ -3,11 +3,11 @@
 // The `aphotic` command: a table of subcommands, and what each kind of failure exits with.
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/interruption.h"
 #include "base/printable.h"
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/option_checks.h"
-#include "plugin/interruption.h"
 
 #include <fmt/format.h>
 

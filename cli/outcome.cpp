@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/outcome.h"
 
+#include "base/interruption.h"
 #include "base/progress.h"
 #include "base/words.h"
 #include "image/exr.h"
-#include "plugin/interruption.h"
 #include "spectral/integrator.h"
 
 #include <algorithm>

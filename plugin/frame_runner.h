@@ -49,7 +49,7 @@ struct RunOptions {
 };
 
 // Renders the frames. When one fails the others are stopped, and a RunError quotes POV-Ray; when we
-// are interrupted, Interrupted comes (plugin/interruption.h). Neither leaves anything of the frames
+// are interrupted, Interrupted comes (base/interruption.h). Neither leaves anything of the frames
 // that were under way. Images do not depend on jobs.
 void run_frames(const PovRay& povray,
                 const std::filesystem::path& folder,

@@ -3,10 +3,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/interruption.h"
 #include "base/sha256.h"
 #include "image/exr.h"
 #include "plugin/full_disk.h"
-#include "plugin/interruption.h"
 #include "plugin/library_paths.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"

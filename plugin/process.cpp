@@ -2,7 +2,7 @@
 #include "plugin/process.h"
 
 #include "base/error.h"
-#include "plugin/interruption.h"
+#include "base/interruption.h"
 #include "plugin/life_signs.h"
 
 #include <fmt/format.h>

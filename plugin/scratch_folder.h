@@ -4,7 +4,7 @@
 // interrupted. Only SIGKILL leaves it.
 #pragma once
 
-#include "plugin/interruption.h"
+#include "base/interruption.h"
 
 #include <filesystem>
 

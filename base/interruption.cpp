@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plugin/interruption.h"
+#include "base/interruption.h"
 
 #include <fmt/format.h>
 #include <signal.h>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Each case in a process of its own, which the signal may end.
-#include "plugin/interruption.h"
+#include "base/interruption.h"
 
+#include "base/atomic_file.h"
 #include "plugin/scratch_folder.h"
 #include "tests/support/temp_folder.h"
 
@@ -12,7 +13,10 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
+#include <iterator>
+#include <thread>
 
 namespace aphotic::interruption_test {
 namespace {
@@ -54,6 +58,26 @@ TEST(Interruption, IsToldToWhoeverAsks) {
                       return kWentOn;
                   }),
                   kWasTold);
+    }
+}
+
+// Without the hold nearly every one of these processes dies with its text half written.
+TEST(Interruption, WaitsUntilATextIsWritten) {
+    constexpr int kProcesses = 20;
+    for (int k = 0; k < kProcesses; ++k) {
+        const TempFolder folder;
+        const auto file = folder.path() / "note.json";
+        const pid_t child = ::fork();
+        if (child == 0) {
+            for (;;) write_text_file(file, "{}");
+        }
+        while (!std::filesystem::exists(file)) std::this_thread::yield();
+        ::kill(child, SIGTERM);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
+        const std::filesystem::directory_iterator left(folder.path());
+        EXPECT_EQ(std::distance(begin(left), end(left)), 1) << "files, the whole one included";
     }
 }
 
