@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/beam.h"
 
+#include "base/sha256.h"
 #include "rig/geometry.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <Eigen/Geometry>
+#include <boost/math/quadrature/gauss.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,20 +21,62 @@ namespace {
 
 constexpr double kRightAngle_rad = 0.5 * std::numbers::pi;
 
+template <class... Fs>
+struct Cases : Fs... {
+    using Fs::operator()...;
+};
+template <class... Fs>
+Cases(Fs...) -> Cases<Fs...>;
+
+bool is_pattern(const Beam& beam) {
+    return !std::holds_alternative<std::monostate>(beam.pattern);
+}
+
+bool has_step(const Cone& cone) {
+    const bool ends_smoothly = cone.half_angle_rad >= kRightAngle_rad && cone.exponent >= 1.0;
+    return cone.weight > 0.0 && cone.edge_rad == 0.0 && !ends_smoothly;
+}
+
 // cos^n, of a cosine that is not negative.
 double falloff(double cosine, double exponent) {
     return exponent == 1.0 ? cosine : std::pow(cosine, exponent);
 }
 
-// Of the lobe that is cos^n(theta) as far as the cone's edge. 1 - cos^(n + 1) is a small difference
-// for narrow cones: expm1 and log1p keep its digits.
-double lobe_flux(const Cone& cone) {
-    const double sin_gamma = std::sin(cone.half_angle_rad);
-    if (cone.exponent == 1.0) return std::numbers::pi * sin_gamma * sin_gamma;
-    const double sin_half = std::sin(0.5 * cone.half_angle_rad);
+// S: POV-Ray's own step from a spotlight's radius to its falloff.
+double soft_edge(const Cone& cone, double cosine) {
+    if (cone.edge_rad == 0.0) return 1.0;
+    const double full = std::cos(cone.half_angle_rad - cone.edge_rad);
+    const double none = std::cos(cone.half_angle_rad);
+    const double t = std::clamp((cosine - none) / (full - none), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// Of cos^n(theta) as far as an angle. 1 - cos^(n + 1) is a small difference for narrow cones: expm1
+// and log1p keep its digits.
+double lobe_flux(double half_angle_rad, double exponent) {
+    if (exponent == 1.0) {
+        const double sin_gamma = std::sin(half_angle_rad);
+        return std::numbers::pi * sin_gamma * sin_gamma;
+    }
+    const double sin_half = std::sin(0.5 * half_angle_rad);
     const double ln_cos = std::log1p(-2.0 * sin_half * sin_half);
-    const double n = cone.exponent + 1.0;
+    const double n = exponent + 1.0;
     return -2.0 * std::numbers::pi / n * std::expm1(n * ln_cos);
+}
+
+// Of the lobe that is cos^n(theta) S(theta). In the angle, for cos^n of a soft edge that reaches 90
+// degrees has no end of derivatives in the cosine.
+double lobe_flux(const Cone& cone) {
+    if (cone.edge_rad == 0.0) return lobe_flux(cone.half_angle_rad, cone.exponent);
+    using Gauss = boost::math::quadrature::gauss<double, 30>;
+    const double full_rad = cone.half_angle_rad - cone.edge_rad;
+    const auto ring = [&](double theta_rad) {
+        const double cosine = std::max(0.0, std::cos(theta_rad));
+        return 2.0 * std::numbers::pi * std::sin(theta_rad) * falloff(cosine, cone.exponent) *
+               soft_edge(cone, cosine);
+    };
+    return lobe_flux(full_rad, cone.exponent) +
+           Gauss::integrate(ring, full_rad, cone.half_angle_rad);
 }
 
 // A_k.
@@ -40,7 +84,233 @@ double axial_intensity(const Cone& cone, ConeWeights weights) {
     return weights == ConeWeights::Literal ? cone.weight : cone.weight / lobe_flux(cone);
 }
 
+// A direction as the pattern has it: in the lamp's frame, turned, and in air if it was measured
+// there.
+struct PatternView {
+    Vector3d direction;
+    double factor = 1.0;  // of what the pattern has there
+};
+
+Vector3d turned(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
+    const double x = frame.along.dot(towards);
+    const double y = frame.across.dot(towards);
+    const double c = std::cos(beam.turn_rad);
+    const double s = std::sin(beam.turn_rad);
+    return {c * x + s * y, c * y - s * x, frame.axis.dot(towards)};
+}
+
+// Beyond what a window lets out: its last.
+PatternView view_of(const Beam& beam, const Vector3d& direction) {
+    if (!beam.window) return {.direction = direction};
+    if (const auto found = in_air(*beam.window, direction))
+        return {found->direction, found->factor};
+    const Vector3d grazing = Vector3d(direction.x(), direction.y(), 0.0).normalized();
+    return {.direction = grazing, .factor = window_factor(*beam.window, 0.0)};
+}
+
+bool is_let_out(const Beam& beam, const Vector3d& direction) {
+    return !beam.window || in_air(*beam.window, direction).has_value();
+}
+
+double of_cones(const Beam& beam, double cos_theta, double cos_from) {
+    if (cos_theta <= 0.0) return 0.0;
+    double intensity = 0.0;
+    for (const Cone& cone : beam.cones) {
+        if (cone.edge_rad == 0.0 && cos_from < std::cos(cone.half_angle_rad)) continue;
+        intensity += axial_intensity(cone, beam.weights) * falloff(cos_theta, cone.exponent) *
+                     soft_edge(cone, cos_theta);
+    }
+    return intensity;
+}
+
+bool is_within(const std::vector<double>& range, double angle) {
+    return angle >= range.front() && angle <= range.back();
+}
+
+// A table's direction moved into its angles.
+Vector3d into_table(const BeamTable& table, const Vector3d& direction) {
+    GoniometerAngles at = angles_of(table.angles, direction);
+    at.vertical_rad =
+        std::clamp(at.vertical_rad, table.vertical_rad.front(), table.vertical_rad.back());
+    if (table.horizontal_rad.size() > 1) {
+        at.horizontal_rad = std::clamp(
+            at.horizontal_rad, table.horizontal_rad.front(), table.horizontal_rad.back());
+    }
+    return direction_at(table.angles, at);
+}
+
+bool is_in_table(const BeamTable& table, const Vector3d& direction) {
+    const GoniometerAngles at = angles_of(table.angles, direction);
+    return is_within(table.vertical_rad, at.vertical_rad) &&
+           (table.horizontal_rad.size() == 1 || is_within(table.horizontal_rad, at.horizontal_rad));
+}
+
+double of_pattern(const Beam& beam, const Vector3d& towards, const Vector3d& from) {
+    return std::visit(
+        Cases{[&](std::monostate) {
+                  return of_cones(beam, towards.z() / towards.norm(), from.z() / from.norm());
+              },
+              [&](const BeamTable& table) {
+                  if (!is_in_table(table, from)) return 0.0;
+                  return beam.per_flux * table_intensity(table, into_table(table, towards));
+              },
+              [&](const BeamOptics& optics) {
+                  if (!is_focused(optics)) return beam.per_flux * optics_intensity(optics, towards);
+                  if (!is_within_image(optics, from)) return 0.0;
+                  return beam.per_flux * endless_intensity(optics, towards);
+              }},
+        beam.pattern);
+}
+
+double most_of_cones(const Beam& beam, double nearest_rad) {
+    const double cosine = std::max(0.0, std::cos(nearest_rad));
+    double intensity = 0.0;
+    for (const Cone& cone : beam.cones) {
+        if (nearest_rad > cone.half_angle_rad) continue;
+        intensity += axial_intensity(cone, beam.weights) * falloff(cosine, cone.exponent) *
+                     soft_edge(cone, cosine);
+    }
+    return intensity;
+}
+
+// A cone of directions in water as one in air that holds it, and the bound of the window's factor.
+struct PatternCone {
+    Vector3d direction;
+    double nearest_rad = 0.0;  // to the axis
+    double within_rad = 0.0;
+    double factor = 1.0;
+};
+
+// Nothing: the window lets nothing out there. In air, by sin(theta) = n sin(theta_w), the azimuth's
+// share of a way grows n times; in water it is pi/2 times the angle at most.
+std::optional<PatternCone> cone_of(const Beam& beam, const Vector3d& direction, double within_rad) {
+    const double theta_rad = angle_between(Vector3d::UnitZ(), direction);
+    const double nearest_rad = std::max(0.0, theta_rad - within_rad);
+    if (!beam.window) return PatternCone{direction, nearest_rad, within_rad, 1.0};
+    const BeamWindow& window = *beam.window;
+    const double widest_rad = widest_in_water_rad(window);
+    if (nearest_rad > widest_rad) return std::nullopt;
+    const double middle_rad = angle_in_air_rad(window, std::min(theta_rad, widest_rad));
+    const double near_rad = angle_in_air_rad(window, nearest_rad);
+    const double far_rad = angle_in_air_rad(window, std::min(theta_rad + within_rad, widest_rad));
+    const double along_rad = std::max(far_rad - middle_rad, middle_rad - near_rad);
+    const double around_rad = window.water_index * kRightAngle_rad * within_rad;
+    return PatternCone{.direction = view_of(beam, direction).direction,
+                       .nearest_rad = near_rad,
+                       .within_rad = std::min(std::numbers::pi, along_rad + around_rad),
+                       .factor = window_factor(window, std::max(0.0, std::cos(far_rad)))};
+}
+
+// The integral of what leaves towards every direction, on a grid that is exact for tables in the
+// azimuth, and has a step of 0.03 degrees off the axis.
+double flux_by_grid(const Beam& beam) {
+    constexpr int kSteps = 3000;
+    constexpr int kTurns = 720;
+    const double widest_rad =
+        beam.window ? widest_in_water_rad(*beam.window) : 2.0 * kRightAngle_rad;
+    const bool is_round = !is_pattern(beam);
+    const BeamFrame frame{Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY()};
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        // Closer together at the end, where a window's light falls like a root.
+        const double u = (i + 0.5) / kSteps;
+        const double theta_rad = widest_rad * u * (2.0 - u);
+        const double width_rad = widest_rad * 2.0 * (1.0 - u) / kSteps;
+        const int turns = is_round ? 1 : kTurns;
+        double ring = 0.0;
+        for (int j = 0; j < turns; ++j) {
+            const double phi_rad = 2.0 * std::numbers::pi * j / turns;
+            ring += intensity_towards(beam,
+                                      frame,
+                                      {std::sin(theta_rad) * std::cos(phi_rad),
+                                       std::sin(theta_rad) * std::sin(phi_rad),
+                                       std::cos(theta_rad)});
+        }
+        sum += 2.0 * std::numbers::pi * ring / turns * std::sin(theta_rad) * width_rad;
+    }
+    return sum;
+}
+
+// Of all directions of a grid, how steeply I changes and how it bends, as shares of it.
+double steepest_by_grid(const Beam& beam) {
+    constexpr double kStep_rad = std::numbers::pi / 180.0;
+    constexpr int kRings = 90;
+    constexpr int kTurns = 24;
+    const BeamFrame frame{Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY()};
+    const double least = kDimShare * most_intensity(beam);
+    double steepest = 0.0;
+    const int turns = is_pattern(beam) ? kTurns : 1;
+    for (int i = 0; i < kRings; ++i) {
+        for (int j = 0; j < turns; ++j) {
+            const double theta_rad = i * kStep_rad;
+            const double phi_rad = 2.0 * std::numbers::pi * j / turns;
+            const Vector3d radial(std::cos(phi_rad), std::sin(phi_rad), 0.0);
+            const Vector3d middle =
+                std::sin(theta_rad) * radial + std::cos(theta_rad) * Vector3d::UnitZ();
+            const Vector3d outwards =
+                std::cos(theta_rad) * radial - std::sin(theta_rad) * Vector3d::UnitZ();
+            const double here = intensity_towards(beam, frame, middle);
+            if (here < least) continue;
+            for (const Vector3d& way : {outwards, Vector3d(middle.cross(outwards))}) {
+                const Vector3d step = std::tan(kStep_rad) * way;
+                const double up = continued_intensity(beam, frame, middle + step, middle);
+                const double down = continued_intensity(beam, frame, middle - step, middle);
+                const double slope = std::abs(up - down) / (2.0 * kStep_rad * here);
+                const double bend =
+                    std::abs(up - 2.0 * here + down) / (kStep_rad * kStep_rad * here);
+                steepest = std::max({steepest, slope, std::sqrt(bend)});
+            }
+        }
+    }
+    return steepest;
+}
+
+// Its values carried on to where angles of this type end.
+void carry_on(BeamTable& table) {
+    const bool is_c = table.angles == TableAngles::TypeC;
+    const std::size_t rows = table.vertical_rad.size();
+    const auto value = [&, old = table.intensity](std::size_t column, std::size_t row) {
+        return old[column * rows + row];
+    };
+    const auto ends_of = [](std::vector<double> nodes, double least, double most) {
+        std::vector<std::size_t> from(nodes.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i) from[i] = i;
+        if (nodes.front() > least) {
+            nodes.insert(nodes.begin(), least);
+            from.insert(from.begin(), 0);
+        }
+        if (nodes.back() < most) {
+            nodes.push_back(most);
+            from.push_back(from.back());
+        }
+        return std::pair(nodes, from);
+    };
+    const auto [vertical, row_from] =
+        is_c ? ends_of(table.vertical_rad, 0.0, std::numbers::pi)
+             : ends_of(table.vertical_rad, -kRightAngle_rad, kRightAngle_rad);
+    const bool turns = is_c;
+    const auto columns =
+        turns ? ends_of(
+                    table.horizontal_rad, table.horizontal_rad.front(), table.horizontal_rad.back())
+              : ends_of(table.horizontal_rad, -kRightAngle_rad, kRightAngle_rad);
+    std::vector<double> intensity;
+    for (const std::size_t column : columns.second) {
+        for (const std::size_t row : row_from) intensity.push_back(value(column, row));
+    }
+    table.vertical_rad = vertical;
+    table.horizontal_rad = columns.first;
+    table.intensity = std::move(intensity);
+}
+
 }  // namespace
+
+Beam scaled_to_flux(Beam beam) {
+    std::visit(Cases{[&](std::monostate) { beam.per_flux = 1.0; },
+                     [&](const BeamTable& table) { beam.per_flux = 1.0 / table_flux(table); },
+                     [&](const BeamOptics& optics) { beam.per_flux = 1.0 / optics_flux(optics); }},
+               beam.pattern);
+    return beam;
+}
 
 BeamFrame frame_about(const Vector3d& axis) {
     const bool is_fore_and_aft = axis.cross(Vector3d::UnitX()).norm() < kForeAndAftSine;
@@ -57,73 +327,125 @@ double continued_intensity(const Beam& beam,
                            const BeamFrame& frame,
                            const Vector3d& towards,
                            const Vector3d& from) {
-    const double cos_theta = frame.axis.dot(towards) / towards.norm();
-    if (cos_theta <= 0.0) return 0.0;
-    const double cos_from = frame.axis.dot(from.normalized());
-    double intensity = 0.0;
-    for (const Cone& cone : beam.cones) {
-        if (cos_from < std::cos(cone.half_angle_rad)) continue;
-        intensity += axial_intensity(cone, beam.weights) * falloff(cos_theta, cone.exponent);
-    }
-    return intensity;
+    const Vector3d local_from = turned(beam, frame, from);
+    if (!is_let_out(beam, local_from)) return 0.0;
+    const PatternView view = view_of(beam, turned(beam, frame, towards));
+    return view.factor * of_pattern(beam, view.direction, view_of(beam, local_from).direction);
 }
 
 double most_intensity(const Beam& beam,
                       const BeamFrame& frame,
                       const Vector3d& towards,
                       double within_rad) {
-    const double theta_rad = angle_between(frame.axis, towards);
-    const double cos_nearest = std::max(0.0, std::cos(std::max(0.0, theta_rad - within_rad)));
-    double intensity = 0.0;
-    for (const Cone& cone : beam.cones) {
-        if (theta_rad > cone.half_angle_rad + within_rad) continue;
-        intensity += axial_intensity(cone, beam.weights) * falloff(cos_nearest, cone.exponent);
-    }
-    return intensity;
+    const auto cone = cone_of(beam, turned(beam, frame, towards), within_rad);
+    if (!cone) return 0.0;
+    const double most =
+        std::visit(Cases{[&](std::monostate) { return most_of_cones(beam, cone->nearest_rad); },
+                         [&](const BeamTable& table) {
+                             return beam.per_flux *
+                                    most_table_intensity(table, cone->direction, cone->within_rad);
+                         },
+                         [&](const BeamOptics& optics) {
+                             return beam.per_flux * most_optics_intensity(
+                                                        optics, cone->direction, cone->within_rad);
+                         }},
+                   beam.pattern);
+    return cone->factor * most;
 }
 
 double most_intensity(const Beam& beam) {
-    double intensity = 0.0;
-    for (const Lobe& lobe : lobes_of(beam)) intensity += lobe.on_axis;
-    return intensity;
+    const double most = std::visit(
+        Cases{[&](std::monostate) { return most_of_cones(beam, 0.0); },
+              [&](const BeamTable& table) { return beam.per_flux * largest_intensity(table); },
+              [&](const BeamOptics& optics) {
+                  return beam.per_flux * most_optics_intensity(optics);
+              }},
+        beam.pattern);
+    return beam.window ? most * window_factor(*beam.window, 0.0) : most;
 }
 
 bool reaches(const Beam& beam, const BeamFrame& frame, const Vector3d& towards, double within_rad) {
-    const double theta_rad = angle_between(frame.axis, towards);
-    return std::ranges::any_of(beam.cones, [&](const Cone& cone) {
-        return cone.weight > 0.0 && theta_rad <= cone.half_angle_rad + within_rad;
-    });
+    const auto cone = cone_of(beam, turned(beam, frame, towards), within_rad);
+    if (!cone) return false;
+    return std::visit(
+        Cases{[&](std::monostate) {
+                  return std::ranges::any_of(beam.cones, [&](const Cone& one) {
+                      return one.weight > 0.0 && cone->nearest_rad <= one.half_angle_rad;
+                  });
+              },
+              [&](const BeamTable& table) {
+                  return table_reaches(table, cone->direction, cone->within_rad);
+              },
+              [&](const BeamOptics& optics) {
+                  return most_optics_intensity(optics, cone->direction, cone->within_rad) > 0.0;
+              }},
+        beam.pattern);
 }
 
 bool is_dark(const Beam& beam) {
-    return std::ranges::all_of(beam.cones, [](const Cone& cone) { return cone.weight == 0.0; });
+    return !is_pattern(beam) &&
+           std::ranges::all_of(beam.cones, [](const Cone& cone) { return cone.weight == 0.0; });
 }
 
 std::vector<double> edges_rad(const Beam& beam) {
     std::vector<double> edges;
     for (const Cone& cone : beam.cones) {
-        const bool ends_smoothly = cone.half_angle_rad >= kRightAngle_rad && cone.exponent >= 1.0;
-        if (cone.weight > 0.0 && !ends_smoothly) edges.push_back(cone.half_angle_rad);
+        if (has_step(cone)) edges.push_back(cone.half_angle_rad);
     }
+    if (const auto* table = std::get_if<BeamTable>(&beam.pattern)) {
+        if (table->angles == TableAngles::TypeC) {
+            for (const TableEdge& edge : edges_of(*table)) edges.push_back(edge.at_rad);
+        }
+    }
+    if (!beam.window) return edges;
+    for (double& edge : edges) edge = angle_in_water_rad(*beam.window, edge);
+    edges.push_back(widest_in_water_rad(*beam.window));
     return edges;
+}
+
+bool has_rim(const Beam& beam) {
+    if (const auto* optics = std::get_if<BeamOptics>(&beam.pattern)) return is_focused(*optics);
+    const auto* table = std::get_if<BeamTable>(&beam.pattern);
+    return table != nullptr && table->angles != TableAngles::TypeC && !edges_of(*table).empty();
+}
+
+bool is_within_rim(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
+    const Vector3d local = turned(beam, frame, towards);
+    if (!is_let_out(beam, local)) return false;
+    const Vector3d direction = view_of(beam, local).direction;
+    if (const auto* optics = std::get_if<BeamOptics>(&beam.pattern)) {
+        return is_within_image(*optics, direction);
+    }
+    const auto* table = std::get_if<BeamTable>(&beam.pattern);
+    return table != nullptr && is_in_table(*table, direction);
 }
 
 Beam without_edges(Beam beam) {
     for (Cone& cone : beam.cones) {
         cone.weight = axial_intensity(cone, beam.weights);
-        cone.half_angle_rad = kRightAngle_rad;
+        if (cone.edge_rad == 0.0) cone.half_angle_rad = kRightAngle_rad;
     }
     beam.weights = ConeWeights::Literal;
+    if (auto* table = std::get_if<BeamTable>(&beam.pattern)) {
+        if (!edges_of(*table).empty()) carry_on(*table);
+    }
+    if (auto* optics = std::get_if<BeamOptics>(&beam.pattern)) {
+        constexpr double kEndless_m = 1e12;
+        if (is_focused(*optics)) optics->along_m = optics->across_m = kEndless_m;
+    }
     return beam;
 }
 
 double steepest_exponent(const Beam& beam) {
+    if (!has_lobes(beam)) return steepest_by_grid(beam);
     double steepest = 0.0;
     for (const Cone& cone : beam.cones) steepest = std::max(steepest, cone.exponent);
     return steepest;
 }
 
 double flux_of(const Beam& beam) {
+    if (beam.window) return flux_by_grid(beam);
+    if (is_pattern(beam)) return 1.0;  // per_flux is for that
     double flux = 0.0;
     for (const Cone& cone : beam.cones) {
         flux += beam.weights == ConeWeights::Flux ? cone.weight : cone.weight * lobe_flux(cone);
@@ -132,19 +454,28 @@ double flux_of(const Beam& beam) {
 }
 
 std::vector<Beam> parts_of(const Beam& beam) {
+    if (is_pattern(beam)) return {beam};
     std::vector<Beam> parts;
     for (const Cone& cone : beam.cones) {
-        parts.push_back({.name = cone.part, .weights = beam.weights, .cones = {cone}});
+        parts.push_back(beam);
+        parts.back().name = cone.part;
+        parts.back().cones = {cone};
     }
     return parts;
 }
 
 Beam parts_that(const Beam& beam, const std::function<bool(const Beam&)>& is_wanted) {
-    Beam kept{.name = beam.name, .weights = beam.weights, .cones = {}};
+    if (is_pattern(beam) && is_wanted(beam)) return beam;
+    Beam kept{.name = beam.name, .weights = beam.weights, .cones = {}, .window = beam.window};
     for (const Beam& part : parts_of(beam)) {
-        if (is_wanted(part)) kept.cones.push_back(part.cones.front());
+        if (!is_pattern(part) && is_wanted(part)) kept.cones.push_back(part.cones.front());
     }
     return kept;
+}
+
+bool has_lobes(const Beam& beam) {
+    return !is_pattern(beam) && !beam.window &&
+           std::ranges::all_of(beam.cones, [](const Cone& cone) { return cone.edge_rad == 0.0; });
 }
 
 std::vector<Lobe> lobes_of(const Beam& beam) {
@@ -159,15 +490,36 @@ std::vector<Lobe> lobes_of(const Beam& beam) {
 }
 
 std::string beam_signature(const Beam& beam) {
-    std::vector<std::string> cones;
-    for (const Cone& cone : beam.cones) {
-        // Names every field: a further one has to be told here.
-        const auto& [part, half_angle_rad, weight, exponent] = cone;
-        cones.push_back(
-            fmt::format("{} rad {} 1/sr", half_angle_rad, axial_intensity(cone, beam.weights)));
-        if (exponent != 1.0) cones.back() += fmt::format(" cos^{}", exponent);
+    // Names every field, here and below: a further one has to be told.
+    const auto& [name, weights, beam_cones, pattern, per_flux, turn_rad, window] = beam;
+    std::vector<std::string> parts;
+    for (const Cone& cone : beam_cones) {
+        const auto& [part, half_angle_rad, weight, exponent, edge_rad] = cone;
+        parts.push_back(
+            fmt::format("{} rad {} 1/sr", half_angle_rad, axial_intensity(cone, weights)));
+        if (exponent != 1.0) parts.back() += fmt::format(" cos^{}", exponent);
+        if (edge_rad != 0.0) parts.back() += fmt::format(" soft {}", edge_rad);
     }
-    return fmt::format("{}", fmt::join(cones, ", "));
+    if (const auto* table = std::get_if<BeamTable>(&pattern)) {
+        const auto& [angles, vertical_rad, horizontal_rad, intensity] = *table;
+        const std::string numbers = fmt::format("{} {} {}",
+                                                fmt::join(vertical_rad, " "),
+                                                fmt::join(horizontal_rad, " "),
+                                                fmt::join(intensity, " "));
+        parts.push_back(fmt::format(
+            "table {} {} of {}", static_cast<int>(angles), sha256_of_text(numbers), per_flux));
+    }
+    if (const auto* optics = std::get_if<BeamOptics>(&pattern)) {
+        const auto& [along_m, across_m, focal_length_m, distance_m, aperture_m] = *optics;
+        parts.push_back(fmt::format(
+            "optics {} {} {} {} {}", along_m, across_m, focal_length_m, distance_m, aperture_m));
+    }
+    if (turn_rad != 0.0) parts.push_back(fmt::format("turned {}", turn_rad));
+    if (window) {
+        const auto& [glass_index, water_index] = *window;
+        parts.push_back(fmt::format("window {} {}", glass_index, water_index));
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 }  // namespace aphotic

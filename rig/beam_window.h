@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a flat window does to a beam that was measured, or computed, in air:
+//
+//   I_w(theta_w) = T(theta) n^2 (cos theta_w / cos theta) I(theta),   sin theta = n sin theta_w
+//
+//   theta    angle off the axis in air, theta_w in water; the azimuth stays
+//   n        index of the water
+//   T        what the window lets through: both its faces by Fresnel, each polarisation by itself,
+//            with the light that goes to and fro between them, unpolarised in all
+//   n^2 ..   the solid angle that shrinks: d(omega) / d(omega_w)
+//
+// A beam of 100 degrees in air is one of 70 in water, and n^2 = 1.8 times as bright on the axis.
+// The flux is what it was, less what the faces reflect. Nothing comes out beyond
+// asin(1/n), some 48 degrees.
+//
+// Limits: the window is perpendicular to the axis, wide, and so near to the lamp that the light
+// starts from the lamp all the same. The indices are those at kWindowIndex_nm, so that a beam has
+// one shape at all wavelengths: from 400 to 700 nm, n^2 differs from that by 1 % at most.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace aphotic {
+
+inline constexpr double kWindowIndex_nm = 550.0;
+
+struct BeamWindow {
+    double glass_index = 1.5;
+    double water_index = 1.34;
+
+    [[nodiscard]] bool operator==(const BeamWindow&) const = default;
+};
+
+// Where light that goes a certain way in water comes from.
+struct LightInAir {
+    Eigen::Vector3d direction;  // of length 1
+    double factor = 0.0;        // I_w / I
+};
+
+// Of a direction in water, in the lamp's frame (z the axis), of any length. Nothing beyond
+// asin(1/n).
+[[nodiscard]] std::optional<LightInAir> in_air(const BeamWindow& window,
+                                               const Eigen::Vector3d& in_water);
+
+// The factor at a cosine in air, 0 to 1; it grows from the axis outwards.
+[[nodiscard]] double window_factor(const BeamWindow& window, double cos_in_air);
+// T / cos(theta), which stays finite where both go to 0.
+[[nodiscard]] double transmittance_by_cosine(const BeamWindow& window, double cos_in_air);
+
+// asin(1/n).
+[[nodiscard]] double widest_in_water_rad(const BeamWindow& window);
+// theta of a theta_w up to that.
+[[nodiscard]] double angle_in_air_rad(const BeamWindow& window, double in_water_rad);
+[[nodiscard]] double angle_in_water_rad(const BeamWindow& window, double in_air_rad);
+
+}  // namespace aphotic

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rig/beam_optics.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace aphotic::beam_optics_test {
+namespace {
+
+using Eigen::Vector3d;
+
+// The source paper's diffuser, before its lens, beyond it, in focus and so far out of it that the
+// lens is the smaller.
+const std::array kStrobes{BeamOptics{.along_m = 0.0635,
+                                     .across_m = 0.0302,
+                                     .focal_length_m = 0.065,
+                                     .distance_m = 0.04,
+                                     .aperture_m = 0.08},
+                          BeamOptics{.along_m = 0.0302,
+                                     .across_m = 0.0635,
+                                     .focal_length_m = 0.065,
+                                     .distance_m = 0.09,
+                                     .aperture_m = 0.05},
+                          BeamOptics{.along_m = 0.0635,
+                                     .across_m = 0.0302,
+                                     .focal_length_m = 0.065,
+                                     .distance_m = 0.065,
+                                     .aperture_m = 0.08},
+                          BeamOptics{.along_m = 0.2,
+                                     .across_m = 0.1,
+                                     .focal_length_m = 0.05,
+                                     .distance_m = 0.02,
+                                     .aperture_m = 0.02}};
+
+// By rays: the share of a fine grid on the lens through which the thin lens's law sees the
+// rectangle.
+double by_rays(const BeamOptics& optics, const Vector3d& direction) {
+    constexpr int kAcross = 1000;
+    const double R = 0.5 * optics.aperture_m;
+    const double mx = direction.x() / direction.z();
+    const double my = direction.y() / direction.z();
+    int lit = 0;
+    for (int i = 0; i < kAcross; ++i) {
+        for (int j = 0; j < kAcross; ++j) {
+            const double x = R * (2.0 * (i + 0.5) / kAcross - 1.0);
+            const double y = R * (2.0 * (j + 0.5) / kAcross - 1.0);
+            // A thin lens turns a ray's slope by -x/f: before it the slope was m + x/f.
+            const double from_x = x - optics.distance_m * (mx + x / optics.focal_length_m);
+            const double from_y = y - optics.distance_m * (my + y / optics.focal_length_m);
+            lit += x * x + y * y <= R * R && std::abs(from_x) <= 0.5 * optics.along_m &&
+                   std::abs(from_y) <= 0.5 * optics.across_m;
+        }
+    }
+    return direction.z() / direction.norm() * 4.0 * R * R * lit / (1.0 * kAcross * kAcross);
+}
+
+TEST(BeamOptics, IsWhatRaysThroughTheLensMake) {
+    constexpr double kGrid = 3e-3;  // of 1000 by 1000 points: a row and a column, of a cosine
+    for (const BeamOptics& optics : kStrobes) {
+        for (const double x : {0.0, 0.13, -0.31, 0.47, 0.8}) {
+            for (const double y : {0.0, 0.09, 0.22, -0.4}) {
+                const Vector3d direction(x, y, 1.0);
+                EXPECT_NEAR(optics_intensity(optics, direction),
+                            by_rays(optics, direction),
+                            kGrid * most_optics_intensity(optics))
+                    << optics.distance_m << " " << x << " " << y;
+            }
+        }
+    }
+}
+
+// The closed form of the flux against the sum of I over all slopes.
+TEST(BeamOptics, HasTheFluxOfItsIntensity) {
+    for (const BeamOptics& optics : kStrobes) {
+        constexpr int kSteps = 2000;
+        double sum = 0.0;
+        for (int i = 0; i < kSteps; ++i) {
+            for (int j = 0; j < kSteps; ++j) {
+                // Slopes tan(a): the whole hemisphere.
+                const double a = 0.5 * std::numbers::pi * (i + 0.5) / kSteps;
+                const double b = 0.5 * std::numbers::pi * (j + 0.5) / kSteps;
+                const Vector3d direction(std::tan(a), std::tan(b), 1.0);
+                const double solid_angle =
+                    std::pow(direction.norm(), -3) / std::pow(std::cos(a) * std::cos(b), 2);
+                sum += optics_intensity(optics, direction) * solid_angle;
+            }
+        }
+        const double found = 4.0 * sum * std::pow(0.5 * std::numbers::pi / kSteps, 2);
+        // A sharp image's edges fall on the grid as they may.
+        const double close = is_focused(optics) ? 2e-3 : 1e-6;
+        EXPECT_NEAR(found / optics_flux(optics), 1.0, close) << optics.distance_m;
+    }
+}
+
+// At the lens itself every ray counts: all that a Lambertian rectangle emits, pi times its area,
+// when the lens is far larger than it and close before it.
+TEST(BeamOptics, ALargeLensTakesAll) {
+    const BeamOptics optics{.along_m = 0.001,
+                            .across_m = 0.002,
+                            .focal_length_m = 1.0,
+                            .distance_m = 0.0005,
+                            .aperture_m = 2.0};
+    EXPECT_NEAR(optics_flux(optics) / (std::numbers::pi * 2e-6), 1.0, 1e-3);
+}
+
+TEST(BeamOptics, BoundsWhatAConeOfDirectionsHolds) {
+    std::mt19937 engine(7);
+    std::uniform_real_distribution<double> share(-1.0, 1.0);
+    for (const BeamOptics& optics : kStrobes) {
+        for (int trial = 0; trial < 200; ++trial) {
+            const Vector3d middle = Vector3d(share(engine), share(engine), 1.0).normalized();
+            const double within_rad = 0.3 * std::abs(share(engine));
+            const double bound = most_optics_intensity(optics, middle, within_rad);
+            for (int k = 0; k < 50; ++k) {
+                const Vector3d aside =
+                    middle.cross(Vector3d(share(engine), share(engine), share(engine)))
+                        .normalized();
+                const double angle_rad = within_rad * std::abs(share(engine));
+                const Vector3d direction =
+                    std::cos(angle_rad) * middle + std::sin(angle_rad) * aside;
+                EXPECT_LE(optics_intensity(optics, direction), bound * (1.0 + 1e-12));
+            }
+        }
+    }
+}
+
+// With the long side along and the focus at the diffuser, the image is cut at u/f.
+TEST(BeamOptics, InFocusEndsAtTheDiffusersOwnAngles) {
+    const BeamOptics& optics = kStrobes[2];
+    ASSERT_TRUE(is_focused(optics));
+    const double along = 0.5 * 0.0635 / 0.065;
+    const double across = 0.5 * 0.0302 / 0.065;
+    for (const double beside : {1.0 - 1e-9, 1.0 + 1e-9}) {
+        EXPECT_EQ(is_within_image(optics, {along * beside, 0.0, 1.0}), beside < 1.0);
+        EXPECT_EQ(optics_intensity(optics, {0.0, across * beside, 1.0}) > 0.0, beside < 1.0);
+    }
+    EXPECT_FALSE(is_focused(kStrobes[0]));
+}
+
+}  // namespace
+}  // namespace aphotic::beam_optics_test
