@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/beam_optics.h"
 
-#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include <algorithm>
 #include <array>
@@ -53,6 +53,7 @@ double lit_area_m2(const BeamOptics& optics, const Vector2d& slope) {
     }
     const Vector2d high = (middle_m + half_m) / (k * R);
     const Vector2d low = (middle_m - half_m) / (k * R);
+    if (low.cwiseMax(0.0).squaredNorm() >= 1.0) return 0.0;  // and not what rounding leaves
     const double area = disc_corner(high.x(), high.y()) - disc_corner(low.x(), high.y()) -
                         disc_corner(high.x(), low.y()) + disc_corner(low.x(), low.y());
     return R * R * std::max(0.0, area);
@@ -118,8 +119,10 @@ double most_optics_intensity(const BeamOptics& optics) {
 }
 
 double optics_flux(const BeamOptics& optics) {
-    using Gauss = boost::math::quadrature::gauss<double, 60>;
-    constexpr int kTurns = 64;  // round a quarter of the disc, whose four are alike
+    using Kronrod = boost::math::quadrature::gauss_kronrod<double, 31>;
+    constexpr unsigned kHalvings = 15;
+    constexpr double kClose = 1e-11;
+    constexpr int kTurns = 128;  // round a quarter of the disc, whose four are alike
     const double R = 0.5 * optics.aperture_m;
     const double k = defocus(optics);
     const double s = optics.distance_m;
@@ -139,7 +142,7 @@ double optics_flux(const BeamOptics& optics) {
         }
         return 2.0 * std::numbers::pi * r * sum / kTurns;
     };
-    return Gauss::integrate(ring, 0.0, R);
+    return Kronrod::integrate(ring, 0.0, R, kHalvings, kClose);
 }
 
 bool is_focused(const BeamOptics& optics) {
