@@ -237,7 +237,7 @@ double steepest_by_grid(const Beam& beam) {
     constexpr int kRings = 90;
     constexpr int kTurns = 24;
     const BeamFrame frame{Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY()};
-    const double least = kDimShare * most_intensity(beam);
+    const double least = kDimBeamShare * most_intensity(beam);
     double steepest = 0.0;
     const int turns = is_pattern(beam) ? kTurns : 1;
     for (int i = 0; i < kRings; ++i) {

@@ -127,8 +127,8 @@ inline constexpr double kForeAndAftSine = 1e-6;
 
 // I changes no more steeply with the direction than cos to this power does, nor bends more: for
 // cones without soft edges (ln I)' >= n (ln cos)'. For all others it is found on a grid of a
-// degree, with I taken for no less than kDimShare of the largest, and is an estimate.
-inline constexpr double kDimShare = 0.01;
+// degree, with I taken for no less than kDimBeamShare of the largest, and is an estimate.
+inline constexpr double kDimBeamShare = 0.01;
 [[nodiscard]] double steepest_exponent(const Beam& beam);
 
 // The flux of a lamp of power 1: the integral of I over all directions.
