@@ -201,32 +201,46 @@ std::optional<PatternCone> cone_of(const Beam& beam, const Vector3d& direction, 
                        .factor = window_factor(window, std::max(0.0, std::cos(far_rad)))};
 }
 
-// The integral of what leaves towards every direction, on a grid that is exact for tables in the
-// azimuth, and has a step of 0.03 degrees off the axis.
-double flux_by_grid(const Beam& beam) {
-    constexpr int kSteps = 3000;
-    constexpr int kTurns = 720;
-    const double widest_rad =
-        beam.window ? widest_in_water_rad(*beam.window) : 2.0 * kRightAngle_rad;
-    const bool is_round = !is_pattern(beam);
-    const BeamFrame frame{Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY()};
-    double sum = 0.0;
-    for (int i = 0; i < kSteps; ++i) {
-        // Closer together at the end, where a window's light falls like a root.
-        const double u = (i + 0.5) / kSteps;
-        const double theta_rad = widest_rad * u * (2.0 - u);
-        const double width_rad = widest_rad * 2.0 * (1.0 - u) / kSteps;
-        const int turns = is_round ? 1 : kTurns;
-        double ring = 0.0;
+// Where the light of a ring about the axis is no smooth function of its angle: cones' edges, a
+// table's rows; and some besides, for patterns that have lines of other shapes.
+std::vector<double> breaks_rad(const Beam& beam) {
+    constexpr int kPieces = 45;
+    std::vector<double> breaks{0.0, kRightAngle_rad};
+    for (const Cone& cone : beam.cones) {
+        breaks.push_back(cone.half_angle_rad - cone.edge_rad);
+        breaks.push_back(cone.half_angle_rad);
+    }
+    if (const auto* table = std::get_if<BeamTable>(&beam.pattern)) {
+        for (const double row_rad : table->vertical_rad) {
+            if (row_rad > 0.0 && row_rad < kRightAngle_rad) breaks.push_back(row_rad);
+        }
+    }
+    for (int i = 1; i < kPieces; ++i) breaks.push_back(i * kRightAngle_rad / kPieces);
+    std::ranges::sort(breaks);
+    return breaks;
+}
+
+// What a window lets out: the integral of T I over directions in air. In the azimuth by 720 equal
+// steps, exact for tables of whole degrees.
+double flux_through_window(const Beam& beam) {
+    using Gauss = boost::math::quadrature::gauss<double, 20>;
+    const int turns = is_pattern(beam) ? 720 : 1;
+    const auto ring = [&](double theta_rad) {
+        const double cosine = std::cos(theta_rad);
+        const double sine = std::sin(theta_rad);
+        double sum = 0.0;
         for (int j = 0; j < turns; ++j) {
             const double phi_rad = 2.0 * std::numbers::pi * j / turns;
-            ring += intensity_towards(beam,
-                                      frame,
-                                      {std::sin(theta_rad) * std::cos(phi_rad),
-                                       std::sin(theta_rad) * std::sin(phi_rad),
-                                       std::cos(theta_rad)});
+            const Vector3d direction(sine * std::cos(phi_rad), sine * std::sin(phi_rad), cosine);
+            sum += of_pattern(beam, direction, direction);
         }
-        sum += 2.0 * std::numbers::pi * ring / turns * std::sin(theta_rad) * width_rad;
+        return 2.0 * std::numbers::pi * sine * sum / turns * cosine *
+               transmittance_by_cosine(*beam.window, cosine);
+    };
+    const std::vector<double> breaks = breaks_rad(beam);
+    double sum = 0.0;
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+        if (breaks[i] < breaks[i + 1]) sum += Gauss::integrate(ring, breaks[i], breaks[i + 1]);
     }
     return sum;
 }
@@ -444,7 +458,7 @@ double steepest_exponent(const Beam& beam) {
 }
 
 double flux_of(const Beam& beam) {
-    if (beam.window) return flux_by_grid(beam);
+    if (beam.window) return flux_through_window(beam);
     if (is_pattern(beam)) return 1.0;  // per_flux is for that
     double flux = 0.0;
     for (const Cone& cone : beam.cones) {

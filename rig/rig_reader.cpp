@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/rig_reader.h"
+#include "rig/photometric_file.h"
 
 #include "base/atomic_file.h"
 #include "base/degrees.h"
@@ -24,6 +25,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -69,8 +71,14 @@ constexpr Bounds kTemperatureC{-2.0, 35.0};
 constexpr Bounds kPhong{0.0, 1e6};
 constexpr Bounds kPhongSize{0.0, 1e6};
 constexpr Bounds kHalfAngleDeg{0.001, 90.0};
+constexpr Bounds kEdgeDeg{0.0, 90.0};
 constexpr Bounds kConeWeight{0.0, 1e12};
 constexpr Bounds kConeExponent{0.0, 1000.0};
+constexpr Bounds kFwhmDeg{1.0, 179.9};
+constexpr Bounds kTurnDeg{-360.0, 360.0};
+constexpr Bounds kOpticsMm{0.01, 100000.0};
+constexpr Bounds kWindowIndex{1.0, 3.0};
+constexpr Bounds kFlux{0.0, 1e12};
 constexpr Bounds kPositionM{-1000.0, 1000.0};
 constexpr Bounds kDirection{-1e6, 1e6};
 constexpr Bounds kAimTiltDeg{0.0, 180.0};
@@ -108,6 +116,10 @@ class Section {
                            std::string_view key,
                            const std::string& what) const {
         throw InputError(fmt::format("{}:{}: {}: {}", file_, line(node), name_of(key), what));
+    }
+
+    [[noreturn]] void fail_at(std::string_view key, const std::string& what) const {
+        fail(*table_.get(key), key, what);
     }
 
     [[noreturn]] void found_but(std::string_view key, const std::string& allowed) const {
@@ -313,8 +325,9 @@ class RigReader {
   private:
     static Sled read_sled(Section section);
     static Emitter read_emitter(Section& strobe);
-    static Beam read_beam(Section section, std::string name);
-    static std::vector<Beam> read_beams(Section& top);
+    static Cone read_cone(Section& section);
+    static BeamOptics read_optics(Section& section);
+    static BeamWindow read_window(Section& section, const Water& water);
     static Eigen::Vector3d read_axis(Section& strobe, const Eigen::Vector3d& position_m);
     static Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m);
     static FlatPort read_port(Section section);
@@ -325,6 +338,10 @@ class RigReader {
     Sensor read_response_table(Section response);
     Water read_water(Section section);
     Seafloor read_seafloor(Section section);
+    Beam read_beam(Section section, std::string name, const Water& water);
+    std::vector<Beam> read_beams(Section& top, const Water& water);
+    BeamTable read_beam_table(Section& section);
+    double read_power(Section& strobe, const Spectrum& spectrum);
     Strobe read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled);
     std::vector<Strobe> read_strobes(Section& top,
                                      const std::vector<Beam>& beams,
@@ -504,22 +521,98 @@ std::vector<Spectrum> RigReader::read_materials(Section& top) {
     return materials;
 }
 
-Beam RigReader::read_beam(Section section, std::string name) {
-    Beam beam{.name = std::move(name), .weights = ConeWeights::Flux, .cones = {}};
-    if (section.has("weights") && section.word("weights", {"flux", "literal"}) == "literal") {
-        beam.weights = ConeWeights::Literal;
-    }
-    const std::string allowed = "an array of { part, half_angle_deg, weight }";
-    for (Section& cone : section.sections("cones", allowed)) {
-        beam.cones.push_back(
-            {.part = cone.text("part", "a name in quotes"),
-             .half_angle_rad = cone.number("half_angle_deg", kHalfAngleDeg) * kRadiansPerDegree,
-             .weight = cone.number("weight", kConeWeight),
-             .exponent = cone.number_or("exponent", kConeExponent, 1.0)});
-        cone.refuse_unknown_keys();
+Cone RigReader::read_cone(Section& section) {
+    Cone cone{.part = section.text("part", "a name in quotes"),
+              .half_angle_rad = section.number("half_angle_deg", kHalfAngleDeg) * kRadiansPerDegree,
+              .weight = section.number("weight", kConeWeight),
+              .exponent = section.number_or("exponent", kConeExponent, 1.0),
+              .edge_rad = section.number_or("edge_deg", kEdgeDeg, 0.0) * kRadiansPerDegree};
+    if (cone.edge_rad > cone.half_angle_rad) {
+        section.found_but("edge_deg", "up to half_angle_deg, where the cone ends");
     }
     section.refuse_unknown_keys();
-    return beam;
+    return cone;
+}
+
+BeamOptics RigReader::read_optics(Section& section) {
+    const auto [along_mm, across_mm] = section.numbers<2>("diffuser_mm", kOpticsMm);
+    const auto metres = [&](std::string_view key) {
+        return section.number(key, kOpticsMm) * kMetresPerMillimetre;
+    };
+    return {.along_m = along_mm * kMetresPerMillimetre,
+            .across_m = across_mm * kMetresPerMillimetre,
+            .focal_length_m = metres("focal_length_mm"),
+            .distance_m = metres("distance_mm"),
+            .aperture_m = metres("aperture_mm")};
+}
+
+BeamTable RigReader::read_beam_table(Section& section) {
+    const std::string allowed =
+        fmt::format("the name of a {} file beside the rig", kPhotometricEndings);
+    const std::string name = section.text("table", allowed);
+    if (!is_photometric_file_name(name)) section.found_but("table", allowed);
+    return section.at_key("table", [&] {
+        const auto read = [&](const std::string& file) {
+            return read_beside(file, file_beside(folder_, file), kMostPhotometricBytes);
+        };
+        return parse_photometric_file(name, read(name), read).table;
+    });
+}
+
+BeamWindow RigReader::read_window(Section& section, const Water& water) {
+    const std::string allowed = fmt::format(
+        "a built-in glass or its index, {} to {}", kWindowIndex.least, kWindowIndex.most);
+    const toml::node& node = section.required("window", allowed);
+    if (!node.is_string() && !node.is_number()) section.found_but("window", allowed);
+    const double glass_index =
+        node.is_number() ? section.number("window", kWindowIndex) : section.at_key("window", [&] {
+            return builtin_glass(section.text("window", allowed)).index(kWindowIndex_nm);
+        });
+    return {.glass_index = glass_index, .water_index = water.refractive_index(kWindowIndex_nm)};
+}
+
+Beam RigReader::read_beam(Section section, std::string name, const Water& water) {
+    Beam beam{.name = std::move(name), .weights = ConeWeights::Flux, .cones = {}};
+    const std::vector<std::string> kinds{"cones", "fwhm_deg", "table", "diffuser_mm"};
+    const auto given =
+        std::ranges::count_if(kinds, [&](const std::string& key) { return section.has(key); });
+    if (given > 1) {
+        const auto second = std::ranges::find_if(
+            kinds.rbegin(), kinds.rend(), [&](const std::string& key) { return section.has(key); });
+        section.fail_at(*second,
+                        "found beside another kind of beam; allowed: one of cones, fwhm_deg, "
+                        "table, diffuser_mm");
+    }
+    if (section.has("fwhm_deg")) {
+        const double half_rad = 0.5 * section.number("fwhm_deg", kFwhmDeg) * kRadiansPerDegree;
+        beam.cones = {{.part = "fwhm",
+                       .half_angle_rad = 0.5 * std::numbers::pi,
+                       .weight = 1.0,
+                       .exponent = std::log(0.5) / std::log(std::cos(half_rad))}};
+    } else if (section.has("table")) {
+        beam.pattern = read_beam_table(section);
+        if (largest_intensity(std::get<BeamTable>(beam.pattern)) == 0.0) {
+            section.found_but("table", "one with light in it");
+        }
+    } else if (section.has("diffuser_mm")) {
+        beam.pattern = read_optics(section);
+    } else {
+        if (section.has("weights") && section.word("weights", {"flux", "literal"}) == "literal") {
+            beam.weights = ConeWeights::Literal;
+        }
+        const std::string allowed = "an array of { part, half_angle_deg, weight }";
+        for (Section& cone : section.sections("cones", allowed)) {
+            beam.cones.push_back(read_cone(cone));
+        }
+    }
+    if (beam.cones.empty() && section.has("turn_deg")) {
+        beam.turn_rad = section.number("turn_deg", kTurnDeg) * kRadiansPerDegree;
+    }
+    const bool is_in_air =
+        section.has("measured_in") && section.word("measured_in", {"water", "air"}) == "air";
+    if (is_in_air) beam.window = read_window(section, water);
+    section.refuse_unknown_keys();
+    return scaled_to_flux(std::move(beam));
 }
 
 Eigen::Vector3d RigReader::axis_from_aim(Section aim, const Eigen::Vector3d& position_m) {
@@ -554,6 +647,33 @@ Emitter RigReader::read_emitter(Section& strobe) {
             .along_m = along_mm * kMetresPerMillimetre};
 }
 
+// Phi(lambda) = power S(lambda) of the table S: of a lamp whose flux is known, power is that over
+// the integral of S, for lumens 683 lm/W times that of S V with the CIE's V(lambda).
+double RigReader::read_power(Section& strobe, const Spectrum& spectrum) {
+    const std::vector<std::string> kinds{"power", "luminous_flux_lm", "radiant_flux_w", "energy_j"};
+    std::string kind;
+    for (const std::string& key : kinds) {
+        if (!strobe.has(key)) continue;
+        if (!kind.empty()) {
+            strobe.fail_at(
+                key,
+                fmt::format("found beside {}; allowed: one of {}", kind, fmt::join(kinds, ", ")));
+        }
+        kind = key;
+    }
+    if (kind.empty()) return 1.0;
+    const double value = strobe.number(kind, kind == "power" ? kPower : kFlux);
+    if (kind == "power") return value;
+    const bool is_luminous = kind == "luminous_flux_lm";
+    const double of_table = is_luminous ? luminous_flux_lm(spectrum) : radiant_flux_w(spectrum);
+    if (!(of_table > 0.0)) {
+        strobe.fail_at(kind,
+                       fmt::format("found with a spectrum that has {}; allowed: one that has some",
+                                   is_luminous ? "no light that the eye sees" : "no light"));
+    }
+    return value / of_table;
+}
+
 Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled) {
     const auto [x, y, z] = section.numbers<3>("position_m", kPositionM);
     if (height_above(floor_plane(sled), {x, y, z}) < kLeastDistance_m) {
@@ -566,8 +686,9 @@ Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, c
                   .axis = read_axis(section, {x, y, z}),
                   .beam = {},
                   .spectrum = curve(section, "spectrum", CurveRole::LampSpectrum, "xenon-flash"),
-                  .power = section.number_or("power", kPower, 1.0),
+                  .power = 1.0,
                   .emitter = std::nullopt};
+    strobe.power = read_power(section, strobe.spectrum);
     if (section.has("emitter_mm")) strobe.emitter = read_emitter(section);
 
     std::vector<std::string> names;
@@ -690,7 +811,7 @@ void require_tables_to_cover_the_range(const Rig& rig) {
     require_cover(curves, rig.camera.range);
 }
 
-std::vector<Beam> RigReader::read_beams(Section& top) {
+std::vector<Beam> RigReader::read_beams(Section& top, const Water& water) {
     Section sections = top.section("beam", "a table [beam.NAME]");
     const std::vector<std::string> names = sections.keys();
     if (names.empty()) top.found_but("beam", "at least one table [beam.NAME]");
@@ -698,7 +819,7 @@ std::vector<Beam> RigReader::read_beams(Section& top) {
     std::vector<Beam> beams;
     for (const std::string& name : names) {
         sections.require_one_line(sections.required(name, ""), name, name);
-        beams.push_back(read_beam(sections.section(name, "a table"), name));
+        beams.push_back(read_beam(sections.section(name, "a table"), name, water));
     }
     return beams;
 }
@@ -728,7 +849,7 @@ Rig RigReader::read(Section top) {
     Water water = read_water(top.section("water", "a table [water]"));
     Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"));
 
-    const std::vector<Beam> beams = read_beams(top);
+    const std::vector<Beam> beams = read_beams(top, water);
     std::vector<Strobe> strobes = read_strobes(top, beams, sled);
     std::vector<Spectrum> materials = read_materials(top);
     std::vector<Object> objects = read_objects(top, strobes);

@@ -37,6 +37,8 @@ TEST_F(CommandData, ListsEveryTableOnALineOfItsOwn) {
                              "nikon-d5100",
                              "cie-1931",
                              "cie-d65",
+                             "cie-led-b4",
+                             "cie-led-b5",
                              "bk7",
                              "fused-silica",
                              "sapphire",

@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic::beam_test {
@@ -277,6 +281,287 @@ TEST(BeamSignature, IsTheLightsAndNotTheNames) {
     beam = fresnel();
     beam.weights = ConeWeights::Literal;
     EXPECT_NE(beam_signature(beam), before);
+}
+
+// --- Soft edges, patterns, windows --------------------------------------------------------------
+
+Beam soft(double half_deg, double edge_deg, double exponent) {
+    return beam_of({{.part = "soft",
+                     .half_angle_rad = half_deg * kDegree,
+                     .weight = 0.7,
+                     .exponent = exponent,
+                     .edge_rad = edge_deg * kDegree}});
+}
+
+// Nodes that follow no rule, light that is nowhere alike.
+BeamTable table_of(TableAngles angles, unsigned seed = 3) {
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> step(0.5, 1.5);
+    const auto nodes = [&](double first, double last, int count) {
+        std::vector<double> values(1, 0.0);
+        for (int i = 1; i < count; ++i) values.push_back(values.back() + step(engine));
+        for (double& value : values) value = first + (last - first) * value / values.back();
+        values.back() = last;
+        return values;
+    };
+    const bool is_c = angles == TableAngles::TypeC;
+    BeamTable table{.angles = angles,
+                    .vertical_rad = is_c ? nodes(0.0, 1.2, 7) : nodes(-0.9, 1.1, 8),
+                    .horizontal_rad = is_c ? nodes(0.0, 2.0 * kPi, 9) : nodes(-0.8, 0.7, 6),
+                    .intensity = {}};
+    for (std::size_t i = 0; i < table.horizontal_rad.size() * table.vertical_rad.size(); ++i) {
+        table.intensity.push_back(step(engine));
+    }
+    const std::size_t rows = table.vertical_rad.size();
+    for (std::size_t i = 0; is_c && i < rows; ++i) {
+        table.intensity[table.intensity.size() - rows + i] = table.intensity[i];
+    }
+    return table;
+}
+
+const BeamOptics kOptics{.along_m = 0.0635,
+                         .across_m = 0.0302,
+                         .focal_length_m = 0.065,
+                         .distance_m = 0.04,
+                         .aperture_m = 0.08};
+const BeamWindow kWindow{.glass_index = 1.5185, .water_index = 1.3437};
+
+Beam pattern_of(BeamPattern pattern, double turn_rad = 0.4) {
+    Beam beam{.name = "p", .cones = {}, .pattern = std::move(pattern), .turn_rad = turn_rad};
+    return scaled_to_flux(std::move(beam));
+}
+
+// One of every kind, in water and behind a window.
+std::vector<Beam> all_kinds() {
+    BeamOptics focused = kOptics;
+    focused.distance_m = focused.focal_length_m;
+    std::vector<Beam> beams{fresnel(),
+                            soft(50.0, 20.0, 2.5),
+                            pattern_of(table_of(TableAngles::TypeA)),
+                            pattern_of(table_of(TableAngles::TypeB)),
+                            pattern_of(table_of(TableAngles::TypeC)),
+                            pattern_of(kOptics),
+                            pattern_of(focused)};
+    const std::size_t in_water = beams.size();
+    for (std::size_t i = 0; i < in_water; ++i) {
+        beams.push_back(beams[i]);
+        beams.back().window = kWindow;
+    }
+    return beams;
+}
+
+// Over the sphere, midpoints in both angles.
+double flux_all_round(const Beam& beam, double widest_rad) {
+    constexpr int kRings = 1000;
+    constexpr int kTurns = 180;
+    double sum = 0.0;
+    for (int i = 0; i < kRings; ++i) {
+        const double theta_rad = widest_rad * (i + 0.5) / kRings;
+        for (int j = 0; j < kTurns; ++j) {
+            sum += at(beam, theta_rad, 2.0 * kPi * (j + 0.5) / kTurns) * std::sin(theta_rad);
+        }
+    }
+    return sum * widest_rad / kRings * 2.0 * kPi / kTurns;
+}
+
+TEST(SoftEdge, FallsByHalfInTheMiddleOfItsCosines) {
+    const Beam beam = soft(40.0, 15.0, 0.0);
+    const double middle_rad =
+        std::acos(0.5 * (std::cos(25.0 * kDegree) + std::cos(40.0 * kDegree)));
+    EXPECT_NEAR(at(beam, middle_rad) / at(beam, 0.0), 0.5, kRounding);
+    EXPECT_NEAR(at(beam, 24.99 * kDegree) / at(beam, 0.0), 1.0, kRounding);
+    EXPECT_EQ(at(beam, 40.01 * kDegree), 0.0);
+    EXPECT_TRUE(edges_rad(beam).empty());
+}
+
+TEST(SoftEdge, KeepsTheConesShareOfTheFlux) {
+    constexpr double kMidpoints = 1e-7;
+    for (const double half_deg : {20.0, 60.0, 90.0}) {
+        for (const double edge_deg : {0.5, 10.0, 20.0}) {
+            for (const double exponent : {0.0, 1.0, 3.7}) {
+                const Beam beam = soft(half_deg, edge_deg, exponent);
+                EXPECT_NEAR(flux_by_quadrature(beam), 0.7, kMidpoints)
+                    << half_deg << " " << edge_deg;
+                EXPECT_NEAR(flux_of(beam), 0.7, kRounding);
+            }
+        }
+    }
+}
+
+TEST(Patterns, HaveAFluxOfOne) {
+    constexpr double kMidpoints = 5e-6;
+    constexpr double kStepsAtEnds = 3e-3;  // a table or a sharp image ends between the midpoints
+    for (const Beam& beam : all_kinds()) {
+        if (beam.window || !beam.cones.empty()) continue;
+        const bool has_edges = has_rim(beam) || !edges_rad(beam).empty();
+        EXPECT_NEAR(flux_all_round(beam, kPi), 1.0, has_edges ? kStepsAtEnds : kMidpoints);
+    }
+}
+
+// What leaves the window is what the light has in air, less what the faces reflect: under 5 % for
+// light near the axis.
+TEST(Windows, LoseWhatTheyReflect) {
+    constexpr double kGrid = 5e-3;
+    for (const Beam& beam : all_kinds()) {
+        if (!beam.window) continue;
+        const double flux = flux_of(beam);
+        Beam bare = beam;
+        bare.window.reset();
+        EXPECT_GT(flux, 0.85 * flux_of(bare));
+        EXPECT_LT(flux, 0.96 * flux_of(bare));
+        EXPECT_NEAR(flux_all_round(beam, widest_in_water_rad(kWindow)) / flux, 1.0, kGrid);
+    }
+    const Beam narrow = [] {
+        Beam beam = beam_of({{.part = "n", .half_angle_rad = 0.01, .weight = 1.0}});
+        beam.window = kWindow;
+        return beam;
+    }();
+    EXPECT_NEAR(flux_of(narrow), transmittance_by_cosine(kWindow, 1.0), 1e-3);
+    // In air the same light is n^2 as bright on the axis, but for that.
+    Beam in_air = narrow;
+    in_air.window.reset();
+    EXPECT_NEAR(at(narrow, 0.0) / at(in_air, 0.0),
+                transmittance_by_cosine(kWindow, 1.0) * 1.3437 * 1.3437,
+                1e-12);
+}
+
+// Type C grows from along away from across; turned by a quarter it begins at across.
+TEST(Patterns, TurnFromAlongToAcross) {
+    const BeamTable table = table_of(TableAngles::TypeC);
+    const Beam straight = pattern_of(table, 0.0);
+    const Beam turned = pattern_of(table, 0.5 * kPi);
+    for (const double phi_rad : {0.0, 0.7, 2.0, 4.0}) {
+        EXPECT_NEAR(at(turned, 0.6, phi_rad + 0.5 * kPi), at(straight, 0.6, phi_rad), 1e-12);
+    }
+    const double first = table_intensity(table, {std::sin(0.6), 0.0, std::cos(0.6)});
+    EXPECT_NEAR(at(turned, 0.6, 0.5 * kPi), turned.per_flux * first, 1e-12);
+    EXPECT_NEAR(at(straight, 0.6, -0.5 * kPi),
+                straight.per_flux *
+                    table_intensity(table, direction_at(TableAngles::TypeC, {0.6, 0.5 * kPi})),
+                1e-12);
+}
+
+TEST(MostIntensity, BoundsEveryKind) {
+    std::mt19937 engine(11);
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    for (const Beam& beam : all_kinds()) {
+        const BeamFrame frame = frame_about(kAxis);
+        const double rounding = 1e-12 * most_intensity(beam);
+        for (int trial = 0; trial < 150; ++trial) {
+            const Vector3d middle = off_axis(1.4 * share(engine), 2.0 * kPi * share(engine));
+            const double within_rad = 0.5 * share(engine) * share(engine);
+            const double bound = most_intensity(beam, frame, middle, within_rad);
+            EXPECT_LE(bound, most_intensity(beam) + rounding);
+            for (int k = 0; k < 40; ++k) {
+                const Vector3d aside =
+                    middle.cross(off_axis(kPi * share(engine), 2.0 * kPi * share(engine)))
+                        .normalized();
+                const double angle_rad = within_rad * share(engine);
+                const double found = intensity_towards(
+                    beam, frame, std::cos(angle_rad) * middle + std::sin(angle_rad) * aside);
+                ASSERT_LE(found, bound + rounding) << beam.pattern.index() << " " << trial;
+                if (found > rounding) {
+                    ASSERT_TRUE(reaches(beam, frame, middle, within_rad));
+                }
+            }
+        }
+    }
+}
+
+// Neighbours that differ much are on either side of an edge, and of no other thing.
+TEST(Edges, AreWhereTheLightJumps) {
+    constexpr double kBeside_rad = 1e-7;
+    constexpr double kJump = 1e-3;
+    std::mt19937 engine(5);
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    for (const Beam& beam : all_kinds()) {
+        const BeamFrame frame = frame_about(kAxis);
+        const std::vector<double> edges = edges_rad(beam);
+        for (int line = 0; line < 20; ++line) {
+            const double phi_rad = 2.0 * kPi * share(engine);
+            for (double theta_rad = 0.001; theta_rad < 1.55; theta_rad += 0.0007) {
+                const double from = at(beam, theta_rad, phi_rad);
+                const double to = at(beam, theta_rad + 0.0007, phi_rad);
+                if (std::abs(from - to) <= 0.05 * most_intensity(beam)) continue;
+                // Halve the step until it is one.
+                double inner = theta_rad;
+                double outer = theta_rad + 0.0007;
+                while (outer - inner > kBeside_rad) {
+                    const double middle = 0.5 * (inner + outer);
+                    (std::abs(at(beam, middle, phi_rad) - from) < 0.5 * std::abs(from - to)
+                         ? inner
+                         : outer) = middle;
+                }
+                if (std::abs(at(beam, inner, phi_rad) - at(beam, outer, phi_rad)) <
+                    kJump * most_intensity(beam)) {
+                    continue;
+                }
+                const bool is_circle = std::ranges::any_of(edges, [&](double edge_rad) {
+                    return edge_rad >= inner - kBeside_rad && edge_rad <= outer + kBeside_rad;
+                });
+                const bool is_rim =
+                    has_rim(beam) && is_within_rim(beam, frame, off_axis(inner, phi_rad)) !=
+                                         is_within_rim(beam, frame, off_axis(outer, phi_rad));
+                EXPECT_TRUE(is_circle || is_rim)
+                    << beam.pattern.index() << " at " << inner / kDegree << " degrees";
+            }
+        }
+    }
+}
+
+TEST(Edges, GoneLeaveEveryKindAsItWas) {
+    std::mt19937 engine(6);
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    const BeamFrame frame = frame_about(kAxis);
+    for (const Beam& beam : all_kinds()) {
+        if (!beam.cones.empty()) continue;  // these overlap
+        const Beam endless = without_edges(beam);
+        EXPECT_EQ(edges_rad(endless).size(), beam.window ? 1U : 0U);
+        for (int trial = 0; trial < 300; ++trial) {
+            const double theta_rad = 1.5 * share(engine);
+            const double phi_rad = 2.0 * kPi * share(engine);
+            if (has_rim(endless)) {
+                EXPECT_TRUE(beam.window ||
+                            is_within_rim(endless, frame, off_axis(theta_rad, phi_rad)));
+            }
+            const double before = at(beam, theta_rad, phi_rad);
+            if (before == 0.0) continue;
+            EXPECT_NEAR(at(endless, theta_rad, phi_rad) / before, 1.0, 1e-9);
+        }
+    }
+}
+
+// By the light of where it comes from: beyond an edge it goes on, and from beyond there is none.
+TEST(Intensity, OfEveryKindContinuesFromItsOwnSide) {
+    const BeamFrame frame = frame_about(kAxis);
+    const Beam table = pattern_of(table_of(TableAngles::TypeC));
+    const Vector3d inside = off_axis(1.2 - 1e-6, 1.0);
+    const Vector3d outside = off_axis(1.2 + 1e-6, 1.0);
+    EXPECT_EQ(intensity_towards(table, frame, outside), 0.0);
+    EXPECT_NEAR(continued_intensity(table, frame, outside, inside),
+                intensity_towards(table, frame, inside),
+                1e-5);
+    EXPECT_EQ(continued_intensity(table, frame, inside, outside), 0.0);
+}
+
+TEST(Fwhm, IsTheCosinesExponent) {
+    const double half_rad = 50.0 * kDegree;
+    const Beam beam = beam_of({{.part = "fwhm",
+                                .half_angle_rad = 0.5 * kPi,
+                                .weight = 1.0,
+                                .exponent = std::log(0.5) / std::log(std::cos(half_rad))}});
+    EXPECT_NEAR(at(beam, half_rad) / at(beam, 0.0), 0.5, kRounding);
+    EXPECT_NEAR(steepest_exponent(beam), 1.5684, 1e-3);
+}
+
+TEST(BeamSignature, KnowsEveryKindByAllThatItHas) {
+    std::vector<Beam> beams = all_kinds();
+    beams.push_back(pattern_of(table_of(TableAngles::TypeC, 4)));
+    beams.push_back(pattern_of(table_of(TableAngles::TypeC), 0.5));
+    beams.push_back(soft(50.0, 19.0, 2.5));
+    std::set<std::string> signatures;
+    for (const Beam& beam : beams) signatures.insert(beam_signature(beam));
+    EXPECT_EQ(signatures.size(), beams.size());
 }
 
 }  // namespace

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The flux of a lamp by its spectrum:
+//
+//   radiant    integral of S dlambda                     [W, for S in W/nm]
+//   luminous   683 lm/W  integral of S V dlambda         [lm]
+//
+//   S   the lamp's table, over all of its range
+//   V   the CIE's luminous efficiency: ybar of the 1931 observer (cie-1931)
+//
+// Exact for the tables: between the knots of both, S V is a parabola.
+//
+// Limit: a table that ends within the visible range has no luminous flux; what V has beyond it may
+// be kMostUnseen of V's integral.
+#pragma once
+
+#include "spectral/spectrum.h"
+
+namespace aphotic {
+
+inline constexpr double kLumensPerWatt = 683.0;
+inline constexpr double kMostUnseen = 0.005;
+
+[[nodiscard]] double radiant_flux_w(const Spectrum& lamp);
+
+// InputError where the table leaves out more than kMostUnseen.
+[[nodiscard]] double luminous_flux_lm(const Spectrum& lamp);
+
+}  // namespace aphotic
