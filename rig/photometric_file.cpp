@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rig/photometric_file.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/file_beside.h"
+#include "base/printable.h"
+#include "base/words.h"
+#include "rig/beam_csv.h"
+#include "rig/eulumdat_file.h"
+#include "rig/ies_file.h"
+
+#include <fmt/format.h>
+
+namespace aphotic {
+
+namespace {
+
+enum class Format { Ies, Eulumdat, Csv };
+
+std::optional<Format> format_by_ending(std::string_view name) {
+    const std::string lower = lower_case(std::string(name));
+    if (lower.ends_with(".ies")) return Format::Ies;
+    if (lower.ends_with(".ldt")) return Format::Eulumdat;
+    if (lower.ends_with(".csv")) return Format::Csv;
+    return std::nullopt;
+}
+
+Format format_of(const std::string& file_name) {
+    if (const auto format = format_by_ending(file_name)) return *format;
+    throw InputError(
+        fmt::format("{}: found a name that ends otherwise; allowed for a measured "
+                    "beam: {}",
+                    printable(file_name),
+                    kPhotometricEndings));
+}
+
+}  // namespace
+
+PhotometricFile parse_photometric_file(const std::string& file_name,
+                                       std::string_view text,
+                                       const ReadBeside& read_beside) {
+    switch (format_of(file_name)) {
+        case Format::Ies:
+            return parse_ies(file_name, text, read_beside);
+        case Format::Eulumdat:
+            return parse_eulumdat(file_name, text);
+        case Format::Csv:
+            break;
+    }
+    return parse_beam_csv(file_name, text);
+}
+
+PhotometricFile read_photometric_file(const std::filesystem::path& file) {
+    const ReadBeside read_beside = [&](const std::string& name) {
+        return read_text_file(file_beside(file.parent_path(), name), kMostPhotometricBytes);
+    };
+    return parse_photometric_file(
+        file.string(), read_text_file(file, kMostPhotometricBytes), read_beside);
+}
+
+bool is_photometric_file_name(std::string_view name) {
+    return format_by_ending(name).has_value();
+}
+
+std::string photometric_text(const PhotometricFile& photometry, const std::string& file_name) {
+    switch (format_of(file_name)) {
+        case Format::Ies:
+            return ies_text(photometry, file_name);
+        case Format::Eulumdat:
+            return eulumdat_text(photometry, file_name);
+        case Format::Csv:
+            break;
+    }
+    return beam_csv_text(photometry, file_name);
+}
+
+void write_photometric_file(const PhotometricFile& photometry, const std::filesystem::path& file) {
+    write_text_file(file, photometric_text(photometry, file.string()));
+}
+
+}  // namespace aphotic
