@@ -13,8 +13,10 @@
 #include "rig/geometry.h"
 #include "rig/key_depth.h"
 #include "rig/mesh_reader.h"
+#include "rig/photometric_file.h"
 #include "rig/solid.h"
 #include "spectral/curve_loader.h"
+#include "spectral/lamp_flux.h"
 #include "spectral/refractive_index.h"
 #include "spectral/table.h"
 
