@@ -86,6 +86,10 @@ constexpr Bounds kDirection{-1e6, 1e6};
 constexpr Bounds kAimTiltDeg{0.0, 180.0};
 constexpr Bounds kPower{0.0, 1e12};
 constexpr Bounds kEmitterMm{0.0, 10000.0};
+const std::string kOneKindOfBeam =
+    "found beside another kind of beam; allowed: one of cones, fwhm_deg, table, or diffuser_mm "
+    "with "
+    "its lens";
 // An object's size: POV-Ray passes over blockers within a millimetre of what they shade.
 constexpr Bounds kRadiusM{0.001, 1000.0};
 constexpr double kLeastSideM = 0.001;
@@ -574,31 +578,44 @@ BeamWindow RigReader::read_window(Section& section, const Water& water) {
 }
 
 Beam RigReader::read_beam(Section section, std::string name, const Water& water) {
+    section.refuse_keys_but({"weights",
+                             "cones",
+                             "fwhm_deg",
+                             "table",
+                             "diffuser_mm",
+                             "focal_length_mm",
+                             "distance_mm",
+                             "aperture_mm",
+                             "turn_deg",
+                             "measured_in",
+                             "window"});
+    const auto refuse_beside = [&](const std::vector<std::string>& keys, const std::string& why) {
+        for (const std::string& key : keys) {
+            if (section.has(key)) section.fail_at(key, why);
+        }
+    };
     Beam beam{.name = std::move(name), .weights = ConeWeights::Flux, .cones = {}};
-    const std::vector<std::string> kinds{"cones", "fwhm_deg", "table", "diffuser_mm"};
-    const auto given =
-        std::ranges::count_if(kinds, [&](const std::string& key) { return section.has(key); });
-    if (given > 1) {
-        const auto second = std::ranges::find_if(
-            kinds.rbegin(), kinds.rend(), [&](const std::string& key) { return section.has(key); });
-        section.fail_at(*second,
-                        "found beside another kind of beam; allowed: one of cones, fwhm_deg, "
-                        "table, diffuser_mm");
-    }
-    if (section.has("fwhm_deg")) {
-        const double half_rad = 0.5 * section.number("fwhm_deg", kFwhmDeg) * kRadiansPerDegree;
-        beam.cones = {{.part = "fwhm",
-                       .half_angle_rad = 0.5 * std::numbers::pi,
-                       .weight = 1.0,
-                       .exponent = std::log(0.5) / std::log(std::cos(half_rad))}};
-    } else if (section.has("table")) {
+    const std::vector<std::string> optics{"focal_length_mm", "distance_mm", "aperture_mm"};
+    if (section.has("table")) {
+        refuse_beside({"cones", "fwhm_deg", "diffuser_mm"}, kOneKindOfBeam);
+        refuse_beside(optics, kOneKindOfBeam);
         beam.pattern = read_beam_table(section);
         if (largest_intensity(std::get<BeamTable>(beam.pattern)) == 0.0) {
             section.found_but("table", "one with light in it");
         }
     } else if (section.has("diffuser_mm")) {
+        refuse_beside({"cones", "fwhm_deg"}, kOneKindOfBeam);
         beam.pattern = read_optics(section);
+    } else if (section.has("fwhm_deg")) {
+        refuse_beside({"cones"}, kOneKindOfBeam);
+        refuse_beside(optics, kOneKindOfBeam);
+        const double half_rad = 0.5 * section.number("fwhm_deg", kFwhmDeg) * kRadiansPerDegree;
+        beam.cones = {{.part = "fwhm",
+                       .half_angle_rad = 0.5 * std::numbers::pi,
+                       .weight = 1.0,
+                       .exponent = std::log(0.5) / std::log(std::cos(half_rad))}};
     } else {
+        refuse_beside(optics, kOneKindOfBeam);
         if (section.has("weights") && section.word("weights", {"flux", "literal"}) == "literal") {
             beam.weights = ConeWeights::Literal;
         }
@@ -607,13 +624,20 @@ Beam RigReader::read_beam(Section section, std::string name, const Water& water)
             beam.cones.push_back(read_cone(cone));
         }
     }
-    if (beam.cones.empty() && section.has("turn_deg")) {
-        beam.turn_rad = section.number("turn_deg", kTurnDeg) * kRadiansPerDegree;
+    if (!section.has("cones")) {
+        refuse_beside({"weights"}, "found for a beam without cones; allowed: for cones");
     }
-    const bool is_in_air =
-        section.has("measured_in") && section.word("measured_in", {"water", "air"}) == "air";
-    if (is_in_air) beam.window = read_window(section, water);
-    section.refuse_unknown_keys();
+    if (beam.cones.empty()) {
+        beam.turn_rad = section.number_or("turn_deg", kTurnDeg, 0.0) * kRadiansPerDegree;
+    } else {
+        refuse_beside({"turn_deg"},
+                      "found for a beam that is round; allowed: for table and diffuser_mm");
+    }
+    if (section.has("measured_in") && section.word("measured_in", {"water", "air"}) == "air") {
+        beam.window = read_window(section, water);
+    } else {
+        refuse_beside({"window"}, "found for a beam in water; allowed: with measured_in = \"air\"");
+    }
     return scaled_to_flux(std::move(beam));
 }
 

@@ -407,6 +407,132 @@ TEST(RigReader, ChecksTheNumbersThatMayBeLeftOut) {
     }
 }
 
+Beam beam_of(std::string_view lines, const fs::path& folder = ".") {
+    return parse_rig(with(12, lines), "rig.toml", folder).strobes[0].beam;
+}
+
+TEST(RigReader, ReadsEveryKindOfBeam) {
+    const Beam soft =
+        beam_of("cones = [{ part = \"x\", half_angle_deg = 60, weight = 0.5, edge_deg = 30 }]");
+    EXPECT_NEAR(soft.cones[0].edge_rad, kPi / 6.0, kRounding);
+
+    // cos^n is a half at 60 degrees for n = 1.
+    const Beam wide = beam_of("fwhm_deg = 120");
+    ASSERT_EQ(wide.cones.size(), 1U);
+    EXPECT_NEAR(wide.cones[0].exponent, 1.0, 4.0 * kRounding);
+    EXPECT_NEAR(wide.cones[0].half_angle_rad, kPi / 2.0, kRounding);
+
+    const Beam optics = beam_of(
+        "diffuser_mm = [30.2, 63.5]\nfocal_length_mm = 65\ndistance_mm = 40\naperture_mm = 80\n"
+        "turn_deg = 90\nmeasured_in = \"air\"\nwindow = 1.5");
+    const BeamOptics& lens = std::get<BeamOptics>(optics.pattern);
+    EXPECT_NEAR(lens.along_m, 0.0302, kRounding);
+    EXPECT_NEAR(lens.across_m, 0.0635, kRounding);
+    EXPECT_NEAR(lens.focal_length_m, 0.065, kRounding);
+    EXPECT_NEAR(lens.distance_m, 0.04, kRounding);
+    EXPECT_NEAR(lens.aperture_m, 0.08, kRounding);
+    EXPECT_NEAR(optics.turn_rad, kPi / 2.0, kRounding);
+    ASSERT_TRUE(optics.window);
+    EXPECT_EQ(optics.window->glass_index, 1.5);
+    // Sea water of 35 psu at 10 degrees (Quan and Fry 1995) at 550 nm.
+    EXPECT_NEAR(optics.window->water_index, 1.3427, 1e-3);
+
+    const Beam glass = beam_of("fwhm_deg = 90\nmeasured_in = \"air\"\nwindow = \"bk7\"");
+    EXPECT_NEAR(glass.window->glass_index, 1.51852, 1e-5);  // Schott's own n at 546 nm is 1.51872
+    EXPECT_FALSE(beam_of("fwhm_deg = 90\nmeasured_in = \"water\"").window);
+}
+
+TEST(RigReader, ReadsABeamsTableBesideIt) {
+    const TempFolder folder;
+    write_file(folder.path() / "lamp.csv", "theta_deg,intensity\n0,4\n30,2\n60,0\n");
+    const std::string rig = with(12, "table = \"lamp.csv\"");
+    const Rig read = parse_rig(rig, "rig.toml", folder.path());
+    const BeamTable& table = std::get<BeamTable>(read.strobes[0].beam.pattern);
+    EXPECT_EQ(table.angles, TableAngles::TypeC);
+    EXPECT_EQ(table.intensity, (std::vector<double>{4.0, 2.0, 0.0}));
+    ASSERT_EQ(read.files.size(), 1U);
+    EXPECT_EQ(read.files[0].name, "lamp.csv");
+    // What it holds counts in the digest.
+    write_file(folder.path() / "lamp.csv", "theta_deg,intensity\n0,4\n30,3\n60,0\n");
+    EXPECT_NE(parse_rig(rig, "rig.toml", folder.path()).digest, read.digest);
+
+    write_file(folder.path() / "dark.csv", "theta_deg,intensity\n0,0\n30,0\n60,0\n");
+    EXPECT_EQ(error_of(with(12, "table = \"dark.csv\""), folder.path()),
+              "rig.toml:12: beam.wide.table: found 'dark.csv'; allowed: one with light in it");
+    EXPECT_TRUE(error_of(with(12, "table = \"none.ies\""), folder.path())
+                    .starts_with("rig.toml:12: beam.wide.table: "));
+    EXPECT_EQ(
+        error_of(with(12, "table = \"lamp.txt\""), folder.path()),
+        "rig.toml:12: beam.wide.table: found 'lamp.txt'; allowed: the name of a .ies, .ldt or "
+        ".csv file beside the rig");
+}
+
+TEST(RigReader, ChecksBeamsOfOtherKinds) {
+    const std::string kind =
+        "found beside another kind of beam; allowed: one of cones, fwhm_deg, table, or diffuser_mm "
+        "with its lens";
+    const std::string optics =
+        "diffuser_mm = [30, 60]\nfocal_length_mm = 65\ndistance_mm = 40\naperture_mm = 80";
+    struct Bad {
+        int line;
+        std::string text;
+        std::string message;
+    };
+    const std::vector<Bad> all{
+        {12, "cones = []\nfwhm_deg = 90", "beam.wide.cones: " + kind},
+        {13, "table = \"a.ies\"\ndiffuser_mm = [1, 1]", "beam.wide.diffuser_mm: " + kind},
+        {12, "fwhm_deg = 180", "beam.wide.fwhm_deg: found 180; allowed: a number from 1 to 179.9"},
+        {13,
+         "fwhm_deg = 90\nturn_deg = 10",
+         "beam.wide.turn_deg: found for a beam that is round; allowed: for table and diffuser_mm"},
+        {13,
+         "fwhm_deg = 90\nwindow = \"bk7\"",
+         "beam.wide.window: found for a beam in water; allowed: with measured_in = \"air\""},
+        {14,
+         "fwhm_deg = 90\nmeasured_in = \"air\"\nwindow = true",
+         "beam.wide.window: found true; allowed: a built-in glass or its index, 1 to 3"},
+        {13,
+         "fwhm_deg = 90\nweights = \"flux\"",
+         "beam.wide.weights: found for a beam without cones; allowed: for cones"},
+        {12,
+         "cones = [{ part = \"a\", half_angle_deg = 30, weight = 1, edge_deg = 31 }]",
+         "beam.wide.cones[0].edge_deg: found 31; allowed: up to half_angle_deg, where the cone "
+         "ends"},
+        {12, "tabel = \"lamp.ies\"", "beam.wide.tabel: is not a known key; did you mean 'table'?"},
+        {11, "diffuser_mm = [30, 60]", "beam.wide.focal_length_mm: is missing; allowed: "},
+    };
+    for (const Bad& bad : all) {
+        const std::string found = error_of(with(12, bad.text));
+        EXPECT_TRUE(found.starts_with(fmt::format("rig.toml:{}: {}", bad.line, bad.message)))
+            << found;
+    }
+    EXPECT_EQ(error_of(with(12, optics)), "no error");
+}
+
+// The table's own flux at power 1, by hand: a triangle of 300 nm at its base.
+TEST(RigReader, ALampsFluxIsItsPower) {
+    const TempFolder folder;
+    write_file(folder.path() / "lamp.csv", "wavelength_nm,relative_power\n400,0\n550,2\n700,0\n");
+    const auto power = [&](const std::string& line) {
+        return parse_rig(minimal_and("spectrum = \"lamp.csv\"\n" + line), "rig.toml", folder.path())
+            .strobes[0]
+            .power;
+    };
+    EXPECT_EQ(power(""), 1.0);
+    EXPECT_NEAR(power("radiant_flux_w = 60"), 0.2, kRounding);
+    EXPECT_NEAR(power("energy_j = 30"), 0.1, kRounding);
+    // Of 555 nm, a lumen is 1/683 W; this lamp is broader, so its lumens are fewer.
+    const double per_lumen = power("luminous_flux_lm = 683");
+    EXPECT_GT(per_lumen * 300.0, 1.0);
+    EXPECT_LT(per_lumen * 300.0, 2.5);
+    EXPECT_EQ(error_of(minimal_and("power = 2\nenergy_j = 3")),
+              "rig.toml:19: strobe[0].energy_j: found beside power; allowed: one of power, "
+              "luminous_flux_lm, radiant_flux_w, energy_j");
+    EXPECT_EQ(error_of(minimal_and("radiant_flux_w = -1")),
+              "rig.toml:18: strobe[0].radiant_flux_w: found -1; allowed: a number from 0 to "
+              "1000000000000");
+}
+
 TEST(RigReader, ChecksConesInTheirArray) {
     expect_errors({
         {12,
