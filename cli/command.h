@@ -48,6 +48,7 @@ extern const Command kValidate;
 extern const Command kStudy;
 extern const Command kStress;
 extern const Command kCompare;
+extern const Command kBeam;
 extern const Command kData;
 
 }  // namespace aphotic::cli

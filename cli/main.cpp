@@ -40,6 +40,7 @@ constexpr std::array kCommands{&aphotic::cli::kRender,
                                &aphotic::cli::kStudy,
                                &aphotic::cli::kStress,
                                &aphotic::cli::kCompare,
+                               &aphotic::cli::kBeam,
                                &aphotic::cli::kData};
 
 // A message quotes what it found: nothing in it may steer the terminal.

@@ -65,6 +65,7 @@ struct Strobe {
     Spectrum spectrum;  // Phi(lambda) at power 1
     double power = 1.0;
     std::optional<Emitter> emitter;  // none: a point
+    bool is_absolute = false;        // its flux was given: power times spectrum is W/nm, or J/nm
 };
 
 struct Sphere {

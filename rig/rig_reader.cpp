@@ -715,6 +715,8 @@ Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, c
                   .power = 1.0,
                   .emitter = std::nullopt};
     strobe.power = read_power(section, strobe.spectrum);
+    strobe.is_absolute =
+        section.has("luminous_flux_lm") || section.has("radiant_flux_w") || section.has("energy_j");
     if (section.has("emitter_mm")) strobe.emitter = read_emitter(section);
 
     std::vector<std::string> names;
