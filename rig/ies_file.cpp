@@ -96,10 +96,10 @@ class NumberReader {
     std::size_t line_;
 };
 
-// The year of the edition that the first line names. A file of 1986 begins with text of any kind.
-std::optional<int> edition_of(const std::string& file, std::string_view first_line) {
+// The year of the edition, of a line that names one. A file of 1986 has text of any kind alone.
+std::optional<int> edition_in(const std::string& file, std::size_t number, std::string_view line) {
     std::string name;
-    for (const char c : lower_case(std::string(first_line))) {
+    for (const char c : lower_case(std::string(line))) {
         if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) name += c;
     }
     std::string_view year = name;
@@ -118,10 +118,10 @@ std::optional<int> edition_of(const std::string& file, std::string_view first_li
     }
     if (!names_standard) return std::nullopt;
     fail_at_line(file,
-                 1,
+                 number,
                  fmt::format("found the edition {}; allowed: LM-63 of 1986, 1991, 1995, 2002 or "
                              "2019",
-                             shown_word(first_line)));
+                             shown_word(line)));
 }
 
 // "[KEYWORD] text", or any text.
@@ -448,10 +448,10 @@ PhotometricFile parse_ies(const std::string& file_name,
                          "TILT= and the name of a file");
         }
         const std::string_view line = lines.next();
-        if (lines.line() == 1) {
-            const std::optional<int> named = edition_of(file_name, line);
-            edition = named.value_or(edition);
-            if (named) continue;
+        const std::optional<int> named = edition_in(file_name, lines.line(), line);
+        if (named) {
+            edition = *named;
+            continue;
         }
         tilt_word = tilt_in(line);
         if (!tilt_word && !line.empty()) add_label(photometry.labels, line);

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
 #include <random>
 #include <string>
 #include <string_view>
@@ -172,9 +173,11 @@ TEST(IesFile, TakesALampFactorOfTheEditionsThatHaveOne) {
                                      "IESNA91",
                                      "IESNA:LM-63-1991",
                                      "IESNA:LM-63-1995",
-                                     "iesna: lm-63-1995"})
+                                     "iesna: lm-63-1995",
+                                     "\n\n  IESNA:LM-63-1995"})
         expect_near(parse("a.ies", header + "\n" + rest).table.intensity, {1.1, 2.2});
-    for (const std::string header : {"IESNA:LM-63-2002", "IES:LM-63-2019", "ANSI/IES LM-63-19"})
+    for (const std::string header :
+         {"IESNA:LM-63-2002", "IES:LM-63-2019", "ANSI/IES LM-63-19", "\nIES:LM-63-2019"})
         expect_near(parse("a.ies", header + "\n" + rest).table.intensity, {1.0, 2.0});
     EXPECT_EQ(error_of("a.ies", "IESNA:LM-63-2007\n" + rest),
               "a.ies:1: found the edition 'IESNA:LM-63-2007'; allowed: LM-63 of 1986, 1991, 1995, "
@@ -229,6 +232,18 @@ TEST(EulumdatFile, ReadsAbsolutePhotometry) {
     expect_near(file.table.intensity, {1000, 500, 0});
     EXPECT_TRUE(file.is_absolute);
     EXPECT_EQ(file.luminous_flux_lm, std::nullopt);
+}
+
+// 1 over the sphere has half of its flux below, and 4 pi in all; lamps of 8 pi lose half of that.
+TEST(EulumdatFile, StatesSharesOfFlux) {
+    PhotometricFile file;
+    file.table.vertical_rad = {
+        0.0, 80.0 * kRadiansPerDegree, 100.0 * kRadiansPerDegree, std::numbers::pi};
+    file.table.horizontal_rad = {0.0};
+    file.table.intensity = Numbers(4, 1.0);
+    file.luminous_flux_lm = 8.0 * std::numbers::pi;
+    const std::string text = photometric_text(file, "a.ldt");
+    EXPECT_NE(text.find("\r\n0\r\n50\r\n50\r\n1\r\n0\r\n1\r\n"), std::string::npos) << text;
 }
 
 TEST(EulumdatFile, RefusesAChoiceOfLamps) {
