@@ -17,7 +17,10 @@ namespace aphotic {
 namespace {
 
 constexpr std::size_t kMostTilts = 1000;
+constexpr double kLeastTiltFactor = 1e-3;
+constexpr double kMostTiltFactor = 1e3;
 constexpr std::size_t kMostLamps = 1'000'000;
+constexpr double kMostLumens = 1e12;
 
 // A file's lines, one after the other.
 class LineReader {
@@ -164,7 +167,13 @@ LampTilt next_tilt(NumberReader& numbers) {
     }
     tilt.tilt_rad = radians_of(angles);
     for (const FileNumber& factor : numbers.next(count, "the factor of a tilt")) {
-        tilt.factor.push_back(above_zero(file, factor, "the factor of a tilt"));
+        if (factor.value < kLeastTiltFactor || factor.value > kMostTiltFactor) {
+            fail_number(file,
+                        factor,
+                        "the factor of a tilt",
+                        fmt::format("{} to {}", kLeastTiltFactor, kMostTiltFactor));
+        }
+        tilt.factor.push_back(factor.value);
     }
     return tilt;
 }
@@ -211,8 +220,11 @@ IesHeader next_header(NumberReader& numbers, int edition, PhotometricFile& photo
     const std::size_t lamps = count("the number of lamps", 1, kMostLamps);
     const FileNumber lumens = numbers.next("lumens per lamp");
     photometry.is_absolute = lumens.value == -1.0;
-    if (lumens.value < 0.0 && !photometry.is_absolute) {
-        fail_number(file, lumens, "lumens per lamp", "0 or more, or -1 for absolute photometry");
+    if ((lumens.value < 0.0 && !photometry.is_absolute) || lumens.value > kMostLumens) {
+        fail_number(file,
+                    lumens,
+                    "lumens per lamp",
+                    fmt::format("0 to {}, or -1 for absolute photometry", kMostLumens));
     }
     if (lumens.value > 0.0) photometry.luminous_flux_lm = static_cast<double>(lamps) * lumens.value;
     header.factor = factor("the multiplier of candela");

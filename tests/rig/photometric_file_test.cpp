@@ -360,7 +360,7 @@ TEST(IesFile, NamesTheLineOfWhatItCannotRead) {
     EXPECT_EQ(error("0 1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 2\n"),
               "a.ies:4: the number of lamps: found 0; allowed: a whole number from 1 to 1000000");
     EXPECT_EQ(error("1 -2 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 2\n"),
-              "a.ies:4: lumens per lamp: found -2; allowed: 0 or more, or -1 for absolute "
+              "a.ies:4: lumens per lamp: found -2; allowed: 0 to 1000000000000, or -1 for absolute "
               "photometry");
     EXPECT_EQ(error("1 1 0 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 2\n"),
               "a.ies:4: the multiplier of candela: found 0; allowed: above 0");
@@ -377,6 +377,8 @@ TEST(IesFile, NamesTheLineOfWhatItCannotRead) {
     EXPECT_EQ(error_of("a.ies", "IESNA91\nTILT=b.tlt\n"), "a.ies:2: TILT: b.tlt: cannot be read");
     EXPECT_EQ(error_of("a.ies", "IESNA91\nTILT=INCLUDE\n1\n2\n5 10\n1 1\n"),
               "a.ies:5: the first tilt: found 5; allowed: 0, as the lamp was measured");
+    EXPECT_EQ(error_of("a.ies", "IESNA91\nTILT=INCLUDE\n1\n2\n0 10\n1 0\n"),
+              "a.ies:6: the factor of a tilt: found 0; allowed: 0.001 to 1000");
 }
 
 TEST(PhotometricFile, IsKnownByTheEndingOfItsName) {
