@@ -158,14 +158,13 @@ std::string beam_csv_text(const PhotometricFile& photometry, const std::string& 
     std::string text;
     for (const PhotometricLabel& label : photometry.labels) text += comment(label);
     text += fmt::format("{}\n", fmt::join(is_round ? kRoundColumns : kTurnColumns, ","));
-    const std::size_t rows = table.vertical_rad.size();
+    std::vector<std::string> thetas;
+    for (const double theta : table.vertical_rad) thetas.push_back(degrees_text(theta));
     for (std::size_t h = 0; h < table.horizontal_rad.size(); ++h) {
         const std::string phi = is_round ? "" : degrees_text(table.horizontal_rad[h]) + ",";
-        for (std::size_t v = 0; v < rows; ++v) {
-            text += fmt::format("{},{}{}\n",
-                                degrees_text(table.vertical_rad[v]),
-                                phi,
-                                table.intensity[h * rows + v]);
+        for (std::size_t v = 0; v < thetas.size(); ++v) {
+            const double intensity = table.intensity[h * thetas.size() + v];
+            text += fmt::format("{},{}{}\n", thetas[v], phi, intensity);
         }
     }
     return text;

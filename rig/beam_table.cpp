@@ -13,21 +13,21 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kRightAngle = 0.5 * kPi;
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+constexpr double kQuarterTurn_rad = 0.25 * kTurn_rad;
 
 // What rounding may move an angle by, and with room, raise an interpolated value by.
 constexpr double kAngleRounding_rad = 1e-12;
 constexpr double kValueRounding = 1.0 + 8.0 * std::numeric_limits<double>::epsilon();
 
-struct Range {
+struct AngleRange {
     double lo = 0.0;
     double hi = 0.0;
 
     [[nodiscard]] bool contains(double x) const { return lo <= x && x <= hi; }
 };
 
-Range range_of(const std::vector<double>& nodes) {
+AngleRange range_of(const std::vector<double>& nodes) {
     return {nodes.front(), nodes.back()};
 }
 
@@ -50,17 +50,17 @@ double latitude_of(TableAngles type, const GoniometerAngles& at) {
         case TableAngles::TypeC:
             break;
     }
-    return at.vertical_rad - kRightAngle;
+    return at.vertical_rad - kQuarterTurn_rad;
 }
 
 // Between nodes: (1 - share) of the one at index and share of the next.
-struct Place {
+struct GridPlace {
     std::size_t index = 0;
     double share = 0.0;
 };
 
 // Of an x within the nodes' range.
-Place place_of(double x, const std::vector<double>& nodes) {
+GridPlace place_of(double x, const std::vector<double>& nodes) {
     if (nodes.size() == 1) return {};
     const auto above = std::upper_bound(nodes.begin() + 1, nodes.end() - 1, x);
     const double upper = *above;
@@ -74,9 +74,9 @@ double between(double a, double b, double share) {
 }
 
 // One plane of the table, or what lies between two.
-class Column {
+class TablePlane {
   public:
-    Column(const BeamTable& table, const Place& horizontal)
+    TablePlane(const BeamTable& table, const GridPlace& horizontal)
         : near_(&table.intensity[horizontal.index * table.vertical_rad.size()]),
           far_(horizontal.share == 0.0 ? near_ : near_ + table.vertical_rad.size()),
           share_(horizontal.share) {}
@@ -84,12 +84,12 @@ class Column {
     [[nodiscard]] double at_node(std::size_t i) const {
         return near_ == far_ ? near_[i] : between(near_[i], far_[i], share_);
     }
-    [[nodiscard]] double at(const Place& vertical) const {
+    [[nodiscard]] double at(const GridPlace& vertical) const {
         const double a = at_node(vertical.index);
         if (vertical.share == 0.0) return a;
         return between(a, at_node(vertical.index + 1), vertical.share);
     }
-    [[nodiscard]] double most_between(const Place& lo, const Place& hi) const {
+    [[nodiscard]] double most_between(const GridPlace& lo, const GridPlace& hi) const {
         double most = std::max(at(lo), at(hi));
         for (std::size_t i = lo.index + 1; i <= hi.index; ++i) most = std::max(most, at_node(i));
         return most;
@@ -105,17 +105,17 @@ class Column {
 // cap of radius r about the latitude b that has no pole reaches asin(sin r / cos b) of longitude to
 // both sides.
 struct AngleBox {
-    Range vertical;
-    Range horizontal;
+    AngleRange vertical;
+    AngleRange horizontal;
 };
 
 AngleBox box_about(TableAngles type, const Vector3d& direction, double within_rad) {
-    constexpr Range kAll{-4.0 * kPi, 4.0 * kPi};
+    constexpr AngleRange kAll{-2.0 * kTurn_rad, 2.0 * kTurn_rad};
     const GoniometerAngles at = angles_of(type, direction);
     const double r = within_rad + kAngleRounding_rad;
     const double latitude = latitude_of(type, at);
-    const bool has_pole = std::abs(latitude) + r >= kRightAngle;
-    const auto about = [](double x, double by) { return Range{x - by, x + by}; };
+    const bool has_pole = std::abs(latitude) + r >= kQuarterTurn_rad;
+    const auto about = [](double x, double by) { return AngleRange{x - by, x + by}; };
     const auto longitudes = [&](double x) {
         if (has_pole) return kAll;
         const double sine = std::min(1.0, std::sin(r) / std::cos(latitude));
@@ -128,20 +128,20 @@ AngleBox box_about(TableAngles type, const Vector3d& direction, double within_ra
 
 // The maximum of a bilinear function over a rectangle is at a corner, within each cell.
 double most_within(const BeamTable& table, const AngleBox& box) {
-    const auto common = [](const Range& a, const Range& b) {
-        return Range{std::max(a.lo, b.lo), std::min(a.hi, b.hi)};
+    const auto common = [](const AngleRange& a, const AngleRange& b) {
+        return AngleRange{std::max(a.lo, b.lo), std::min(a.hi, b.hi)};
     };
-    const Range vertical = common(box.vertical, range_of(table.vertical_rad));
-    const Range horizontal =
-        is_round(table) ? Range{} : common(box.horizontal, range_of(table.horizontal_rad));
+    const AngleRange vertical = common(box.vertical, range_of(table.vertical_rad));
+    const AngleRange horizontal =
+        is_round(table) ? AngleRange{} : common(box.horizontal, range_of(table.horizontal_rad));
     if (vertical.lo > vertical.hi || horizontal.lo > horizontal.hi) return 0.0;
-    const Place low = place_of(vertical.lo, table.vertical_rad);
-    const Place high = place_of(vertical.hi, table.vertical_rad);
-    const auto most_at = [&](const Place& plane) {
-        return Column(table, plane).most_between(low, high);
+    const GridPlace low = place_of(vertical.lo, table.vertical_rad);
+    const GridPlace high = place_of(vertical.hi, table.vertical_rad);
+    const auto most_at = [&](const GridPlace& plane) {
+        return TablePlane(table, plane).most_between(low, high);
     };
-    const Place first = place_of(horizontal.lo, table.horizontal_rad);
-    const Place last = place_of(horizontal.hi, table.horizontal_rad);
+    const GridPlace first = place_of(horizontal.lo, table.horizontal_rad);
+    const GridPlace last = place_of(horizontal.hi, table.horizontal_rad);
     double most = std::max(most_at(first), most_at(last));
     for (std::size_t i = first.index + 1; i <= last.index; ++i)
         most = std::max(most, most_at({.index = i}));
@@ -172,7 +172,7 @@ std::vector<double> latitude_weights(std::vector<double> latitudes) {
 }
 
 std::vector<double> longitude_weights(const std::vector<double>& longitudes) {
-    if (longitudes.size() == 1) return {2.0 * kPi};
+    if (longitudes.size() == 1) return {kTurn_rad};
     return hat_integrals(longitudes,
                          [](double x, double other) { return 0.5 * std::abs(other - x); });
 }
@@ -223,14 +223,14 @@ GoniometerAngles angles_of(TableAngles type, const Vector3d& direction) {
             break;
     }
     const double turn_rad = std::atan2(-y, x);
-    return {std::atan2(std::hypot(x, y), z), turn_rad < 0.0 ? turn_rad + 2.0 * kPi : turn_rad};
+    return {std::atan2(std::hypot(x, y), z), turn_rad < 0.0 ? turn_rad + kTurn_rad : turn_rad};
 }
 
 double table_intensity(const BeamTable& table, const Vector3d& direction) {
     const GoniometerAngles at = angles_of(table.angles, direction);
     if (!range_of(table.vertical_rad).contains(at.vertical_rad)) return 0.0;
     if (!is_round(table) && !range_of(table.horizontal_rad).contains(at.horizontal_rad)) return 0.0;
-    const Column plane(table, place_of(at.horizontal_rad, table.horizontal_rad));
+    const TablePlane plane(table, place_of(at.horizontal_rad, table.horizontal_rad));
     return plane.at(place_of(at.vertical_rad, table.vertical_rad));
 }
 
@@ -239,8 +239,8 @@ double most_table_intensity(const BeamTable& table, const Vector3d& direction, d
     double most = most_within(table, box);
     if (table.angles == TableAngles::TypeC && !is_round(table)) {
         // What lies over the seam, where the turn begins anew.
-        for (const double turn : {-2.0 * kPi, 2.0 * kPi}) {
-            const Range turned{box.horizontal.lo + turn, box.horizontal.hi + turn};
+        for (const double turn : {-kTurn_rad, kTurn_rad}) {
+            const AngleRange turned{box.horizontal.lo + turn, box.horizontal.hi + turn};
             most = std::max(most, most_within(table, {box.vertical, turned}));
         }
     }
@@ -258,7 +258,7 @@ bool table_reaches(const BeamTable& table, const Vector3d& direction, double wit
 double table_flux(const BeamTable& table) {
     std::vector<double> vertical = table.vertical_rad;
     if (table.angles == TableAngles::TypeC)
-        for (double& angle : vertical) angle -= kRightAngle;
+        for (double& angle : vertical) angle -= kQuarterTurn_rad;
     const bool is_latitude = vertical_is_latitude(table.angles);
     const std::vector<double> of_vertical =
         is_latitude ? latitude_weights(vertical) : longitude_weights(vertical);
@@ -283,7 +283,7 @@ std::vector<TableEdge> edges_of(const BeamTable& table) {
             const double latitude = latitude_of(
                 table.angles, {.vertical_rad = nodes[end], .horizontal_rad = nodes[end]});
             const bool is_pole =
-                is_latitude && std::abs(latitude) >= kRightAngle - kAngleRounding_rad;
+                is_latitude && std::abs(latitude) >= kQuarterTurn_rad - kAngleRounding_rad;
             if (!is_pole && line_shines(table, angle, end))
                 edges.push_back({.angle = angle, .at_rad = nodes[end]});
         }

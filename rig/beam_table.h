@@ -51,7 +51,7 @@ struct BeamTable {
 [[nodiscard]] double table_intensity(const BeamTable& table, const Eigen::Vector3d& direction);
 
 // Bound of I over all directions within an angle of this one: its maximum over the smallest
-// rectangle of V and H that holds them, so that nowhere does it come from a cell that has none.
+// rectangle of V and H that holds them all.
 [[nodiscard]] double most_table_intensity(const BeamTable& table,
                                           const Eigen::Vector3d& direction,
                                           double within_rad);

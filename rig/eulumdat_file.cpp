@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace aphotic {
@@ -202,6 +203,31 @@ std::string step_text(const std::vector<double>& angles_rad) {
     return fmt::format("{:.6g}", step_deg);
 }
 
+// The part of the table within 90 degrees of the axis.
+BeamTable downward(BeamTable table) {
+    constexpr double kRightAngle = 0.5 * std::numbers::pi;
+    const std::size_t rows = table.vertical_rad.size();
+    const auto beyond = std::ranges::upper_bound(table.vertical_rad, kRightAngle);
+    if (beyond == table.vertical_rad.end()) return table;
+    if (beyond == table.vertical_rad.begin()) return {};
+    const auto kept = static_cast<std::size_t>(beyond - table.vertical_rad.begin());
+    const double share = (kRightAngle - *(beyond - 1)) / (*beyond - *(beyond - 1));
+    std::vector<double> intensity;
+    for (std::size_t h = 0; h < table.horizontal_rad.size(); ++h) {
+        const double* plane = &table.intensity[h * rows];
+        intensity.insert(intensity.end(), plane, plane + kept);
+        if (share > 0.0) intensity.push_back((1.0 - share) * plane[kept - 1] + share * plane[kept]);
+    }
+    table.vertical_rad.erase(beyond, table.vertical_rad.end());
+    if (share > 0.0) table.vertical_rad.push_back(kRightAngle);
+    table.intensity = std::move(intensity);
+    return table;
+}
+
+std::string percent_text(double share) {
+    return fmt::format("{:.4g}", 100.0 * share);
+}
+
 std::string text_labelled(const PhotometricFile& photometry, std::string_view keyword) {
     const auto found = std::ranges::find(photometry.labels, keyword, &PhotometricLabel::keyword);
     return found == photometry.labels.end() ? std::string() : found->text;
@@ -265,8 +291,9 @@ std::string eulumdat_text(const PhotometricFile& photometry, const std::string& 
             fmt::format("{}: found a table of type A or B; allowed in .ldt: type C", file_name));
     }
     const bool states_flux = !photometry.is_absolute && photometry.luminous_flux_lm.has_value();
-    const double flux_lm = states_flux ? *photometry.luminous_flux_lm : table_flux(table);
-    if (!(flux_lm > 0.0)) {
+    const double emitted_lm = table_flux(table);
+    const double flux_lm = states_flux ? *photometry.luminous_flux_lm : emitted_lm;
+    if (!(emitted_lm > 0.0 && flux_lm > 0.0)) {
         throw InputError(
             fmt::format("{}: found a table without light; allowed in .ldt: intensities per 1000 lm",
                         file_name));
@@ -290,7 +317,8 @@ std::string eulumdat_text(const PhotometricFile& photometry, const std::string& 
     for (const std::string_view keyword : {"TEST", "LUMINAIRE", "LUMCAT", "FILE", "ISSUEDATE"})
         add(text_labelled(photometry, keyword));
     add_times(9, "0");
-    add_times(2, "100");
+    add(percent_text(table_flux(downward(table)) / emitted_lm));
+    add(percent_text(emitted_lm / flux_lm));
     add("1");
     add("0");
     add("1");

@@ -36,8 +36,8 @@ namespace aphotic {
 // file_name stands in messages.
 [[nodiscard]] PhotometricFile parse_eulumdat(const std::string& file_name, std::string_view text);
 
-// Isym 1 or 0. Where no flux of lamps is known, absolute, with the table's own. Other types than C,
-// and a dark table, are an InputError.
+// Isym 1 or 0. Where no flux of lamps is known, absolute, with the table's own. Sizes, watts and
+// direct ratios are 0, unknown. Other types than C, and a dark table, are an InputError.
 [[nodiscard]] std::string eulumdat_text(const PhotometricFile& photometry,
                                         const std::string& file_name);
 

@@ -17,7 +17,10 @@ namespace aphotic {
 namespace {
 
 constexpr std::size_t kMostTilts = 1000;
+constexpr double kLeastTiltFactor = 1e-3;
+constexpr double kMostTiltFactor = 1e3;
 constexpr std::size_t kMostLamps = 1'000'000;
+constexpr double kMostLumens = 1e12;
 
 // A file's lines, one after the other.
 class LineReader {
@@ -96,10 +99,10 @@ class NumberReader {
     std::size_t line_;
 };
 
-// The year of the edition that the first line names. A file of 1986 begins with text of any kind.
-std::optional<int> edition_of(const std::string& file, std::string_view first_line) {
+// The year of the edition, of a line that names one. A file of 1986 has text of any kind alone.
+std::optional<int> edition_in(const std::string& file, std::size_t number, std::string_view line) {
     std::string name;
-    for (const char c : lower_case(std::string(first_line))) {
+    for (const char c : lower_case(std::string(line))) {
         if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) name += c;
     }
     std::string_view year = name;
@@ -118,10 +121,10 @@ std::optional<int> edition_of(const std::string& file, std::string_view first_li
     }
     if (!names_standard) return std::nullopt;
     fail_at_line(file,
-                 1,
+                 number,
                  fmt::format("found the edition {}; allowed: LM-63 of 1986, 1991, 1995, 2002 or "
                              "2019",
-                             shown_word(first_line)));
+                             shown_word(line)));
 }
 
 // "[KEYWORD] text", or any text.
@@ -164,7 +167,13 @@ LampTilt next_tilt(NumberReader& numbers) {
     }
     tilt.tilt_rad = radians_of(angles);
     for (const FileNumber& factor : numbers.next(count, "the factor of a tilt")) {
-        tilt.factor.push_back(above_zero(file, factor, "the factor of a tilt"));
+        if (factor.value < kLeastTiltFactor || factor.value > kMostTiltFactor) {
+            fail_number(file,
+                        factor,
+                        "the factor of a tilt",
+                        fmt::format("{} to {}", kLeastTiltFactor, kMostTiltFactor));
+        }
+        tilt.factor.push_back(factor.value);
     }
     return tilt;
 }
@@ -211,8 +220,11 @@ IesHeader next_header(NumberReader& numbers, int edition, PhotometricFile& photo
     const std::size_t lamps = count("the number of lamps", 1, kMostLamps);
     const FileNumber lumens = numbers.next("lumens per lamp");
     photometry.is_absolute = lumens.value == -1.0;
-    if (lumens.value < 0.0 && !photometry.is_absolute) {
-        fail_number(file, lumens, "lumens per lamp", "0 or more, or -1 for absolute photometry");
+    if ((lumens.value < 0.0 && !photometry.is_absolute) || lumens.value > kMostLumens) {
+        fail_number(file,
+                    lumens,
+                    "lumens per lamp",
+                    fmt::format("0 to {}, or -1 for absolute photometry", kMostLumens));
     }
     if (lumens.value > 0.0) photometry.luminous_flux_lm = static_cast<double>(lamps) * lumens.value;
     header.factor = factor("the multiplier of candela");
@@ -448,10 +460,10 @@ PhotometricFile parse_ies(const std::string& file_name,
                          "TILT= and the name of a file");
         }
         const std::string_view line = lines.next();
-        if (lines.line() == 1) {
-            const std::optional<int> named = edition_of(file_name, line);
-            edition = named.value_or(edition);
-            if (named) continue;
+        const std::optional<int> named = edition_in(file_name, lines.line(), line);
+        if (named) {
+            edition = *named;
+            continue;
         }
         tilt_word = tilt_in(line);
         if (!tilt_word && !line.empty()) add_label(photometry.labels, line);

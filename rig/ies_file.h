@@ -27,8 +27,10 @@
 // A table of type A or B that begins at V = 0 is mirrored below, one that begins at H = 0 to the
 // left. V may end anywhere: the light ends there.
 //
-// Sources: IESNA LM-63-2002; the codes of 2019 as PhotomPy reads them; for the lamp factor,
-// I. Ashdown's IESNA.H of 1998.
+// Sizes and watts are passed over.
+//
+// Sources: IESNA LM-63-2002; for the lamp factor of 1986 to 1995, I. Ashdown's IESNA.H (1998); for
+// the codes of 2019, PhotomPy 0.3.1.
 #pragma once
 
 #include "rig/photometric_file.h"

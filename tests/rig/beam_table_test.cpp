@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -76,19 +78,38 @@ Vector3d random_direction(std::mt19937& random) {
     return {normal(random), normal(random), normal(random)};
 }
 
-// By the midpoint rule over the sphere, in cosine and azimuth about the axis.
+// Solid angle for each unit of V and H: how far the direction moves with each, by differences.
+double solid_angle_rate(TableAngles type, double V, double H) {
+    constexpr double kStep = 1e-4;
+    const auto moved = [&](double dV, double dH) {
+        const Vector3d there = direction_at(type, {V + dV, H + dH});
+        const Vector3d back = direction_at(type, {V - dV, H - dH});
+        return Vector3d((there - back) / (2.0 * kStep));
+    };
+    return moved(kStep, 0.0).cross(moved(0.0, kStep)).norm();
+}
+
+// Gauss-Legendre with four points in each angle of each cell.
 double flux_by_quadrature(const BeamTable& table) {
-    constexpr int kSteps = 1500;
+    constexpr std::array kPoints{
+        -0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
+    constexpr std::array kWeights{
+        0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
     double sum = 0.0;
-    for (int i = 0; i < kSteps; ++i) {
-        const double z = -1.0 + 2.0 * (i + 0.5) / kSteps;
-        const double radius = std::sqrt(1.0 - z * z);
-        for (int j = 0; j < kSteps; ++j) {
-            const double phi = 2.0 * kPi * (j + 0.5) / kSteps;
-            sum += table_intensity(table, {radius * std::cos(phi), radius * std::sin(phi), z});
+    for (std::size_t v = 1; v < table.vertical_rad.size(); ++v) {
+        for (std::size_t h = 1; h < table.horizontal_rad.size(); ++h) {
+            const double half_v = 0.5 * (table.vertical_rad[v] - table.vertical_rad[v - 1]);
+            const double half_h = 0.5 * (table.horizontal_rad[h] - table.horizontal_rad[h - 1]);
+            for (std::size_t i = 0; i < 16; ++i) {
+                const double V = table.vertical_rad[v] - half_v + half_v * kPoints[i / 4];
+                const double H = table.horizontal_rad[h] - half_h + half_h * kPoints[i % 4];
+                sum += kWeights[i / 4] * kWeights[i % 4] * half_v * half_h *
+                       solid_angle_rate(table.angles, V, H) *
+                       table_intensity(table, direction_at(table.angles, {V, H}));
+            }
         }
     }
-    return sum * 4.0 * kPi / kSteps / kSteps;
+    return sum;
 }
 
 // LM-63-2002, section 3: V = 90, H = 0 of B and C and, for A, V = 0, H = 0 with V = -90 straight
@@ -209,7 +230,7 @@ TEST(TableFlux, MeetsClosedForms) {
 }
 
 TEST(TableFlux, IsTheIntegralOfTheIntensity) {
-    constexpr double kQuadrature = 1e-3;  // of the midpoint rule at the steps of a table's border
+    constexpr double kQuadrature = 1e-7;  // of the differences
     std::mt19937 random(3);
     for (const TableAngles type : {kA, kB, kC}) {
         const BeamTable table = random_table(type, random);

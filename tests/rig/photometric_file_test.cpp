@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
 #include <random>
 #include <string>
 #include <string_view>
@@ -172,9 +173,11 @@ TEST(IesFile, TakesALampFactorOfTheEditionsThatHaveOne) {
                                      "IESNA91",
                                      "IESNA:LM-63-1991",
                                      "IESNA:LM-63-1995",
-                                     "iesna: lm-63-1995"})
+                                     "iesna: lm-63-1995",
+                                     "\n\n  IESNA:LM-63-1995"})
         expect_near(parse("a.ies", header + "\n" + rest).table.intensity, {1.1, 2.2});
-    for (const std::string header : {"IESNA:LM-63-2002", "IES:LM-63-2019", "ANSI/IES LM-63-19"})
+    for (const std::string header :
+         {"IESNA:LM-63-2002", "IES:LM-63-2019", "ANSI/IES LM-63-19", "\nIES:LM-63-2019"})
         expect_near(parse("a.ies", header + "\n" + rest).table.intensity, {1.0, 2.0});
     EXPECT_EQ(error_of("a.ies", "IESNA:LM-63-2007\n" + rest),
               "a.ies:1: found the edition 'IESNA:LM-63-2007'; allowed: LM-63 of 1986, 1991, 1995, "
@@ -229,6 +232,18 @@ TEST(EulumdatFile, ReadsAbsolutePhotometry) {
     expect_near(file.table.intensity, {1000, 500, 0});
     EXPECT_TRUE(file.is_absolute);
     EXPECT_EQ(file.luminous_flux_lm, std::nullopt);
+}
+
+// 1 over the sphere has half of its flux below, and 4 pi in all; lamps of 8 pi lose half of that.
+TEST(EulumdatFile, StatesSharesOfFlux) {
+    PhotometricFile file;
+    file.table.vertical_rad = {
+        0.0, 80.0 * kRadiansPerDegree, 100.0 * kRadiansPerDegree, std::numbers::pi};
+    file.table.horizontal_rad = {0.0};
+    file.table.intensity = Numbers(4, 1.0);
+    file.luminous_flux_lm = 8.0 * std::numbers::pi;
+    const std::string text = photometric_text(file, "a.ldt");
+    EXPECT_NE(text.find("\r\n0\r\n50\r\n50\r\n1\r\n0\r\n1\r\n"), std::string::npos) << text;
 }
 
 TEST(EulumdatFile, RefusesAChoiceOfLamps) {
@@ -345,7 +360,7 @@ TEST(IesFile, NamesTheLineOfWhatItCannotRead) {
     EXPECT_EQ(error("0 1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 2\n"),
               "a.ies:4: the number of lamps: found 0; allowed: a whole number from 1 to 1000000");
     EXPECT_EQ(error("1 -2 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 2\n"),
-              "a.ies:4: lumens per lamp: found -2; allowed: 0 or more, or -1 for absolute "
+              "a.ies:4: lumens per lamp: found -2; allowed: 0 to 1000000000000, or -1 for absolute "
               "photometry");
     EXPECT_EQ(error("1 1 0 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 2\n"),
               "a.ies:4: the multiplier of candela: found 0; allowed: above 0");
@@ -362,6 +377,8 @@ TEST(IesFile, NamesTheLineOfWhatItCannotRead) {
     EXPECT_EQ(error_of("a.ies", "IESNA91\nTILT=b.tlt\n"), "a.ies:2: TILT: b.tlt: cannot be read");
     EXPECT_EQ(error_of("a.ies", "IESNA91\nTILT=INCLUDE\n1\n2\n5 10\n1 1\n"),
               "a.ies:5: the first tilt: found 5; allowed: 0, as the lamp was measured");
+    EXPECT_EQ(error_of("a.ies", "IESNA91\nTILT=INCLUDE\n1\n2\n0 10\n1 0\n"),
+              "a.ies:6: the factor of a tilt: found 0; allowed: 0.001 to 1000");
 }
 
 TEST(PhotometricFile, IsKnownByTheEndingOfItsName) {
