@@ -4,12 +4,6 @@
 # the programs in which the leak sanitizer crashes.
 add_library(aphotic_sanitizers INTERFACE)
 
-if(APHOTIC_FUZZ)
-    # Marks, in all that is built, where libFuzzer can see how far an input has come.
-    add_compile_options(-fsanitize=fuzzer-no-link)
-    add_link_options(-fsanitize=fuzzer-no-link)
-endif()
-
 if(APHOTIC_SANITIZE)
     add_compile_options(-fsanitize=${APHOTIC_SANITIZE} -fno-sanitize-recover=all
                         -fno-omit-frame-pointer)

@@ -7,9 +7,10 @@
 #           same label and is optimised, see below
 #   povray  runs POV-Ray. Under the name povray_of_few_pixels it gets the same label and weighs half
 #   cli     runs the command as a user would
-#   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser. Under
-#           the name slow_as_one the program is one test to CTest, which would else start it anew for
-#           each: for tests that share what takes long, a rendered survey
+#   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser
+#
+# Under the names unit_as_one and slow_as_one the program is one test to CTest, folder/all_LABEL, which
+# would else start it anew for each: for tests that share what takes long, a plan or a rendered survey.
 #
 # A test weighs two of CTest's processors, one where it mostly waits: POV-Ray spends two thirds of a
 # second on a few pixels, asleep. So scripts/test gives CTest twice as many as there are cores.
@@ -26,6 +27,7 @@ function(aphotic_tests label)
     # Eigen are a program of their own, optimised too.
     set(optimisation -O0)
     set(limits TIMEOUT 300 PROCESSORS 2)  # for what hangs: with sanitizers on a busy machine some take 120
+    string(REGEX REPLACE "_as_one$" "" label ${label})
     if(label STREQUAL "unit_that_computes")
         set(label unit)
         set(optimisation -O2)
@@ -34,8 +36,7 @@ function(aphotic_tests label)
     elseif(label STREQUAL "povray_of_few_pixels")
         set(label povray)
         set(limits TIMEOUT 600)
-    elseif(label MATCHES "^slow")
-        set(label slow)
+    elseif(label STREQUAL "slow" OR program MATCHES "_as_one$")
         # First, so that none is left over at the end. The table of extremes takes 260 s beside others.
         set(limits TIMEOUT 1200 PROCESSORS 2 COST 100)
     endif()
@@ -63,9 +64,9 @@ function(aphotic_tests label)
             aphotic_sanitizers aphotic_warnings)
         add_dependencies(${target} aphotic)
 
-        if(program STREQUAL "slow_as_one")
-            add_test(NAME ${folder}/all COMMAND ${target})
-            set_tests_properties(${folder}/all PROPERTIES LABELS ${label} ${limits})
+        if(program MATCHES "_as_one$")
+            add_test(NAME ${folder}/all_${label} COMMAND ${target})
+            set_tests_properties(${folder}/all_${label} PROPERTIES LABELS ${label} ${limits})
             continue()
         endif()
         # Discovered when CTest starts, so that a test program that crashes fails as a test

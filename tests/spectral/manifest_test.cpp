@@ -392,14 +392,17 @@ TEST(Manifest, MayHaveManyFramesAndWavelengths) {
     Json json = some_json();
     Json frame = json["frames"][1];
     Json wavelength = json["wavelengths"][2];
+    frame.erase("name");
+    wavelength.erase("frame");
+    wavelength.erase("lambda_nm");
+    const std::string rest_of_frame = frame.dump().substr(1);
+    const std::string rest_of_wavelength = wavelength.dump().substr(1);
     std::string frames;
     std::string wavelengths;
     for (std::size_t f = 0; f < kFrames; ++f) {
-        frame["name"] = fmt::format("band_{}", f);
-        wavelength["frame"] = kFrames - 1 - f;
-        wavelength["lambda_nm"] = f + 1;
-        frames += frame.dump() + ',';
-        wavelengths += wavelength.dump() + ',';
+        frames += fmt::format(R"({{"name": "band_{}", {},)", f, rest_of_frame);
+        wavelengths += fmt::format(
+            R"({{"frame": {}, "lambda_nm": {}, {},)", kFrames - 1 - f, f + 1, rest_of_wavelength);
     }
     frames.pop_back();
     wavelengths.pop_back();
