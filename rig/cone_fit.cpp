@@ -18,7 +18,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRightAngle_rad = 0.5 * std::numbers::pi;
+constexpr double kWidest_rad = 0.5 * std::numbers::pi;
 constexpr int kRings = 1800;  // midpoints, ten to a step
 constexpr int kTurns = 72;
 
@@ -36,10 +36,10 @@ Rings rings_of(const Beam& beam) {
                 .solid_angle_sr = VectorXd(kRings),
                 .mean = VectorXd::Zero(kRings)};
     for (Eigen::Index i = 0; i < kRings; ++i) {
-        const double theta_rad = kRightAngle_rad * (static_cast<double>(i) + 0.5) / kRings;
+        const double theta_rad = kWidest_rad * (static_cast<double>(i) + 0.5) / kRings;
         rings.theta_rad(i) = theta_rad;
         rings.solid_angle_sr(i) =
-            2.0 * std::numbers::pi * std::sin(theta_rad) * kRightAngle_rad / kRings;
+            2.0 * std::numbers::pi * std::sin(theta_rad) * kWidest_rad / kRings;
         for (int j = 0; j < kTurns; ++j) {
             const double phi_rad = 2.0 * std::numbers::pi * j / kTurns;
             const Eigen::Vector3d towards =
