@@ -3,7 +3,7 @@
 // The light of a rig's bare floor, pixel by pixel, in a number type of the caller's choice: the
 // answer to which both renderers are held where double or single precision ends.
 //
-//   L(lambda) = sum  Phi power A_k cos^n(theta) / (pi d^2)
+//   L(lambda) = sum  Phi power I / (pi d^2)
 //                    (rho cos(i) + phong max(0, m.l)^size)  exp(-K (d + r))
 //   S_c       = sum over panels of Gauss-Legendre of L(lambda) Q_c(lambda)
 //
@@ -19,15 +19,22 @@
 // kPanelPoints nodes are exact to 1e-18. What has lost kNothing of depth to the brighter end of its
 // interval is e^-kNothing of it, and left out.
 //
-// Limits: point lamps, no objects, a flat floor. Q_c is taken in double, for its table is double.
+// I is the sum of A_k cos^n(theta) S over the cones, with the letters of rig/beam.h; the flux of a
+// soft edge is integrated by parts, 2 pi / (n + 1) times the integral of S'(u) (1 - u^(n + 1)) over
+// the cosine u.
+//
+// Limits: point lamps, no objects, a flat floor. Q_c is taken in double, for its table is double;
+// so is I of a pattern, or behind a window (traced_beam.h).
 #pragma once
 
 #include "rig/rig.h"
 #include "spectral/refractive_index.h"
 #include "spectral/sensor.h"
+#include "validation/traced_beam.h"
 
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/quadrature/tanh_sinh.hpp>
 
 #include <algorithm>
 #include <array>
@@ -36,6 +43,7 @@
 #include <iterator>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace aphotic {
@@ -52,7 +60,16 @@ class ExactLight {
         std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
         curves.push_back(&rig.seafloor.reflectance);
         if (rig.water.multiple != 0.0) curves.push_back(&rig.water.absorption_per_m);
-        for (const Strobe& strobe : rig.strobes) curves.push_back(&strobe.spectrum);
+        for (const Strobe& strobe : rig.strobes) {
+            curves.push_back(&strobe.spectrum);
+            beams_.emplace_back(strobe.beam, strobe.axis);
+            on_axis_.emplace_back();
+            for (const Cone& cone : strobe.beam.cones) {
+                const bool is_flux = strobe.beam.weights == ConeWeights::Flux;
+                on_axis_.back().push_back(is_flux ? Real(cone.weight / flux_of_lobe(cone))
+                                                  : Real(cone.weight));
+            }
+        }
         knots_nm_ = union_of_knots(curves, rig.camera.range);
     }
 
@@ -90,7 +107,7 @@ class ExactLight {
     // What one strobe does to a point as the camera sees it, without wavelength.
     struct Lit {
         const Strobe* strobe;
-        Real diffuse;   // sum of power A_k cos^n(theta) cos(i) / (pi d^2)
+        Real diffuse;   // sum of power I cos(i) / (pi d^2)
         Real specular;  // the same with phong max(0, m.l)^size for cos(i)
         Real path_m;    // d + r
     };
@@ -169,23 +186,23 @@ class ExactLight {
         std::vector<Lit> lit;
         const auto view = look(column, row, lambda_nm);
         if (!view) return lit;
-        for (const Strobe& strobe : rig_.strobes) lit.push_back(lit_by(strobe, *view));
+        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) lit.push_back(lit_by(s, *view));
         return lit;
     }
 
-    [[nodiscard]] Lit lit_by(const Strobe& strobe, const View& view) const {
+    [[nodiscard]] Lit lit_by(std::size_t s, const View& view) const {
         using std::pow;
         using std::sqrt;
+        const Strobe& strobe = rig_.strobes[s];
         const Vector lamp_m = from(strobe.position_m);
         Vector path_m{};
         for (std::size_t i = 0; i < 3; ++i) path_m[i] = view.point_m[i] - lamp_m[i];
         const Real d = sqrt(dot(path_m, path_m));
-        const Real cos_theta = dot(path_m, from(strobe.axis)) / d;
         const Real cos_incidence = height_m(lamp_m) / d;
         Lit lit{.strobe = &strobe, .diffuse = 0, .specular = 0, .path_m = d + view.distance_m};
-        if (!(cos_incidence > 0) || !(cos_theta > 0)) return lit;
+        if (!(cos_incidence > 0)) return lit;
         const Real pi = boost::math::constants::pi<Real>();
-        const Real arriving = strobe.power * intensity(strobe.beam, cos_theta) / (pi * d * d);
+        const Real arriving = strobe.power * intensity(s, path_m, d) / (pi * d * d);
         lit.diffuse = arriving * cos_incidence;
         // m = v - 2 (v.n) n with n = -down, and l = -path / d
         const Real aligned =
@@ -197,28 +214,66 @@ class ExactLight {
         return lit;
     }
 
-    [[nodiscard]] static Real intensity(const Beam& beam, const Real& cos_theta) {
-        using std::cos;
+    // The integral of cos^n S: 2 pi (1 - cos^(n + 1)) / (n + 1) of a sharp edge, without a small
+    // difference, and the mean of that over a soft one.
+    [[nodiscard]] static Real flux_of_lobe(const Cone& cone) {
         using std::expm1;
         using std::log1p;
-        using std::pow;
         using std::sin;
+        const Real pi = boost::math::constants::pi<Real>();
+        const Real power = Real(cone.exponent) + 1;
+        const Real sine = sin(Real(cone.half_angle_rad));
+        if (cone.edge_rad == 0.0) {
+            return cone.exponent == 1.0
+                       ? Real(pi * sine * sine)
+                       : Real(-2 * pi * expm1(power / 2 * log1p(-sine * sine)) / power);
+        }
+        const Real none = versine(cone.half_angle_rad);
+        const Real full = versine(Real(cone.half_angle_rad) - cone.edge_rad);
+        const auto share = [&](const Real& t) {
+            const Real cosine = 1 - none + (none - full) * t;
+            if (!(cosine > 0)) return Real(6 * t * (1 - t));
+            return Real(-6 * t * (1 - t) * expm1(power * log1p(-none + (none - full) * t)));
+        };
+        boost::math::quadrature::tanh_sinh<Real> quadrature;
+        return 2 * pi / power * quadrature.integrate(share, Real(0), Real(1));
+    }
+
+    // 1 - cos.
+    [[nodiscard]] static Real versine(const Real& angle_rad) {
+        using std::sin;
+        const Real half = sin(angle_rad / 2);
+        return 2 * half * half;
+    }
+
+    [[nodiscard]] Real intensity(std::size_t s, const Vector& path_m, const Real& d) const {
+        const Strobe& strobe = rig_.strobes[s];
+        const Beam& beam = strobe.beam;
+        if (beam.window || !std::holds_alternative<std::monostate>(beam.pattern)) {
+            return beams_[s].intensity({static_cast<double>(path_m[0]),
+                                        static_cast<double>(path_m[1]),
+                                        static_cast<double>(path_m[2])});
+        }
+        const Real cos_theta = dot(path_m, from(strobe.axis)) / d;
         Real sum = 0;
-        for (const Cone& cone : beam.cones) {
-            const Real half_angle = cone.half_angle_rad;
-            if (cos_theta < cos(half_angle)) continue;
-            const Real sine = sin(half_angle);
-            const Real pi = boost::math::constants::pi<Real>();
-            const bool is_flux = beam.weights == ConeWeights::Flux;
-            // The integral of cos^n, 2 pi (1 - cos^(n + 1)) / (n + 1), without a small difference.
-            const Real power = Real(cone.exponent) + 1;
-            const Real lobe = cone.exponent == 1.0
-                                  ? Real(pi * sine * sine)
-                                  : Real(-2 * pi * expm1(power / 2 * log1p(-sine * sine)) / power);
-            const Real axial = is_flux ? Real(cone.weight / lobe) : Real(cone.weight);
-            sum += axial * (cone.exponent == 1.0 ? cos_theta : Real(pow(cos_theta, cone.exponent)));
+        for (std::size_t k = 0; k < beam.cones.size() && cos_theta > 0; ++k) {
+            sum += on_axis_[s][k] * falloff(beam.cones[k], cos_theta);
         }
         return sum;
+    }
+
+    // cos^n S
+    [[nodiscard]] static Real falloff(const Cone& cone, const Real& cos_theta) {
+        using std::cos;
+        using std::pow;
+        const Real none = cos(Real(cone.half_angle_rad));
+        if (cos_theta < none) return 0;
+        const Real lobe =
+            cone.exponent == 1.0 ? cos_theta : Real(pow(cos_theta, Real(cone.exponent)));
+        const Real full = cos(Real(cone.half_angle_rad) - cone.edge_rad);
+        if (cos_theta >= full) return lobe;
+        const Real t = (cos_theta - none) / (full - none);
+        return lobe * t * t * (3 - 2 * t);
     }
 
     [[nodiscard]] Real radiance_of(const std::vector<Lit>& lit, const Real& lambda_nm) const {
@@ -286,6 +341,9 @@ class ExactLight {
     Rig rig_;
     Vector down_;
     std::vector<double> knots_nm_;
+    // By strobe.
+    std::vector<TracedBeam> beams_;
+    std::vector<std::vector<Real>> on_axis_;  // A_k
 };
 
 }  // namespace aphotic

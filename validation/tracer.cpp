@@ -65,17 +65,12 @@ double bend_of_light(double k, double n, bool is_floor, double phong_size) {
 constexpr std::array<std::array<double, 2>, 5> kCornersAndMiddle{
     {{0.0, 0.0}, {-0.5, -0.5}, {-0.5, 0.5}, {0.5, -0.5}, {0.5, 0.5}}};
 
-// In shares of its sides from its middle. The emitter's own frame: its normal is the axis; forward,
-// as it lies in its plane, or down within a millionth of a radian of fore and aft (docs/rig.md).
+// In shares of its sides from its middle.
 Vector3d place_on_emitter(const Strobe& strobe, double x, double y) {
     if (!strobe.emitter) return strobe.position_m;
-    Vector3d starboard_side = strobe.axis.cross(Vector3d::UnitX());
-    constexpr double kForeAndAft = 1e-6;
-    if (starboard_side.norm() < kForeAndAft) starboard_side = strobe.axis.cross(Vector3d::UnitZ());
-    starboard_side.normalize();
-    const Vector3d forward_side = starboard_side.cross(strobe.axis);
-    return strobe.position_m + x * strobe.emitter->across_m * starboard_side +
-           y * strobe.emitter->along_m * forward_side;
+    const StrobeSides sides = sides_about(strobe.axis);
+    return strobe.position_m + x * strobe.emitter->across_m * sides.across +
+           y * strobe.emitter->along_m * sides.along;
 }
 
 }  // namespace
@@ -85,22 +80,7 @@ Tracer::Tracer(const Rig& rig, const TraceOptions& options)
       options_(options),
       exact_down_(vertical(rig.sled)),
       down_(exact_down_.cast<double>()) {
-    for (const Strobe& strobe : rig_.strobes) {
-        axial_intensity_.emplace_back();
-        cos_edge_.emplace_back();
-        for (const Cone& cone : strobe.beam.cones) {
-            // The integral of cos^n over the cone; narrow ones leave next to nothing of 1 - cos^n.
-            const double sine2 = std::pow(std::sin(cone.half_angle_rad), 2);
-            const double power = cone.exponent + 1.0;
-            const double lobe = cone.exponent == 1.0
-                                    ? std::numbers::pi * sine2
-                                    : -2.0 * std::numbers::pi *
-                                          std::expm1(0.5 * power * std::log1p(-sine2)) / power;
-            const bool is_flux = strobe.beam.weights == ConeWeights::Flux;
-            axial_intensity_.back().push_back(is_flux ? cone.weight / lobe : cone.weight);
-            cos_edge_.back().push_back(std::cos(cone.half_angle_rad));
-        }
-    }
+    for (const Strobe& strobe : rig_.strobes) beams_.emplace_back(strobe.beam, strobe.axis);
     surfaces_.push_back({.reflectance = rig_.seafloor.reflectance,
                          .phong = rig_.seafloor.phong,
                          .phong_size = rig_.seafloor.phong_size});
@@ -140,8 +120,7 @@ double Tracer::spacing_m(std::size_t s, double d_m, bool is_floor) const {
     for (const Surface& surface : surfaces_) {
         if (surface.phong > 0.0) phong_size = std::max(phong_size, surface.phong_size);
     }
-    double n = 0.0;
-    for (const Cone& cone : rig_.strobes[s].beam.cones) n = std::max(n, cone.exponent);
+    const double n = beams_[s].steepness();
     const ArrayXd depth = attenuation_per_m_ * d_m;
     const ArrayXd bend =
         depth.unaryExpr([&](double k) { return bend_of_light(k, n, is_floor, phong_size); });
@@ -396,29 +375,15 @@ bool Tracer::is_blocked(const Lamp& lamp, const View& view, Stretch stretch) con
 }
 
 Tracer::Contribution Tracer::light(const Lamp& lamp, const View& view) const {
-    const Strobe& strobe = rig_.strobes[lamp.strobe];
     const Vector3d from_lamp = view.point_m - lamp.position_m;
     const double d2 = from_lamp.squaredNorm();
     const double d = std::sqrt(d2);
     // On the floor by the lamp's height, of which grazing light loses no digits.
     const double cos_incidence =
         (view.surface == 0 ? height_m(lamp.position_m) : -from_lamp.dot(view.normal)) / d;
-    const double cos_theta = from_lamp.dot(strobe.axis) / d;
     Contribution found{.diffuse = 0.0, .specular = 0.0, .path_m = d + view.distance_m};
-    if (cos_incidence <= 0.0 || cos_theta <= 0.0) return found;
-
-    double axial = 0.0;  // of cones that fall as the cosine
-    double other = 0.0;
-    for (std::size_t k = 0; k < strobe.beam.cones.size(); ++k) {
-        if (cos_theta < cos_edge_[lamp.strobe][k]) continue;
-        const double exponent = strobe.beam.cones[k].exponent;
-        if (exponent == 1.0) {
-            axial += axial_intensity_[lamp.strobe][k];
-        } else {
-            other += axial_intensity_[lamp.strobe][k] * std::pow(cos_theta, exponent);
-        }
-    }
-    const double intensity = axial * cos_theta + other;
+    if (cos_incidence <= 0.0) return found;
+    const double intensity = beams_[lamp.strobe].intensity(from_lamp);
     if (intensity == 0.0 || is_blocked(lamp, view)) return found;
     const double arriving = intensity / (lamps_of_strobe_[lamp.strobe] * d2);
     found.diffuse = arriving * cos_incidence;
@@ -472,7 +437,7 @@ void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
     }
 }
 
-bool Tracer::is_on_cone_edge(double column,
+bool Tracer::is_on_beam_edge(double column,
                              double row,
                              const std::array<Index, 2>& ends,
                              double within_px) const {
@@ -480,45 +445,31 @@ bool Tracer::is_on_cone_edge(double column,
     if (!look(column, row, ends[0], views[0]) || !look(column, row, ends[1], views[1])) {
         return false;
     }
-    const double rounding_rad = rig_.camera.port ? kEdgeBehindPortRad : kEdgeRad;
-    // The signed angle from a cone's edge, and how far a strobe's lamps spread about it.
-    const auto is_on_edge_of = [&](const Apex& apex, const Cone& cone) {
-        std::array<double, 2> beyond_rad{};
-        // A pixel covers more of a floor that is seen aslant.
-        constexpr double kAslant = 1.5;
-        const double pixel_rad = rig_.camera.pixel_pitch_m / rig_.camera.focal_length_m;
-        const Vector3d& axis = rig_.strobes[apex.strobe].axis;
-        double spread_rad = rounding_rad;
+    // A pixel covers more of a floor that is seen aslant.
+    constexpr double kAslant = 1.5;
+    const double pixel_rad = rig_.camera.pixel_pitch_m / rig_.camera.focal_length_m;
+    return std::ranges::any_of(apexes_, [&](const Apex& apex) {
+        std::array<Vector3d, 2> paths_m;
+        // How far a strobe's lamps spread about the edge, at least.
+        double spread_rad = rig_.camera.port ? kEdgeBehindPortRad : kEdgeRad;
         for (std::size_t e = 0; e < ends.size(); ++e) {
-            const Vector3d path = views[e].point_m - apex.position_m;
-            beyond_rad[e] =
-                std::atan2(path.cross(axis).norm(), path.dot(axis)) - cone.half_angle_rad;
-            spread_rad = std::max(
-                spread_rad, kAslant * within_px * pixel_rad * views[e].distance_m / path.norm());
-            spread_rad = std::max(spread_rad, std::asin(std::min(1.0, apex.reach_m / path.norm())));
+            paths_m.at(e) = views.at(e).point_m - apex.position_m;
+            const double d_m = paths_m.at(e).norm();
+            spread_rad = std::max({spread_rad,
+                                   kAslant * within_px * pixel_rad * views.at(e).distance_m / d_m,
+                                   std::asin(std::min(1.0, apex.reach_m / d_m))});
         }
-        return std::abs(beyond_rad[0]) <= spread_rad || std::abs(beyond_rad[1]) <= spread_rad ||
-               (beyond_rad[0] > 0.0) != (beyond_rad[1] > 0.0);
-    };
-    for (const Apex& apex : apexes_) {
-        const Strobe& strobe = rig_.strobes[apex.strobe];
-        for (const Cone& cone : strobe.beam.cones) {
-            // A cone of 90 degrees ends where its cosine does: there is no step, unless it falls
-            // more steeply than that. Nor is there one where there is no light.
-            const bool has_step = (cone.half_angle_rad < 0.5 * std::numbers::pi - rounding_rad ||
-                                   cone.exponent < 1.0) &&
-                                  cone.weight * strobe.power > 0.0;
-            if (has_step && is_on_edge_of(apex, cone)) return true;
-        }
-    }
-    return false;
+        return rig_.strobes[apex.strobe].power > 0.0 &&
+               beams_[apex.strobe].is_on_edge(paths_m, spread_rad);
+    });
 }
 
-// Its cones aside: a lamp before the surface, which is before the lamp, with nothing between.
+// Its beam aside: a lamp before the surface, which is before the lamp, with nothing between.
 bool Tracer::shines_on(const Lamp& lamp, const View& view) const {
     const Vector3d from_lamp = view.point_m - lamp.position_m;
+    const bool is_ahead = from_lamp.dot(rig_.strobes[lamp.strobe].axis) > 0.0;
     return from_lamp.dot(view.normal) < 0.0 &&
-           from_lamp.dot(rig_.strobes[lamp.strobe].axis) > 0.0 && !is_blocked(lamp, view);
+           (is_ahead || beams_[lamp.strobe].shines_backwards()) && !is_blocked(lamp, view);
 }
 
 bool Tracer::shows_the_same(const View& a, const View& b) const {
@@ -677,7 +628,7 @@ bool Tracer::is_on_edge(std::size_t pixel,
     const double column = static_cast<double>(pixel % width) + 0.5;
     const std::size_t rows_above = pixel / width;
     const double row = static_cast<double>(rows_above) + 0.5;
-    return is_on_cone_edge(column, row, ends, within_px) ||
+    return is_on_beam_edge(column, row, ends, within_px) ||
            (!shapes_.empty() && is_on_object_edge(column, row, range, within_px));
 }
 

@@ -5,30 +5,31 @@
 //
 // For every pixel and every wavelength of its grid: the camera's ray, through the port where
 // there is one (each wavelength bent by its own indices), to the floor or to the object before it
-// (shapes.h); from there every strobe, every lamp of its emitter that no object hides, every cone:
+// (shapes.h); from there every strobe, every lamp of its emitter that no object hides:
 //
-//   L(lambda) = sum  Phi power A_k cos^n(theta) / (N d^2)
+//   L(lambda) = sum  Phi power I(-l) / (N d^2)
 //                    (rho cos(i) + phong max(0, m.l)^size) / pi  exp(-K (d + r))
 //   S_c       = sum_j w_cj L(lambda_j)
 //
-// theta  angle off the strobe's axis, within the cone      d  lamp to surface [m]
+// I      the beam's intensity (traced_beam.h)              d  lamp to surface [m]
 // i      angle of incidence at the surface                 r  surface to port or pupil [m]
 // m      the camera's ray mirrored at the surface          l  from the surface to the lamp
-// N      lamps of the emitter                              n    the cone's exponent
-// A_k    (n + 1) alpha_k / (2 pi (1 - cos^(n + 1)(gamma))), alpha_k / (pi sin^2(gamma)) if n = 1
+// N      lamps of the emitter
 //
 // Double precision, but for heights over the floor and the angle to the horizon, which are small
 // differences at the extremes: these are taken in long double. Light of which the water leaves less
 // than e^-kBlackDepth is black: doubles end soon after. The spectral grid is exact to
 // kSpectralError of a channel's signal (full_spectrum.h). An emitter of a size is as many
 // equal lamps as hold the smooth part of its light to kEmitterError of the value, at every plane's
-// wavelength and in every signal; a cone's edge is a staircase with as many steps. Every term of a
-// sum has the same sign, so a sum of n terms is right to n 1.1e-16.
+// wavelength and in every signal (of a beam with another falloff than cos^n, by an estimate:
+// TracedBeam::steepness()); a beam's edge is a staircase with as many steps. Every term of a sum
+// has the same sign, so a sum of n terms is right to n 1.1e-16.
 #pragma once
 
 #include "rig/rig.h"
 #include "spectral/bands.h"
 #include "validation/shapes.h"
+#include "validation/traced_beam.h"
 
 #include <Eigen/Core>
 
@@ -101,9 +102,9 @@ class Tracer {
 
     // 1 for every pixel, row by row, whose value is a matter of rounding, or steps, somewhere in
     // the range:
-    //   cones    its centre is within kEdgeRad of a cone's edge (kEdgeBehindPortRad behind a port,
+    //   beams    its centre is within kEdgeRad of a beam's edge (kEdgeBehindPortRad behind a port,
     //            whose index POV-Ray keeps in single precision), an emitter of a size has lamps on
-    //            both sides of it, or dispersion takes it across
+    //            both sides of it, or dispersion takes it across; a smooth beam has none
     //   objects  within kEdgePx, or by dispersion, the image shows another face or other lamps
     //            shine on it; an emitter is hidden in part; a blocker is nearer than
     //            kNoShadowWithin_m; a lamp grazes a mesh; light changes by kSteepest through
@@ -126,7 +127,7 @@ class Tracer {
         std::size_t strobe;
         Eigen::Vector3d position_m;
     };
-    // Where a strobe's cones have their edges from, and how far its lamps lie about it.
+    // Where a strobe's beam has its edges from, and how far its lamps lie about it.
     struct Apex {
         std::size_t strobe;
         Eigen::Vector3d position_m;
@@ -140,8 +141,8 @@ class Tracer {
     };
     // What a lamp does to a point as the camera sees it, without wavelength.
     struct Contribution {
-        double diffuse = 0.0;   // sum of A cos^n(theta) cos(i) / (N d^2)  [1/m^2]
-        double specular = 0.0;  // sum of A cos^n(theta) (m.l)^size phong / (N d^2)
+        double diffuse = 0.0;   // sum of I cos(i) / (N d^2)  [1/m^2]
+        double specular = 0.0;  // sum of I (m.l)^size phong / (N d^2)
         double path_m = 0.0;    // d + r
     };
     struct View {
@@ -187,7 +188,7 @@ class Tracer {
                                      const View& view,
                                      double lambda_nm) const;
     [[nodiscard]] bool shines_on(const Lamp& lamp, const View& view) const;
-    [[nodiscard]] bool is_on_cone_edge(double column,
+    [[nodiscard]] bool is_on_beam_edge(double column,
                                        double row,
                                        const std::array<Index, 2>& ends,
                                        double within_px) const;
@@ -209,6 +210,7 @@ class Tracer {
     TraceOptions options_;
     WideVector exact_down_;
     Eigen::Vector3d down_;
+    std::vector<TracedBeam> beams_;  // by strobe
     std::vector<Surface> surfaces_;
     std::vector<TracedShape> shapes_;  // of the objects
     std::vector<Lamp> lamps_;
@@ -216,8 +218,6 @@ class Tracer {
     std::vector<Apex> apexes_;
     std::vector<EmitterLamps> grids_;  // by strobe
     std::vector<double> lamps_of_strobe_;
-    std::vector<std::vector<double>> axial_intensity_;  // by strobe and cone
-    std::vector<std::vector<double>> cos_edge_;
 
     // By wavelength: the grid's first, then the planes'.
     std::size_t signal_nodes_ = 0;
