@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A beam in POV-Ray's words: the array that Aphotic_Strobe of plugin/include/aphotic.inc makes
-// spotlights of, {half angle in degrees, share of the lamp's flux} for each cone, and its exponent
-// where one has another than 1.
+// A beam in POV-Ray's words, for Aphotic_Strobe of plugin/include/aphotic.inc.
+//
+// Cones in water are spotlights: an array of {half angle in degrees, share of the lamp's flux} for
+// each, with its exponent and the degrees of its soft edge where one has them. All else, a pattern
+// or whatever shines through a window, is a point light in a filter shell, whose transmittance is a
+// function of the direction:
+//
+//   table    bilinear in its own angles, its nodes all in one spline: plane after plane
+//   optics   the area of a disc within a rectangle
+//   window   the direction in air, and the factor there
 #pragma once
 
 #include "rig/beam.h"
@@ -14,7 +21,14 @@ namespace aphotic {
 // Lights of the scene, for each of the strobe's lamps.
 [[nodiscard]] std::size_t light_count(const Beam& beam);
 
-// Of a beam with lights.
+[[nodiscard]] bool needs_shell(const Beam& beam);
+
+// The array, of a beam with lights and without a shell.
 [[nodiscard]] std::string beam_sdl(const Beam& beam);
+
+// Of one with a shell: functions whose names begin with this one, and the last of which is it, and
+// what makes the beam of it.
+[[nodiscard]] std::string pattern_functions_sdl(const Beam& beam, const std::string& name);
+[[nodiscard]] std::string pattern_sdl(const Beam& beam, const std::string& name);
 
 }  // namespace aphotic

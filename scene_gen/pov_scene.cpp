@@ -113,6 +113,50 @@ void require_few_enough_lights(const Rig& rig, std::span<const LampGrid> lamps) 
                     rig.water.is_clear() ? "clear water" : "water"));
 }
 
+struct PlacedLamp {
+    const Strobe* strobe;
+    Vector3d at_m;
+};
+
+// From each lamp with a shell to any other, the least.
+double least_way_to_shell_m(const Rig& rig, std::span<const LampGrid> grids) {
+    // From here on they may as well be one lamp, and scenes cannot tell them apart.
+    constexpr double kOnePlace_m = 1e-6;
+    std::vector<PlacedLamp> lamps;
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        for (const Vector3d& at_m : lamp_positions_m(rig.strobes[s], grids[s])) {
+            lamps.push_back({&rig.strobes[s], at_m});
+        }
+    }
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const PlacedLamp& a : lamps) {
+        if (!needs_shell(a.strobe->beam)) continue;
+        for (const PlacedLamp& b : lamps) {
+            if (&a == &b) continue;
+            const double apart_m = (a.at_m - b.at_m).norm();
+            least_m = std::min(least_m, apart_m);
+            if (apart_m > kOnePlace_m) continue;
+            throw InputError(fmt::format(
+                "strobes '{}' and '{}' have lamps in one place, and the beam '{}' is no "
+                "sum of cones in water; allowed: lamps a micrometre apart",
+                a.strobe->name,
+                b.strobe->name,
+                a.strobe->beam.name));
+        }
+    }
+    return least_m;
+}
+
+// A shell, a thousandth of a unit in size, keeps other lamps' light from what lies behind it: of
+// directions from them, a millionth at most, and on a floor a spot that no pixel sees.
+double unit_with_shells_m(const Rig& rig, std::span<const LampGrid> lamps) {
+    constexpr double kMost_m = 0x1p-7;
+    const double unit_m = scene_unit_m(rig);
+    if (std::ranges::none_of(rig.strobes, needs_shell, &Strobe::beam)) return unit_m;
+    const double least_m = std::min(kMost_m, least_way_to_shell_m(rig, lamps));
+    return std::min(unit_m, std::exp2(std::floor(std::log2(least_m))));
+}
+
 void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid) {
     require_over_floor(rig.sled, strobe, grid);
     if (!rig.camera.port) return;
@@ -171,6 +215,8 @@ std::vector<StrobeInScene> strobes_in_scene(const Rig& rig,
         };
         StrobeInScene in_scene{.beam = parts_that(strobe.beam, is_wanted),
                                .lamps = lamps[strobes.size()]};
+        // All cones behind a window are one light.
+        if (needs_shell(in_scene.beam)) in_scene.beam = strobe.beam;
         if (options.soft_edges) in_scene.soft_edge_deg = soft_edge_deg(rig, strobe);
         strobes.push_back(std::move(in_scene));
     }
@@ -318,10 +364,13 @@ Parts parts_of(const Rig& rig, std::span<const LampGrid> lamps, const SceneOptio
                 .reflectances = reflectances_of(rig, options),
                 .rig = "",
                 .fade_m = fade_distance_m(rig, options),
-                .unit_m = options.user_scene ? 1.0 : scene_unit_m(rig),
+                .unit_m = options.user_scene ? 1.0 : unit_with_shells_m(rig, lamps),
                 .brightest = {}};
-    parts.rig =
-        rig_sdl(rig, strobes_in_scene(rig, lamps, options), parts.lamps, parts.reflectances);
+    parts.rig = rig_sdl(rig,
+                        strobes_in_scene(rig, lamps, options),
+                        parts.lamps,
+                        parts.reflectances,
+                        options.user_scene ? SceneAuthor::User : SceneAuthor::Ours);
     if (options.user_scene) {
         parts.brightest = [&rig, &scene = *options.user_scene](double lambda_nm) {
             return scene.brightest_radiance(rig, lambda_nm);

@@ -97,7 +97,8 @@ std::string quick_look_sdl(const Rig& rig, const std::filesystem::path& rig_fold
     for (std::size_t c = 0; c < kQuickLambda_nm.size(); ++c) {
         band.attenuation_per_m[c] = rig.water.attenuation_per_m(kQuickLambda_nm[c]);
     }
-    const std::string rig_text = rig_sdl(rig, strobes_of(rig), band.lamps, band.reflectances);
+    const std::string rig_text =
+        rig_sdl(rig, strobes_of(rig), band.lamps, band.reflectances, SceneAuthor::User);
     return fmt::format(
         "// This work is licensed under the BSD 3-Clause License "
         "(SPDX-License-Identifier: BSD-3-Clause).\n"

@@ -6,6 +6,9 @@
 #include "scene_gen/pov_objects.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 namespace aphotic {
 
@@ -33,12 +36,61 @@ std::string emitter_sdl(const Strobe& strobe, LampGrid lamps) {
                        lamps.along);
 }
 
+// The beams that the scene calls: those with a shell, one for all their strobes, and all where it
+// is not ours.
+std::vector<Beam> called_beams(const std::vector<StrobeInScene>& strobes, SceneAuthor author) {
+    std::vector<Beam> beams;
+    for (const StrobeInScene& strobe : strobes) {
+        if (light_count(strobe.beam) == 0) continue;
+        if (author == SceneAuthor::Ours && !needs_shell(strobe.beam)) continue;
+        if (std::ranges::find(beams, strobe.beam) == beams.end()) beams.push_back(strobe.beam);
+    }
+    return beams;
+}
+
+// Where they are in that order.
+std::string pattern_name(std::size_t index) {
+    return fmt::format("Aphotic_Rig_Pattern_{}", index + 1);
+}
+
+std::string beams_sdl(const std::vector<Beam>& beams) {
+    if (beams.empty()) return "";
+    std::string functions;
+    std::vector<std::string> names;
+    std::string cases;
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+        const std::string name = pattern_name(i);
+        names.push_back(sdl_text(scene_name(beams[i].name)));
+        const bool has_shell = needs_shell(beams[i]);
+        if (has_shell) functions += pattern_functions_sdl(beams[i], name);
+        cases += fmt::format("      #case ({}) {} #break\n",
+                             i,
+                             has_shell ? pattern_sdl(beams[i], name) : beam_sdl(beams[i]));
+    }
+    return fmt::format(
+        "{}#declare Aphotic_Beam_Names = array[{}] {{{}}}\n"
+        "#macro Aphotic_Rig_Beam (Index)\n"
+        "   #switch (Index)\n{}   #end\n"
+        "#end\n",
+        functions,
+        names.size(),
+        fmt::join(names, ", "),
+        cases);
+}
+
 std::string strobe_sdl(const Strobe& strobe,
                        const StrobeInScene& in_scene,
+                       const std::vector<Beam>& beams,
                        std::span<const NamedSpectrum> lamps) {
     std::string sdl = fmt::format("   // Strobe: {}\n", sdl_comment(strobe.name));
     if (light_count(in_scene.beam) == 0) return sdl + "   // lights nothing in view\n";
-    sdl += "   #local Beam = " + beam_sdl(in_scene.beam) + "\n";
+    sdl += "   #local Beam = ";
+    if (needs_shell(in_scene.beam)) {
+        const auto at = std::ranges::find(beams, in_scene.beam) - beams.begin();
+        sdl += fmt::format("Aphotic_Rig_Beam ({})\n", at);
+    } else {
+        sdl += beam_sdl(in_scene.beam) + "\n";
+    }
     if (in_scene.soft_edge_deg) {
         sdl += fmt::format("   #declare Aphotic_Soft_Edge = {};\n",
                            sdl_number(*in_scene.soft_edge_deg));
@@ -71,12 +123,15 @@ std::string seafloor_sdl(const Rig& rig, std::span<const NamedSpectrum> reflecta
 std::string rig_sdl(const Rig& rig,
                     const std::vector<StrobeInScene>& strobes,
                     std::span<const NamedSpectrum> lamps,
-                    std::span<const NamedSpectrum> reflectances) {
+                    std::span<const NamedSpectrum> reflectances,
+                    SceneAuthor author) {
+    const std::vector<Beam> beams = called_beams(strobes, author);
     std::string sdl = fmt::format("// The rig: {}\n", sdl_comment(rig.title));
+    sdl += beams_sdl(beams);
     sdl += camera_sdl(rig.camera);
     sdl += "#macro Aphotic_Rig_Strobes ()\n";
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        sdl += strobe_sdl(rig.strobes[s], strobes[s], lamps);
+        sdl += strobe_sdl(rig.strobes[s], strobes[s], beams, lamps);
     }
     sdl += "#end\n" + seafloor_sdl(rig, reflectances) + pov_objects(rig, reflectances);
     return sdl +

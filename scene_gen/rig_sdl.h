@@ -7,6 +7,7 @@
 //   Aphotic_Rig ()           both, and the water
 //   Aphotic_Rig_Seafloor ()  its floor
 //   Aphotic_Rig_Objects ()   its objects
+//   Aphotic_Rig_Beam (I)     its beams, as Aphotic_Beam_Names has them: see SceneAuthor
 //
 // in the sled's frame, in the scene's unit.
 #pragma once
@@ -29,10 +30,14 @@ struct StrobeInScene {
     std::optional<double> soft_edge_deg{};
 };
 
+// Whose words follow the rig's: a user may call any of its beams by name, with Aphotic_Beam.
+enum class SceneAuthor { Ours, User };
+
 // lamps and reflectances: the names of the rig's spectra, as the scene's band has them.
 [[nodiscard]] std::string rig_sdl(const Rig& rig,
                                   const std::vector<StrobeInScene>& strobes,
                                   std::span<const NamedSpectrum> lamps,
-                                  std::span<const NamedSpectrum> reflectances);
+                                  std::span<const NamedSpectrum> reflectances,
+                                  SceneAuthor author);
 
 }  // namespace aphotic

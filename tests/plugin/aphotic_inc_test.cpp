@@ -106,8 +106,13 @@ TEST_F(AphoticInc, AxialIntensityCarriesItsShareOfTheFlux) {
     EXPECT_NEAR(value("Aphotic_Axial_Intensity (90, 0.5)"), 0.5 / kPi, kDigits);
     EXPECT_NEAR(value("Aphotic_Axial_Intensity (30, 1)"), 4.0 / kPi, kDigits);
     // The integral of cos^3 over 60 degrees is 2 pi/4 (1 - 1/16).
-    EXPECT_NEAR(value("Aphotic_Lobe_Intensity (60, 1, 3)"), 32.0 / (15.0 * kPi), kDigits);
-    EXPECT_NEAR(value("Aphotic_Lobe_Intensity (90, 1, 0)"), 0.5 / kPi, kDigits);
+    EXPECT_NEAR(value("Aphotic_Lobe_Intensity (60, 1, 3, 0)"), 32.0 / (15.0 * kPi), kDigits);
+    EXPECT_NEAR(value("Aphotic_Lobe_Intensity (90, 1, 0, 0)"), 0.5 / kPi, kDigits);
+    // An edge over all of a hemisphere makes c^2 (3 - 2 c) of it, whose integral is 2 pi/2, and of
+    // c^3 (3 - 2 c) 2 pi 7/20.
+    constexpr double kSimpson = 1e-9;
+    EXPECT_NEAR(value("Aphotic_Lobe_Intensity (90, 1, 0, 90)"), 1.0 / kPi, kSimpson);
+    EXPECT_NEAR(value("Aphotic_Lobe_Intensity (90, 1, 1, 90)"), 10.0 / (7.0 * kPi), kSimpson);
 }
 
 TEST_F(AphoticInc, ReflectanceIsTheBandsAsAVector) {
@@ -139,6 +144,42 @@ TEST_F(AphoticInc, AStrobeIsItsConesFromItsLamps) {
     expect_equal_images(strobe, well(in_band(odd_band(), cones)), kTwoHalfFloats);
 }
 
+// A pattern is what it says, in whichever unit and however the sled is turned; and the rig's own
+// beams are had by name.
+TEST_F(AphoticInc, APatternIsItsFunction) {
+    const std::string cone = "#declare Beam = array[1][2] {{90, 1}}\n";
+    const std::string pattern =
+        "#declare Lambert = function (x, y, z) { max(0, z) / pi }\n"
+        "#declare Beam = Aphotic_Pattern (Lambert, 0.4)\n";
+    const std::string strobe =
+        "Aphotic_Strobe (<0.3, 0.1, 0> / Aphotic_Unit, <-0.2, 0.1, 1>, Beam, \"flash\", 2, "
+        "<0.2 / Aphotic_Unit, 0.1 / Aphotic_Unit, 2, 3>)\n";
+    for (const char* setting : {"",
+                                "#declare Aphotic_Unit = 0.01;\n",
+                                "#declare Aphotic_Sled = transform { rotate <20, -30, 70> "
+                                "translate <3, -2, 5> }\n"}) {
+        const auto scene = [&](const std::string& beam) {
+            return in_band(odd_band(),
+                           setting + beam + "Aphotic_Camera (1, 2)\nAphotic_Water ()\n" + strobe +
+                               "Aphotic_Seafloor (2 / Aphotic_Unit, 9, -7, \"light\")\n");
+        };
+        expect_equal_images(well(scene(pattern)), well(scene(cone)), kTwoHalfFloats);
+    }
+}
+
+TEST_F(AphoticInc, AQuickLookKnowsTheRigsBeamsByName) {
+    const std::string begin =
+        "#version 3.7;\n#include \"aphotic.inc\"\nAphotic_Rig_Camera ()\n"
+        "Aphotic_Seafloor (2, 5, 0, \"sand\")\n";
+    const auto lit_by = [&](const std::string& beam) {
+        return well(begin + "Aphotic_Strobe (<0.5, 0, 0>, <-0.47, 0, 0.88>, " + beam +
+                    ", \"xenon-flash\", 1, 0)\n");
+    };
+    expect_equal_images(lit_by("Aphotic_Beam (\"fresnel\")"),
+                        lit_by("array[3][2] {{10, 0.165}, {26.565, 0.094}, {90, 0.741}}"),
+                        kTwoHalfFloats);
+}
+
 // The lamps of an emitter stand where the generator has them, also where it shines so nearly fore
 // or aft that forward in its plane is hardly told from any other way. For the macro that makes
 // them, one that says where they are.
@@ -146,8 +187,8 @@ TEST_F(AphoticInc, AnEmittersLampsAreTheGenerators) {
     const Emitter emitter{.across_m = 0.2, .along_m = 0.1};
     std::vector<Eigen::Vector3d> wanted_m;
     std::string scene =
-        "#macro Aphotic_Light (Position, Axis, Half_Angle, Axial_Intensity, Exponent, Lamp, Power, "
-        "Caller)\n"
+        "#macro Aphotic_Light (Position, Axis, Half_Angle, Axial_Intensity, Exponent, Edge, Lamp, "
+        "Power, Caller)\n"
         "   #debug concat(\"lamp \", vstr(3, Position, \" \", 0, 15), \"\\n\")\n#end\n"
         "#declare Beam = array[1][2] {{60, 1}}\n";
     for (const double end : {1.0, -1.0}) {
@@ -461,6 +502,7 @@ void PrintTo(const Misuse& misuse, std::ostream* out) {
     *out << misuse.name;
 }
 
+const std::string kLambert = "#declare Lambert = function (x, y, z) { max(0, z) / pi }\n";
 const std::string kBeam = "#declare Beam = array[1][2] {{60, 1}}\n";
 
 const std::vector<Misuse> kMisuses{
@@ -532,8 +574,34 @@ const std::vector<Misuse> kMisuses{
      "#declare Beam = array[2] {60, 1}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
      "Aphotic_Strobe: Beam must be an array [n][2]"},
     {"BeamOfFourColumns",
-     "#declare Beam = array[1][4] {{60, 1, 2, 3}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
+     "#declare Beam = array[1][5] {{60, 1, 2, 3, 4}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
      "Aphotic_Strobe: Beam must be an array [n][2]"},
+    {"PatternOfNone",
+     "#declare Beam = array[1] {0}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
+     "Aphotic_Strobe: Beam must be an array [n][2]"},
+    {"EdgeWiderThanTheCone",
+     "#declare Beam = array[1][4] {{60, 1, 1, 61}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
+     "found an edge of 61.000000 degrees; allowed: 0 to the cone's half angle"},
+    {"PatternOverItsMost",
+     kLambert + "Aphotic_Strobe (0, z, Aphotic_Pattern (Lambert, 0.3), \"arc\", 1, 0)",
+     "Aphotic_Pattern: found an intensity of 0.318310 towards <0.000, 0.000, 1.000>; allowed: 0 to "
+     "Most, 0.300000"},
+    {"PatternUnderZero",
+     kLambert + "Aphotic_Strobe (0, z, Aphotic_Pattern (Lambert, -1), \"arc\", 1, 0)",
+     "Aphotic_Pattern: found Most -1.000000; allowed: over 0"},
+    {"LampInAShell",
+     kLambert + kBeam +
+         "Aphotic_Strobe (0, z, Aphotic_Pattern (Lambert, 0.4), \"arc\", 1, 0)\n"
+         "Aphotic_Strobe (<0.002, 0, 0>, z, Beam, \"arc\", 1, 0)",
+     "Aphotic_Strobe: found a lamp 0.002000 units from another"},
+    {"ShellRoundALamp",
+     kLambert + kBeam + "Aphotic_Strobe (<0.002, 0, 0>, z, Beam, \"arc\", 1, 0)\n" +
+         "Aphotic_Strobe (0, z, Aphotic_Pattern (Lambert, 0.4), \"arc\", 1, 0)",
+     "Aphotic_Strobe: found a lamp 0.002000 units from another"},
+    {"UnknownBeam",
+     "#declare Aphotic_Beam_Names = array[1] {\"led\"}\n"
+     "Aphotic_Strobe (0, z, Aphotic_Beam (\"lad\"), \"arc\", 1, 0)",
+     "Aphotic_Beam: found \"lad\"; allowed here: led"},
     {"NegativeExponent",
      "#declare Beam = array[1][3] {{60, 1, -0.5}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
      "Aphotic_Strobe: found an exponent of -0.5"},

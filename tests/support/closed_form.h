@@ -5,10 +5,16 @@
 //
 //   L = sum over strobes, cones, lamps of  Phi P A_k cos(theta) / (N d^2)
 //         (rho cos(i) + phong max(0, r.l)^size) / pi  exp(-K (d + r))
+//
+// Of a beam that is no sum of sharp cones, A_k cos(theta) is what rig/beam says, whose tests hold
+// it to formulas of their own.
 #pragma once
 
+#include "rig/beam.h"
 #include "rig/rig.h"
 #include "spectral/refractive_index.h"
+
+#include <Eigen/Geometry>
 
 #include <array>
 #include <cmath>
@@ -74,6 +80,26 @@ inline Ray camera_ray(const Rig& rig, int column, int row, double lambda_nm) {
              std::cos(water)}};
 }
 
+// How close a direction is to where the beam has an edge, if that is a circle; 0 where it is within
+// a rounding of any other.
+inline double edge_rad(const Beam& beam, const BeamFrame& frame, const Eigen::Vector3d& towards) {
+    double nearest_rad = std::numeric_limits<double>::infinity();
+    const double theta_rad = std::atan2(frame.axis.cross(towards).norm(), frame.axis.dot(towards));
+    for (const double edge : edges_rad(beam)) {
+        nearest_rad = std::min(nearest_rad, std::abs(theta_rad - edge));
+    }
+    if (!has_rim(beam)) return nearest_rad;
+    constexpr double kRounding = 1e-9;
+    const bool is_within = is_within_rim(beam, frame, towards);
+    for (const double off : {-kRounding, kRounding}) {
+        for (const Eigen::Vector3d& way : {frame.along, frame.across}) {
+            const Eigen::Vector3d beside = towards + off * towards.norm() * way;
+            if (is_within_rim(beam, frame, beside) != is_within) return 0.0;
+        }
+    }
+    return nearest_rad;
+}
+
 // across x along: how many lamps stand for an emitter.
 inline Answer radiance(
     const Rig& rig, int column, int row, double lambda_nm, int across = 1, int along = 1) {
@@ -120,6 +146,20 @@ inline Answer radiance(
             const double highlight =
                 rig.seafloor.phong *
                 std::pow(std::max(0.0, -dot(mirrored, path) / d), rig.seafloor.phong_size);
+            if (!has_lobes(strobe.beam)) {
+                const auto eigen = [](const Vector& v) {
+                    return Eigen::Vector3d(v[0], v[1], v[2]);
+                };
+                const BeamFrame frame{eigen(axis), eigen(ahead), eigen(right)};
+                answer.edge_rad =
+                    std::min(answer.edge_rad, edge_rad(strobe.beam, frame, eigen(path)));
+                if (cos_i <= 0.0) continue;
+                answer.radiance += strobe.spectrum.at(lambda_nm) * strobe.power *
+                                   intensity_towards(strobe.beam, frame, eigen(path)) /
+                                   (n_across * n_along * d * d) * (rho * cos_i + highlight) /
+                                   std::numbers::pi * std::exp(-K_per_m * (d + r));
+                continue;
+            }
             for (const Cone& cone : strobe.beam.cones) {
                 answer.edge_rad = std::min(answer.edge_rad, std::abs(theta - cone.half_angle_rad));
                 if (theta > cone.half_angle_rad || cos_theta <= 0.0 || cos_i <= 0.0) continue;
