@@ -561,7 +561,15 @@ BeamTable RigReader::read_beam_table(Section& section) {
         const auto read = [&](const std::string& file) {
             return read_beside(file, file_beside(folder_, file), kMostPhotometricBytes);
         };
-        return parse_photometric_file(name, read(name), read).table;
+        const PhotometricFile file = parse_photometric_file(name, read(name), read);
+        if (file.tilt &&
+            std::ranges::any_of(file.tilt->factor, [](double f) { return f != 1.0; })) {
+            throw InputError(
+                fmt::format("{}: found a lamp whose light changes as it is tilted (TILT); allowed: "
+                            "factors of 1",
+                            name));
+        }
+        return file.table;
     });
 }
 
