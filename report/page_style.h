@@ -14,7 +14,6 @@ svg text { fill: #1d2530; font-family: inherit; }
 svg .title { font-size: 18px; font-weight: bold; }
 svg .axis { font-size: 13px; }
 svg .tick { font-size: 12px; fill: #5b6673; }
-svg .name { font-size: 13px; font-weight: bold; fill: currentColor; }
 svg .label { font-size: 11px; paint-order: stroke; stroke: #ffffff; stroke-width: 3px;
   stroke-linejoin: round; }
 svg .strong { font-weight: bold; }
@@ -32,11 +31,6 @@ svg .rendered { stroke: currentColor; stroke-width: 1.6; stroke-dasharray: 7 5;
   stroke-linejoin: round; }
 svg .dots { stroke: currentColor; stroke-width: 2.2; stroke-opacity: 0.75; }
 svg .bound { stroke: #a4262c; stroke-width: 1.3; stroke-dasharray: 2 3; }
-svg .error { stroke-width: 1.5; }
-svg .mark { stroke-width: 6; }
-svg .largest { stroke: #14365f; }
-svg .percentile { stroke: #3a86c8; }
-svg .rms { stroke: #8fb9a0; }
 svg .front { stroke: #14181d; stroke-opacity: 0.28; stroke-width: 2.5; }
 svg path.dot { fill: currentColor; stroke: currentColor; stroke-width: 1.6;
   stroke-linejoin: round; }
@@ -75,11 +69,8 @@ pre { margin: 12px 0; padding: 14px 18px; background: var(--ground); border-radi
 .pair { display: grid; grid-template-columns: 1fr 1fr; gap: 20px; }
 .picture { display: block; width: 100%; height: auto; border-radius: 2px; }
 .squares { image-rendering: pixelated; }
-.map { display: flex; gap: 18px; align-items: stretch; }
-.map .frame { position: relative; flex: 1 1 auto; align-self: flex-start;
-  outline: 1px solid var(--rule); }
+.map { position: relative; outline: 1px solid var(--rule); }
 .map .marks { position: absolute; inset: 0; width: 100%; height: 100%; }
-.map > svg { flex: 0 0 84px; width: 84px; height: auto; align-self: flex-start; }
 .legend { display: flex; flex-wrap: wrap; gap: 2px 22px; font-size: 14px; color: var(--soft);
   max-width: none; }
 .key { display: inline-flex; align-items: center; gap: 6px; white-space: nowrap; }
@@ -89,7 +80,6 @@ pre { margin: 12px 0; padding: 14px 18px; background: var(--ground); border-radi
 .plot { margin: 6px 0 26px; }
 .plot > svg { display: block; width: 100%; height: auto; }
 .plot.narrow { display: none; }
-svg .notch { stroke: #4c5560; stroke-width: 1; vector-effect: non-scaling-stroke; }
 svg .halo { fill: none; stroke: #ffffff; stroke-width: 5; vector-effect: non-scaling-stroke; }
 svg .ring { fill: none; stroke: #14181d; stroke-width: 2; vector-effect: non-scaling-stroke; }
 .rule { display: flex; flex-wrap: wrap; align-items: center; gap: 8px 56px; margin: 8px 0; }
@@ -136,7 +126,6 @@ tr.best { background: #eef6f1; }
 @media screen and (max-width: 760px) {
   main { padding: 24px 16px; }
   .pair { grid-template-columns: 1fr; }
-  .map > svg { flex-basis: 56px; width: 56px; }
   .plot.wide-plot { display: none; }
   .plot.narrow { display: block; max-width: 560px; margin-inline: auto; }
   .key { white-space: normal; }

@@ -58,8 +58,8 @@ std::string upward_text(double x_px, double y_px, std::string_view style, std::s
         escaped(text));
 }
 
-std::string title_style(const SvgAxis& axis, std::string_view title, double room) {
-    return axis.title_style + svg_fit(title, kAxisFont_px, room);
+std::string title_style(std::string_view title, double room) {
+    return R"(class="axis")" + svg_fit(title, kAxisFont_px, room);
 }
 
 }  // namespace
@@ -174,13 +174,13 @@ std::string svg_axes(const SvgPanel& panel) {
         svg += svg_text(panel.left + panel.width / 2.0,
                         panel.bottom() + 37.0,
                         SvgAnchor::Middle,
-                        title_style(panel.x, title, panel.width),
+                        title_style(title, panel.width),
                         title);
     }
     if (!panel.y.title.empty()) {
         const std::string title = panel.y.in_unit(panel.y.title);
         svg += upward_text(
-            16.0, panel.top + panel.height / 2.0, title_style(panel.y, title, panel.height), title);
+            16.0, panel.top + panel.height / 2.0, title_style(title, panel.height), title);
     }
     return svg;
 }

@@ -44,7 +44,6 @@ struct SvgAxis {
     std::vector<SvgTick> ticks{};
     int unit_log10 = 0;   // the labels leave out this power of ten, which the title carries
     std::string title{};  // without one, the ticks have no labels either
-    std::string title_style = R"(class="axis")";
 
     // 0 at first, 1 at last; NaN where there is no logarithm.
     [[nodiscard]] double fraction(double value) const;

@@ -4,7 +4,6 @@
 #include "report/html.h"
 #include "report/svg.h"
 #include "validation/report_pictures.h"
-#include "validation/report_plots.h"
 
 #include <fmt/format.h>
 
@@ -48,23 +47,13 @@ std::string map_marks(const MappedErrors& mapped) {
     const Comparison& comparison = *mapped.comparison;
     const double width = mapped.width_px;
     const double height = static_cast<double>(mapped.errors.size()) / width;
-    const double unit = width / 100.0;
     std::string svg;
-    const auto notch = [&](double x1, double y1, double x2, double y2) {
-        svg += svg_line(x1, y1, x2, y2, R"(class="notch")");
-    };
-    const double row = mapped.row + 0.5;
-    const double column = mapped.column + 0.5;
-    notch(0.0, row, 2.0 * unit, row);
-    notch(width - 2.0 * unit, row, width, row);
-    notch(column, 0.0, column, 2.0 * unit);
-    notch(column, height - 2.0 * unit, column, height);
     if (comparison.max_error > 0.0) {
         for (const std::string_view style : {"halo", "ring"}) {
             svg += fmt::format(R"(<circle cx="{:.2f}" cy="{:.2f}" r="{:.2f}" class="{}"/>)",
                                comparison.column + 0.5,
                                comparison.row + 0.5,
-                               1.3 * unit,
+                               0.013 * width,
                                style);
         }
     }
@@ -82,11 +71,17 @@ std::string swatch(std::uint32_t colour, std::string_view words) {
                     words);
 }
 
-std::string map_legend(const MappedErrors& mapped) {
+std::string map_legend(const MappedErrors& mapped, double end) {
     const Comparison& comparison = *mapped.comparison;
+    const auto key = [&](double share, std::string_view words) {
+        const auto step = std::lround(share * (kColourSteps - 1) / 2);
+        return swatch(error_colour(static_cast<int>(step)), words);
+    };
     std::string legend =
-        swatch(error_colour((kColourSteps - 1) / 2), mapped.image_name + " is brighter") +
-        swatch(error_colour(-(kColourSteps - 1) / 2), mapped.image_name + " is darker");
+        key(-1.0, fmt::format("−{}: {} is darker", scientific(end), mapped.image_name)) +
+        key(-0.5, fmt::format("−{}", scientific(0.5 * end))) + key(0.0, "0") +
+        key(0.5, fmt::format("+{}", scientific(0.5 * end))) +
+        key(1.0, fmt::format("+{}: {} is brighter", scientific(end), mapped.image_name));
     if (!mapped.set_apart.empty()) legend += swatch(kEdgeColour, mapped.set_apart);
     if (comparison.not_finite > 0) {
         legend +=
@@ -99,7 +94,7 @@ std::string map_legend(const MappedErrors& mapped) {
                                        comparison.column,
                                        comparison.row));
     }
-    return html_legend(legend);
+    return fmt::format("<div id=\"{}\">{}</div>\n", mapped.bar_id, html_legend(legend));
 }
 
 std::string map_in_words(const ErrorMap& map, const MapScale& scale) {
@@ -112,8 +107,37 @@ std::string map_in_words(const ErrorMap& map, const MapScale& scale) {
             " Each point of the map shows the largest |e| of {0} × {0} pixels, with its sign.",
             map.side);
     }
-    return html_paragraph(
-        words + " The notches at the sides mark the row and the column of the profiles below.");
+    return html_paragraph(words);
+}
+
+SvgAxis value_axis(const Profile& profile) {
+    ValueRange range{.least = 0.0, .most = 0.0};
+    range.include(profile.image);
+    range.include(profile.reference);
+    if (range.most == range.least) range.most = range.least + 1.0;
+    return linear_axis(range.least, range.most + 0.07 * (range.most - range.least), 5);
+}
+
+// Shows the bound too when it is not far from the errors.
+SvgAxis error_axis(std::span<const Profile> profiles) {
+    constexpr double kNear = 4.0;
+    ValueRange errors{.least = 0.0, .most = 0.0};
+    double bound = 0.0;
+    for (const Profile& profile : profiles) {
+        errors.include(profile.errors);
+        bound = std::max(bound, profile.bound);
+    }
+    double end = 1.05 * std::max(errors.most, -errors.least);
+    if (bound < kNear * end || end == 0.0) end = std::max(bound, end);
+    end = end > 0.0 ? round_up(end) : 1.0;
+    return linear_axis(-end, end, 4);
+}
+
+// A channel's own; other channels are drawn in ink.
+std::string tone_of(const std::string& channel) {
+    const auto found = std::ranges::find(kChannelNames, channel);
+    if (found == kChannelNames.end()) return "";
+    return svg_tone(kChannelTones[static_cast<std::size_t>(found - kChannelNames.begin())]);
 }
 
 }  // namespace
@@ -136,12 +160,58 @@ std::string error_map_html(const MappedErrors& mapped) {
                                    mapped.width_px,
                                    scale.end,
                                    mapped.least_side);
-    return fmt::format("<div class=\"map\"><div class=\"frame\">{}{}</div>\n{}</div>\n",
-                       picture_html(
-                           map.png, map.width_px, map.height_px, "map of the relative error", true),
-                       map_marks(mapped),
-                       colour_bar_svg(scale.end, mapped.bar_id)) +
-           map_legend(mapped) + map_in_words(map, scale);
+    return fmt::format(
+               "<div class=\"map\">{}{}</div>\n",
+               picture_html(map.png, map.width_px, map.height_px, "map of the relative error"),
+               map_marks(mapped)) +
+           map_legend(mapped, scale.end) + map_in_words(map, scale);
+}
+
+std::string profile_html(std::string_view id,
+                         bool is_row,
+                         int pixels,
+                         std::span<const Profile> profiles) {
+    constexpr double kValueHeight = 150.0;
+    constexpr double kErrorHeight = 72.0;
+    constexpr double kGap = 12.0;
+    const SvgAxis errors = error_axis(profiles);
+    SvgPanel panel{.left = kAxisWidth, .width = 980.0, .x = linear_axis(0.0, pixels, 10)};
+    const auto next_panel = [&](double height, SvgAxis axis, std::string title, bool is_last) {
+        panel.top = panel.bottom() + kGap;
+        panel.height = height;
+        panel.y = std::move(axis);
+        panel.y.title = std::move(title);
+        if (is_last) panel.x.title = is_row ? "column [px]" : "row [px]";
+        return svg_axes(panel);
+    };
+    std::string svg;
+    for (const Profile& profile : profiles) {
+        const bool is_last = &profile == &profiles.back();
+        const bool has_errors = !profile.errors.empty();
+        const auto style = [&](std::string_view whose) {
+            return fmt::format(R"(class="{0}" {1} id="{2}-{3}-{0}")",
+                               whose,
+                               tone_of(profile.channel),
+                               is_row ? "row" : "column",
+                               escaped(profile.channel));
+        };
+        svg +=
+            next_panel(kValueHeight, value_axis(profile), profile.channel, is_last && !has_errors);
+        svg += svg_curve(panel, profile.position_px, profile.reference, style("reference"));
+        svg += svg_curve(panel, profile.position_px, profile.image, style("rendered"));
+        if (!has_errors) continue;
+        svg += next_panel(kErrorHeight, errors, "e", is_last);
+        for (const double level : {profile.bound, -profile.bound}) {
+            if (std::abs(level) <= panel.y.last) svg += svg_level(panel, level, R"(class="bound")");
+        }
+        svg += svg_dots(panel, profile.position_px, profile.errors, style("dots"));
+    }
+    return fmt::format("<figure class=\"plot\">{}</figure>\n",
+                       svg_drawing(id,
+                                   is_row ? "along the middle row" : "down the middle column",
+                                   panel.right() + 14.0,
+                                   panel.bottom() + kAxisHeight,
+                                   svg));
 }
 
 }  // namespace aphotic

@@ -143,10 +143,13 @@ std::string data_uri(std::string_view png) {
            std::string(base64.begin(), base64.begin() + static_cast<std::ptrdiff_t>(length));
 }
 
-std::string picture_html(
-    std::string_view png, int width_px, int height_px, std::string_view words, bool is_small) {
+std::string picture_html(std::string_view png,
+                         int width_px,
+                         int height_px,
+                         std::string_view words) {
+    constexpr int kSmall_px = 400;
     return fmt::format(R"(<img class="picture{}" width="{}" height="{}" alt="{}" src="{}"/>)",
-                       is_small ? " squares" : "",
+                       width_px < kSmall_px ? " squares" : "",
                        width_px,
                        height_px,
                        words,

@@ -62,7 +62,9 @@ struct ErrorMap {
 [[nodiscard]] std::string data_uri(std::string_view png);
 
 // An <img>. A small one shows its pixels as squares.
-[[nodiscard]] std::string picture_html(
-    std::string_view png, int width_px, int height_px, std::string_view words, bool is_small);
+[[nodiscard]] std::string picture_html(std::string_view png,
+                                       int width_px,
+                                       int height_px,
+                                       std::string_view words);
 
 }  // namespace aphotic
