@@ -168,7 +168,12 @@ std::string svg_axes(const SvgPanel& panel) {
         if (panel.y.title.empty() || tick.label.empty()) continue;
         svg += svg_text(panel.left - 7.0, y + 4.0, SvgAnchor::End, kTick, tick.label);
     }
-    svg += svg_frame(panel.left, panel.top, panel.width, panel.height);
+    svg +=
+        fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" class="frame"/>)",
+                    panel.left,
+                    panel.top,
+                    panel.width,
+                    panel.height);
     if (!panel.x.title.empty()) {
         const std::string title = panel.x.in_unit(panel.x.title);
         svg += svg_text(panel.left + panel.width / 2.0,
@@ -214,27 +219,13 @@ std::string svg_dots(const SvgPanel& panel,
     return fmt::format(R"(<path stroke-linecap="round" {} d="{}"/>)", style, path);
 }
 
-std::string svg_level(
-    const SvgPanel& panel, double y, std::string_view style, double first_x, double last_x) {
-    return svg_curve(panel, std::array{first_x, last_x}, std::array{y, y}, style);
-}
-
 std::string svg_level(const SvgPanel& panel, double y, std::string_view style) {
-    return svg_level(panel, y, style, panel.x.first, panel.x.last);
+    return svg_line(panel.left, panel.y_px(y), panel.right(), panel.y_px(y), style);
 }
 
 std::string svg_line(double x1, double y1, double x2, double y2, std::string_view style) {
     return fmt::format(
         R"(<line x1="{:.2f}" y1="{:.2f}" x2="{:.2f}" y2="{:.2f}" {}/>)", x1, y1, x2, y2, style);
-}
-
-std::string svg_frame(double left, double top, double width, double height) {
-    return fmt::format(
-        R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" class="frame"/>)",
-        left,
-        top,
-        width,
-        height);
 }
 
 std::string svg_text(

@@ -130,17 +130,9 @@ std::string section(const ComparedChannel& channel, const ComparedImages& images
 }
 
 std::string table(const ComparedImages& images) {
-    constexpr std::array<std::string_view, 11> kColumns{"channel",
-                                                        "scale",
-                                                        "black",
-                                                        "largest |e|",
-                                                        "at column, row",
-                                                        "99.9 %",
-                                                        "rms",
-                                                        "mean",
-                                                        "compared",
-                                                        "not observed",
-                                                        "not finite"};
+    constexpr std::string_view kColumns =
+        "channel;scale;black;largest |e|;at column, row;99.9 %;rms;mean;compared;not observed;"
+        "not finite";
     std::vector<HtmlRow> rows;
     for (const ComparedChannel& channel : images.channels) {
         const Comparison& c = channel.comparison;
@@ -204,16 +196,7 @@ std::uint32_t false_colour(double share) {
     // Even steps of Matplotlib's viridis, S. van der Walt and N. Smith, 2015, CC0.
     constexpr std::array<std::uint32_t, 9> kStops{
         0x440154, 0x472D7B, 0x3B528B, 0x2C728E, 0x21918C, 0x28AE80, 0x5EC962, 0xADDC30, 0xFDE725};
-    const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(kStops.size() - 1);
-    const auto stop = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
-    const double beyond = place - static_cast<double>(stop);
-    std::uint32_t colour = 0;
-    for (const unsigned shift : {16U, 8U, 0U}) {
-        const double from = kStops.at(stop) >> shift & 0xFFU;
-        const double to = kStops.at(stop + 1) >> shift & 0xFFU;
-        colour |= static_cast<std::uint32_t>(std::lround(std::lerp(from, to, beyond))) << shift;
-    }
-    return colour;
+    return colour_between(kStops, share);
 }
 
 std::string comparison_html(const ComparedImages& images) {

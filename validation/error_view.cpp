@@ -16,52 +16,21 @@
 namespace aphotic {
 namespace {
 
-struct MapScale {
-    double end = 0.0;        // of the colours
-    std::size_t beyond = 0;  // pixels
-};
-
-MapScale map_scale(const MappedErrors& mapped) {
-    std::vector<double> sizes;
-    for (const float e : mapped.errors) {
-        if (std::isfinite(e)) sizes.push_back(std::abs(e));
+// Mostly equal images have no scale of their own.
+double map_scale(const Comparison& comparison) {
+    for (const double end : {comparison.percentile_999, comparison.bound, comparison.max_error}) {
+        if (end > 0.0 && std::isfinite(end)) return round_up(end);
     }
-    double percentile = 0.0;
-    if (!sizes.empty()) {
-        const auto rank =
-            static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(sizes.size() - 1));
-        std::nth_element(sizes.begin(), sizes.begin() + rank, sizes.end());
-        percentile = sizes[static_cast<std::size_t>(rank)];
-    }
-    // Mostly equal images have no scale of their own.
-    const Comparison& comparison = *mapped.comparison;
-    if (percentile == 0.0)
-        percentile = comparison.bound > 0.0 ? comparison.bound : comparison.max_error;
-    if (percentile == 0.0) percentile = 1e-3;
-    const double end = round_up(percentile);
-    const auto beyond = std::ranges::count_if(sizes, [&](double size) { return size > end; });
-    return {.end = end, .beyond = static_cast<std::size_t>(beyond)};
+    return 1e-3;
 }
 
-std::string map_marks(const MappedErrors& mapped) {
+std::string worst_mark(const MappedErrors& mapped) {
     const Comparison& comparison = *mapped.comparison;
-    const double width = mapped.width_px;
-    const double height = static_cast<double>(mapped.errors.size()) / width;
-    std::string svg;
-    if (comparison.max_error > 0.0) {
-        for (const std::string_view style : {"halo", "ring"}) {
-            svg += fmt::format(R"(<circle cx="{:.2f}" cy="{:.2f}" r="{:.2f}" class="{}"/>)",
-                               comparison.column + 0.5,
-                               comparison.row + 0.5,
-                               0.013 * width,
-                               style);
-        }
-    }
-    return fmt::format(
-        R"(<svg xmlns="http://www.w3.org/2000/svg" class="marks" viewBox="0 0 {:.0f} {:.0f}">{}</svg>)",
-        width,
-        height,
-        svg);
+    if (comparison.max_error == 0.0) return "";
+    const double height_px = static_cast<double>(mapped.errors.size()) / mapped.width_px;
+    return fmt::format(R"(<i class="worst" style="left: {:.2f}%; top: {:.2f}%"></i>)",
+                       100.0 * (comparison.column + 0.5) / mapped.width_px,
+                       100.0 * (comparison.row + 0.5) / height_px);
 }
 
 std::string swatch(std::uint32_t colour, std::string_view words) {
@@ -97,11 +66,13 @@ std::string map_legend(const MappedErrors& mapped, double end) {
     return fmt::format("<div id=\"{}\">{}</div>\n", mapped.bar_id, html_legend(legend));
 }
 
-std::string map_in_words(const ErrorMap& map, const MapScale& scale) {
-    std::string words = fmt::format("The colours run from −{0} to +{0}", scientific(scale.end));
-    words += scale.beyond == 0 ? "; no pixel is beyond."
-                               : fmt::format("; {} beyond, shown in the end’s colour.",
-                                             counted(scale.beyond, "pixel"));
+std::string map_in_words(const MappedErrors& mapped, const ErrorMap& map, double end) {
+    const auto beyond =
+        std::ranges::count_if(mapped.errors, [&](float e) { return std::abs(e) > end; });
+    std::string words = fmt::format("The colours run from −{0} to +{0}", scientific(end));
+    words += beyond == 0 ? "; no pixel is beyond."
+                         : fmt::format("; {} beyond, shown in the end’s colour.",
+                                       counted(static_cast<std::size_t>(beyond), "pixel"));
     if (map.side > 1) {
         words += fmt::format(
             " Each point of the map shows the largest |e| of {0} × {0} pixels, with its sign.",
@@ -146,25 +117,20 @@ std::string error_rule(std::string_view a, std::string_view b, std::string_view 
     const std::array<HtmlItem, 3> symbols{{{"<i>a</i>", std::string(a)},
                                            {"<i>b</i>", std::string(b)},
                                            {"<i>b</i><sub>0</sub>", std::string(black)}}};
-    return "<div class=\"rule\">\n<p class=\"formula\"><i>e<sub>i</sub></i> = "
-           "<span class=\"fraction\"><span><i>a<sub>i</sub></i> − <i>b<sub>i</sub></i></span>"
-           "<span>max( |<i>b<sub>i</sub></i>|, <i>b</i><sub>0</sub> )</span></span></p>\n" +
-           html_list("symbols", symbols) + "</div>\n";
+    return "<p class=\"formula\"><i>e<sub>i</sub></i> = (<i>a<sub>i</sub></i> − "
+           "<i>b<sub>i</sub></i>) / max( |<i>b<sub>i</sub></i>|, <i>b</i><sub>0</sub> )</p>\n" +
+           html_list("symbols", symbols);
 }
 
 std::string error_map_html(const MappedErrors& mapped) {
-    const MapScale scale = map_scale(mapped);
-    const ErrorMap map = error_map(mapped.errors,
-                                   mapped.image,
-                                   mapped.reference,
-                                   mapped.width_px,
-                                   scale.end,
-                                   mapped.least_side);
+    const double end = map_scale(*mapped.comparison);
+    const ErrorMap map = error_map(
+        mapped.errors, mapped.image, mapped.reference, mapped.width_px, end, mapped.least_side);
     return fmt::format(
                "<div class=\"map\">{}{}</div>\n",
                picture_html(map.png, map.width_px, map.height_px, "map of the relative error"),
-               map_marks(mapped)) +
-           map_legend(mapped, scale.end) + map_in_words(map, scale);
+               worst_mark(mapped)) +
+           map_legend(mapped, end) + map_in_words(mapped, map, end);
 }
 
 std::string profile_html(std::string_view id,

@@ -64,7 +64,7 @@ addEventListener('load', () => {
   const cut = [...document.querySelectorAll('svg text')].filter(
     text => !within(box(text), box(text.ownerSVGElement)));
   const bars = [...document.querySelectorAll('[id^=colour-bar]')].filter(b => box(b).width > 40);
-  const rings = [...document.querySelectorAll('.ring')].filter(
+  const rings = [...document.querySelectorAll('.worst')].filter(
     ring => within(box(ring), box(ring.closest('.map'))));
   const ids = [...document.querySelectorAll('[id]')].map(e => e.id);
   const root = document.documentElement;
