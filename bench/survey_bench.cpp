@@ -26,10 +26,12 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -163,6 +165,12 @@ class Survey {
     std::vector<Image> corrected_;
 };
 
+// Made once, whatever is repeated on it.
+const Survey& survey_of(const std::string& rig, std::size_t images) {
+    static std::map<std::pair<std::string, std::size_t>, Survey> surveys;
+    return surveys.try_emplace({rig, images}, rig, images).first->second;
+}
+
 // Of this process, and of those that it waited for.
 double processor_s() {
     double sum_s = 0.0;
@@ -185,13 +193,13 @@ void time_work(benchmark::State& state, const std::function<void()>& work) {
 }
 
 void correct(benchmark::State& state, const std::string& rig) {
-    const Survey survey(rig, static_cast<std::size_t>(state.range(0)));
+    const Survey& survey = survey_of(rig, static_cast<std::size_t>(state.range(0)));
     time_work(state, [&] { survey.correct(state.range(1)); });
 }
 
 void read_and_write(benchmark::State& state, const std::string& rig) {
     const auto images = static_cast<std::size_t>(state.range(0));
-    const Survey survey(rig, images);
+    const Survey& survey = survey_of(rig, images);
     time_work(state, [&] { survey.read_and_write(images, state.range(1)); });
 }
 
