@@ -2,37 +2,36 @@
 //
 // What `aphotic correct` takes of a survey from disk to disk, beside what reading the same raw
 // images and writing the same corrected ones takes by itself, by the same library, in as many
-// threads and with the same compression. Both in turn, three times; the least counts, of the clock
-// and of processor time. HabCam's mosaics, and 5 MP behind a port. The gain is taken
-// from as many images as by default, 16, each of which is read and mapped once more; of a survey of
-// thousands they count for nothing, as of 1.
+// threads and with the same compression. HabCam's mosaics, and 5 MP behind a port. The gain is
+// taken from as many images as by default, 16, each of which is read and mapped once more; of a
+// survey of thousands they count for nothing, as of 1.
 //
-//   survey_bench [IMAGES [JOBS [GAIN_IMAGES]]]     48, 2 and 16 by default; of 5 MP half as many
-//
-// (Goals: HabCam's six mosaics a second on two cores; at most twice as long as reading and
-// writing.)
+// The two numbers behind a name: images and jobs. (Goals: HabCam's six mosaics a second on two
+// cores; at most twice as long as reading and writing.)
 #include "base/atomic_file.h"
 #include "base/parallel.h"
 #include "bench/survey/raw_camera.h"
 #include "lightmap/lightmap.h"
+#include "plugin/process.h"
 #include "rig/rig_reader.h"
 
 #include <OpenImageIO/imageio.h>
+#include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
-#include <limits>
+#include <iterator>
+#include <map>
 #include <regex>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -40,40 +39,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kDistinct = 8;  // images; the others are copies of these
-
-struct Cost {
-    double clock_s = kInfinity;
-    double processor_s = kInfinity;
-    double memory_MiB = 0.0;
-};
-
-double seconds_of(const rusage& use) {
-    const auto seconds = [](const timeval& time) {
-        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    };
-    return seconds(use.ru_utime) + seconds(use.ru_stime);
-}
-
-// By a process of its own, so that neither finds what the other has loaded or left in memory.
-Cost cost_of(const std::function<void()>& work) {
-    const auto start = std::chrono::steady_clock::now();
-    std::fflush(stdout);
-    const pid_t child = ::fork();
-    if (child == 0) {
-        work();
-        ::_exit(0);
-    }
-    int status = 0;
-    rusage use{};
-    ::wait4(child, &status, 0, &use);
-    if (status != 0) throw std::runtime_error("a pass failed");
-    const std::chrono::duration<double> clock = std::chrono::steady_clock::now() - start;
-    return {.clock_s = clock.count(),
-            .processor_s = seconds_of(use),
-            .memory_MiB = static_cast<double>(use.ru_maxrss) / 1024.0};
-}
 
 struct Image {
     OIIO::ImageSpec spec;
@@ -102,19 +68,12 @@ void write_image(const fs::path& file, const Image& image, const std::string& co
     }
 }
 
-struct Survey {
-    fs::path folder;
-    std::size_t images;
-    std::size_t jobs;
-    std::size_t gain_images;
+std::string name_of(std::size_t i) {
+    return fmt::format("{:04}.tif", i);
+}
 
-    [[nodiscard]] fs::path raw(std::size_t i) const {
-        return folder / "raw" / fmt::format("{:04}.tif", i);
-    }
-};
-
-void make_survey(const Survey& survey, const Rig& rig) {
-    fs::create_directories(survey.folder / "raw");
+void write_survey(const fs::path& folder, const Rig& rig, std::size_t images) {
+    fs::create_directories(folder / "raw");
     std::vector<Sled> sleds;
     for (std::size_t i = 0; i < kDistinct; ++i) {
         const double step = static_cast<double>(i) / kDistinct;
@@ -131,104 +90,22 @@ void make_survey(const Survey& survey, const Rig& rig) {
             {.full_signal = 1.2 * brightest},
             i + 1);
         const OIIO::ImageSpec spec(map.width_px, map.height_px, 1, OIIO::TypeDesc::UINT16);
-        write_image(survey.raw(i), {.spec = spec, .pixels = mosaic}, "none");
+        write_image(folder / "raw" / name_of(i), {.spec = spec, .pixels = mosaic}, "none");
     }
     std::string navigation;
-    for (std::size_t i = 0; i < survey.images; ++i) {
+    for (std::size_t i = 0; i < images; ++i) {
         const Sled& sled = sleds[i % kDistinct];
         constexpr double kDegrees = 57.29577951308232;
-        if (i >= kDistinct) fs::copy_file(survey.raw(i % kDistinct), survey.raw(i));
+        if (i >= kDistinct) {
+            fs::copy_file(folder / "raw" / name_of(i % kDistinct), folder / "raw" / name_of(i));
+        }
         navigation += fmt::format("{} {} {} {}\n",
-                                  survey.raw(i).filename().string(),
+                                  name_of(i),
                                   sled.altitude_m,
                                   sled.pitch_rad * kDegrees,
                                   sled.roll_rad * kDegrees);
     }
-    write_text_file(survey.folder / "nav.txt", navigation);
-}
-
-Cost correct(const Survey& survey) {
-    fs::remove_all(survey.folder / "out");
-    return cost_of([&] {
-        const std::string jobs = std::to_string(survey.jobs);
-        const std::vector<std::string> words{APHOTIC_COMMAND,
-                                             "correct",
-                                             (survey.folder / "raw").string(),
-                                             "--rig",
-                                             (survey.folder / "rig.toml").string(),
-                                             "--nav",
-                                             (survey.folder / "nav.txt").string(),
-                                             "--bayer",
-                                             "RGGB",
-                                             "--black-level",
-                                             "64",
-                                             "--white-level",
-                                             "4095",
-                                             "--gain-images",
-                                             std::to_string(survey.gain_images),
-                                             "--jobs",
-                                             jobs,
-                                             "-o",
-                                             (survey.folder / "out").string()};
-        std::vector<char*> arguments;
-        for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-        arguments.push_back(nullptr);
-        if (std::freopen("/dev/null", "w", stdout) == nullptr) ::_exit(1);
-        ::execv(arguments[0], arguments.data());
-        ::_exit(1);
-    });
-}
-
-Cost read_and_write(const Survey& survey, const std::vector<Image>& corrected) {
-    fs::remove_all(survey.folder / "copies");
-    fs::create_directories(survey.folder / "copies");
-    return cost_of([&] {
-        parallel_for(survey.images, survey.jobs, [&](std::size_t i, std::size_t) {
-            const Image raw = read_image(survey.raw(i));
-            write_image(survey.folder / "copies" / survey.raw(i).filename(),
-                        corrected[i % kDistinct],
-                        "zip");
-        });
-    });
-}
-
-void take_least(Cost& least, const Cost& found) {
-    least.clock_s = std::min(least.clock_s, found.clock_s);
-    least.processor_s = std::min(least.processor_s, found.processor_s);
-    least.memory_MiB = std::max(least.memory_MiB, found.memory_MiB);
-}
-
-void print(const std::string& what, const Cost& cost, std::size_t images) {
-    fmt::print("  {:<16} {:6.1f} images/s, {:6.0f} ms of processor time an image",
-               what,
-               static_cast<double>(images) / cost.clock_s,
-               1e3 * cost.processor_s / static_cast<double>(images));
-}
-
-void compare(const std::string& name, const Survey& survey) {
-    make_survey(survey, read_rig(survey.folder / "rig.toml"));
-    Cost corrected;
-    Cost copied;
-    std::vector<Image> images;
-    constexpr int kPasses = 3;
-    for (int pass = 0; pass < kPasses; ++pass) {
-        take_least(corrected, correct(survey));
-        for (std::size_t i = images.size(); i < kDistinct; ++i) {
-            images.push_back(read_image(survey.folder / "out" / survey.raw(i).filename()));
-        }
-        take_least(copied, read_and_write(survey, images));
-    }
-    fmt::print("{}, {} images, {} jobs, gain from {}\n",
-               name,
-               survey.images,
-               survey.jobs,
-               std::min(survey.gain_images, survey.images));
-    print("correct", corrected, survey.images);
-    fmt::print(", {:.0f} MiB in all\n", corrected.memory_MiB);
-    print("read and write", copied, survey.images);
-    fmt::print("\n  ratio            {:.2f} by the clock, {:.2f} by processor time\n",
-               corrected.clock_s / copied.clock_s,
-               corrected.processor_s / copied.processor_s);
+    write_text_file(folder / "nav.txt", navigation);
 }
 
 std::string with(const std::string& key, const std::string& value, const std::string& text) {
@@ -236,37 +113,103 @@ std::string with(const std::string& key, const std::string& value, const std::st
         text, std::regex("\n" + key + " *= [^\n]*"), "\n" + key + " = " + value);
 }
 
-void run(std::size_t images, std::size_t jobs, std::size_t gain_images) {
-    const fs::path scenes = APHOTIC_SOURCE_DIR "/scenes";
-    const fs::path folder =
-        fs::temp_directory_path() / ("aphotic-survey-bench-" + std::to_string(::getpid()));
-    for (const char* name : {"habcam", "port"}) fs::create_directories(folder / name);
-    const Survey habcam{
-        .folder = folder / "habcam", .images = images, .jobs = jobs, .gain_images = gain_images};
-    write_text_file(habcam.folder / "rig.toml", read_text_file(scenes / "habcam.toml"));
-    compare("HabCam, 1360 x 1024", habcam);
-    const Survey port{.folder = folder / "port",
-                      .images = std::max(kDistinct, images / 2),
-                      .jobs = jobs,
-                      .gain_images = gain_images};
-    write_text_file(port.folder / "rig.toml",
-                    with("resolution",
-                         "[2448, 2048]",
-                         with("pixel_pitch_um", "3.45", read_text_file(scenes / "port.toml"))));
-    compare("behind a port, 2448 x 2048", port);
-    fs::remove_all(folder);
+// In a folder that is gone at the end of the program.
+class Survey {
+  public:
+    Survey(const std::string& rig, std::size_t images)
+        : folder_(fs::temp_directory_path() /
+                  fmt::format("aphotic-survey-bench-{}-{}-{}", ::getpid(), rig, images)) {
+        fs::create_directories(folder_);
+        std::string toml = read_text_file(APHOTIC_SOURCE_DIR "/scenes/" + rig + ".toml");
+        if (rig == "port") {
+            toml = with("resolution", "[2448, 2048]", with("pixel_pitch_um", "3.45", toml));
+        }
+        write_text_file(folder_ / "rig.toml", toml);
+        write_survey(folder_, read_rig(folder_ / "rig.toml"), images);
+        correct(2);
+        for (std::size_t i = 0; i < kDistinct; ++i) {
+            corrected_.push_back(read_image(folder_ / "out" / name_of(i)));
+        }
+    }
+    ~Survey() { fs::remove_all(folder_); }
+    Survey(const Survey&) = delete;
+    Survey& operator=(const Survey&) = delete;
+
+    void correct(std::int64_t jobs) const {
+        constexpr double kPatience_s = 3600.0;
+        fs::remove_all(folder_ / "out");
+        std::istringstream words(
+            fmt::format("correct raw --rig rig.toml --nav nav.txt --bayer RGGB --black-level 64 "
+                        "--white-level 4095 --jobs {} -o out",
+                        jobs));
+        const ProcessEnd end =
+            run_process({.executable = APHOTIC_COMMAND,
+                         .arguments = {std::istream_iterator<std::string>(words), {}},
+                         .folder = folder_,
+                         .environment = {},
+                         .log = folder_ / "log"},
+                        kPatience_s);
+        if (!end.succeeded()) throw std::runtime_error("aphotic correct: " + end.words());
+    }
+
+    void read_and_write(std::size_t images, std::int64_t jobs) const {
+        fs::create_directories(folder_ / "copies");
+        parallel_for(images, static_cast<std::size_t>(jobs), [&](std::size_t i, std::size_t) {
+            const Image raw = read_image(folder_ / "raw" / name_of(i));
+            write_image(folder_ / "copies" / name_of(i), corrected_[i % kDistinct], "zip");
+        });
+    }
+
+  private:
+    fs::path folder_;
+    std::vector<Image> corrected_;
+};
+
+// Made once, whatever is repeated on it.
+const Survey& survey_of(const std::string& rig, std::size_t images) {
+    static std::map<std::pair<std::string, std::size_t>, Survey> surveys;
+    return surveys.try_emplace({rig, images}, rig, images).first->second;
 }
+
+// Of this process, and of those that it waited for.
+double processor_s() {
+    double sum_s = 0.0;
+    for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+        rusage use{};
+        ::getrusage(who, &use);
+        for (const timeval& time : {use.ru_utime, use.ru_stime}) {
+            sum_s += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+        }
+    }
+    return sum_s;
+}
+
+void time_work(benchmark::State& state, const std::function<void()>& work) {
+    const auto images = static_cast<double>(state.range(0));
+    const double before_s = processor_s();
+    for (auto _ : state) work();
+    state.counters["processor_ms_an_image"] = 1e3 * (processor_s() - before_s) / images;
+    state.counters["images_a_second"] = benchmark::Counter(images, benchmark::Counter::kIsRate);
+}
+
+void correct(benchmark::State& state, const std::string& rig) {
+    const Survey& survey = survey_of(rig, static_cast<std::size_t>(state.range(0)));
+    time_work(state, [&] { survey.correct(state.range(1)); });
+}
+
+void read_and_write(benchmark::State& state, const std::string& rig) {
+    const auto images = static_cast<std::size_t>(state.range(0));
+    const Survey& survey = survey_of(rig, images);
+    time_work(state, [&] { survey.read_and_write(images, state.range(1)); });
+}
+
+void each(benchmark::internal::Benchmark* benchmark) {
+    benchmark->Unit(benchmark::kSecond)->UseRealTime()->Iterations(1)->Repetitions(3);
+}
+BENCHMARK_CAPTURE(correct, habcam, "habcam")->Apply(each)->Args({48, 2})->Args({16, 2});
+BENCHMARK_CAPTURE(read_and_write, habcam, "habcam")->Apply(each)->Args({48, 2})->Args({16, 2});
+BENCHMARK_CAPTURE(correct, port, "port")->Apply(each)->Args({24, 2})->Args({8, 2});
+BENCHMARK_CAPTURE(read_and_write, port, "port")->Apply(each)->Args({24, 2})->Args({8, 2});
 
 }  // namespace
 }  // namespace aphotic
-
-int main(int argc, char** argv) {
-    constexpr std::size_t kImages = 48;
-    constexpr std::size_t kGainImages = 16;
-    const auto number = [&](int i, std::size_t otherwise) {
-        return argc > i ? std::stoul(argv[i]) : otherwise;
-    };
-    aphotic::run(
-        std::max(aphotic::kDistinct, number(1, kImages)), number(2, 2), number(3, kGainImages));
-    return 0;
-}

@@ -1,12 +1,20 @@
-# aphotic_library(NAME SOURCES a.cpp ... HEADERS a.h ...)
+# aphotic_library(NAME SOURCES a.cpp ... HEADERS b.h ...)
 #
-# The library of the folder NAME: target aphotic_NAME, known to all others as aphotic::NAME.
+# The library of the folder NAME: target aphotic_NAME, known to all others as aphotic::NAME. The
+# header beside a source, a.h, is understood; HEADERS are those that have none.
 # Headers are included by their path from the root, "NAME/a.h", here and once installed.
 include(GNUInstallDirs)
 
 function(aphotic_library name)
     cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;HEADERS")
     set(target aphotic_${name})
+    foreach(source IN LISTS arg_SOURCES)
+        cmake_path(REPLACE_EXTENSION source h OUTPUT_VARIABLE header)
+        if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${header})
+            list(APPEND arg_HEADERS ${header})
+        endif()
+    endforeach()
+    list(REMOVE_DUPLICATES arg_HEADERS)
 
     add_library(${target} ${arg_SOURCES})
     add_library(aphotic::${name} ALIAS ${target})

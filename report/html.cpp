@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace aphotic {
 namespace {
@@ -168,23 +170,23 @@ std::string html_list(std::string_view id, std::span<const HtmlItem> items) {
 }
 
 std::string html_table(std::string_view id,
-                       std::span<const std::string_view> columns,
+                       std::string_view columns,
                        std::span<const HtmlRow> rows) {
-    const auto mark = [](std::string_view column) {
-        return column.empty() ? R"( class="mark")" : "";
-    };
+    std::vector<std::string_view> marks;  // by column
     std::string head;
-    for (const std::string_view column : columns)
-        head += fmt::format("<th{}>{}</th>", mark(column), escaped(column));
+    for (std::size_t from = 0; from <= columns.size();) {
+        const std::size_t to = std::min(columns.find(';', from), columns.size());
+        const std::string_view heading = columns.substr(from, to - from);
+        from = to + 1;
+        marks.push_back(heading.empty() ? R"( class="mark")" : "");
+        head += fmt::format("<th{}>{}</th>", marks.back(), escaped(heading));
+    }
     std::string body;
     for (const HtmlRow& row : rows) {
         body +=
             fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th>", row.style, row.cells.front());
-        for (std::size_t i = 1; i < row.cells.size(); ++i) {
-            const std::string label = escaped(columns[i]);
-            body += fmt::format(
-                "<td{} data-label=\"{}\">{}</td>", mark(columns[i]), label, row.cells[i]);
-        }
+        for (std::size_t i = 1; i < row.cells.size(); ++i)
+            body += fmt::format("<td{}>{}</td>", marks.at(i), row.cells[i]);
         body += "</tr>\n";
     }
     return fmt::format(

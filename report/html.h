@@ -63,10 +63,10 @@ struct HtmlRow {
     std::string_view style;  // its CSS class
     std::vector<std::string> cells;
 };
-// The first column names the rows. A heading is plain text; one without text is that of marks.
-// In a narrow window each row becomes a list.
+// columns: plain headings with semicolons between them, such as "rig;error;". The first column
+// names the rows; one without a heading is that of marks. In a narrow window it scrolls sideways.
 [[nodiscard]] std::string html_table(std::string_view id,
-                                     std::span<const std::string_view> columns,
+                                     std::string_view columns,
                                      std::span<const HtmlRow> rows);
 
 // A whole file that a browser lets neither run nor fetch anything, whatever a title may hold. The

@@ -14,11 +14,9 @@ svg text { fill: #1d2530; font-family: inherit; }
 svg .title { font-size: 18px; font-weight: bold; }
 svg .axis { font-size: 13px; }
 svg .tick { font-size: 12px; fill: #5b6673; }
-svg .name { font-size: 13px; font-weight: bold; fill: currentColor; }
 svg .label { font-size: 11px; paint-order: stroke; stroke: #ffffff; stroke-width: 3px;
   stroke-linejoin: round; }
 svg .strong { font-weight: bold; }
-svg .limit { fill: #a4262c; }
 svg path, svg .frame { fill: none; }
 svg .frame { stroke: #9aa3ad; stroke-width: 1; }
 svg .grid { stroke: #e9ecef; stroke-width: 1; }
@@ -32,11 +30,6 @@ svg .rendered { stroke: currentColor; stroke-width: 1.6; stroke-dasharray: 7 5;
   stroke-linejoin: round; }
 svg .dots { stroke: currentColor; stroke-width: 2.2; stroke-opacity: 0.75; }
 svg .bound { stroke: #a4262c; stroke-width: 1.3; stroke-dasharray: 2 3; }
-svg .error { stroke-width: 1.5; }
-svg .mark { stroke-width: 6; }
-svg .largest { stroke: #14365f; }
-svg .percentile { stroke: #3a86c8; }
-svg .rms { stroke: #8fb9a0; }
 svg .front { stroke: #14181d; stroke-opacity: 0.28; stroke-width: 2.5; }
 svg path.dot { fill: currentColor; stroke: currentColor; stroke-width: 1.6;
   stroke-linejoin: round; }
@@ -75,11 +68,9 @@ pre { margin: 12px 0; padding: 14px 18px; background: var(--ground); border-radi
 .pair { display: grid; grid-template-columns: 1fr 1fr; gap: 20px; }
 .picture { display: block; width: 100%; height: auto; border-radius: 2px; }
 .squares { image-rendering: pixelated; }
-.map { display: flex; gap: 18px; align-items: stretch; }
-.map .frame { position: relative; flex: 1 1 auto; align-self: flex-start;
-  outline: 1px solid var(--rule); }
-.map .marks { position: absolute; inset: 0; width: 100%; height: 100%; }
-.map > svg { flex: 0 0 84px; width: 84px; height: auto; align-self: flex-start; }
+.map { position: relative; outline: 1px solid var(--rule); }
+.map .worst { position: absolute; width: 26px; height: 26px; border: 2px solid #14181d;
+  border-radius: 50%; outline: 1.5px solid #ffffff; transform: translate(-50%, -50%); }
 .legend { display: flex; flex-wrap: wrap; gap: 2px 22px; font-size: 14px; color: var(--soft);
   max-width: none; }
 .key { display: inline-flex; align-items: center; gap: 6px; white-space: nowrap; }
@@ -88,25 +79,19 @@ pre { margin: 12px 0; padding: 14px 18px; background: var(--ground); border-radi
 .dot-key { width: 14px; height: 14px; }
 .plot { margin: 6px 0 26px; }
 .plot > svg { display: block; width: 100%; height: auto; }
-.plot.narrow { display: none; }
-svg .notch { stroke: #4c5560; stroke-width: 1; vector-effect: non-scaling-stroke; }
-svg .halo { fill: none; stroke: #ffffff; stroke-width: 5; vector-effect: non-scaling-stroke; }
 svg .ring { fill: none; stroke: #14181d; stroke-width: 2; vector-effect: non-scaling-stroke; }
-.rule { display: flex; flex-wrap: wrap; align-items: center; gap: 8px 56px; margin: 8px 0; }
 .formula { font: 21px/1.4 "STIX Two Text", "Cambria", "Liberation Serif", "Times New Roman",
   serif; margin: 6px 0; }
-.fraction { display: inline-block; vertical-align: middle; text-align: center; }
-.fraction span { display: block; padding: 0 8px; }
-.fraction span + span { border-top: 1.5px solid var(--ink); }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 6px 24px; margin: 8px 0;
   max-width: 100ch; }
 dt { color: var(--soft); max-width: 26ch; overflow-wrap: anywhere; }
 dd { margin: 0; overflow-wrap: anywhere; }
 .wide { overflow-x: auto; }
+.plot.wide > svg { min-width: 720px; }
 table { border-collapse: collapse; width: 100%; font-size: 13px;
   font-variant-numeric: tabular-nums; }
 th, td { padding: 6px 5px; text-align: right; }
-td, tbody th { white-space: nowrap; }
+td { white-space: nowrap; }
 thead th { font-weight: 500; color: var(--soft); border-bottom: 1.5px solid var(--ink);
   vertical-align: bottom; }
 tbody td, tbody th { border-bottom: 1px solid var(--rule); }
@@ -116,29 +101,10 @@ th.mark, td.mark { text-align: left; }
 td.mark { font-weight: 620; color: var(--good); }
 tr.fails .mark { color: var(--bad); }
 tr.fails { background: #fdf4f4; }
-tr.against th, tr.against td { color: var(--soft); font-weight: 400; }
 tr.best { background: #eef6f1; }
-.numbered { display: grid; grid-template-columns: 2em 1fr; min-width: 196px;
-  white-space: normal; }
-.number { color: var(--soft); font-weight: 400; }
-@media screen and (max-width: 1100px) {
-  table, tbody { display: block; }
-  thead { display: none; }
-  tr { display: grid; grid-template-columns: repeat(auto-fill, minmax(100px, 1fr)); gap: 6px 12px;
-    padding: 10px 6px; border-bottom: 1px solid var(--rule); }
-  tbody th, tbody td { display: block; border: 0; padding: 0; text-align: left; }
-  tbody th { white-space: normal; }
-  tbody th, tbody td.mark { grid-column: 1 / -1; font-size: 15px; }
-  tbody td.mark:empty { display: none; }
-  tbody td:not(.mark)::before { content: attr(data-label); display: block; font-size: 12px;
-    color: var(--soft); }
-}
 @media screen and (max-width: 760px) {
   main { padding: 24px 16px; }
   .pair { grid-template-columns: 1fr; }
-  .map > svg { flex-basis: 56px; width: 56px; }
-  .plot.wide-plot { display: none; }
-  .plot.narrow { display: block; max-width: 560px; margin-inline: auto; }
   .key { white-space: normal; }
   dl { grid-template-columns: 1fr; gap: 0; }
   dd { margin-bottom: 10px; }
@@ -148,18 +114,12 @@ tr.best { background: #eef6f1; }
   html { background: none; }
   body { font-size: 10pt; }
   main { padding: 0; max-width: none; }
-  h1 { font-size: 20pt; }
-  h2 { margin-top: 22pt; font-size: 14pt; break-after: avoid; }
-  h3 { break-after: avoid; }
-  figure, .map, .pair, .rule, p, dd, tr { break-inside: avoid; }
-  pre { font-size: 8pt; white-space: pre-wrap; overflow-wrap: anywhere; }
+  figure, .map, .pair, p, dd, tr { break-inside: avoid; }
+  h2, h3 { break-after: avoid; }
+  pre { white-space: pre-wrap; overflow-wrap: anywhere; }
   table { font-size: 6.6pt; }
-  th, td { padding: 2pt 3pt; }
-  .pair + p, .legend, figcaption { font-size: 8.5pt; }
-  dl { gap: 3pt 16pt; max-width: none; }
   .wide { overflow: visible; }
-  .verdict, .swatch, .picture, tr.fails, tr.best { print-color-adjust: exact;
-    -webkit-print-color-adjust: exact; }
+  * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 )";
 

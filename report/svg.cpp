@@ -58,8 +58,8 @@ std::string upward_text(double x_px, double y_px, std::string_view style, std::s
         escaped(text));
 }
 
-std::string title_style(const SvgAxis& axis, std::string_view title, double room) {
-    return axis.title_style + svg_fit(title, kAxisFont_px, room);
+std::string title_style(std::string_view title, double room) {
+    return R"(class="axis")" + svg_fit(title, kAxisFont_px, room);
 }
 
 }  // namespace
@@ -168,19 +168,24 @@ std::string svg_axes(const SvgPanel& panel) {
         if (panel.y.title.empty() || tick.label.empty()) continue;
         svg += svg_text(panel.left - 7.0, y + 4.0, SvgAnchor::End, kTick, tick.label);
     }
-    svg += svg_frame(panel.left, panel.top, panel.width, panel.height);
+    svg +=
+        fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" class="frame"/>)",
+                    panel.left,
+                    panel.top,
+                    panel.width,
+                    panel.height);
     if (!panel.x.title.empty()) {
         const std::string title = panel.x.in_unit(panel.x.title);
         svg += svg_text(panel.left + panel.width / 2.0,
                         panel.bottom() + 37.0,
                         SvgAnchor::Middle,
-                        title_style(panel.x, title, panel.width),
+                        title_style(title, panel.width),
                         title);
     }
     if (!panel.y.title.empty()) {
         const std::string title = panel.y.in_unit(panel.y.title);
         svg += upward_text(
-            16.0, panel.top + panel.height / 2.0, title_style(panel.y, title, panel.height), title);
+            16.0, panel.top + panel.height / 2.0, title_style(title, panel.height), title);
     }
     return svg;
 }
@@ -214,27 +219,13 @@ std::string svg_dots(const SvgPanel& panel,
     return fmt::format(R"(<path stroke-linecap="round" {} d="{}"/>)", style, path);
 }
 
-std::string svg_level(
-    const SvgPanel& panel, double y, std::string_view style, double first_x, double last_x) {
-    return svg_curve(panel, std::array{first_x, last_x}, std::array{y, y}, style);
-}
-
 std::string svg_level(const SvgPanel& panel, double y, std::string_view style) {
-    return svg_level(panel, y, style, panel.x.first, panel.x.last);
+    return svg_line(panel.left, panel.y_px(y), panel.right(), panel.y_px(y), style);
 }
 
 std::string svg_line(double x1, double y1, double x2, double y2, std::string_view style) {
     return fmt::format(
         R"(<line x1="{:.2f}" y1="{:.2f}" x2="{:.2f}" y2="{:.2f}" {}/>)", x1, y1, x2, y2, style);
-}
-
-std::string svg_frame(double left, double top, double width, double height) {
-    return fmt::format(
-        R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" class="frame"/>)",
-        left,
-        top,
-        width,
-        height);
 }
 
 std::string svg_text(

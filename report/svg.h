@@ -3,9 +3,6 @@
 // Parts of a plot in SVG: panels with axes, curves and dots in them. Each function gives the text
 // of some elements; svg_drawing() puts them into one <svg>. page_style.h says how they look.
 //
-//   x_px = left + width  (x - x.first) / (x.last - x.first)
-//   y_px = top  + height (y.last - y) / (y.last - y.first)       log: of the logarithms
-//
 // Points that are not finite, or have no logarithm where one is needed, break a curve.
 #pragma once
 
@@ -44,7 +41,6 @@ struct SvgAxis {
     std::vector<SvgTick> ticks{};
     int unit_log10 = 0;   // the labels leave out this power of ten, which the title carries
     std::string title{};  // without one, the ticks have no labels either
-    std::string title_style = R"(class="axis")";
 
     // 0 at first, 1 at last; NaN where there is no logarithm.
     [[nodiscard]] double fraction(double value) const;
@@ -108,14 +104,11 @@ inline constexpr double kAxisHeight = 44.0;
                                    std::span<const double> x,
                                    std::span<const double> y,
                                    std::string_view style);
-// At one y, from x to x or from side to side.
-[[nodiscard]] std::string svg_level(
-    const SvgPanel& panel, double y, std::string_view style, double first_x, double last_x);
+// At one y, from side to side.
 [[nodiscard]] std::string svg_level(const SvgPanel& panel, double y, std::string_view style);
 
 [[nodiscard]] std::string svg_line(
     double x1, double y1, double x2, double y2, std::string_view style);
-[[nodiscard]] std::string svg_frame(double left, double top, double width, double height);
 
 enum class SvgAnchor { Start, Middle, End };
 [[nodiscard]] std::string svg_text(

@@ -43,8 +43,8 @@ struct Band {
     Channels lambda_nm{};
     Channels exposure{};  // factor on radiance
     Channels attenuation_per_m{};
-    double water_index = 1.0;         // relative to air
-    std::vector<GlassIndex> glasses;  // relative to air; none: no port
+    double water_index = 1.0;           // relative to air
+    std::vector<GlassIndex> glasses{};  // relative to air; none: no port
     std::vector<NamedSpectrum> lamps;
     std::vector<NamedSpectrum> reflectances;
 };

@@ -86,43 +86,24 @@ struct Signals {
     std::array<double, kChannels> found{};
 };
 
-// The floor that one pixel shows, wavelength by wavelength.
-class Pixel {
-  public:
-    Pixel(const Rig& rig, double column, double row) : rig_(rig), column_(column), row_(row) {
-        const WavelengthRange range = rig.camera.range;
-        const WaterRay middle = ray_at(geometry_nm(range, kGeometryPoints / 2));
-        const auto distance_m = distance_to(floor_plane(rig.sled), middle);
-        if (distance_m) cones_at_m_ = middle.origin_m + *distance_m * middle.direction;
-    }
-
-    // Nothing where the pixel shows no floor.
-    [[nodiscard]] std::optional<FloorLight> at(const Strobe& strobe, double lambda_nm) const {
-        if (!cones_at_m_) return std::nullopt;
-        return floor_light(rig_, strobe, ray_at(lambda_nm), *cones_at_m_);
-    }
-
-  private:
-    [[nodiscard]] WaterRay ray_at(double lambda_nm) const {
-        return pixel_ray(rig_, column_, row_, lambda_nm);
-    }
-
-    const Rig& rig_;
-    double column_;
-    double row_;
-    std::optional<Eigen::Vector3d> cones_at_m_;
-};
-
+// Nothing where the pixel shows no floor.
 std::optional<Signals> signals_of(const Rig& rig,
-                                  const Pixel& pixel,
+                                  double column,
+                                  double row,
                                   std::span<const Node> nodes,
                                   std::span<const PlannedWavelength> rule) {
+    const auto ray_at = [&](double nm) { return pixel_ray(rig, column, row, nm); };
+    const WaterRay middle = ray_at(geometry_nm(rig.camera.range, kGeometryPoints / 2));
+    const auto distance_m = distance_to(floor_plane(rig.sled), middle);
+    if (!distance_m) return std::nullopt;
+    const Eigen::Vector3d lobes_at_m = middle.origin_m + *distance_m * middle.direction;
     Signals signals;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         const Strobe& strobe = rig.strobes[s];
         std::vector<FloorLight> lit;
         for (std::size_t point = 0; point < kGeometryPoints; ++point) {
-            const auto light = pixel.at(strobe, geometry_nm(rig.camera.range, point));
+            const auto light =
+                floor_light(rig, strobe, ray_at(geometry_nm(rig.camera.range, point)), lobes_at_m);
             if (!light) return std::nullopt;
             lit.push_back(*light);
         }
@@ -132,7 +113,7 @@ std::optional<Signals> signals_of(const Rig& rig,
             for (std::size_t c = 0; c < kChannels; ++c) signals.right[c] += node.response[c] * L;
         }
         for (const PlannedWavelength& w : rule) {
-            const auto light = pixel.at(strobe, w.index_nm);
+            const auto light = floor_light(rig, strobe, ray_at(w.index_nm), lobes_at_m);
             if (!light) return std::nullopt;
             const double L = radiance(w.light, s, *light);
             for (std::size_t c = 0; c < kChannels; ++c) signals.found[c] += w.weight[c] * L;
@@ -150,10 +131,9 @@ std::array<double, kChannels> port_error(const Rig& rig, std::span<const Planned
     std::vector<Signals> image;
     for (int v = 0; v < kSide; ++v) {
         for (int u = 0; u < kSide; ++u) {
-            const Pixel pixel(at_power_1,
-                              rig.camera.width_px * (u / (kSide - 1.0)),
-                              rig.camera.height_px * (v / (kSide - 1.0)));
-            const auto signals = signals_of(at_power_1, pixel, nodes, rule);
+            const double column = rig.camera.width_px * (u / (kSide - 1.0));
+            const double row = rig.camera.height_px * (v / (kSide - 1.0));
+            const auto signals = signals_of(at_power_1, column, row, nodes, rule);
             if (signals) image.push_back(*signals);
         }
     }

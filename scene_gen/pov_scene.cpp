@@ -13,9 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <set>
 
 namespace aphotic {
@@ -63,25 +63,29 @@ double fade_distance_m(const Rig& rig, const SceneOptions& options) {
     return std::exp2(std::floor(std::log2(kFadeShare * least_throw_m(rig))));
 }
 
-// Half sizes of the glass block and of the air cavity in it, across the camera's axis.
-struct Housing {
-    double cavity_x_m, cavity_y_m, block_x_m, block_y_m;  // x, y of POV-Ray
-    double back_m;                                        // behind the pupil, of the cavity
-};
-
-Housing housing(const Camera& camera) {
-    // Wider than any ray can be at the faces: in glass, rays run steeper than in air.
+// The glass block around camera and pupil, in the sled's frame. It is wider than any ray can be at
+// its faces: in glass, rays run steeper than in air.
+Eigen::AlignedBox3d housing(const Camera& camera) {
     constexpr double kRoom = 1.25;
     const FlatPort& port = *camera.port;
     const double front_m = port.distance_m + port.thickness_m;
-    const double half_pixel = 0.5 * camera.pixel_pitch_m / camera.focal_length_m;
-    Housing h{};
-    h.cavity_x_m = kRoom * port.distance_m * half_pixel * camera.width_px + port.thickness_m;
-    h.cavity_y_m = kRoom * port.distance_m * half_pixel * camera.height_px + port.thickness_m;
-    h.block_x_m = kRoom * front_m * half_pixel * camera.width_px + 2.0 * port.thickness_m;
-    h.block_y_m = kRoom * front_m * half_pixel * camera.height_px + 2.0 * port.thickness_m;
-    h.back_m = port.distance_m;
-    return h;
+    const double half_pixel_m =
+        kRoom * front_m * 0.5 * camera.pixel_pitch_m / camera.focal_length_m;
+    const Vector3d half_m(half_pixel_m * camera.height_px + 2.0 * port.thickness_m,
+                          half_pixel_m * camera.width_px + 2.0 * port.thickness_m,
+                          front_m);
+    return {-half_m, half_m};
+}
+
+[[noreturn]] void refuse_in_housing(const std::string& what, const Eigen::AlignedBox3d& block) {
+    throw InputError(
+        fmt::format("{} the camera's housing, which reaches {:.3f} m to the side, {:.3f} m fore "
+                    "and aft, and from {:.3f} m above the pupil to {:.3f} m below it",
+                    what,
+                    block.max().y(),
+                    block.max().x(),
+                    -block.min().z(),
+                    block.max().z()));
 }
 
 // Half the angle that an emitter spans, seen from the floor below it.
@@ -157,48 +161,21 @@ double unit_with_shells_m(const Rig& rig, std::span<const LampGrid> lamps) {
     return std::min(unit_m, std::exp2(std::floor(std::log2(least_m))));
 }
 
-void require_place_for_lamps(const Rig& rig, const Strobe& strobe, LampGrid grid) {
-    require_over_floor(rig.sled, strobe, grid);
-    if (!rig.camera.port) return;
-    const std::vector<Vector3d> lamps_m = lamp_positions_m(strobe, grid);
-    const Housing h = housing(rig.camera);
-    const double front_m = rig.camera.port->distance_m + rig.camera.port->thickness_m;
-    const double behind_m = h.back_m + rig.camera.port->thickness_m;
-    for (const Vector3d& lamp_m : lamps_m) {
-        const Vector3d at = to_povray(lamp_m);
-        const bool is_inside = std::abs(at.x()) <= h.block_x_m && std::abs(at.y()) <= h.block_y_m &&
-                               at.z() >= -behind_m && at.z() <= front_m;
-        if (!is_inside) continue;
-        throw InputError(
-            fmt::format("strobe '{}' has a lamp inside the camera's housing, which reaches "
-                        "{:.3f} m to the side, {:.3f} m fore and aft, and from {:.3f} m above "
-                        "the pupil to {:.3f} m below it",
-                        strobe.name,
-                        h.block_x_m,
-                        h.block_y_m,
-                        behind_m,
-                        front_m));
-    }
-}
-
-void require_place_for_objects(const Rig& rig) {
-    if (!rig.camera.port) return;
-    const Housing h = housing(rig.camera);
-    const double front_m = rig.camera.port->distance_m + rig.camera.port->thickness_m;
-    const double behind_m = h.back_m + rig.camera.port->thickness_m;
-    const Eigen::AlignedBox3d block(Vector3d(-h.block_y_m, -h.block_x_m, -behind_m),
-                                    Vector3d(h.block_y_m, h.block_x_m, front_m));
+void require_place(const Rig& rig, std::span<const LampGrid> lamps) {
+    std::optional<Eigen::AlignedBox3d> block;
+    if (rig.camera.port) block = housing(rig.camera);
     for (const Object& object : rig.objects) {
-        if (!block.intersects(bounds_m(object.shape))) continue;
-        throw InputError(
-            fmt::format("object '{}' reaches into the camera's housing, which reaches {:.3f} m to "
-                        "the side, {:.3f} m fore and aft, and from {:.3f} m above the pupil to "
-                        "{:.3f} m below it",
-                        object.name,
-                        h.block_x_m,
-                        h.block_y_m,
-                        behind_m,
-                        front_m));
+        if (block && block->intersects(bounds_m(object.shape)))
+            refuse_in_housing(fmt::format("object '{}' reaches into", object.name), *block);
+    }
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        const Strobe& strobe = rig.strobes[s];
+        require_over_floor(rig.sled, strobe, lamps[s]);
+        for (const Vector3d& lamp_m : lamp_positions_m(strobe, lamps[s])) {
+            if (block && block->contains(lamp_m))
+                refuse_in_housing(fmt::format("strobe '{}' has a lamp inside", strobe.name),
+                                  *block);
+        }
     }
 }
 
@@ -259,10 +236,9 @@ double brightest_colour(const Rig& rig, double lambda_nm, double fade_m) {
 struct Parts {
     std::vector<NamedSpectrum> lamps;
     std::vector<NamedSpectrum> reflectances;
-    std::string rig;
+    std::string rig{};
     double fade_m;
-    double unit_m;                            // of the scene; in a user's own, that scene's word
-    std::function<double(double)> brightest;  // bound of the radiance at a wavelength [nm]
+    double unit_m;  // of the scene; in a user's own, that scene's word
 };
 
 // The wavelengths of one frame.
@@ -274,13 +250,7 @@ const PlannedWavelength& in_channel(Frame frame, std::size_t channel) {
 }
 
 Band band_of(const Rig& rig, const Parts& parts, Frame frame) {
-    Band band{.lambda_nm = {},
-              .exposure = {},
-              .attenuation_per_m = {},
-              .water_index = 1.0,
-              .glasses = {},
-              .lamps = parts.lamps,
-              .reflectances = parts.reflectances};
+    Band band{.lamps = parts.lamps, .reflectances = parts.reflectances};
     for (std::size_t c = 0; c < band.lambda_nm.size(); ++c) {
         const PlannedWavelength& w = in_channel(frame, c);
         band.lambda_nm[c] = w.lambda_nm;
@@ -362,24 +332,13 @@ std::string scene_sdl(const Rig& rig,
 Parts parts_of(const Rig& rig, std::span<const LampGrid> lamps, const SceneOptions& options) {
     Parts parts{.lamps = named_lamps_of(rig),
                 .reflectances = reflectances_of(rig, options),
-                .rig = "",
                 .fade_m = fade_distance_m(rig, options),
-                .unit_m = options.user_scene ? 1.0 : unit_with_shells_m(rig, lamps),
-                .brightest = {}};
+                 .unit_m = options.user_scene ? 1.0 : unit_with_shells_m(rig, lamps)};
     parts.rig = rig_sdl(rig,
                         strobes_in_scene(rig, lamps, options),
                         parts.lamps,
                         parts.reflectances,
                         options.user_scene ? SceneAuthor::User : SceneAuthor::Ours);
-    if (options.user_scene) {
-        parts.brightest = [&rig, &scene = *options.user_scene](double lambda_nm) {
-            return scene.brightest_radiance(rig, lambda_nm);
-        };
-    } else {
-        parts.brightest = [bound = RadianceBound(rig)](double lambda_nm) {
-            return bound.at(lambda_nm);
-        };
-    }
     return parts;
 }
 
@@ -416,15 +375,15 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
                                     const SceneOptions& options,
                                     std::span<PlannedWavelength> wavelengths) {
     require_few_enough_lights(rig, lamps);
-    require_place_for_objects(rig);
-    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
-        require_place_for_lamps(rig, rig.strobes[s], lamps[s]);
-    }
+    require_place(rig, lamps);
     const Parts parts = parts_of(rig, lamps, options);
     const std::vector<std::string> labels = wavelength_labels(wavelengths);
     std::vector<FrameScene> scenes;
+    std::optional<RadianceBound> bound;
+    if (!options.user_scene) bound.emplace(rig);
     for (PlannedWavelength& w : wavelengths) {
-        w.radiance_bound = parts.brightest(w.lambda_nm);
+        w.radiance_bound = bound ? bound->at(w.lambda_nm)
+                                 : options.user_scene->brightest_radiance(rig, w.lambda_nm);
         w.exposure_log2 = exposure_log2(
             w.radiance_bound, brightest_colour(rig, w.lambda_nm, parts.fade_m), options.peak_log2);
     }

@@ -3,12 +3,8 @@
 // Writes a rig as POV-Ray scenes, one a frame, that plain `povray` renders.
 //
 // A frame carries up to three wavelengths, one in each of the image's channels red, green and
-// blue: POV-Ray never mixes them. A pixel of the frame is, in the channel of lambda,
-//
-//   2^e Phi power A_k cos^n(theta) / (pi d^2) (rho cos(i) + phong max(0, r.l)^phong_size)
-//       exp(-K (d + r))                           summed over strobes, cones and lamps
-//
-// the radiance L(lambda) of docs/physics.md times 2^e, the frame's exposure (exposure.h).
+// blue: POV-Ray never mixes them. A pixel of the frame is, in the channel of lambda, the radiance
+// L(lambda) of docs/physics.md times 2^e, the frame's exposure (exposure.h).
 //
 // Behind a port a frame is rendered with the refractive indices of one wavelength
 // (frame_groups.h).

@@ -5,7 +5,6 @@
 #include "rig/geometry_signature.h"
 #include "rig/solid.h"
 #include "scene_gen/certificate.h"
-#include "scene_gen/half_underflow.h"
 #include "scene_gen/scene_set.h"
 #include "spectral/wavelength_search.h"
 

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 namespace aphotic {
@@ -30,6 +31,19 @@ struct SceneSet {
 
 // Throws InputError where a wavelength counts whose light is fainter than frames hold.
 [[nodiscard]] SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan);
+
+// Light that is fainter than frames hold. POV-Ray's colours are floats, which bounds exposures, and
+// what a frame holds of L(lambda_j) in view is at most
+//
+//   2^e_j B_j        B_j  the bound of L(lambda_j)       e_j  the exposure
+//
+// Below 2^-14 half floats lose digits. Where all light is so faint the image is black, as it should
+// be. Where a weight w_cj makes such a wavelength count, |w_cj| B_j against the largest of the
+// channel's, beside others that are held, what is lost has no bound.
+//
+// Throws InputError where a wavelength counts whose light is not held. What is less than
+// frame_error of the largest does not count.
+void require_light_that_counts(std::span<const PlannedWavelength> wavelengths, double frame_error);
 
 // What the lamps alone would signal: the sum over strobes of their light, undimmed and white, over
 // the full spectrum.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/comparison.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -61,6 +63,20 @@ Comparison compare_planes(std::string name,
     std::nth_element(errors.begin(), errors.begin() + rank, errors.end());
     found.percentile_999 = errors[static_cast<std::size_t>(rank)];
     return found;
+}
+
+nlohmann::ordered_json comparison_json(const Comparison& comparison) {
+    return {{"name", comparison.name},
+            {"max_error", comparison.max_error},
+            {"column", comparison.column},
+            {"row", comparison.row},
+            {"percentile_999", comparison.percentile_999},
+            {"rms_error", comparison.rms_error},
+            {"mean_error", comparison.mean_error},
+            {"compared", comparison.compared},
+            {"on_edges", comparison.on_edges},
+            {"max_error_on_edges", comparison.max_error_on_edges},
+            {"not_finite", comparison.not_finite}};
 }
 
 }  // namespace aphotic

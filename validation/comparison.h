@@ -19,6 +19,8 @@
 // and no more.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstddef>
 #include <span>
 #include <string>
@@ -61,6 +63,9 @@ inline constexpr unsigned char kUnobserved = 2;
                                         std::span<const unsigned char> marks,
                                         double floor,
                                         double bound);
+
+// The errors and counts by their names.
+[[nodiscard]] nlohmann::ordered_json comparison_json(const Comparison& comparison);
 
 // e of one sample; NaN when either is not finite.
 [[nodiscard]] double relative_error(double a, double b, double floor);

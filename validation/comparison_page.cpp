@@ -61,7 +61,7 @@ std::string patterns(const Blocks& blocks, const ComparedImages& images) {
         }
         const std::string png = png_of(pixels, blocks.across, blocks.down);
         return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
-                           picture_html(png, blocks.across, blocks.down, words, true),
+                           picture_html(png, blocks.across, blocks.down, words),
                            caption);
     };
     return fmt::format(
@@ -99,65 +99,21 @@ std::string differences(const ComparedChannel& channel, const ComparedImages& im
          .least_side = side,
          .image_name = "the image",
          .set_apart = c.unobserved > 0 ? "not observed: " + counted(c.unobserved, "sample") : "",
-         .row = images.height_px / 2,
-         .column = images.width_px / 2,
          .bar_id = "colour-bar-" + escaped(c.name)});
 }
 
-struct Line {
-    std::vector<double> position_px;
-    std::vector<double> image;
-    std::vector<double> reference;
-};
-
-Line middle(const Blocks& blocks, bool is_row) {
-    Line line;
+std::string profile(const Blocks& blocks, const std::string& channel, bool is_row, int pixels) {
+    Profile profile{.channel = channel};
     const int count = is_row ? blocks.across : blocks.down;
     for (int i = 0; i < count; ++i) {
-        const int block =
-            is_row ? blocks.down / 2 * blocks.across + i : i * blocks.across + blocks.across / 2;
-        line.position_px.push_back((i + 0.5) * blocks.side);
-        line.image.push_back(blocks.image[static_cast<std::size_t>(block)]);
-        line.reference.push_back(blocks.reference[static_cast<std::size_t>(block)]);
+        const auto block = static_cast<std::size_t>(is_row ? blocks.down / 2 * blocks.across + i
+                                                           : i * blocks.across + blocks.across / 2);
+        profile.position_px.push_back((i + 0.5) * blocks.side);
+        profile.image.push_back(blocks.image[block]);
+        profile.reference.push_back(blocks.reference[block]);
     }
-    return line;
-}
-
-// A channel's own; other channels are drawn in ink.
-std::string tone_of(const std::string& channel) {
-    const auto found = std::ranges::find(kChannelNames, channel);
-    if (found == kChannelNames.end()) return "";
-    return svg_tone(kChannelTones[static_cast<std::size_t>(found - kChannelNames.begin())]);
-}
-
-std::string profile(const Blocks& blocks, const std::string& name, bool is_row, int pixels) {
-    const Line line = middle(blocks, is_row);
-    ValueRange range{.least = 0.0, .most = 0.0};
-    range.include(line.image);
-    range.include(line.reference);
-    if (range.most == range.least) range.most = range.least + 1.0;
-    SvgPanel panel{.left = kAxisWidth,
-                   .top = 12.0,
-                   .width = 980.0,
-                   .height = 200.0,
-                   .x = linear_axis(0.0, pixels, 10),
-                   .y = linear_axis(range.least, range.most, 5)};
-    panel.x.title =
-        is_row ? "column [px], along the middle row" : "row [px], down the middle column";
-    panel.y.title = "value";
-    const auto style = [&](std::string_view whose) {
-        return fmt::format(R"(class="{}" {})", whose, tone_of(name));
-    };
-    const std::string svg = svg_axes(panel) +
-                            svg_curve(panel, line.position_px, line.reference, style("reference")) +
-                            svg_curve(panel, line.position_px, line.image, style("rendered"));
-    return "<figure class=\"plot\">" +
-           svg_drawing(fmt::format("{}-{}", is_row ? "row" : "column", escaped(name)),
-                       fmt::format("{} {}", name, panel.x.title),
-                       panel.right() + 14.0,
-                       panel.bottom() + kAxisHeight,
-                       svg) +
-           "</figure>\n";
+    const std::string id = fmt::format("{}-{}", is_row ? "row" : "column", escaped(channel));
+    return profile_html(id, is_row, pixels, {&profile, 1});
 }
 
 std::string section(const ComparedChannel& channel, const ComparedImages& images) {
@@ -174,17 +130,9 @@ std::string section(const ComparedChannel& channel, const ComparedImages& images
 }
 
 std::string table(const ComparedImages& images) {
-    constexpr std::array<std::string_view, 11> kColumns{"channel",
-                                                        "scale",
-                                                        "black",
-                                                        "largest |e|",
-                                                        "at column, row",
-                                                        "99.9 %",
-                                                        "rms",
-                                                        "mean",
-                                                        "compared",
-                                                        "not observed",
-                                                        "not finite"};
+    constexpr std::string_view kColumns =
+        "channel;scale;black;largest |e|;at column, row;99.9 %;rms;mean;compared;not observed;"
+        "not finite";
     std::vector<HtmlRow> rows;
     for (const ComparedChannel& channel : images.channels) {
         const Comparison& c = channel.comparison;
@@ -248,16 +196,7 @@ std::uint32_t false_colour(double share) {
     // Even steps of Matplotlib's viridis, S. van der Walt and N. Smith, 2015, CC0.
     constexpr std::array<std::uint32_t, 9> kStops{
         0x440154, 0x472D7B, 0x3B528B, 0x2C728E, 0x21918C, 0x28AE80, 0x5EC962, 0xADDC30, 0xFDE725};
-    const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(kStops.size() - 1);
-    const auto stop = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
-    const double beyond = place - static_cast<double>(stop);
-    std::uint32_t colour = 0;
-    for (const unsigned shift : {16U, 8U, 0U}) {
-        const double from = kStops.at(stop) >> shift & 0xFFU;
-        const double to = kStops.at(stop + 1) >> shift & 0xFFU;
-        colour |= static_cast<std::uint32_t>(std::lround(std::lerp(from, to, beyond))) << shift;
-    }
-    return colour;
+    return colour_between(kStops, share);
 }
 
 std::string comparison_html(const ComparedImages& images) {

@@ -4,7 +4,6 @@
 #include "report/html.h"
 #include "report/svg.h"
 #include "validation/report_pictures.h"
-#include "validation/report_plots.h"
 
 #include <fmt/format.h>
 
@@ -17,62 +16,21 @@
 namespace aphotic {
 namespace {
 
-struct MapScale {
-    double end = 0.0;        // of the colours
-    std::size_t beyond = 0;  // pixels
-};
-
-MapScale map_scale(const MappedErrors& mapped) {
-    std::vector<double> sizes;
-    for (const float e : mapped.errors) {
-        if (std::isfinite(e)) sizes.push_back(std::abs(e));
+// Mostly equal images have no scale of their own.
+double map_scale(const Comparison& comparison) {
+    for (const double end : {comparison.percentile_999, comparison.bound, comparison.max_error}) {
+        if (end > 0.0 && std::isfinite(end)) return round_up(end);
     }
-    double percentile = 0.0;
-    if (!sizes.empty()) {
-        const auto rank =
-            static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(sizes.size() - 1));
-        std::nth_element(sizes.begin(), sizes.begin() + rank, sizes.end());
-        percentile = sizes[static_cast<std::size_t>(rank)];
-    }
-    // Mostly equal images have no scale of their own.
-    const Comparison& comparison = *mapped.comparison;
-    if (percentile == 0.0)
-        percentile = comparison.bound > 0.0 ? comparison.bound : comparison.max_error;
-    if (percentile == 0.0) percentile = 1e-3;
-    const double end = round_up(percentile);
-    const auto beyond = std::ranges::count_if(sizes, [&](double size) { return size > end; });
-    return {.end = end, .beyond = static_cast<std::size_t>(beyond)};
+    return 1e-3;
 }
 
-std::string map_marks(const MappedErrors& mapped) {
+std::string worst_mark(const MappedErrors& mapped) {
     const Comparison& comparison = *mapped.comparison;
-    const double width = mapped.width_px;
-    const double height = static_cast<double>(mapped.errors.size()) / width;
-    const double unit = width / 100.0;
-    std::string svg;
-    const auto notch = [&](double x1, double y1, double x2, double y2) {
-        svg += svg_line(x1, y1, x2, y2, R"(class="notch")");
-    };
-    const double row = mapped.row + 0.5;
-    const double column = mapped.column + 0.5;
-    notch(0.0, row, 2.0 * unit, row);
-    notch(width - 2.0 * unit, row, width, row);
-    notch(column, 0.0, column, 2.0 * unit);
-    notch(column, height - 2.0 * unit, column, height);
-    if (comparison.max_error > 0.0) {
-        for (const std::string_view style : {"halo", "ring"}) {
-            svg += fmt::format(R"(<circle cx="{:.2f}" cy="{:.2f}" r="{:.2f}" class="{}"/>)",
-                               comparison.column + 0.5,
-                               comparison.row + 0.5,
-                               1.3 * unit,
-                               style);
-        }
-    }
-    return fmt::format(
-        R"(<svg xmlns="http://www.w3.org/2000/svg" class="marks" viewBox="0 0 {:.0f} {:.0f}">{}</svg>)",
-        width,
-        height,
-        svg);
+    if (comparison.max_error == 0.0) return "";
+    const double height_px = static_cast<double>(mapped.errors.size()) / mapped.width_px;
+    return fmt::format(R"(<i class="worst" style="left: {:.2f}%; top: {:.2f}%"></i>)",
+                       100.0 * (comparison.column + 0.5) / mapped.width_px,
+                       100.0 * (comparison.row + 0.5) / height_px);
 }
 
 std::string swatch(std::uint32_t colour, std::string_view words) {
@@ -82,11 +40,17 @@ std::string swatch(std::uint32_t colour, std::string_view words) {
                     words);
 }
 
-std::string map_legend(const MappedErrors& mapped) {
+std::string map_legend(const MappedErrors& mapped, double end) {
     const Comparison& comparison = *mapped.comparison;
+    const auto key = [&](double share, std::string_view words) {
+        const auto step = std::lround(share * (kColourSteps - 1) / 2);
+        return swatch(error_colour(static_cast<int>(step)), words);
+    };
     std::string legend =
-        swatch(error_colour((kColourSteps - 1) / 2), mapped.image_name + " is brighter") +
-        swatch(error_colour(-(kColourSteps - 1) / 2), mapped.image_name + " is darker");
+        key(-1.0, fmt::format("−{}: {} is darker", scientific(end), mapped.image_name)) +
+        key(-0.5, fmt::format("−{}", scientific(0.5 * end))) + key(0.0, "0") +
+        key(0.5, fmt::format("+{}", scientific(0.5 * end))) +
+        key(1.0, fmt::format("+{}: {} is brighter", scientific(end), mapped.image_name));
     if (!mapped.set_apart.empty()) legend += swatch(kEdgeColour, mapped.set_apart);
     if (comparison.not_finite > 0) {
         legend +=
@@ -99,21 +63,52 @@ std::string map_legend(const MappedErrors& mapped) {
                                        comparison.column,
                                        comparison.row));
     }
-    return html_legend(legend);
+    return fmt::format("<div id=\"{}\">{}</div>\n", mapped.bar_id, html_legend(legend));
 }
 
-std::string map_in_words(const ErrorMap& map, const MapScale& scale) {
-    std::string words = fmt::format("The colours run from −{0} to +{0}", scientific(scale.end));
-    words += scale.beyond == 0 ? "; no pixel is beyond."
-                               : fmt::format("; {} beyond, shown in the end’s colour.",
-                                             counted(scale.beyond, "pixel"));
+std::string map_in_words(const MappedErrors& mapped, const ErrorMap& map, double end) {
+    const auto beyond =
+        std::ranges::count_if(mapped.errors, [&](float e) { return std::abs(e) > end; });
+    std::string words = fmt::format("The colours run from −{0} to +{0}", scientific(end));
+    words += beyond == 0 ? "; no pixel is beyond."
+                         : fmt::format("; {} beyond, shown in the end’s colour.",
+                                       counted(static_cast<std::size_t>(beyond), "pixel"));
     if (map.side > 1) {
         words += fmt::format(
             " Each point of the map shows the largest |e| of {0} × {0} pixels, with its sign.",
             map.side);
     }
-    return html_paragraph(
-        words + " The notches at the sides mark the row and the column of the profiles below.");
+    return html_paragraph(words);
+}
+
+SvgAxis value_axis(const Profile& profile) {
+    ValueRange range{.least = 0.0, .most = 0.0};
+    range.include(profile.image);
+    range.include(profile.reference);
+    if (range.most == range.least) range.most = range.least + 1.0;
+    return linear_axis(range.least, range.most + 0.07 * (range.most - range.least), 5);
+}
+
+// Shows the bound too when it is not far from the errors.
+SvgAxis error_axis(std::span<const Profile> profiles) {
+    constexpr double kNear = 4.0;
+    ValueRange errors{.least = 0.0, .most = 0.0};
+    double bound = 0.0;
+    for (const Profile& profile : profiles) {
+        errors.include(profile.errors);
+        bound = std::max(bound, profile.bound);
+    }
+    double end = 1.05 * std::max(errors.most, -errors.least);
+    if (bound < kNear * end || end == 0.0) end = std::max(bound, end);
+    end = end > 0.0 ? round_up(end) : 1.0;
+    return linear_axis(-end, end, 4);
+}
+
+// A channel's own; other channels are drawn in ink.
+std::string tone_of(const std::string& channel) {
+    const auto found = std::ranges::find(kChannelNames, channel);
+    if (found == kChannelNames.end()) return "";
+    return svg_tone(kChannelTones[static_cast<std::size_t>(found - kChannelNames.begin())]);
 }
 
 }  // namespace
@@ -122,26 +117,67 @@ std::string error_rule(std::string_view a, std::string_view b, std::string_view 
     const std::array<HtmlItem, 3> symbols{{{"<i>a</i>", std::string(a)},
                                            {"<i>b</i>", std::string(b)},
                                            {"<i>b</i><sub>0</sub>", std::string(black)}}};
-    return "<div class=\"rule\">\n<p class=\"formula\"><i>e<sub>i</sub></i> = "
-           "<span class=\"fraction\"><span><i>a<sub>i</sub></i> − <i>b<sub>i</sub></i></span>"
-           "<span>max( |<i>b<sub>i</sub></i>|, <i>b</i><sub>0</sub> )</span></span></p>\n" +
-           html_list("symbols", symbols) + "</div>\n";
+    return "<p class=\"formula\"><i>e<sub>i</sub></i> = (<i>a<sub>i</sub></i> − "
+           "<i>b<sub>i</sub></i>) / max( |<i>b<sub>i</sub></i>|, <i>b</i><sub>0</sub> )</p>\n" +
+           html_list("symbols", symbols);
 }
 
 std::string error_map_html(const MappedErrors& mapped) {
-    const MapScale scale = map_scale(mapped);
-    const ErrorMap map = error_map(mapped.errors,
-                                   mapped.image,
-                                   mapped.reference,
-                                   mapped.width_px,
-                                   scale.end,
-                                   mapped.least_side);
-    return fmt::format("<div class=\"map\"><div class=\"frame\">{}{}</div>\n{}</div>\n",
-                       picture_html(
-                           map.png, map.width_px, map.height_px, "map of the relative error", true),
-                       map_marks(mapped),
-                       colour_bar_svg(scale.end, mapped.bar_id)) +
-           map_legend(mapped) + map_in_words(map, scale);
+    const double end = map_scale(*mapped.comparison);
+    const ErrorMap map = error_map(
+        mapped.errors, mapped.image, mapped.reference, mapped.width_px, end, mapped.least_side);
+    return fmt::format(
+               "<div class=\"map\">{}{}</div>\n",
+               picture_html(map.png, map.width_px, map.height_px, "map of the relative error"),
+               worst_mark(mapped)) +
+           map_legend(mapped, end) + map_in_words(mapped, map, end);
+}
+
+std::string profile_html(std::string_view id,
+                         bool is_row,
+                         int pixels,
+                         std::span<const Profile> profiles) {
+    constexpr double kValueHeight = 150.0;
+    constexpr double kErrorHeight = 72.0;
+    constexpr double kGap = 12.0;
+    const SvgAxis errors = error_axis(profiles);
+    SvgPanel panel{.left = kAxisWidth, .width = 980.0, .x = linear_axis(0.0, pixels, 10)};
+    const auto next_panel = [&](double height, SvgAxis axis, std::string title, bool is_last) {
+        panel.top = panel.bottom() + kGap;
+        panel.height = height;
+        panel.y = std::move(axis);
+        panel.y.title = std::move(title);
+        if (is_last) panel.x.title = is_row ? "column [px]" : "row [px]";
+        return svg_axes(panel);
+    };
+    std::string svg;
+    for (const Profile& profile : profiles) {
+        const bool is_last = &profile == &profiles.back();
+        const bool has_errors = !profile.errors.empty();
+        const auto style = [&](std::string_view whose) {
+            return fmt::format(R"(class="{0}" {1} id="{2}-{3}-{0}")",
+                               whose,
+                               tone_of(profile.channel),
+                               is_row ? "row" : "column",
+                               escaped(profile.channel));
+        };
+        svg +=
+            next_panel(kValueHeight, value_axis(profile), profile.channel, is_last && !has_errors);
+        svg += svg_curve(panel, profile.position_px, profile.reference, style("reference"));
+        svg += svg_curve(panel, profile.position_px, profile.image, style("rendered"));
+        if (!has_errors) continue;
+        svg += next_panel(kErrorHeight, errors, "e", is_last);
+        for (const double level : {profile.bound, -profile.bound}) {
+            if (std::abs(level) <= panel.y.last) svg += svg_level(panel, level, R"(class="bound")");
+        }
+        svg += svg_dots(panel, profile.position_px, profile.errors, style("dots"));
+    }
+    return fmt::format("<figure class=\"plot\">{}</figure>\n",
+                       svg_drawing(id,
+                                   is_row ? "along the middle row" : "down the middle column",
+                                   panel.right() + 14.0,
+                                   panel.bottom() + kAxisHeight,
+                                   svg));
 }
 
 }  // namespace aphotic

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How a page shows relative errors (comparison.h): their rule as a formula, and the map of one
-// channel with its scale, the worst pixel ringed, and what its colours mean.
+// How a page shows relative errors (comparison.h): their rule as a formula, the map of one channel
+// with the worst pixel ringed and what its colours mean, and profiles along a line of pixels.
 #pragma once
 
 #include "validation/comparison.h"
@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace aphotic {
 
@@ -27,13 +28,27 @@ struct MappedErrors {
     int least_side = 1;        // of the blocks of pixels that are shown as one
     std::string image_name{};  // "POV-Ray", as markup
     std::string set_apart{};   // what is grey: "on edges: 12 pixels"; empty: nothing is
-    int row = 0;               // which the notches mark, as the profiles' below
-    int column = 0;
-    std::string bar_id{};  // of the colour scale, on this page
+    std::string bar_id{};      // of the colour scale, on this page
 };
 
 // A whole figure with its legend and a paragraph. The colours run to the 99.9 percentile, rounded
 // up, so that the details show and not only the largest.
 [[nodiscard]] std::string error_map_html(const MappedErrors& mapped);
+
+// A channel along the middle row or column of both images.
+struct Profile {
+    std::string channel;
+    std::vector<double> position_px{};  // of the samples' centres
+    std::vector<double> image{};
+    std::vector<double> reference{};
+    std::vector<double> errors{};  // NaN: not compared; empty: not shown
+    double bound = 0.0;            // of the errors
+};
+
+// A whole figure of all channels below each other. pixels: along the line. id: of the drawing.
+[[nodiscard]] std::string profile_html(std::string_view id,
+                                       bool is_row,
+                                       int pixels,
+                                       std::span<const Profile> profiles);
 
 }  // namespace aphotic

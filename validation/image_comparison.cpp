@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "image/any_image.h"
-#include "validation/channel_pairs.h"
+#include "spectral/channel_wavelength.h"
 #include "validation/scaling.h"
 
 #include <fmt/format.h>
@@ -11,15 +11,114 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace aphotic {
 namespace {
 
-bool has_channel(const AnyImage& image, const std::string& channel) {
-    return std::ranges::find(image.channels, channel) != image.channels.end();
+// Pairs of channels.
+
+struct ChannelPair {
+    std::string image;  // its name there
+    std::string reference;
+};
+
+struct ChannelPairs {
+    std::vector<ChannelPair> compared;
+    std::vector<std::string> only_in_image;
+    std::vector<std::string> only_in_reference;
+    std::vector<std::string> left_aside;
+};
+
+bool is_in(const std::vector<std::string>& channels, const std::string& name) {
+    return std::ranges::find(channels, name) != channels.end();
 }
+
+bool is_about_samples(const std::string& name) {
+    return name.starts_with("count.") || name.starts_with("stderr.");
+}
+
+// Of a layer too, such as beauty.A.
+bool is_opacity(const std::string& name) {
+    const std::string last = name.substr(name.rfind('.') + 1);
+    return last == "A" || last == "alpha" || last == "Alpha";
+}
+
+// Of the same quantity and wavelength; taken out of those that are free. "" for none.
+std::string taken_partner(const std::string& name, std::vector<std::string>& free) {
+    const auto found = std::ranges::find_if(
+        free, [&](const std::string& other) { return is_same_spectral_channel(name, other); });
+    if (found == free.end()) return "";
+    std::string partner = *found;
+    free.erase(found);
+    return partner;
+}
+
+// scaled: one factor cannot scale counts and standard errors as well, so these are left aside.
+ChannelPairs pair_channels(const std::vector<std::string>& image,
+                           const std::vector<std::string>& reference,
+                           bool scaled) {
+    ChannelPairs pairs;
+    std::vector<std::string> free = reference;  // those that have no partner yet
+    std::vector<std::string> partners;          // of the image's channels; "" for none
+    for (const std::string& name : image) {
+        partners.push_back(is_in(reference, name) ? name : "");
+        std::erase(free, partners.back());
+    }
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        const std::string& name = image[i];
+        if (partners[i].empty()) partners[i] = taken_partner(name, free);
+        const bool is_paired = !partners[i].empty();
+        const bool is_aside =
+            (is_opacity(name) && !is_paired) || (is_about_samples(name) && (scaled || !is_paired));
+        if (is_aside) {
+            pairs.left_aside.push_back(name);
+        } else if (is_paired) {
+            pairs.compared.push_back({.image = name, .reference = partners[i]});
+        } else {
+            pairs.only_in_image.push_back(name);
+        }
+    }
+    for (const std::string& name : free) {
+        const bool is_aside = is_opacity(name) || is_about_samples(name);
+        (is_aside ? pairs.left_aside : pairs.only_in_reference).push_back(name);
+    }
+    return pairs;
+}
+
+// Those that the user names, as either image has them, separated by commas. A name may hold commas
+// itself, as S0.550,000000nm does. Throws InputError when one is not in both images, or none is
+// named.
+ChannelPairs named_channels(const std::string& names,
+                            const std::vector<std::string>& image,
+                            const std::vector<std::string>& reference) {
+    const std::vector<ChannelPair> all = pair_channels(image, reference, false).compared;
+    ChannelPairs pairs;
+    std::istringstream parts(names);
+    std::string name;
+    for (std::string part; std::getline(parts, part, ',');) {
+        name += (name.empty() ? "" : ",") + part;
+        const auto is_named = [&](const ChannelPair& pair) {
+            return pair.image == name || pair.reference == name ||
+                   is_same_spectral_channel(pair.image, name);
+        };
+        const auto found = std::ranges::find_if(all, is_named);
+        if (found == all.end()) continue;
+        if (std::ranges::none_of(pairs.compared, is_named)) pairs.compared.push_back(*found);
+        name.clear();
+    }
+    if (name.empty() && !pairs.compared.empty()) return pairs;
+    std::vector<std::string> allowed;
+    for (const ChannelPair& pair : all) allowed.push_back(pair.image);
+    throw InputError(fmt::format("--channels: found {}; allowed: those of both images, {}",
+                                 name.empty() ? "none" : name,
+                                 fmt::join(allowed, ", ")));
+}
+
+// The comparison.
 
 ChannelPairs channels_of(const AnyImage& a, const AnyImage& b, const ComparisonRequest& request) {
     ChannelPairs pairs =
@@ -47,7 +146,7 @@ std::vector<unsigned char> unobserved_in(const AnyImage& a,
     for (const auto& [image, name] :
          {std::pair(&a, channel.image), std::pair(&b, channel.reference)}) {
         const std::string count = "count." + name;
-        if (!has_channel(*image, count)) continue;
+        if (!is_in(image->channels, count)) continue;
         const std::vector<float> counts = samples_of(*image, count);
         marks.resize(counts.size(), 0);
         for (std::size_t i = 0; i < counts.size(); ++i) {

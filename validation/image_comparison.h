@@ -4,10 +4,16 @@
 //
 //   e = (a / scale - b) / max(|b|, black * largest |b|)
 //
-// a, b   samples of image and reference, of channels that are one quantity (channel_pairs.h)
+// a, b   samples of image and reference, of channels that are one quantity
 // scale  1, or what fits the image to the reference best (scaling.h)
 //
 // What either image says that it never observed (count.NAME of 0) is not compared.
+//
+// Which channels of two images are compared, and what becomes of the others: none is passed over in
+// silence. Partners have one name, or are one quantity at one wavelength whatever its spelling
+// (spectral/channel_wavelength.h). A channel that the other image lacks has no partner, unless it
+// is one of these, which are left aside: opacity (A, alpha), and what `aphotic observe` says of its
+// averages (count.NAME, stderr.NAME).
 #pragma once
 
 #include "validation/comparison_page.h"

@@ -17,50 +17,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool is_better(const Comparison& a, const Comparison& b) {
-    return share_of_bound(a) < share_of_bound(b);
-}
-
 Json json_of(const Comparison& comparison) {
-    return {{"name", comparison.name},
-            {"holds", comparison.holds()},
-            {"bound", comparison.bound},
-            {"max_error", comparison.max_error},
-            {"column", comparison.column},
-            {"row", comparison.row},
-            {"percentile_999", comparison.percentile_999},
-            {"rms_error", comparison.rms_error},
-            {"mean_error", comparison.mean_error},
-            {"compared", comparison.compared},
-            {"on_edges", comparison.on_edges},
-            {"max_error_on_edges", comparison.max_error_on_edges},
-            {"in_penumbrae", comparison.in_penumbrae},
-            {"max_error_of_penumbrae", comparison.max_error_of_penumbrae},
-            {"floor", comparison.floor},
-            {"under_floor", comparison.under_floor},
-            {"not_finite", comparison.not_finite}};
-}
-
-Json wavelengths_of(const ValidationReport& report) {
-    Json list = Json::array();
-    for (std::size_t i = 0; i < report.wavelengths.size(); ++i) {
-        Json entry{{"lambda_nm", report.lambda_nm[i]}};
-        entry.update(json_of(report.wavelengths[i]));
-        list.push_back(std::move(entry));
-    }
-    return list;
-}
-
-Json rig_of(const ValidationReport& report) {
-    Json rig{{"title", report.rig.title}, {"sha256", report.rig.digest}};
-    if (!report.scene_file.empty()) rig["scene"] = report.scene_file;
-    return rig;
-}
-
-Json channels_of(const ValidationReport& report) {
-    Json list = Json::array();
-    for (const Comparison& channel : report.channels) list.push_back(json_of(channel));
-    return list;
+    Json json = comparison_json(comparison);
+    json.update({{"holds", comparison.holds()},
+                 {"bound", comparison.bound},
+                 {"in_penumbrae", comparison.in_penumbrae},
+                 {"max_error_of_penumbrae", comparison.max_error_of_penumbrae},
+                 {"floor", comparison.floor},
+                 {"under_floor", comparison.under_floor}});
+    return json;
 }
 
 }  // namespace
@@ -71,41 +36,43 @@ double share_of_bound(const Comparison& comparison) {
     return comparison.max_error / comparison.bound;
 }
 
+std::vector<const Comparison*> ValidationReport::all() const {
+    std::vector<const Comparison*> comparisons;
+    for (const auto* list : {&wavelengths, &channels}) {
+        for (const Comparison& one : *list) comparisons.push_back(&one);
+    }
+    return comparisons;
+}
+
 bool ValidationReport::holds() const {
-    const auto holds = [](const Comparison& comparison) { return comparison.holds(); };
-    return !(wavelengths.empty() && channels.empty()) && std::ranges::all_of(wavelengths, holds) &&
-           std::ranges::all_of(channels, holds);
+    return !all().empty() && std::ranges::all_of(all(), &Comparison::holds);
 }
 
 const Comparison& ValidationReport::worst() const {
-    assert(!(wavelengths.empty() && channels.empty()));
-    if (channels.empty()) return *std::ranges::max_element(wavelengths, is_better);
-    const Comparison& channel = channels[worst_channel()];
-    if (wavelengths.empty()) return channel;
-    const Comparison& wavelength = *std::ranges::max_element(wavelengths, is_better);
-    return is_better(wavelength, channel) ? channel : wavelength;
+    const std::vector<const Comparison*> comparisons = all();
+    assert(!comparisons.empty());
+    return **std::ranges::max_element(
+        comparisons, {}, [](const Comparison* one) { return share_of_bound(*one); });
 }
 
 std::size_t ValidationReport::worst_channel() const {
     assert(!channels.empty());
-    return static_cast<std::size_t>(std::ranges::max_element(channels, is_better) -
+    return static_cast<std::size_t>(std::ranges::max_element(channels, {}, share_of_bound) -
                                     channels.begin());
 }
 
 EdgeSummary ValidationReport::edges() const {
-    EdgeSummary all;
+    EdgeSummary sum;
     const double pixels = static_cast<double>(traced.width_px) * traced.height_px;
-    const auto take_in = [&](const Comparison& one) {
-        all.share = std::max(all.share, static_cast<double>(one.on_edges) / pixels);
-        all.max_error = std::max(all.max_error, one.max_error_on_edges);
-        all.share_in_penumbrae =
-            std::max(all.share_in_penumbrae, static_cast<double>(one.in_penumbrae) / pixels);
-        all.max_error_of_penumbrae =
-            std::max(all.max_error_of_penumbrae, one.max_error_of_penumbrae);
-    };
-    std::ranges::for_each(wavelengths, take_in);
-    std::ranges::for_each(channels, take_in);
-    return all;
+    for (const Comparison* one : all()) {
+        sum.share = std::max(sum.share, static_cast<double>(one->on_edges) / pixels);
+        sum.max_error = std::max(sum.max_error, one->max_error_on_edges);
+        sum.share_in_penumbrae =
+            std::max(sum.share_in_penumbrae, static_cast<double>(one->in_penumbrae) / pixels);
+        sum.max_error_of_penumbrae =
+            std::max(sum.max_error_of_penumbrae, one->max_error_of_penumbrae);
+    }
+    return sum;
 }
 
 void ValidationReport::check() const {
@@ -126,6 +93,15 @@ void ValidationReport::check() const {
 std::string validation_json(const ValidationReport& report) {
     report.check();
     const Comparison& worst = report.worst();
+    Json rig{{"title", report.rig.title}, {"sha256", report.rig.digest}};
+    if (!report.scene_file.empty()) rig["scene"] = report.scene_file;
+    Json wavelengths = Json::array();
+    for (std::size_t i = 0; i < report.wavelengths.size(); ++i) {
+        wavelengths.push_back({{"lambda_nm", report.lambda_nm[i]}});
+        wavelengths.back().update(json_of(report.wavelengths[i]));
+    }
+    Json channels = Json::array();
+    for (const Comparison& channel : report.channels) channels.push_back(json_of(channel));
     const Json json{
         {"holds", report.holds()},
         {"worst",
@@ -139,11 +115,11 @@ std::string validation_json(const ValidationReport& report) {
         {"rule",
          "e = (a - b) / max(|b|, floor), a: POV-Ray's image, b: the reference; holds: max |e| off "
          "the edges <= bound and every sample finite; in penumbrae b is of the render's own lamps"},
-        {"rig", rig_of(report)},
+        {"rig", rig},
         {"image",
          {{"width_px", report.rendered.width_px}, {"height_px", report.rendered.height_px}}},
-        {"wavelengths", wavelengths_of(report)},
-        {"channels", channels_of(report)},
+        {"wavelengths", wavelengths},
+        {"channels", channels},
         {"lamp_signal", report.lamp_signal},
         {"reference_wavelengths", report.grid_size},
         {"frames", report.frames},

@@ -44,9 +44,11 @@ struct ValidationReport {
     double integrate_s = 0.0;
     double trace_s = 0.0;
 
+    // Wavelengths, then channels.
+    [[nodiscard]] std::vector<const Comparison*> all() const;
     // Every comparison holds, and there is one.
     [[nodiscard]] bool holds() const;
-    // The one that is worst against its bound; the first of equals, wavelengths before channels.
+    // The one that is worst against its bound; the first of equals.
     [[nodiscard]] const Comparison& worst() const;
     [[nodiscard]] std::size_t worst_channel() const;
     [[nodiscard]] EdgeSummary edges() const;

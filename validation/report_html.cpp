@@ -8,7 +8,6 @@
 #include "validation/error_view.h"
 #include "validation/report.h"
 #include "validation/report_pictures.h"
-#include "validation/report_plots.h"
 
 #include <fmt/format.h>
 
@@ -22,9 +21,6 @@
 
 namespace aphotic {
 namespace {
-
-// Under this the browser shows a picture's pixels as squares.
-constexpr int kSmallPicture_px = 400;
 
 std::string title_of(const ValidationReport& report) {
     return report.rig.title.empty() ? "Untitled rig" : report.rig.title;
@@ -58,12 +54,6 @@ std::string worst_in_words(const ValidationReport& report) {
         worst.row);
 }
 
-std::size_t failures(const ValidationReport& report) {
-    const auto fails = [](const Comparison& comparison) { return !comparison.holds(); };
-    return static_cast<std::size_t>(std::ranges::count_if(report.wavelengths, fails) +
-                                    std::ranges::count_if(report.channels, fails));
-}
-
 std::string edges_in_words(const ValidationReport& report) {
     constexpr double kPercent = 100.0;
     const EdgeSummary edges = report.edges();
@@ -86,13 +76,14 @@ std::string edges_in_words(const ValidationReport& report) {
 }
 
 std::string verdict(const ValidationReport& report) {
-    const std::size_t all = report.wavelengths.size() + report.channels.size();
+    const std::vector<const Comparison*> all = report.all();
+    const auto held = static_cast<std::size_t>(std::ranges::count_if(all, &Comparison::holds));
     const std::string summary =
         report.holds() ? fmt::format("POV-Ray’s images agree with the reference in all {}.",
-                                     counted(all, "comparison"))
+                                     counted(all.size(), "comparison"))
                        : fmt::format("POV-Ray’s images and the reference disagree in {} of {}.",
-                                     grouped(failures(report)),
-                                     counted(all, "comparison"));
+                                     grouped(all.size() - held),
+                                     counted(all.size(), "comparison"));
     return html_verdict(
         report.holds(),
         report.holds() ? "✓ Holds" : "✗ Does not hold",
@@ -117,13 +108,10 @@ std::string images(const ValidationReport& report) {
         preview_scale(traced, report.lamp_signal, {.white = PreviewWhite::Lamp, .stops = 0.0});
     const auto figure =
         [&](const CameraImage& image, std::string_view alt, std::string_view caption) {
-            return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
-                               picture_html(preview_png(image, scale),
-                                            image.width_px,
-                                            image.height_px,
-                                            alt,
-                                            image.width_px < kSmallPicture_px),
-                               caption);
+            return fmt::format(
+                "<figure>{}<figcaption>{}</figcaption></figure>\n",
+                picture_html(preview_png(image, scale), image.width_px, image.height_px, alt),
+                caption);
         };
     return fmt::format(
         "<div class=\"pair\">\n{}{}</div>\n{}",
@@ -160,39 +148,48 @@ std::string map_section(const ValidationReport& report) {
                         .width_px = report.traced.width_px,
                         .image_name = "POV-Ray",
                         .set_apart = "on edges: " + counted(channel.on_edges, "pixel"),
-                        .row = profile_index(report, ProfileLine::Row),
-                        .column = profile_index(report, ProfileLine::Column),
                         .bar_id = "colour-bar"}));
 }
 
-std::string profile_legend() {
-    return html_legend(html_stroke_key("reference", "reference") +
-                       html_stroke_key("rendered", "POV-Ray") +
-                       html_stroke_key("bound", "bound of the error"));
+Profile profile_of(const ValidationReport& report, std::size_t c, bool is_row) {
+    const auto width = static_cast<std::size_t>(report.traced.width_px);
+    const auto height = static_cast<std::size_t>(report.traced.height_px);
+    Profile profile{.channel = std::string(kChannelNames[c]), .bound = report.channels[c].bound};
+    for (std::size_t i = 0; i < (is_row ? width : height); ++i) {
+        const std::size_t pixel = is_row ? height / 2 * width + i : i * width + width / 2;
+        const std::size_t at = c * width * height + pixel;
+        profile.position_px.push_back(static_cast<double>(i) + 0.5);
+        profile.image.push_back(report.rendered.samples[at]);
+        profile.reference.push_back(report.traced.samples[at]);
+        profile.errors.push_back(report.channel_errors[at]);
+    }
+    return profile;
 }
 
 std::string profiles(const ValidationReport& report) {
-    std::string content = html_paragraph(
-        "Both renderers over each other through the middle of the image; beneath each channel, "
-        "its relative error pixel by pixel. The upper scale is the angle off the camera’s axis" +
-        std::string(report.rig.camera.port ? ", before the port bends it." : "."));
-    for (const ProfileLine line : {ProfileLine::Row, ProfileLine::Column}) {
-        content += fmt::format("<figure class=\"plot\"><h3>{} {}</h3>\n{}{}</figure>\n",
-                               line == ProfileLine::Row ? "Row" : "Column",
-                               profile_index(report, line),
-                               profile_legend(),
-                               profile_svg(report, line));
+    std::string content =
+        html_paragraph(
+            "Both renderers over each other through the middle of the image; beneath each channel, "
+            "its relative error pixel by pixel.") +
+        html_legend(html_stroke_key("reference", "reference") +
+                    html_stroke_key("rendered", "POV-Ray") +
+                    html_stroke_key("bound", "bound of the error"));
+    for (const bool is_row : {true, false}) {
+        std::vector<Profile> channels;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            channels.push_back(profile_of(report, c, is_row));
+        }
+        const int width_px = report.traced.width_px;
+        const int height_px = report.traced.height_px;
+        content += fmt::format("<h3>{} {}</h3>\n{}",
+                               is_row ? "Row" : "Column",
+                               (is_row ? height_px : width_px) / 2,
+                               profile_html(is_row ? "profile-row" : "profile-column",
+                                            is_row,
+                                            is_row ? width_px : height_px,
+                                            channels));
     }
     return content;
-}
-
-std::string errors_plot(const ValidationReport& report) {
-    return fmt::format("<figure class=\"plot\">{}{}</figure>\n",
-                       html_legend(html_stroke_key("error largest", "largest") +
-                                   html_stroke_key("error percentile", "99.9 percentile") +
-                                   html_stroke_key("error rms", "root mean square") +
-                                   html_stroke_key("bound", "bound")),
-                       errors_svg(report));
 }
 
 std::string sample_rule() {
@@ -208,27 +205,18 @@ std::string sample_rule() {
                "measured "
                "on their own. In the penumbra of an emitter with a size, <i>b</i> is traced with "
                "the "
-               "render’s own lamps. The 99.9 percentile and the root mean square "
-               "are of |<i>e</i>|, the mean is "
-               "of <i>e</i> with its sign.");
+               "render’s own lamps. The 99.9 percentile and the root mean square are of "
+               "|<i>e</i>|, "
+               "the mean is of <i>e</i> with its sign.");
 }
 
 std::string table(std::string_view id,
                   std::string_view first_column,
                   const std::vector<Comparison>& comparisons) {
-    const std::array<std::string_view, 13> columns{first_column,
-                                                   "largest |e|",
-                                                   "at column, row",
-                                                   "99.9 %",
-                                                   "rms",
-                                                   "mean",
-                                                   "compared",
-                                                   "on edges",
-                                                   "largest on edges",
-                                                   "not finite",
-                                                   "bound",
-                                                   "largest / bound",
-                                                   ""};
+    const std::string columns =
+        std::string(first_column) +
+        ";largest |e|;at column, row;99.9 %;rms;mean;compared;on edges;largest on edges;not finite;"
+        "bound;largest / bound;";
     std::vector<HtmlRow> rows;
     for (const Comparison& c : comparisons) {
         rows.push_back({.style = c.holds() ? "holds" : "fails",
@@ -250,9 +238,8 @@ std::string table(std::string_view id,
 }
 
 std::string numbers(const ValidationReport& report) {
-    return sample_rule() + errors_plot(report) + "<h3>Channels</h3>\n" +
-           table("channels", "channel", report.channels) + "<h3>Wavelengths</h3>\n" +
-           table("wavelengths", "wavelength", report.wavelengths);
+    return sample_rule() + "<h3>Channels</h3>\n" + table("channels", "channel", report.channels) +
+           "<h3>Wavelengths</h3>\n" + table("wavelengths", "wavelength", report.wavelengths);
 }
 
 // What no rig file says: how much of the floor is in view, where that is level.

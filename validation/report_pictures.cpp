@@ -31,16 +31,6 @@ void for_each_in_blocks(int width_px, int height_px, int side_px, const Visit& v
     }
 }
 
-std::uint32_t mixed(std::uint32_t from, std::uint32_t to, double share) {
-    std::uint32_t colour = 0;
-    for (const unsigned shift : {16U, 8U, 0U}) {
-        const double a = from >> shift & 0xFFU;
-        const double b = to >> shift & 0xFFU;
-        colour |= static_cast<std::uint32_t>(std::lround(a + share * (b - a))) << shift;
-    }
-    return colour;
-}
-
 std::uint32_t colour_of(double e, double scale) {
     constexpr int kMost = (kColourSteps - 1) / 2;
     const double step = std::clamp(e / scale, -1.0, 1.0) * kMost;
@@ -84,17 +74,24 @@ CameraImage block_means(const CameraImage& image, int side) {
     return result;
 }
 
+std::uint32_t colour_between(std::span<const std::uint32_t> stops, double share) {
+    const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
+    const auto stop = std::min(static_cast<std::size_t>(place), stops.size() - 2);
+    std::uint32_t colour = 0;
+    for (const unsigned shift : {16U, 8U, 0U}) {
+        const double from = stops[stop] >> shift & 0xFFU;
+        const double to = stops[stop + 1] >> shift & 0xFFU;
+        const double level = std::lerp(from, to, place - static_cast<double>(stop));
+        colour |= static_cast<std::uint32_t>(std::lround(level)) << shift;
+    }
+    return colour;
+}
+
 // Through a paler tone between white and the ends, so that small errors show too.
 std::uint32_t error_colour(int step) {
-    constexpr std::uint32_t kWhite = 0xFBFAF8;
-    constexpr std::array<std::uint32_t, 3> kBlues{0xBBD6EA, 0x3F86BD, 0x0B3166};
-    constexpr std::array<std::uint32_t, 3> kReds{0xF6CDB6, 0xD4594A, 0x6E0A1E};
-    constexpr double kMost = (kColourSteps - 1) / 2.0;
-    const auto& tones = step < 0 ? kBlues : kReds;
-    const double place = std::abs(step) / kMost * static_cast<double>(tones.size());
-    const auto whole = std::min(static_cast<std::size_t>(place), tones.size() - 1);
-    const std::uint32_t from = whole == 0 ? kWhite : tones[whole - 1];
-    return mixed(from, tones[whole], place - static_cast<double>(whole));
+    static constexpr std::array<std::uint32_t, 4> kBlues{0xFBFAF8, 0xBBD6EA, 0x3F86BD, 0x0B3166};
+    static constexpr std::array<std::uint32_t, 4> kReds{0xFBFAF8, 0xF6CDB6, 0xD4594A, 0x6E0A1E};
+    return colour_between(step < 0 ? kBlues : kReds, 2.0 * std::abs(step) / (kColourSteps - 1));
 }
 
 ErrorMap error_map(std::span<const float> errors,
@@ -104,10 +101,7 @@ ErrorMap error_map(std::span<const float> errors,
                    double scale,
                    int least_side) {
     const int height_px = static_cast<int>(errors.size()) / width_px;
-    ErrorMap map{.side = std::max(block_side(width_px, height_px), least_side),
-                 .width_px = 0,
-                 .height_px = 0,
-                 .png = {}};
+    ErrorMap map{.side = std::max(block_side(width_px, height_px), least_side)};
     map.width_px = blocks(width_px, map.side);
     map.height_px = blocks(height_px, map.side);
 
@@ -143,10 +137,13 @@ std::string data_uri(std::string_view png) {
            std::string(base64.begin(), base64.begin() + static_cast<std::ptrdiff_t>(length));
 }
 
-std::string picture_html(
-    std::string_view png, int width_px, int height_px, std::string_view words, bool is_small) {
+std::string picture_html(std::string_view png,
+                         int width_px,
+                         int height_px,
+                         std::string_view words) {
+    constexpr int kSmall_px = 400;
     return fmt::format(R"(<img class="picture{}" width="{}" height="{}" alt="{}" src="{}"/>)",
-                       is_small ? " squares" : "",
+                       width_px < kSmall_px ? " squares" : "",
                        width_px,
                        height_px,
                        words,

@@ -39,6 +39,9 @@ inline constexpr std::uint32_t kNotFiniteColour = 0x000000;
                                               int side,
                                               std::span<const unsigned char> marks = {});
 
+// Share of the way along the colours, 0 at the first and 1 at the last; 0xRRGGBB.
+[[nodiscard]] std::uint32_t colour_between(std::span<const std::uint32_t> stops, double share);
+
 // step from -(kColourSteps - 1) / 2 to (kColourSteps - 1) / 2; 0xRRGGBB.
 [[nodiscard]] std::uint32_t error_colour(int step);
 
@@ -46,7 +49,7 @@ struct ErrorMap {
     int side = 1;  // of a block
     int width_px = 0;
     int height_px = 0;
-    std::string png;
+    std::string png{};
 };
 
 // errors: one channel's, rows of width_px samples, NaN on edges and where samples are not finite;
@@ -62,7 +65,9 @@ struct ErrorMap {
 [[nodiscard]] std::string data_uri(std::string_view png);
 
 // An <img>. A small one shows its pixels as squares.
-[[nodiscard]] std::string picture_html(
-    std::string_view png, int width_px, int height_px, std::string_view words, bool is_small);
+[[nodiscard]] std::string picture_html(std::string_view png,
+                                       int width_px,
+                                       int height_px,
+                                       std::string_view words);
 
 }  // namespace aphotic

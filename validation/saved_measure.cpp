@@ -18,20 +18,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-Json channel_json(const Comparison& channel) {
-    return {{"name", channel.name},
-            {"max_error", channel.max_error},
-            {"column", channel.column},
-            {"row", channel.row},
-            {"percentile_999", channel.percentile_999},
-            {"rms_error", channel.rms_error},
-            {"mean_error", channel.mean_error},
-            {"compared", channel.compared},
-            {"on_edges", channel.on_edges},
-            {"max_error_on_edges", channel.max_error_on_edges},
-            {"not_finite", channel.not_finite}};
-}
-
 // JSON has no infinity: null stands for it.
 double number(const nlohmann::json& json, const char* name) {
     const nlohmann::json& value = json.at(name);
@@ -76,9 +62,21 @@ std::optional<StudyMeasure> measure_from(const nlohmann::json& json, const Study
 
 }  // namespace
 
+Json setting_json(const StudySetting& setting) {
+    return {{"fitted", setting.fitted},
+            {"bands", setting.bands},
+            {"per_frame", setting.per_frame},
+            {"shrink", setting.shrink},
+            {"filter", setting.filter},
+            {"one_soft_lamp", setting.one_soft_lamp},
+            {"png", setting.png},
+            {"antialias", setting.antialias},
+            {"jobs", setting.jobs}};
+}
+
 Json json_of_channels(const StudyMeasure& measure) {
     Json channels = Json::array();
-    for (const Comparison& channel : measure.channels) channels.push_back(channel_json(channel));
+    for (const Comparison& channel : measure.channels) channels.push_back(comparison_json(channel));
     return channels;
 }
 

@@ -25,7 +25,8 @@ void save_measure(const StudyMeasure& measure,
                                                         const std::string& key,
                                                         const std::filesystem::path& file);
 
-// Of its channels, as in study.json.
+// As in study.json: what a setting renders, and a measure's channels.
+[[nodiscard]] nlohmann::ordered_json setting_json(const StudySetting& setting);
 [[nodiscard]] nlohmann::ordered_json json_of_channels(const StudyMeasure& measure);
 
 }  // namespace aphotic

@@ -11,6 +11,8 @@
 // scale k.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <span>
 
 namespace aphotic {
@@ -20,7 +22,14 @@ class Scaling {
     // marks: as of compare_planes(). Samples that are marked or not finite have no say.
     void add(std::span<const float> a,
              std::span<const float> b,
-             std::span<const unsigned char> marks);
+             std::span<const unsigned char> marks) {
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            const bool is_marked = !marks.empty() && marks[i] != 0;
+            if (is_marked || !std::isfinite(a[i]) || !std::isfinite(b[i])) continue;
+            products_ += static_cast<double>(a[i]) * b[i];
+            squares_ += static_cast<double>(b[i]) * b[i];
+        }
+    }
 
     // 0 when nothing was added that could tell.
     [[nodiscard]] double scale() const { return squares_ > 0.0 ? products_ / squares_ : 0.0; }

@@ -8,13 +8,13 @@
 #include "rig/rig_reader.h"
 #include "validation/comparison.h"
 #include "validation/exact_light.h"
-#include "validation/stress_sheet.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -28,9 +28,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kSmallestNormalFloat = std::numeric_limits<float>::min();
+constexpr std::array kAnswerWords{"holds", "faint", "black", "refused", "grows"};
 
-// --- The sheet
-// ------------------------------------------------------------------------------------
+// The sheet.
 
 // What overlay holds goes over what base holds, table by table; arrays are replaced whole.
 void lay_over(toml::table& base, const toml::table& overlay) {
@@ -175,8 +175,7 @@ StressCase case_of(const toml::table& base,
     return made;
 }
 
-// --- Measuring
-// ------------------------------------------------------------------------------------
+// Measuring.
 
 struct Answer {
     std::vector<std::vector<double>> radiance;  // by wavelength, row by row
@@ -220,81 +219,76 @@ double peak_of(std::span<const double> samples) {
     return samples.empty() ? 0.0 : std::ranges::max(samples);
 }
 
+struct StressPlane {
+    std::span<const double> answer;
+    std::span<const float> rendered;
+    std::span<const double> traced;
+    std::span<const unsigned char> on_edge;
+    double floor = 0.0;  // of what is rendered
+    double bound = 0.0;  // of its |e|
+    double traced_bound = 0.0;
+};
+
+// Of all planes of radiance, or of all signals.
 struct Verdict {
+    double rendered_error = 0.0;
+    double traced_error = 0.0;
     bool holds = true;
     bool is_seen = false;  // something is over its floor
     bool is_black = true;  // POV-Ray's values are zero throughout
-};
 
-Verdict compare_radiance(const RenderedImages& rendered,
-                         const Answer& answer,
-                         const std::vector<double>& traced,
-                         const Tracer& tracer,
-                         StressFound& found) {
-    const std::size_t pixels = answer.signals[0].size();
-    const std::vector<float> planes = rendered.radiance(0, rendered.lambda_nm.size());
-    Verdict verdict;
-    for (std::size_t j = 0; j < rendered.lambda_nm.size(); ++j) {
-        const double nm = rendered.lambda_nm[j];
-        const double index_nm = rendered.index_nm[j];
-        const std::vector<unsigned char> on_edge = tracer.on_edges(
-            {.first_nm = std::min(nm, index_nm), .last_nm = std::max(nm, index_nm)});
-        const double floor = std::max(
-            kSmallestNormalFloat, std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[j]));
-        const auto samples = std::span<const float>(planes).subspan(j * pixels, pixels);
-        const double e = largest_error(samples, answer.radiance[j], on_edge, floor);
+    void take_in(const StressPlane& plane) {
+        const double e = largest_error(plane.rendered, plane.answer, plane.on_edge, plane.floor);
         const double traced_e =
-            largest_error(std::span(traced).subspan((kChannels + j) * pixels, pixels),
-                          answer.radiance[j],
-                          on_edge,
-                          kTracedFloor);
-        found.povray_radiance = std::max(found.povray_radiance, e);
-        found.traced_radiance = std::max(found.traced_radiance, traced_e);
-        found.peak = std::max(found.peak, peak_of(answer.radiance[j]));
-        verdict.holds &=
-            e <= kHalfFloatBound + rendered.shift_error[j] && traced_e <= kTracedRadianceBound;
-        verdict.is_seen |= peak_of(answer.radiance[j]) > floor;
-        verdict.is_black &= std::ranges::all_of(samples, [](float x) { return x == 0.0F; });
+            largest_error(plane.traced, plane.answer, plane.on_edge, kTracedFloor);
+        rendered_error = std::max(rendered_error, e);
+        traced_error = std::max(traced_error, traced_e);
+        holds &= e <= plane.bound && traced_e <= plane.traced_bound;
+        is_seen |= peak_of(plane.answer) > plane.floor;
+        is_black &= std::ranges::all_of(plane.rendered, [](float x) { return x == 0.0F; });
     }
-    return verdict;
-}
-
-Verdict compare_signals(const RenderedImages& rendered,
-                        const Answer& answer,
-                        const std::vector<double>& traced,
-                        const Tracer& tracer,
-                        StressFound& found) {
-    const std::size_t pixels = answer.signals[0].size();
-    const std::vector<unsigned char> on_edge = tracer.on_edges(tracer.rig().camera.range);
-    found.on_edges = static_cast<std::size_t>(std::ranges::count(on_edge, 1));
-    Verdict verdict;
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        const double peak = peak_of(answer.signals[c]);
-        const double floor =
-            std::max({kSmallestNormalFloat, kBlackShare * peak, rendered.black[c]});
-        const auto samples =
-            std::span<const float>(rendered.signals.samples).subspan(c * pixels, pixels);
-        const double e = largest_error(samples, answer.signals[c], on_edge, floor);
-        const double traced_e = largest_error(std::span(traced).subspan(c * pixels, pixels),
-                                              answer.signals[c],
-                                              on_edge,
-                                              kTracedFloor);
-        found.povray_signal = std::max(found.povray_signal, e);
-        found.traced_signal = std::max(found.traced_signal, traced_e);
-        found.promise = std::max(found.promise, rendered.promise[c]);
-        verdict.holds &= e <= rendered.promise[c] && traced_e <= kTracedSignalBound;
-        verdict.is_seen |= peak > floor;
-        verdict.is_black &= std::ranges::all_of(samples, [](float x) { return x == 0.0F; });
-    }
-    return verdict;
-}
+};
 
 void compare(const Rig& rig, const RenderedImages& rendered, StressFound& found) {
     const Tracer tracer(rig, {.signals = true, .planes_nm = rendered.lambda_nm});
     const std::vector<double> traced = tracer.rows(0, rig.camera.height_px);
     const Answer answer = answer_of(rig, rendered.lambda_nm);
-    const Verdict radiance = compare_radiance(rendered, answer, traced, tracer, found);
-    const Verdict signals = compare_signals(rendered, answer, traced, tracer, found);
+    const std::size_t pixels = answer.signals[0].size();
+    const auto plane_of = [pixels](const auto& planes, std::size_t i) {
+        return std::span(planes).subspan(i * pixels, pixels);
+    };
+    Verdict radiance;
+    const std::vector<float> planes = rendered.radiance(0, rendered.lambda_nm.size());
+    for (std::size_t j = 0; j < rendered.lambda_nm.size(); ++j) {
+        const auto [first_nm, last_nm] = std::minmax(rendered.lambda_nm[j], rendered.index_nm[j]);
+        const double half_floor = std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[j]);
+        found.peak = std::max(found.peak, peak_of(answer.radiance[j]));
+        radiance.take_in({.answer = answer.radiance[j],
+                          .rendered = plane_of(planes, j),
+                          .traced = plane_of(traced, kChannels + j),
+                          .on_edge = tracer.on_edges({.first_nm = first_nm, .last_nm = last_nm}),
+                          .floor = std::max(kSmallestNormalFloat, half_floor),
+                          .bound = kHalfFloatBound + rendered.shift_error[j],
+                          .traced_bound = kTracedRadianceBound});
+    }
+    Verdict signals;
+    const std::vector<unsigned char> on_edge = tracer.on_edges(rig.camera.range);
+    found.on_edges = static_cast<std::size_t>(std::ranges::count(on_edge, 1));
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const double black = std::max(kBlackShare * peak_of(answer.signals[c]), rendered.black[c]);
+        found.promise = std::max(found.promise, rendered.promise[c]);
+        signals.take_in({.answer = answer.signals[c],
+                         .rendered = plane_of(rendered.signals.samples, c),
+                         .traced = plane_of(traced, c),
+                         .on_edge = on_edge,
+                         .floor = std::max(kSmallestNormalFloat, black),
+                         .bound = rendered.promise[c],
+                         .traced_bound = kTracedSignalBound});
+    }
+    found.povray_radiance = radiance.rendered_error;
+    found.traced_radiance = radiance.traced_error;
+    found.povray_signal = signals.rendered_error;
+    found.traced_signal = signals.traced_error;
     if (!radiance.holds || !signals.holds) {
         found.answer = StressAnswer::Grows;
     } else if (radiance.is_black && signals.is_black) {
@@ -307,19 +301,7 @@ void compare(const Rig& rig, const RenderedImages& rendered, StressFound& found)
 }  // namespace
 
 std::string_view answer_word(StressAnswer answer) {
-    switch (answer) {
-        case StressAnswer::Holds:
-            return "holds";
-        case StressAnswer::Faint:
-            return "faint";
-        case StressAnswer::Black:
-            return "black";
-        case StressAnswer::Refused:
-            return "refused";
-        case StressAnswer::Grows:
-            return "grows";
-    }
-    return "";
+    return kAnswerWords.at(static_cast<std::size_t>(answer));
 }
 
 bool StressFound::as_expected() const {

@@ -42,6 +42,13 @@ enum class StressAnswer {
 };
 [[nodiscard]] std::string_view answer_word(StressAnswer answer);
 
+// extremes.toml, as it travels inside the library.
+struct StressSheet {
+    std::string_view name;
+    std::string_view text;
+};
+[[nodiscard]] std::span<const StressSheet> stress_sheet();
+
 struct StressTable {
     std::string file;
     std::string text;

@@ -6,16 +6,16 @@
 #include "base/json_text.h"
 #include "spectral/sensor.h"
 #include "validation/saved_measure.h"
-#include "validation/study_page.h"
 #include "validation/validation.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
+#include <initializer_list>
 #include <limits>
 #include <stdexcept>
 #include <tuple>
@@ -35,230 +35,76 @@ bool has_emitter(const Rig& rig) {
 
 // Settings.
 
-StudySetting plain_setting(const char* kind, int count, int cores) {
-    StudySetting setting;
-    setting.name = fmt::format("{}-{}", kind, count);
-    setting.subject = "wavelengths";
-    setting.jobs = cores;
-    return setting;
-}
-
 StudySetting fitted_setting(int count, int cores) {
-    StudySetting setting = plain_setting("fitted", count, cores);
-    setting.words = fmt::format("{} fitted wavelengths", count);
-    setting.fitted = count;
-    return setting;
+    return {.name = fmt::format("fitted-{}", count),
+            .subject = "wavelengths",
+            .words = fmt::format("{} fitted wavelengths", count),
+            .fitted = count,
+            .jobs = cores};
 }
 
 StudySetting bands_setting(int count, int cores) {
-    StudySetting setting = plain_setting("bands", count, cores);
-    setting.words = fmt::format("{} equal bands", count);
-    setting.bands = count;
-    return setting;
+    return {.name = fmt::format("bands-{}", count),
+            .subject = "wavelengths",
+            .words = fmt::format("{} equal bands", count),
+            .bands = count,
+            .jobs = cores};
 }
 
 // A setting that differs from another in what it is about.
+template <typename Value>
 StudySetting varied(StudySetting setting,
-                    std::string subject,
+                    std::string_view subject,
                     std::string_view suffix,
-                    std::string_view words) {
-    setting.subject = std::move(subject);
+                    std::string_view words,
+                    Value StudySetting::*what,
+                    const Value& value) {
+    setting.subject = subject;
     setting.name += fmt::format("-{}", suffix);
     setting.words += fmt::format(", {}", words);
+    setting.*what = value;
     return setting;
 }
 
 StudySetting one_a_frame(const StudySetting& base) {
-    StudySetting setting = varied(base, "packing", "mono", "one a frame");
-    setting.per_frame = 1;
-    return setting;
-}
-
-StudySetting one_job(const StudySetting& base) {
-    StudySetting setting = varied(base, "jobs", "jobs-1", "one job");
-    setting.jobs = 1;
-    return setting;
-}
-
-StudySetting one_soft_lamp(const StudySetting& base) {
-    StudySetting setting = varied(base, "emitters", "soft", "one soft lamp");
-    setting.one_soft_lamp = true;
-    return setting;
-}
-
-StudySetting png_frames(const StudySetting& base) {
-    StudySetting setting = varied(base, "frames", "png", "16-bit PNG");
-    setting.png = true;
-    return setting;
-}
-
-StudySetting antialiased(const StudySetting& base) {
-    StudySetting setting = varied(base, "antialiasing", "antialias", "antialiased");
-    setting.antialias = true;
-    return setting;
+    return varied(base, "packing", "mono", "one a frame", &StudySetting::per_frame, 1);
 }
 
 // None where the image's size does not divide.
-std::vector<StudySetting> shrunk_settings(const Rig& rig,
-                                          const StudySetting& base,
-                                          int shrink,
-                                          std::span<const char* const> filters) {
-    if (rig.camera.width_px % shrink != 0 || rig.camera.height_px % shrink != 0) return {};
+void add_shrunk(std::vector<StudySetting>& settings,
+                const Rig& rig,
+                int shrink,
+                std::initializer_list<std::string> filters) {
+    if (rig.camera.width_px % shrink != 0 || rig.camera.height_px % shrink != 0) return;
     const char* size = shrink == 2 ? "half" : "quarter";
-    std::vector<StudySetting> settings;
-    for (const char* filter : filters) {
-        settings.push_back(varied(base,
+    for (const std::string& filter : filters) {
+        settings.push_back(varied(settings.front(),
                                   "resolution",
                                   fmt::format("{}-{}", size, filter),
-                                  fmt::format("{} size, {}", size, filter)));
+                                  fmt::format("{} size, {}", size, filter),
+                                  &StudySetting::filter,
+                                  filter));
         settings.back().shrink = shrink;
-        settings.back().filter = filter;
     }
-    return settings;
 }
 
-void append(std::vector<StudySetting>& settings, std::vector<StudySetting> more) {
-    std::ranges::move(more, std::back_inserter(settings));
-}
-
-std::vector<StudySetting> quick_settings(const Rig& rig, int cores) {
-    static constexpr std::array<const char*, 1> kFilters{"lanczos3"};
-    const StudySetting base = fitted_setting(3, cores);
-    std::vector<StudySetting> settings{
-        base, fitted_setting(6, cores), bands_setting(6, cores), bands_setting(12, cores)};
-    append(settings, shrunk_settings(rig, base, 2, kFilters));
-    if (has_emitter(rig)) settings.push_back(one_soft_lamp(base));
-    settings.push_back(png_frames(base));
-    return settings;
-}
-
-std::vector<StudySetting> full_settings(const Rig& rig, int cores) {
-    static constexpr std::array<const char*, 3> kFilters{"triangle", "catmull-rom", "lanczos3"};
-    const StudySetting base = fitted_setting(3, cores);
-    std::vector<StudySetting> settings{base, fitted_setting(6, cores), fitted_setting(9, cores)};
-    for (const int count : {3, 6, 9, 12, 18, 24, 36, 48, 72})
-        settings.push_back(bands_setting(count, cores));
-    settings.push_back(one_a_frame(base));
-    settings.push_back(one_a_frame(bands_setting(36, cores)));
-    append(settings, shrunk_settings(rig, base, 2, kFilters));
-    append(settings, shrunk_settings(rig, base, 4, kFilters));
-    if (has_emitter(rig)) settings.push_back(one_soft_lamp(base));
-    settings.push_back(png_frames(base));
-    settings.push_back(antialiased(base));
-    if (cores > 1) settings.push_back(one_job(bands_setting(12, cores)));
-    return settings;
+void add_coarse_lamps_and_frames(std::vector<StudySetting>& settings, const Rig& rig) {
+    const StudySetting base = settings.front();
+    if (has_emitter(rig)) {
+        settings.push_back(
+            varied(base, "emitters", "soft", "one soft lamp", &StudySetting::one_soft_lamp, true));
+    }
+    settings.push_back(varied(base, "frames", "png", "16-bit PNG", &StudySetting::png, true));
 }
 
 // Measures.
-
-bool is_measured(const Comparison& channel) {
-    return channel.compared > 0 && channel.not_finite == 0;
-}
-
-double worst(const std::array<Comparison, 3>& channels, double Comparison::*error) {
-    double largest = 0.0;
-    for (const Comparison& channel : channels)
-        largest = std::max(largest, is_measured(channel) ? channel.*error : kInfinity);
-    return largest;
-}
 
 bool beats(const StudyMeasure& a, const StudyMeasure& b) {
     const bool as_good = a.total_s() <= b.total_s() && a.max_error() <= b.max_error();
     return as_good && (a.total_s() < b.total_s() || a.max_error() < b.max_error());
 }
 
-// study.csv
-
-// RFC 4180: quotes where the text would end the field.
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + '"';
-}
-
-using Columns = std::vector<std::pair<std::string, std::string>>;
-
-Columns columns_of(const StudySetting& setting) {
-    return {{"name", setting.name},
-            {"subject", setting.subject},
-            {"words", setting.words},
-            {"fitted", fmt::format("{}", setting.fitted)},
-            {"bands", fmt::format("{}", setting.bands)},
-            {"per_frame", fmt::format("{}", setting.per_frame)},
-            {"shrink", fmt::format("{}", setting.shrink)},
-            {"filter", setting.filter},
-            {"one_soft_lamp", fmt::format("{}", setting.one_soft_lamp)},
-            {"png", fmt::format("{}", setting.png)},
-            {"antialias", fmt::format("{}", setting.antialias)},
-            {"jobs", fmt::format("{}", setting.jobs)}};
-}
-
-std::string ratio_to_baseline(const Study& study, const StudyMeasure& measure) {
-    const auto ratio = time_ratio(study.measures, measure.setting.name, kBaseline);
-    return ratio ? fmt::format("{}", *ratio) : "";
-}
-
-// By measure, every column with its name.
-Columns columns_of(const Study& study, const StudyMeasure& measure, bool on_front) {
-    Columns columns = columns_of(measure.setting);
-    const auto add = [&](const std::string& name, double value) {
-        columns.emplace_back(name, fmt::format("{}", value));
-    };
-    columns.emplace_back("wavelengths", fmt::format("{}", measure.wavelengths));
-    columns.emplace_back("frames", fmt::format("{}", measure.frames));
-    columns.emplace_back("promise",
-                         measure.promise_applies() ? fmt::format("{}", measure.promise) : "");
-    add("render_s", measure.render_s);
-    add("integrate_s", measure.integrate_s);
-    add("total_s", measure.total_s());
-    columns.emplace_back("time_ratio", ratio_to_baseline(study, measure));
-    add("max_error", measure.max_error());
-    add("percentile_999", measure.percentile_999());
-    add("rms_error", measure.rms_error());
-    add("max_error_off_edges", measure.max_error_off_edges());
-    add("max_error_on_edges", measure.max_error_on_edges());
-    for (std::size_t c = 0; c < measure.channels.size(); ++c) {
-        add(fmt::format("max_error_{}", kChannelNames[c]), measure.channels[c].max_error);
-        add(fmt::format("mean_error_{}", kChannelNames[c]), measure.channels[c].mean_error);
-    }
-    columns.emplace_back("on_front", fmt::format("{}", on_front));
-    return columns;
-}
-
-std::string csv_line(const Columns& columns, std::string Columns::value_type::*part) {
-    std::string line;
-    for (const auto& column : columns) {
-        if (!line.empty()) line += ',';
-        line += csv_field(column.*part);
-    }
-    return line + '\n';
-}
-
-std::string csv_of(const Study& study) {
-    const std::vector<bool> front = pareto_front(study.measures);
-    // The header stands even over no rows.
-    std::string csv = csv_line(columns_of(study, {}, false), &Columns::value_type::first);
-    for (std::size_t i = 0; i < study.measures.size(); ++i) {
-        csv +=
-            csv_line(columns_of(study, study.measures[i], front[i]), &Columns::value_type::second);
-    }
-    return csv;
-}
-
 // study.json
-
-Json json_of(const StudySetting& setting) {
-    return {{"fitted", setting.fitted},
-            {"bands", setting.bands},
-            {"per_frame", setting.per_frame},
-            {"shrink", setting.shrink},
-            {"filter", setting.filter},
-            {"one_soft_lamp", setting.one_soft_lamp},
-            {"png", setting.png},
-            {"antialias", setting.antialias},
-            {"jobs", setting.jobs}};
-}
 
 Json ratio_of(const Study& study, std::string_view name) {
     const auto ratio = time_ratio(study.measures, name, kBaseline);
@@ -269,7 +115,7 @@ Json json_of(const Study& study, const StudyMeasure& measure, bool on_front) {
     return {{"name", measure.setting.name},
             {"subject", measure.setting.subject},
             {"words", measure.setting.words},
-            {"setting", json_of(measure.setting)},
+            {"setting", setting_json(measure.setting)},
             {"wavelengths", measure.wavelengths},
             {"frames", measure.frames},
             {"promise", measure.promise_applies() ? Json(measure.promise) : Json()},
@@ -316,10 +162,92 @@ Json json_of(const Study& study) {
         {"measures", measures_of(study)}};
 }
 
+// study.csv
+
+// RFC 4180: quotes where the text would end the field.
+std::string csv_field(const Json& value) {
+    if (value.is_null()) return "";
+    if (value.is_number_float()) return fmt::format("{}", value.get<double>());
+    if (!value.is_string()) return value.dump();
+    const auto& text = value.get_ref<const std::string&>();
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
+// A measure of study.json in one row: settings by their names, times as render_s, and of each
+// channel the largest and the mean error.
+Json flat(const Json& measure) {
+    Json row;
+    for (const auto& [name, value] : measure.items()) {
+        if (name == "setting") {
+            row.update(value);
+        } else if (name == "time_s") {
+            for (const auto& [part, time_s] : value.items()) row[part + "_s"] = time_s;
+        } else if (name == "channels") {
+            for (const Json& channel : value) {
+                for (const std::string quantity : {"max_error", "mean_error"}) {
+                    row[quantity + "_" + channel["name"].get<std::string>()] = channel[quantity];
+                }
+            }
+        } else {
+            row[name] = value;
+        }
+    }
+    return row;
+}
+
+std::string csv_of(const Study& study) {
+    const auto line = [](const std::vector<std::string>& fields) {
+        return fmt::format("{}\n", fmt::join(fields, ","));
+    };
+    std::string csv;
+    for (const Json& measure : measures_of(study)) {
+        std::vector<std::string> names;
+        std::vector<std::string> fields;
+        const Json row = flat(measure);
+        for (const auto& [name, value] : row.items()) {
+            names.push_back(name);
+            fields.push_back(csv_field(value));
+        }
+        if (csv.empty()) csv = line(names);
+        csv += line(fields);
+    }
+    return csv;
+}
+
 }  // namespace
 
 std::vector<StudySetting> study_settings(const Rig& rig, bool quick, int cores) {
-    return quick ? quick_settings(rig, cores) : full_settings(rig, cores);
+    std::vector<StudySetting> settings{fitted_setting(3, cores), fitted_setting(6, cores)};
+    if (quick) {
+        for (const int count : {6, 12}) settings.push_back(bands_setting(count, cores));
+        add_shrunk(settings, rig, 2, {"lanczos3"});
+        add_coarse_lamps_and_frames(settings, rig);
+        return settings;
+    }
+    settings.push_back(fitted_setting(9, cores));
+    for (const int count : {3, 6, 9, 12, 18, 24, 36, 48, 72}) {
+        settings.push_back(bands_setting(count, cores));
+    }
+    settings.push_back(one_a_frame(settings.front()));
+    settings.push_back(one_a_frame(bands_setting(36, cores)));
+    for (const int shrink : {2, 4}) {
+        add_shrunk(settings, rig, shrink, {"triangle", "catmull-rom", "lanczos3"});
+    }
+    add_coarse_lamps_and_frames(settings, rig);
+    settings.push_back(varied(settings.front(),
+                              "antialiasing",
+                              "antialias",
+                              "antialiased",
+                              &StudySetting::antialias,
+                              true));
+    if (cores > 1) {
+        settings.push_back(
+            varied(bands_setting(12, cores), "jobs", "jobs-1", "one job", &StudySetting::jobs, 1));
+    }
+    return settings;
 }
 
 Rig quick_rig(Rig rig) {
@@ -358,20 +286,13 @@ double StudyMeasure::max_error() const {
                          : max_error_off_edges();
 }
 
-double StudyMeasure::max_error_off_edges() const {
-    return worst(channels, &Comparison::max_error);
-}
-
-double StudyMeasure::percentile_999() const {
-    return worst(channels, &Comparison::percentile_999);
-}
-
-double StudyMeasure::rms_error() const {
-    return worst(channels, &Comparison::rms_error);
-}
-
-double StudyMeasure::max_error_on_edges() const {
-    return worst(channels, &Comparison::max_error_on_edges);
+double StudyMeasure::worst(double Comparison::*error) const {
+    double largest = 0.0;
+    for (const Comparison& channel : channels) {
+        const bool is_measured = channel.compared > 0 && channel.not_finite == 0;
+        largest = std::max(largest, is_measured ? channel.*error : kInfinity);
+    }
+    return largest;
 }
 
 std::array<Comparison, 3> compare_signals(const CameraImage& image,

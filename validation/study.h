@@ -79,10 +79,13 @@ struct StudyMeasure {
 
     // The worst channel's; off the edges, where these are not blurred.
     [[nodiscard]] double max_error() const;
-    [[nodiscard]] double max_error_off_edges() const;
-    [[nodiscard]] double percentile_999() const;
-    [[nodiscard]] double rms_error() const;
-    [[nodiscard]] double max_error_on_edges() const;
+    [[nodiscard]] double worst(double Comparison::*error) const;
+    [[nodiscard]] double max_error_off_edges() const { return worst(&Comparison::max_error); }
+    [[nodiscard]] double percentile_999() const { return worst(&Comparison::percentile_999); }
+    [[nodiscard]] double rms_error() const { return worst(&Comparison::rms_error); }
+    [[nodiscard]] double max_error_on_edges() const {
+        return worst(&Comparison::max_error_on_edges);
+    }
 };
 
 struct Study {
@@ -124,9 +127,12 @@ struct Study {
                                                std::string_view name,
                                                std::string_view other);
 
-// study.csv, one row a measure; study.json, all of the study; study.html, one self-contained page
-// with the plot (study_page.h). A number that is not finite is null in JSON and inf in CSV; a
-// promise that does not apply is null and empty.
+// A study for people: the recommendation, the plot of error against time, a table, and how to read
+// them. The same study gives the same page, byte for byte.
+[[nodiscard]] std::string study_page(const Study& study);
+
+// study.csv, one row a measure; study.json, all of the study; study.html, the page. A number that
+// is not finite is null in JSON and inf in CSV; a promise that does not apply is null and empty.
 void write_study(const Study& study, const std::filesystem::path& folder);
 
 }  // namespace aphotic

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The page is well-formed XML too, as report.html is.
-#include "validation/study_page.h"
-
 #include "report/html.h"
 #include "validation/error_view.h"
 #include "validation/study_plot.h"
@@ -153,16 +151,11 @@ std::string left_out(const Study& study) {
 
 std::string plot(const Study& study) {
     return legend(study) +
-           fmt::format("<figure class=\"plot wide-plot\">\n{}</figure>\n",
-                       study_svg(study, StudyPlotWidth::Wide)) +
-           fmt::format(
-               "<figure class=\"plot narrow\">\n{}<figcaption>Numbers as in the lists "
-               "below.</figcaption></figure>\n",
-               study_svg(study, StudyPlotWidth::Narrow)) +
+           fmt::format("<figure class=\"plot wide\">\n{}</figure>\n", study_svg(study)) +
            left_out(study);
 }
 
-// The tables.
+// The table.
 
 std::string edge_error(const StudyMeasure& measure) {
     const bool has_edges = std::ranges::any_of(
@@ -170,35 +163,16 @@ std::string edge_error(const StudyMeasure& measure) {
     return has_edges ? scientific(measure.max_error_on_edges()) : "–";
 }
 
-struct TableRow {
-    std::size_t index = 0;  // of the measure
-    bool against = false;   // from another table, for comparison
-};
+constexpr std::string_view kColumns =
+    "setting;wave\u00ADlengths;frames;render [s];integrate [s];time [s];×\u00A0baseline;"
+    "largest error;99.9 %;off edges;on edges;";
 
-constexpr std::array<std::string_view, 12> kColumns{"setting",
-                                                    "wave\u00ADlengths",
-                                                    "frames",
-                                                    "render [s]",
-                                                    "integrate [s]",
-                                                    "time [s]",
-                                                    "×\u00A0baseline",
-                                                    "largest error",
-                                                    "99.9 %",
-                                                    "off edges",
-                                                    "on edges",
-                                                    ""};
-
-HtmlRow table_row(const Study& study, const std::vector<bool>& front, const TableRow& row) {
-    const StudyMeasure& measure = study.measures[row.index];
+HtmlRow table_row(const Study& study, std::size_t index, bool on_front) {
+    const StudyMeasure& measure = study.measures[index];
     const auto ratio = time_ratio(study.measures, measure.setting.name, kBaseline);
-    const bool is_best = recommended(study.measures, study.tolerance) == row.index;
-    return {.style = row.against ? "against"
-                     : is_best   ? "best"
-                                 : "own",
-            .cells = {fmt::format("<span class=\"numbered\"><span class=\"number\">{}</span>"
-                                  "<span>{}</span></span>",
-                                  row.index + 1,
-                                  escaped(measure.setting.words)),
+    const bool is_best = recommended(study.measures, study.tolerance) == index;
+    return {.style = is_best ? "best" : "",
+            .cells = {escaped(measure.setting.words),
                       grouped(measure.wavelengths),
                       grouped(measure.frames),
                       time_in_digits(measure.render_s),
@@ -209,49 +183,23 @@ HtmlRow table_row(const Study& study, const std::vector<bool>& front, const Tabl
                       scientific(measure.percentile_999()),
                       scientific(measure.max_error_off_edges()),
                       edge_error(measure),
-                      is_best            ? "★ recommended"
-                      : front[row.index] ? "✓ front"
-                                         : ""}};
+                      is_best    ? "★ recommended"
+                      : on_front ? "✓ front"
+                                 : ""}};
 }
 
-// What a subject varies: the same wavelengths with nothing else changed.
-bool is_varied_by(const StudyMeasure& plain_one, const StudyMeasure& measure) {
-    return plain_one.setting.subject == "wavelengths" &&
-           plain_one.setting.fitted == measure.setting.fitted &&
-           plain_one.setting.bands == measure.setting.bands;
-}
-
-std::vector<TableRow> rows_of(const Study& study, const std::string& subject) {
-    std::vector<TableRow> against;
-    std::vector<TableRow> own;
-    for (std::size_t i = 0; i < study.measures.size(); ++i) {
-        const StudyMeasure& measure = study.measures[i];
-        const auto varies = [&](const StudyMeasure& other) {
-            return other.setting.subject == subject && is_varied_by(measure, other);
-        };
-        if (measure.setting.subject == subject) {
-            own.push_back({.index = i});
-        } else if (std::ranges::any_of(study.measures, varies)) {
-            against.push_back({.index = i, .against = true});
-        }
-    }
-    against.insert(against.end(), own.begin(), own.end());
-    return against;
-}
-
-std::string tables(const Study& study) {
+std::string settings(const Study& study) {
     const std::vector<bool> front = pareto_front(study.measures);
-    std::string content;
+    std::vector<HtmlRow> rows;
+    for (std::size_t i = 0; i < study.measures.size(); ++i) {
+        rows.push_back(table_row(study, i, front[i]));
+    }
+    std::vector<HtmlItem> subjects;
     for (const std::string& subject : subjects_of(study)) {
         const StudySubject words = words_of(subject);
-        std::vector<HtmlRow> rows;
-        for (const TableRow& row : rows_of(study, subject))
-            rows.push_back(table_row(study, front, row));
-        content += fmt::format("<h3>{}</h3>\n", escaped(words.heading));
-        if (!words.words.empty()) content += html_paragraph(words.words);
-        content += html_table("settings-" + escaped(subject), kColumns, rows);
+        subjects.emplace_back(escaped(words.heading), words.words);
     }
-    return content;
+    return html_table("measures", kColumns, rows) + html_list("subjects", subjects);
 }
 
 // How to read it.
@@ -291,7 +239,7 @@ std::string study_page(const Study& study) {
                                  user_text(title_of(study)),
                                  verdict(study) + what_was_measured(study)) +
                          html_section("plot", "Error against time", plot(study)) +
-                         html_section("settings", "Settings", tables(study)) +
+                         html_section("settings", "Settings", settings(study)) +
                          html_section("reading", "How to read it", notes(study)));
 }
 

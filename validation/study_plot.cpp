@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -28,51 +28,27 @@ std::size_t subject_index(std::string_view subject) {
                                  kStudySubjects.size() - 1);
 }
 
-std::string polygon(double x, double y, int corners, double first_deg) {
-    std::string path;
-    for (int i = 0; i < corners; ++i) {
-        const double angle = (first_deg + 360.0 * i / corners) * std::numbers::pi / 180.0;
-        // A little larger than the circle, whose area they would fall short of.
-        const double radius = 1.25 * kMarkRadius;
-        path += fmt::format("{}{:.1f} {:.1f}",
-                            i == 0 ? 'M' : 'L',
-                            x + radius * std::cos(angle),
-                            y + radius * std::sin(angle));
-    }
-    return path + 'Z';
-}
-
-std::string shape(std::size_t subject, double x, double y) {
-    switch (subject) {
-        case 0:
-            return fmt::format("M{0:.1f} {1:.1f}a{2} {2} 0 1 0 {3} 0a{2} {2} 0 1 0 -{3} 0Z",
-                               x - kMarkRadius,
-                               y,
-                               kMarkRadius,
-                               2.0 * kMarkRadius);
-        case 1:
-            return polygon(x, y, 4, 45.0);
-        case 2:
-            return polygon(x, y, 3, -90.0);
-        case 3:
-            return polygon(x, y, 4, 0.0);
-        case 4:
-            return polygon(x, y, 3, 90.0);
-        case 5:
-            return polygon(x, y, 5, -90.0);
-        default:
-            return polygon(x, y, 6, 0.0);
-    }
-}
+// By subject, about the origin.
+constexpr std::array<std::string_view, kStudySubjects.size()> kShapes{
+    "M-5 0a5 5 0 1 0 10 0a5 5 0 1 0-10 0Z",
+    "M-4.4-4.4H4.4V4.4H-4.4Z",
+    "M0-6.2L5.4 3.1H-5.4Z",
+    "M0-6.2L6.2 0L0 6.2L-6.2 0Z",
+    "M0 6.2L5.4-3.1H-5.4Z",
+    "M0-6.2L5.9-1.9L3.7 5.1H-3.7L-5.9-1.9Z",
+    "M6.2 0L3.1 5.4H-3.1L-6.2 0L-3.1-5.4H3.1Z"};
 
 std::string mark(
     std::string_view subject, bool hollow, double x, double y, std::string_view content) {
     const std::size_t index = subject_index(subject);
-    return fmt::format(R"(<path class="dot{}" {} d="{}">{}</path>)",
-                       hollow ? " hollow" : "",
-                       svg_tone(index),
-                       shape(index, x, y),
-                       content);
+    return fmt::format(
+        R"svg(<path class="dot{}" {} transform="translate({:.1f} {:.1f})" d="{}">{}</path>)svg",
+        hollow ? " hollow" : "",
+        svg_tone(index),
+        x,
+        y,
+        kShapes.at(index),
+        content);
 }
 
 // With some room at both ends.
@@ -82,7 +58,7 @@ SvgAxis axis_over(const ValueRange& range, int most_labels) {
     return log_axis(range.least / kRoom, range.most * kRoom, most_labels);
 }
 
-SvgPanel panel_of(const Study& study, StudyPlotWidth layout) {
+SvgPanel panel_of(const Study& study) {
     ValueRange times;
     ValueRange errors;
     if (study.tolerance > 0.0) errors.include(study.tolerance);
@@ -91,16 +67,12 @@ SvgPanel panel_of(const Study& study, StudyPlotWidth layout) {
         times.include(measure.total_s());
         errors.include(measure.max_error());
     }
-    const bool is_wide = layout == StudyPlotWidth::Wide;
-    constexpr int kErrorLabels = 7;
-    constexpr double kLabelWidth = 34.0;
-    const double width = is_wide ? 800.0 : 290.0;
     SvgPanel panel{.left = kAxisWidth,
                    .top = 12.0,
-                   .width = width,
-                   .height = is_wide ? 498.0 : 368.0,
-                   .x = axis_over(times, static_cast<int>(width / kLabelWidth)),
-                   .y = axis_over(errors, kErrorLabels)};
+                   .width = 800.0,
+                   .height = 498.0,
+                   .x = axis_over(times, 23),
+                   .y = axis_over(errors, 7)};
     panel.x.title = "time [s]";
     panel.y.title = "largest error |e|";
     return panel;
@@ -191,48 +163,12 @@ std::string marks(const Study& study, const std::vector<Dot>& dots) {
     return svg;
 }
 
-std::string text_at(const LabelPlace& place, std::string_view style, std::string_view text) {
-    constexpr double kMiddleToBaseline = 4.0;
-    return svg_text(place.x_px,
-                    place.y_px + kMiddleToBaseline,
-                    place.anchor,
-                    fmt::format(R"(class="label {}")", style),
-                    text);
-}
-
-// The line, and its name at the end where it covers least.
-std::string tolerance_line(const Study& study,
-                           const SvgPanel& panel,
-                           std::vector<LabelBox>& taken) {
-    if (!(study.tolerance > 0.0)) return "";
-    constexpr std::string_view kName = "tolerance";
-    const double y = panel.y_px(study.tolerance);
-    const double width = text_width(kName, kLabelFont_px);
-    taken.push_back(box_along(panel.left, y, panel.right(), y));
-    // Only the places above and below a point fit between these bounds.
-    const auto at = [&](double left) {
-        const LabelBox bounds{
-            .left = left, .top = panel.top, .right = left + width, .bottom = panel.bottom()};
-        return place_label(left + width / 2.0, y, width, 7.0, taken, bounds);
-    };
-    const auto covered = [&](const LabelPlace& place) {
-        double area = 0.0;
-        for (const LabelBox& box : taken) area += overlap(place.box, box);
-        return area;
-    };
-    const LabelPlace right = at(panel.right() - width - 2.0);
-    const LabelPlace left = at(panel.left + 2.0);
-    const LabelPlace& place = covered(right) <= covered(left) ? right : left;
-    taken.push_back(place.box);
-    return svg_level(panel, study.tolerance, R"(class="bound")") + text_at(place, "limit", kName);
-}
-
 // The recommended one first, then the front. Leaders lie under all words.
 std::string labels(const Study& study,
                    std::vector<Dot> dots,
                    const SvgPanel& panel,
-                   bool names,
                    std::vector<LabelBox> taken) {
+    constexpr double kMiddleToBaseline = 4.0;
     std::ranges::stable_sort(dots, std::ranges::greater{}, [](const Dot& dot) {
         return std::pair(dot.is_best, dot.on_front);
     });
@@ -241,15 +177,18 @@ std::string labels(const Study& study,
     std::string leaders;
     std::string texts;
     for (const Dot& dot : dots) {
-        const std::string text =
-            names ? study.measures[dot.index].setting.name : fmt::format("{}", dot.index + 1);
+        const std::string& text = study.measures[dot.index].setting.name;
         const LabelPlace place = place_label(
             dot.x_px, dot.y_px, text_width(text, kLabelFont_px), clearance(dot), taken, bounds);
         taken.push_back(place.box);
         if (place.is_far) {
             leaders += svg_line(dot.x_px, dot.y_px, place.x_px, place.y_px, R"(class="leader")");
         }
-        texts += text_at(place, dot.on_front ? "strong" : "", text);
+        texts += svg_text(place.x_px,
+                          place.y_px + kMiddleToBaseline,
+                          place.anchor,
+                          dot.on_front ? R"(class="label strong")" : R"(class="label")",
+                          text);
     }
     return leaders + texts;
 }
@@ -266,16 +205,19 @@ std::string subject_mark(std::string_view subject, bool hollow) {
                        mark(subject, hollow, 7.0, 7.0, ""));
 }
 
-std::string study_svg(const Study& study, StudyPlotWidth layout) {
-    const bool is_wide = layout == StudyPlotWidth::Wide;
-    const SvgPanel panel = panel_of(study, layout);
+std::string study_svg(const Study& study) {
+    const SvgPanel panel = panel_of(study);
     const std::vector<Dot> dots = dots_of(study, panel);
     std::string svg = svg_axes(panel);
     std::vector<LabelBox> taken = front_steps(dots, svg);
     for (const Dot& dot : dots) taken.push_back(box_around(dot));
-    svg += tolerance_line(study, panel, taken) + marks(study, dots);
-    svg += labels(study, dots, panel, is_wide, taken);
-    return svg_drawing(is_wide ? "plot-wide" : "plot-narrow",
+    if (study.tolerance > 0.0) {
+        const double y = panel.y_px(study.tolerance);
+        taken.push_back(box_along(panel.left, y, panel.right(), y));
+        svg += svg_level(panel, study.tolerance, R"(class="bound")");
+    }
+    svg += marks(study, dots) + labels(study, dots, panel, taken);
+    return svg_drawing("study-plot",
                        "largest error of each setting over its time",
                        panel.right() + 14.0,
                        panel.bottom() + kAxisHeight,

@@ -38,11 +38,7 @@ inline constexpr std::array<StudySubject, 7> kStudySubjects{{
     {"jobs", "Jobs", "One POV-Ray at a time in place of one a core."},
 }};
 
-// Wide marks carry names; narrow ones, for a window of a phone's width, the measures' numbers from
-// 1 on.
-enum class StudyPlotWidth { Wide, Narrow };
-
-[[nodiscard]] std::string study_svg(const Study& study, StudyPlotWidth layout);
+[[nodiscard]] std::string study_svg(const Study& study);
 
 [[nodiscard]] bool is_drawn(const StudyMeasure& measure);
 

@@ -8,9 +8,11 @@
 #include "image/exr.h"
 #include "spectral/integrator.h"
 #include "validation/saved_measure.h"
+#include "validation/traced_images.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -32,24 +34,16 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::string key_of(const Study& study, const StudySetting& s) {
-    return sha256_of_text(fmt::format("{} {} {} {} {} {} {}/{}/{}/{}/{}/{}/{}/{}/{}/{}",
+std::string key_of(const Study& study, const StudySetting& setting) {
+    return sha256_of_text(fmt::format("{} {} {} {} {} {} {} {}",
                                       study.rig_sha256,
                                       study.width_px,
                                       study.height_px,
                                       study.aphotic_version,
                                       study.povray_version,
                                       study.cores,
-                                      s.name,
-                                      s.fitted,
-                                      s.bands,
-                                      s.per_frame,
-                                      s.shrink,
-                                      s.filter,
-                                      s.one_soft_lamp,
-                                      s.png,
-                                      s.antialias,
-                                      s.jobs));
+                                      setting.name,
+                                      setting_json(setting).dump()));
 }
 
 struct StudyReference {
@@ -91,24 +85,16 @@ StudyReference study_reference(const Rig& rig,
     }
     make_folder(folder);
     const auto start = Clock::now();
-    constexpr int kRows = 32;
-    const int height_px = rig.camera.height_px;
-    std::vector<std::vector<double>> blocks;
-    for (int row = 0; row < height_px; row += kRows) {
-        blocks.push_back(tracer.rows(row, std::min(kRows, height_px - row)));
-        hands.progress("tracing", static_cast<double>(row) / height_px);
-    }
+    const std::vector<double> signals =
+        trace_signals(tracer, [&](double share) { hands.progress("tracing", share); });
     reference.trace_s = seconds_since(start);
     OutputImages images(
         folder,
         rig.camera.width_px,
-        height_px,
+        rig.camera.height_px,
         {},
         {{"aphotic:key", key}, {"aphotic:trace_s", fmt::format("{}", reference.trace_s)}});
-    for (const std::vector<double>& block : blocks) {
-        const auto rows = static_cast<int>(block.size()) / kChannels / rig.camera.width_px;
-        images.write_rows(rows, {block.begin(), block.end()});
-    }
+    images.write_rows(rig.camera.height_px, {signals.begin(), signals.end()});
     reference.image = images.finish();
     return reference;
 }

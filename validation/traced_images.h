@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace aphotic {
 
@@ -19,5 +20,9 @@ namespace aphotic {
                                               const std::filesystem::path& folder,
                                               const std::string& version,
                                               const std::function<void(double)>& progress);
+
+// The planes R, G, B of a tracer that was asked for signals alone.
+[[nodiscard]] std::vector<double> trace_signals(const Tracer& tracer,
+                                                const std::function<void(double)>& progress);
 
 }  // namespace aphotic

@@ -2,6 +2,7 @@
 #include "validation/validation.h"
 
 #include "image/frame_check.h"
+#include "validation/traced_images.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>
@@ -64,21 +65,30 @@ Edges edges_of(const Tracer& reference,
     return edges;
 }
 
-// Puts in penumbrae the samples of the render's own lamps in the reference's place, and tells how
-// far the render is from what stood there.
-double replace_penumbrae(std::span<const float> rendered,
-                         std::span<double> traced,
-                         std::span<const std::size_t> in_penumbrae,
-                         std::span<const double> of_lamps,
-                         double black) {
+struct HeldPlane {
+    std::string name;
+    std::span<const float> rendered;
+    std::span<double> traced;
+    std::span<const double> of_lamps;  // in the penumbrae, by the render's own
+    double black = 0.0;
+    double bound = 0.0;
+};
+
+// In penumbrae the samples of the render's own lamps take the reference's place, once it is known
+// how far the render is from what stood there.
+Comparison compare_held(const HeldPlane& plane, const Edges& edges, int width_px) {
     double max_error = 0.0;
-    for (std::size_t n = 0; n < in_penumbrae.size(); ++n) {
-        const std::size_t i = in_penumbrae[n];
-        const double e = std::abs(relative_error(rendered[i], traced[i], black));
+    for (std::size_t n = 0; n < edges.in_penumbrae.size(); ++n) {
+        const std::size_t i = edges.in_penumbrae[n];
+        const double e = std::abs(relative_error(plane.rendered[i], plane.traced[i], plane.black));
         max_error = std::max(max_error, std::isnan(e) ? 0.0 : e);
-        traced[i] = of_lamps[n];
+        plane.traced[i] = plane.of_lamps[n];
     }
-    return max_error;
+    Comparison comparison = compare_planes(
+        plane.name, plane.rendered, plane.traced, width_px, edges.marks, plane.black, plane.bound);
+    comparison.in_penumbrae = edges.in_penumbrae.size();
+    comparison.max_error_of_penumbrae = max_error;
+    return comparison;
 }
 
 void compare_radiance(const Rig& rig,
@@ -110,51 +120,23 @@ void compare_radiance(const Rig& rig,
                                  {.first_nm = std::min(lambda_nm, index_nm),
                                   .last_nm = std::max(lambda_nm, index_nm)});
             }
-            const auto a = std::span(found).subspan(k * pixels, pixels);
-            const auto b = std::span(traced).subspan(k * pixels, pixels);
-            const double black =
-                std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[first + k]);
             std::vector<double> again;
             if (of_lamps) again = of_lamps->pixels(edges->in_penumbrae);
-            const double of_penumbrae = replace_penumbrae(a, b, edges->in_penumbrae, again, black);
-            report.wavelengths.push_back(
-                compare_planes(wavelength_name(lambda_nm),
-                               a,
-                               b,
-                               rig.camera.width_px,
-                               edges->marks,
-                               black,
-                               kHalfFloatBound + rendered.shift_error[first + k]));
-            report.wavelengths.back().in_penumbrae = edges->in_penumbrae.size();
-            report.wavelengths.back().max_error_of_penumbrae = of_penumbrae;
+            report.wavelengths.push_back(compare_held(
+                {.name = wavelength_name(lambda_nm),
+                 .rendered = std::span(found).subspan(k * pixels, pixels),
+                 .traced = std::span(traced).subspan(k * pixels, pixels),
+                 .of_lamps = again,
+                 .black = std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[first + k]),
+                 .bound = kHalfFloatBound + rendered.shift_error[first + k]},
+                *edges,
+                rig.camera.width_px));
         }
         if (progress) {
             progress(kShareOfSignals + (1.0 - kShareOfSignals) * static_cast<double>(first + part) /
                                            static_cast<double>(count));
         }
     }
-}
-
-// The signals over the full spectrum, in rows so that the progress shows.
-std::vector<double> trace_signals(const Tracer& tracer,
-                                  const std::function<void(double)>& progress) {
-    constexpr int kRows = 32;
-    const int height_px = tracer.rig().camera.height_px;
-    const std::size_t pixels = pixels_of(tracer.rig());
-    std::vector<double> signals(kChannels * pixels);
-    for (int row = 0; row < height_px; row += kRows) {
-        const int rows = std::min(kRows, height_px - row);
-        const std::vector<double> block = tracer.rows(row, rows);
-        const std::size_t plane = block.size() / kChannels;
-        const std::size_t before =
-            static_cast<std::size_t>(row) * static_cast<std::size_t>(tracer.rig().camera.width_px);
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            std::ranges::copy(std::span(block).subspan(c * plane, plane),
-                              signals.begin() + static_cast<std::ptrdiff_t>(c * pixels + before));
-        }
-        if (progress) progress(kShareOfSignals * (row + rows) / height_px);
-    }
-    return signals;
 }
 
 void compare_signals(const Rig& rig,
@@ -166,7 +148,9 @@ void compare_signals(const Rig& rig,
     const TraceOptions options{.signals = true, .planes_nm = {}, .threads = threads};
     const Tracer tracer(rig, options);
     report.grid_size = tracer.grid_size();
-    std::vector<double> traced = trace_signals(tracer, progress);
+    std::vector<double> traced = trace_signals(tracer, [&](double share) {
+        if (progress) progress(kShareOfSignals * share);
+    });
     report.traced = {.width_px = rig.camera.width_px,
                      .height_px = rig.camera.height_px,
                      .samples = {traced.begin(), traced.end()}};
@@ -179,17 +163,15 @@ void compare_signals(const Rig& rig,
         const auto a = std::span<const float>(rendered.signals.samples).subspan(c * pixels, pixels);
         const auto b = std::span(traced).subspan(c * pixels, pixels);
         const double black = std::max(kBlackShare * std::ranges::max(b), rendered.black[c]);
-        const auto own = std::span(again).subspan(c * count, count);
-        const double of_penumbrae = replace_penumbrae(a, b, edges.in_penumbrae, own, black);
-        report.channels.push_back(compare_planes(std::string(kChannelNames[c]),
-                                                 a,
-                                                 b,
-                                                 rig.camera.width_px,
-                                                 edges.marks,
-                                                 black,
-                                                 rendered.promise[c]));
-        report.channels.back().in_penumbrae = count;
-        report.channels.back().max_error_of_penumbrae = of_penumbrae;
+        report.channels.push_back(
+            compare_held({.name = std::string(kChannelNames[c]),
+                          .rendered = a,
+                          .traced = b,
+                          .of_lamps = std::span(again).subspan(c * count, count),
+                          .black = black,
+                          .bound = rendered.promise[c]},
+                         edges,
+                         rig.camera.width_px));
         for (std::size_t i = 0; i < pixels; ++i) {
             const double e = edges.marks[i] != 0 ? std::numeric_limits<double>::quiet_NaN()
                                                  : relative_error(a[i], b[i], black);

@@ -9,32 +9,11 @@
 #include <fmt/format.h>
 
 #include <string>
-#include <vector>
 
 // Linked here, not loaded when it is asked for.
 extern "C" void aphotic_open_any_image(const std::filesystem::path& file, aphotic::AnyImage& image);
 
 namespace aphotic::survey {
-
-namespace {
-
-template <typename Sample>
-void write_samples(const std::filesystem::path& file,
-                   const std::string& format,
-                   const OIIO::ImageSpec& spec,
-                   std::span<const Sample> samples) {
-    AtomicFile destination(file);
-    const auto output = OIIO::ImageOutput::create(format);
-    if (!output || !output->open(destination.temporary().string(), spec) ||
-        !output->write_image(spec.format, samples.data()) || !output->close()) {
-        throw RunError(fmt::format("{}: cannot be written: {}",
-                                   file.string(),
-                                   output ? output->geterror() : OIIO::geterror()));
-    }
-    destination.commit();
-}
-
-}  // namespace
 
 void write_tiff(const std::filesystem::path& file,
                 int width_px,
@@ -42,22 +21,15 @@ void write_tiff(const std::filesystem::path& file,
                 std::span<const std::uint16_t> samples) {
     OIIO::ImageSpec spec(width_px, height_px, 1, OIIO::TypeDesc::UINT16);
     spec.attribute("compression", "zip");
-    write_samples(file, "tiff", spec, samples);
-}
-
-void write_picture(const std::filesystem::path& file,
-                   int width_px,
-                   std::span<const std::uint32_t> pixels) {
-    std::vector<std::uint8_t> samples;
-    for (const std::uint32_t pixel : pixels) {
-        for (const unsigned shift : {16U, 8U, 0U}) {
-            samples.push_back(static_cast<std::uint8_t>(pixel >> shift & 0xFFU));
-        }
+    AtomicFile destination(file);
+    const auto output = OIIO::ImageOutput::create("tiff");
+    if (!output || !output->open(destination.temporary().string(), spec) ||
+        !output->write_image(spec.format, samples.data()) || !output->close()) {
+        throw RunError(fmt::format("{}: cannot be written: {}",
+                                   file.string(),
+                                   output ? output->geterror() : OIIO::geterror()));
     }
-    const int height_px = static_cast<int>(pixels.size()) / width_px;
-    OIIO::ImageSpec spec(width_px, height_px, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("CompressionQuality", 75);  // of JPEG
-    write_samples<std::uint8_t>(file, file.extension().string().substr(1), spec, samples);
+    destination.commit();
 }
 
 CameraImage read_image(const std::filesystem::path& file) {

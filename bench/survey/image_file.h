@@ -17,12 +17,6 @@ void write_tiff(const std::filesystem::path& file,
                 int height_px,
                 std::span<const std::uint16_t> samples);
 
-// A picture of pixels 0xRRGGBB, row by row, in the format of the file's suffix, such as PNG or
-// JPEG.
-void write_picture(const std::filesystem::path& file,
-                   int width_px,
-                   std::span<const std::uint32_t> pixels);
-
 // The first three channels of an image of any format; integers are scaled to 0..1. Throws
 // InputError.
 [[nodiscard]] CameraImage read_image(const std::filesystem::path& file);

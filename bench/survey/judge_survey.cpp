@@ -9,6 +9,7 @@
 // --picture FILE puts the images of --show side by side: a row for each of them, a column for
 // each NAME. Every column has one exposure and one white balance, which show the light tiles of its
 // images grey in the mean: what differs within a column differs in the corrected images.
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "bench/survey/chart.h"
 #include "bench/survey/flight.h"
@@ -188,7 +189,8 @@ void write_sheet(const Options& options,
         }
         put_column(images, scale_of(scores[column], options.show), column, width_px, sheet);
     }
-    write_picture(options.picture, static_cast<int>(width_px), sheet);
+    const auto height_px = static_cast<int>(sheet.size() / width_px);
+    write_text_file(options.picture, png_of(sheet, static_cast<int>(width_px), height_px));
 }
 
 void judge(const Options& options) {
@@ -232,32 +234,26 @@ int main(int argc, char** argv) {
     app.add_option("CORRECTION", options.corrections, "NAME=DIR: a folder of corrected images")
         ->required();
     app.add_option("--images", options.images, "of the survey's first so many; 0: all");
-    auto* picture =
-        app.add_option("--picture", options.picture, "the images side by side, as PNG or JPEG")
-            ->type_name("FILE")
-            ->check([](const std::string& file) {
-                return file.ends_with(".png") || file.ends_with(".jpg")
-                           ? std::string()
-                           : file + ": allowed: a name that ends in .png or .jpg";
-            });
+    auto* picture = app.add_option("--picture", options.picture, "the images side by side, as PNG")
+                        ->type_name("FILE")
+                        ->check([](const std::string& file) {
+                            return file.ends_with(".png")
+                                       ? std::string()
+                                       : file + ": allowed: a name that ends in .png";
+                        });
     app.add_option("--show", options.show, "names of images for the picture, such as 000001")
         ->delimiter(',')
         ->needs(picture);
     app.add_flag("--json", options.json, "the table as JSON");
     try {
         app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
-    }
-    try {
         if (!options.picture.empty() && options.show.empty()) options.show = {"000001"};
         aphotic::survey::judge(options);
-    } catch (const aphotic::InputError& error) {
-        fmt::print(stderr, "judge: {}\n", error.what());
-        return 2;
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
     } catch (const std::exception& error) {
         fmt::print(stderr, "judge: {}\n", error.what());
-        return 3;
+        return dynamic_cast<const aphotic::InputError*>(&error) != nullptr ? 2 : 3;
     }
     return 0;
 }

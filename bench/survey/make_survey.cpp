@@ -206,17 +206,12 @@ int main(int argc, char** argv) {
     app.add_option("--jobs", options.jobs, "frames at a time")->check(CLI::PositiveNumber);
     try {
         app.parse(argc, argv);
+        aphotic::survey::make_survey(options);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
-    }
-    try {
-        aphotic::survey::make_survey(options);
-    } catch (const aphotic::InputError& error) {
-        fmt::print(stderr, "survey: {}\n", error.what());
-        return 2;
     } catch (const std::exception& error) {
         fmt::print(stderr, "survey: {}\n", error.what());
-        return 3;
+        return dynamic_cast<const aphotic::InputError*>(&error) != nullptr ? 2 : 3;
     }
     return 0;
 }

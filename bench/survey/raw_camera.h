@@ -8,9 +8,6 @@
 //
 // S_c    the signal, linear                     W   the signal that fills the well
 // F      the full well [electrons]              r   read noise [electrons]
-//
-// So a signal of 0 is the black level, W is white, and half the light is half of what lies above
-// black.
 #pragma once
 
 #include "image/output_images.h"

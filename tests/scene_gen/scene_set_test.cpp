@@ -6,8 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace aphotic::scene_set_test {
 namespace {
@@ -62,6 +64,63 @@ TEST(SceneSet, TakesWaterThatNoLightComesThrough) {
     for (const double multiple : {1e4, 1e6}) {
         EXPECT_EQ(refusal_of(multiple, plan_in(multiple)), "none");
     }
+}
+
+// Light that is fainter than frames hold.
+
+constexpr double kFrameError = 5e-4;
+constexpr int kMostExposureOfColours_log2 = 100;  // about what POV-Ray's floats leave
+
+// Green in view, and red that is 2^red_log2 as bright and makes as much signal as green, or a share
+// of it.
+std::vector<PlannedWavelength> green_and_red(int red_log2, double share = 1.0) {
+    const PlannedWavelength green{
+        .lambda_nm = 550.0, .weight = {1.0, 1.0, 0.0}, .exposure_log2 = 13, .radiance_bound = 1.0};
+    const PlannedWavelength red{
+        .lambda_nm = 650.0,
+        .weight = {std::ldexp(share, -red_log2), 0.0, 0.0},
+        .exposure_log2 = std::min(13 - red_log2, kMostExposureOfColours_log2),
+        .radiance_bound = std::ldexp(1.0, red_log2)};
+    return {green, red};
+}
+
+std::string refusal_of(const std::vector<PlannedWavelength>& wavelengths) {
+    try {
+        require_light_that_counts(wavelengths, kFrameError);
+        return "none";
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+// 2^-114 is held as 2^-14, the last with all digits.
+TEST(LostLight, IsBelowTheLeastNormalHalfFloat) {
+    EXPECT_EQ(refusal_of(green_and_red(-114)), "none");
+    EXPECT_EQ(refusal_of(green_and_red(-115)),
+              "found light of at most 2.4e-35 at 650 nm, fainter than frames hold, which counts in "
+              "R by a weight of 4.2e+34; allowed: wavelengths that frames hold, or that count for "
+              "nothing");
+}
+
+TEST(LostLight, IsNoMatterWhereItCountsForNothing) {
+    EXPECT_EQ(refusal_of(green_and_red(-200, 0.9 * kFrameError)), "none");
+    EXPECT_NE(refusal_of(green_and_red(-200, 1.1 * kFrameError)), "none");
+    EXPECT_EQ(refusal_of(green_and_red(-200, 0.0)), "none");
+}
+
+// A sign makes no difference: what is subtracted and lost is lost as well.
+TEST(LostLight, CountsByTheSizeOfItsWeight) {
+    std::vector<PlannedWavelength> wavelengths = green_and_red(-200);
+    wavelengths[1].weight[0] *= -1.0;
+    EXPECT_NE(refusal_of(wavelengths), "none");
+}
+
+TEST(LostLight, IsABlackImageWhereNothingIsHeld) {
+    std::vector<PlannedWavelength> wavelengths = green_and_red(-200);
+    wavelengths[0].weight = {};
+    EXPECT_EQ(refusal_of(wavelengths), "none");
+    for (PlannedWavelength& w : wavelengths) w.radiance_bound = 0.0;
+    EXPECT_EQ(refusal_of(wavelengths), "none");
 }
 
 }  // namespace

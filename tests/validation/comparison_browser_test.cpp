@@ -63,9 +63,9 @@ addEventListener('load', () => {
   const box = e => e.getBoundingClientRect();
   const cut = [...document.querySelectorAll('svg text')].filter(
     text => !within(box(text), box(text.ownerSVGElement)));
-  const bars = [...document.querySelectorAll('svg[id^=colour-bar]')].filter(b => box(b).width > 40);
-  const rings = [...document.querySelectorAll('.ring')].filter(
-    ring => within(box(ring), box(ring.closest('.frame'))));
+  const bars = [...document.querySelectorAll('[id^=colour-bar]')].filter(b => box(b).width > 40);
+  const rings = [...document.querySelectorAll('.worst')].filter(
+    ring => within(box(ring), box(ring.closest('.map'))));
   const ids = [...document.querySelectorAll('[id]')].map(e => e.id);
   const root = document.documentElement;
   document.title = `images ${shown.length}/${images.length}, cut ${cut.length}` +

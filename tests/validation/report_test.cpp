@@ -191,7 +191,6 @@ TEST(ReportPage, HasEverySection) {
                            "profile-row",
                            "profile-column",
                            "numbers",
-                           "errors",
                            "channels",
                            "wavelengths",
                            "made-with"})

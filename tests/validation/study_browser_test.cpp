@@ -5,7 +5,7 @@
 #include "report/html.h"
 #include "support/browser.h"
 #include "support/small_study.h"
-#include "validation/study_page.h"
+#include "validation/study.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -76,18 +76,19 @@ TEST_F(StudyInABrowser, LeavesTheConsoleEmpty) {
     EXPECT_NE(seen.page.find("id=\"reading\""), std::string::npos) << "the last section";
 }
 
-// 24 settings and the tolerance have a label each.
+// 24 settings have a label each.
 TEST_F(StudyInABrowser, FitsADesk) {
     const Seen seen = seen_by(*browser(), measuring(study_page(long_study()), kDesk_px));
     EXPECT_EQ(title_in(seen.page),
-              "plot-wide, labels 25, cut 0, covered 0, scrolling 0, too wide 0");
+              "study-plot, labels 24, cut 0, covered 0, scrolling 0, too wide 0");
     EXPECT_EQ(seen.console, "");
 }
 
+// Where the plot and the table scroll sideways, each by itself.
 TEST_F(StudyInABrowser, FitsAPhone) {
     const Seen seen = seen_by(*browser(), measuring(study_page(long_study()), kPhone_px));
     EXPECT_EQ(title_in(seen.page),
-              "plot-narrow, labels 25, cut 0, covered 0, scrolling 0, too wide 0");
+              "study-plot, labels 24, cut 0, covered 0, scrolling 2, too wide 0");
     EXPECT_EQ(seen.console, "");
 }
 

@@ -7,7 +7,6 @@
 #include "support/small_scene.h"
 #include "support/small_study.h"
 #include "support/temp_folder.h"
-#include "validation/study_page.h"
 #include "validation/study_plot.h"
 
 #include <gtest/gtest.h>
@@ -649,23 +648,19 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 
 TEST(StudyPlot, HasAMarkALabelAndATitleForEveryMeasure) {
     const Study study = small_study();
-    for (const StudyPlotWidth width : {StudyPlotWidth::Wide, StudyPlotWidth::Narrow}) {
-        const std::string svg = study_svg(study, width);
-        EXPECT_EQ(count_of(svg, "<path class=\"dot"), study.measures.size());
-        for (std::size_t i = 0; i < study.measures.size(); ++i) {
-            const StudySetting& setting = study.measures[i].setting;
-            const std::string label =
-                width == StudyPlotWidth::Wide ? setting.name : std::to_string(i + 1);
-            EXPECT_EQ(count_of(svg, "class=\"label \">" + label + "</text>") +
-                          count_of(svg, "class=\"label strong\">" + label + "</text>"),
-                      1U)
-                << label;
-            EXPECT_TRUE(contains(svg, "<title>" + setting.words + ": ")) << setting.words;
-        }
-        EXPECT_EQ(count_of(svg, "class=\"ring\""), 1U);
-        EXPECT_EQ(count_of(svg, "class=\"front\""), 1U);
-        EXPECT_EQ(count_of(svg, "class=\"bound\""), 1U);
+    const std::string svg = study_svg(study);
+    EXPECT_EQ(count_of(svg, "<path class=\"dot"), study.measures.size());
+    for (const StudyMeasure& measure : study.measures) {
+        const std::string label = measure.setting.name;
+        EXPECT_EQ(count_of(svg, "class=\"label\">" + label + "</text>") +
+                      count_of(svg, "class=\"label strong\">" + label + "</text>"),
+                  1U)
+            << label;
+        EXPECT_TRUE(contains(svg, "<title>" + measure.setting.words + ": "));
     }
+    EXPECT_EQ(count_of(svg, "class=\"ring\""), 1U);
+    EXPECT_EQ(count_of(svg, "class=\"front\""), 1U);
+    EXPECT_EQ(count_of(svg, "class=\"bound\""), 1U);
 }
 
 // The tick labels say where the recommended setting's ring must be. All of the measures but the
@@ -674,7 +669,7 @@ TEST(StudyPlot, PutsAMarkWhereItsAxesSay) {
     Study study = small_study();
     study.measures = {plain_measure(0.12, 0.9), plain_measure(4.0, 1e-2), plain_measure(90.0, 0.8)};
     study.tolerance = 2e-2;
-    const std::string svg = study_svg(study, StudyPlotWidth::Wide);
+    const std::string svg = study_svg(study);
     const auto number = [&](const std::string& pattern) {
         std::smatch found;
         EXPECT_TRUE(std::regex_search(svg, found, std::regex(pattern))) << pattern;
@@ -703,7 +698,7 @@ TEST(StudyPlot, LeavesOutWhatHasNoLogarithm) {
     Study study = small_study();
     study.measures[2] = measure_of(study.measures[2].setting, 1.0, 0.0);
     study.measures[3].channels[0].not_finite = 1;
-    const std::string svg = study_svg(study, StudyPlotWidth::Wide);
+    const std::string svg = study_svg(study);
     EXPECT_EQ(count_of(svg, "<path class=\"dot"), study.measures.size() - 2);
     EXPECT_TRUE(contains(words_of(study_page(study)), "2 settings are not drawn"));
 }

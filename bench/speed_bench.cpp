@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How long the parts of Aphotic take, by the clock and of all threads' processor time, which others
+// on the machine disturb less. The least of many passes is what the machine can do when nobody else
+// is on it. HabCam's 1360 x 1024 pixels, four strobes of three cones, unless the name says
+// otherwise.
+//
+// Goals: a lightmap at least 300 times as fast as the tracer, at most 15 times as long as filling
+// such an image with a constant, under the 166 ms between two frames of the camera; a plan in under
+// 0.2 s, under 2 s for ten materials over forty metres. A survey's images are corrected by one
+// thread each: its map, division, edges and demosaicing come one after another.
+#include "lightmap/cone_edge.h"
+#include "lightmap/lightmap.h"
+#include "rig/rig_reader.h"
+#include "scene_gen/render_plan.h"
+#include "spectral/curve_loader.h"
+#include "survey/correction.h"
+#include "validation/tracer.h"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+constexpr int kThreads = 2;
+
+Rig scene(const std::string& name = "habcam") {
+    return read_rig(APHOTIC_SOURCE_DIR "/scenes/" + name + ".toml");
+}
+
+void least_of_many(benchmark::internal::Benchmark* benchmark) {
+    benchmark->Unit(benchmark::kMillisecond)
+        ->UseRealTime()
+        ->MeasureProcessCPUTime()
+        ->MinTime(0.01)
+        ->Repetitions(50)
+        ->ReportAggregatesOnly()
+        ->ComputeStatistics("least", [](const std::vector<double>& times) {
+            return *std::ranges::min_element(times);
+        });
+}
+
+// Lightmaps.
+
+void fill(benchmark::State& state) {
+    std::vector<float> samples(std::size_t{3} * 1360 * 1024);
+    for (auto _ : state) {
+        std::ranges::fill(samples, 1.0F);
+        benchmark::DoNotOptimize(samples.data());
+        benchmark::ClobberMemory();
+    }
+}
+BENCHMARK(fill)->Apply(least_of_many);
+
+void lightmap(benchmark::State& state, const std::string& name, int threads) {
+    const Rig rig = scene(name);
+    const LightmapMaker maker(rig, std::nullopt, {.error = 1e-5, .threads = threads});
+    Lightmap map;
+    for (auto _ : state) {
+        maker.map_into(rig.sled, map);
+        benchmark::DoNotOptimize(map.samples.data());
+    }
+}
+BENCHMARK_CAPTURE(lightmap, habcam, "habcam", kThreads)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap, habcam_one_thread, "habcam", 1)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap, port, "port", kThreads)->Apply(least_of_many);
+
+void table(benchmark::State& state) {
+    const Rig rig = scene();
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(LightmapMaker(rig, std::nullopt, {}).table_steps());
+    }
+}
+BENCHMARK(table)->Apply(least_of_many);
+
+void trace(benchmark::State& state) {
+    const Rig rig = scene();
+    const Tracer tracer(rig, {.signals = true, .planes_nm = {}, .threads = kThreads});
+    for (auto _ : state) benchmark::DoNotOptimize(tracer.rows(0, rig.camera.height_px).data());
+}
+BENCHMARK(trace)->Apply(least_of_many)->Repetitions(2);
+
+// The correction of an image, without reading and writing it.
+
+RawImage grey_mosaic(const Camera& camera) {
+    constexpr float kGrey = 900.0F;
+    RawImage raw{.width_px = camera.width_px,
+                 .height_px = camera.height_px,
+                 .mosaic = Mosaic::Rggb,
+                 .samples = {}};
+    raw.samples.assign(raw.pixels(), kGrey);
+    return raw;
+}
+
+const Correction kCorrection{.gain = {1e-3, 1e-3, 1e-3},
+                             .middle = {0.3, 0.3, 0.3},
+                             .levels = {.black = 64.0F, .white = 4095.0F},
+                             .limit = {}};
+
+void division(benchmark::State& state) {
+    const Rig rig = scene();
+    const Lightmap map = LightmapMaker(rig, std::nullopt, {}).map(rig.sled);
+    const RawImage raw = grey_mosaic(rig.camera);
+    for (auto _ : state) benchmark::DoNotOptimize(corrected(raw, map, kCorrection));
+}
+BENCHMARK(division)->Apply(least_of_many);
+
+void edges_of_cones(benchmark::State& state) {
+    const Rig rig = scene();
+    const ConeEdges edges(rig);
+    for (auto _ : state) benchmark::DoNotOptimize(edges.mask(rig.sled, 2));
+}
+BENCHMARK(edges_of_cones)->Apply(least_of_many);
+
+void demosaicing(benchmark::State& state) {
+    const Rig rig = scene();
+    const Lightmap map = LightmapMaker(rig, std::nullopt, {}).map(rig.sled);
+    const CorrectedImage mosaic = corrected(grey_mosaic(rig.camera), map, kCorrection);
+    for (auto _ : state) benchmark::DoNotOptimize(demosaiced(mosaic));
+}
+BENCHMARK(demosaicing)->Apply(least_of_many);
+
+// Plans.
+
+void plan(benchmark::State& state) {
+    const Rig rig = scene();
+    for (auto _ : state) benchmark::DoNotOptimize(plan_render(rig, {}));
+}
+BENCHMARK(plan)->Apply(least_of_many)->Repetitions(5);
+
+void plan_of_every_altitude(benchmark::State& state) {
+    const Rig rig = scene();
+    PlanRequest request;
+    request.paths = {.shortest_m = 2.0, .longest_m = 16.0};
+    for (auto _ : state) benchmark::DoNotOptimize(plan_render(rig, request));
+}
+BENCHMARK(plan_of_every_altitude)->Apply(least_of_many)->Repetitions(5);
+
+// A bump of reflectance around a wavelength.
+Spectrum bump(double peak_nm) {
+    constexpr double kWidthNm = 40.0;
+    std::vector<double> lambda_nm;
+    std::vector<double> reflectance;
+    for (double nm = 380.0; nm <= 780.0; nm += 5.0) {
+        const double x = (nm - peak_nm) / kWidthNm;
+        lambda_nm.push_back(nm);
+        reflectance.push_back(0.05 + 0.5 * std::exp(-0.5 * x * x));
+    }
+    return {"bump", lambda_nm, reflectance};
+}
+
+void plan_of_ten_materials_over_forty_metres(benchmark::State& state) {
+    Rig rig = scene();
+    for (const char* name : {"green-algae", "brown-algae", "red-algae"}) {
+        rig.materials.push_back(load_curve(name, CurveRole::Reflectance, {}));
+    }
+    for (const double nm : {430.0, 480.0, 530.0, 580.0, 630.0, 680.0}) {
+        rig.materials.push_back(bump(nm));
+    }
+    PlanRequest request;
+    request.paths = {.shortest_m = 0.3, .longest_m = 40.0};
+    for (auto _ : state) benchmark::DoNotOptimize(plan_render(rig, request));
+}
+BENCHMARK(plan_of_ten_materials_over_forty_metres)->Apply(least_of_many)->Repetitions(2);
+
+}  // namespace
+}  // namespace aphotic
