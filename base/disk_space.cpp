@@ -28,8 +28,7 @@ std::uint64_t free_disk_bytes(const fs::path& folder) {
     std::error_code error;
     const fs::space_info space = fs::space(nearest_existing(folder), error);
     if (error) {
-        throw RunError(
-            fmt::format("{}: free space cannot be read: {}", folder.string(), error.message()));
+        throw RunError("{}: free space cannot be read: {}", folder.string(), error.message());
     }
     return space.available;
 }

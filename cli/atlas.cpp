@@ -220,7 +220,7 @@ MadeAtlas make_named(const AtlasCommandOptions& options, const Rig& rig, const M
     try {
         return make(options, rig, finest);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
+        throw InputError("{}: {}", options.rig_file, error.what());
     }
 }
 

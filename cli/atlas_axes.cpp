@@ -25,12 +25,12 @@ constexpr Bounds kMultiple{0.0, 1e6};
 std::vector<double> axis_of(const std::string& option, const std::string& text, Bounds bounds) {
     const auto fail = [&] {
         throw InputError(
-            fmt::format("{}: found {}; allowed: a number or FIRST:LAST:STEP, from {} to "
-                        "{}, of up to 10001 values that end at LAST",
-                        option,
-                        text,
-                        bounds.least,
-                        bounds.most));
+            "{}: found {}; allowed: a number or FIRST:LAST:STEP, from {} to {}, of up to 10001 "
+            "values that end at LAST",
+            option,
+            text,
+            bounds.least,
+            bounds.most);
     };
     std::vector<double> parts;
     std::istringstream in(text);
@@ -71,14 +71,14 @@ void require_few(const MapAxes& axes) {
     const std::size_t bins = bin_count(axes);
     if (bins <= kMostBins) return;
     throw InputError(
-        fmt::format("--altitude, --pitch, --roll, --water-multiple: found {} x {} x {} x {} = {} "
-                    "bins; allowed: up to {} in all",
-                    axes.altitude_m.size(),
-                    axes.pitch_rad.size(),
-                    axes.roll_rad.size(),
-                    axes.water_multiple.size(),
-                    bins,
-                    kMostBins));
+        "--altitude, --pitch, --roll, --water-multiple: found {} x {} x {} x {} = {} bins; "
+        "allowed: up to {} in all",
+        axes.altitude_m.size(),
+        axes.pitch_rad.size(),
+        axes.roll_rad.size(),
+        axes.water_multiple.size(),
+        bins,
+        kMostBins);
 }
 
 }  // namespace

@@ -24,11 +24,10 @@ double value_on(const char* option,
                 double unit) {
     if (given) return *given * unit;
     if (values.size() == 1) return values.front();
-    throw InputError(
-        fmt::format("{}: found none; allowed: from {:.6g} to {:.6g}, which the atlas covers",
-                    option,
-                    values.front() / unit,
-                    values.back() / unit));
+    throw InputError("{}: found none; allowed: from {:.6g} to {:.6g}, which the atlas covers",
+                     option,
+                     values.front() / unit,
+                     values.back() / unit);
 }
 
 MapPoint point_of(const AtlasMapRequest& request, const MapAxes& axes) {
@@ -45,7 +44,7 @@ MapPoint point_of(const AtlasMapRequest& request, const Atlas& atlas) {
     try {
         return point_of(request, atlas.manifest().axes);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", request.folder, error.what()));
+        throw InputError("{}: {}", request.folder, error.what());
     }
 }
 
@@ -53,7 +52,7 @@ Lightmap map_of(const AtlasMapRequest& request, Atlas& atlas, const MapPoint& po
     try {
         return atlas.map(point);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", request.folder, error.what()));
+        throw InputError("{}: {}", request.folder, error.what());
     }
 }
 

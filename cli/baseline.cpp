@@ -60,10 +60,10 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
 }
 
 void add_baseline_options(CLI::App& app, BaselineOptions& options) {
-    app.add_option("--sigma",
-                   options.sigma,
-                   "illumination-reflectance, homomorphic: width of the blur as a share of the "
-                   "image's")
+    app.add_option(
+           "--sigma",
+           options.sigma,
+           "illumination-reflectance, homomorphic: width of the blur as a share of the image's")
         ->check(in_range(1e-4, 10.0))
         ->capture_default_str();
     app.add_option("--low", options.low, "homomorphic: gain of low frequencies")
@@ -112,11 +112,9 @@ Action configure_baseline(CLI::App& app) {
     app.footer(
         "The polynomials learn from all images given; the others correct each image by itself. An "
         "EXR holds the camera's own numbers less the black level; a TIFF or PNG has 65535 where "
-        "the "
-        "camera saturates. Interrupted, it continues where it stopped when run again. Images that "
-        "cannot be used are reported and skipped; the exit status is then 1. A mask's pixel is a "
-        "sum "
-        "of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
+        "the camera saturates. Interrupted, it continues where it stopped when run again. Images "
+        "that cannot be used are reported and skipped; the exit status is then 1. A mask's pixel "
+        "is a sum of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
     return [options] { return correct_by_baseline(*options); };
 }
 

@@ -77,8 +77,8 @@ Survey survey_of(const CorrectCommandOptions& options) {
     }
     const std::vector<double>& altitudes_m = options.altitudes_m;
     if (!altitudes_m.empty() && altitudes_m[0] > altitudes_m[1]) {
-        throw InputError(fmt::format(
-            "--altitude: found {},{}; allowed: the lower first", altitudes_m[0], altitudes_m[1]));
+        throw InputError(
+            "--altitude: found {},{}; allowed: the lower first", altitudes_m[0], altitudes_m[1]);
     }
     Survey survey{.files = image_files(options.images, options.correction.run.folder),
                   .navigation = {},
@@ -94,7 +94,7 @@ Survey survey_of(const CorrectCommandOptions& options) {
     try {
         survey.light = light_of_rig(rig, *survey.navigation, survey.files);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig, error.what()));
+        throw InputError("{}: {}", options.rig, error.what());
     }
     return survey;
 }
@@ -114,11 +114,10 @@ ExitStatus correct(const CorrectCommandOptions& options) {
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
     app.add_option("--rig", options.rig, "The rig that took the images")->type_name("RIG");
-    app.add_option(
-           "--nav",
-           options.nav,
-           "Altitude, pitch and roll of each image: CSV with the columns image, altitude_m, "
-           "pitch_deg, roll_deg, or lines of these four without a header")
+    app.add_option("--nav",
+                   options.nav,
+                   "Altitude, pitch and roll of each image: CSV with the columns image, "
+                   "altitude_m, pitch_deg, roll_deg, or lines of these four without a header")
         ->type_name("FILE");
     app.add_option(
            "--map", options.map, "Use one lightmap (EXR) for all images instead of --rig and --nav")
@@ -171,10 +170,10 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
     app.add_option("--gain-images", options.correction.gain_images, "Take the gain from N images")
         ->check(in_range(1, kMostImages))
         ->capture_default_str();
-    app.add_option("--least-light",
-                   options.correction.limit.share,
-                   "Hold a pixel's gain where the map is below this share of its brightest in a "
-                   "channel")
+    app.add_option(
+           "--least-light",
+           options.correction.limit.share,
+           "Hold a pixel's gain where the map is below this share of its brightest in a channel")
         ->check(in_range(kLeastShare, 1.0))
         ->capture_default_str();
     app.add_option("--most-noise",
@@ -205,8 +204,7 @@ Action configure_correct(CLI::App& app) {
     app.footer(
         "Interrupted, it continues where it stopped when run again. Exit status 0 when every image "
         "is corrected, 1 when some are skipped: correction.json lists them. A mask's pixel is a "
-        "sum "
-        "of 1 dark, 2 saturated, 4 black, 8 on a cone's edge, 16 clipped by the format; 0 is "
+        "sum of 1 dark, 2 saturated, 4 black, 8 on a cone's edge, 16 clipped by the format; 0 is "
         "good.");
     return [options] { return correct(*options); };
 }

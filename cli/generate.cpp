@@ -46,8 +46,7 @@ void print_own_scene(const SceneSet& scenes, const Manifest& manifest, const std
     fmt::print(
         "{}: {} for {} of {} in {}/povray\n"
         "Render them in the scene's folder, for example with\n"
-        "  (cd {} && for scene in {}/povray/band_*.pov; do povray {} "
-        "\"+I\\\"$scene\\\"\"; done)\n"
+        "  (cd {} && for scene in {}/povray/band_*.pov; do povray {} \"+I\\\"$scene\\\"\"; done)\n"
         "then run\n"
         "  aphotic integrate {}\n",
         manifest.rig_title,

@@ -49,10 +49,10 @@ void require_own_folder(const fs::path& images, const IntegrateCommandOptions& o
     if (is_of_frames && options.rig_file.empty()) return;
     for (const fs::path& notes : {manifest_path(images), images / "trace.json"}) {
         if (!fs::exists(notes)) continue;
-        throw InputError(fmt::format(
+        throw InputError(
             "{}: found the notes of a render or trace; allowed: a folder without, as these images "
             "would replace its own",
-            notes.string()));
+            notes.string());
     }
 }
 
@@ -68,7 +68,7 @@ Manifest manifest_of(const IntegrateCommandOptions& options) {
     try {
         return reintegrate(rig, manifest, options.tolerance);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
+        throw InputError("{}: {}", options.rig_file, error.what());
     }
 }
 

@@ -138,7 +138,7 @@ WrittenLightmap write_map(const LightmapCommandOptions& options, const Rig& rig)
                      options.ignore_needs);
         return write_lightmap(rig, request);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
+        throw InputError("{}: {}", options.rig_file, error.what());
     }
 }
 
@@ -160,8 +160,8 @@ ExitStatus make_lightmap(const LightmapCommandOptions& options) {
 void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& options) {
     for (const char* option : {"--per-strobe", "--per-cone", "--error"}) {
         if (app.count(option) == 0) continue;
-        throw InputError(fmt::format(
-            "{}: found with the atlas {}; allowed: with a rig", option, options.rig_file));
+        throw InputError(
+            "{}: found with the atlas {}; allowed: with a rig", option, options.rig_file);
     }
     if (app.count("--preview-white") > 0 && options.preview.white == PreviewWhite::Lamp) {
         throw InputError(
@@ -241,8 +241,7 @@ Action configure_lightmap(CLI::App& app) {
     app.footer(
         "Maps the bare flat floor, without POV-Ray. The file holds what image.exr of a render "
         "does: R, G, B, linear, 32-bit floats. Given an atlas, blends the bins around the "
-        "altitude, "
-        "attitude and water; its preview's white is image (the default) or none.");
+        "altitude, attitude and water; its preview's white is image (the default) or none.");
     return [&app, options] { return make_map(app, *options); };
 }
 

@@ -83,8 +83,8 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGCHLD, SIG_DFL);
     CLI::App app{
-        "Simulate what an underwater camera sled sees by its own strobes, and correct "
-        "its\nimages for their light.",
+        "Simulate what an underwater camera sled sees by its own strobes, and correct its\nimages "
+        "for their light.",
         "aphotic"};
     app.set_help_flag("-h,--help", "Print this help and exit");
     app.formatter(std::make_shared<aphotic::cli::HelpFormatter>());

@@ -65,9 +65,9 @@ void require_room(const DiskNeeds& needs, const fs::path& folder, bool ignore_ne
                         .is_one_disk = on_one_disk(folder, kPovrayTemporary)};
     const std::string lacking = shortage(needs, free, folder.string());
     if (lacking.empty()) return;
-    throw RunError(fmt::format(
+    throw RunError(
         "{}. Nothing was begun; --ignore-needs begins all the same, for images often compress",
-        lacking));
+        lacking);
 }
 
 DiskNeeds needs_of(const SceneSet& scenes, const fs::path& folder, int jobs) {

@@ -68,28 +68,30 @@ void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
     constexpr double kLeastPath_m = 1e-6;
     constexpr double kMostPath_m = 1e6;
     add_rig(app, options.rig_file);
-    auto* tolerance = app.add_option("--tolerance",
-                                     options.tolerance,
-                                     "Largest relative error of any pixel's signal; fit as few "
-                                     "wavelengths as keep it")
-                          ->check(in_range(0.0, 1.0))
-                          ->option_text("E")
-                          ->capture_default_str()
-                          ->group(kWavelengthOptions);
+    auto* tolerance =
+        app.add_option(
+               "--tolerance",
+               options.tolerance,
+               "Largest relative error of any pixel's signal; fit as few wavelengths as keep it")
+            ->check(in_range(0.0, 1.0))
+            ->option_text("E")
+            ->capture_default_str()
+            ->group(kWavelengthOptions);
     auto* fitted =
         app.add_option(
                "--fitted", options.fitted, "Fit N wavelengths instead, whatever their error")
             ->check(in_range(1, kMostFitted))
             ->excludes(tolerance)
             ->group(kWavelengthOptions);
-    auto* bands = app.add_option("--bands",
-                                 options.bands,
-                                 "Split the camera's range into N equal bands instead, each "
-                                 "sampled at its middle")
-                      ->check(in_range(1, kMostBands))
-                      ->excludes(tolerance)
-                      ->excludes(fitted)
-                      ->group(kWavelengthOptions);
+    auto* bands =
+        app.add_option(
+               "--bands",
+               options.bands,
+               "Split the camera's range into N equal bands instead, each sampled at its middle")
+            ->check(in_range(1, kMostBands))
+            ->excludes(tolerance)
+            ->excludes(fitted)
+            ->group(kWavelengthOptions);
     app.add_option("--wavelengths",
                    options.wavelengths_nm,
                    "Use these wavelengths (nm) instead, such as 478,576,638, and fit their weights")
@@ -158,11 +160,10 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
                    "from the reference; takes N x N times as long")
         ->check(in_range(0, kMostAntialias))
         ->group(kPovRayOptions);
-    app.add_option(
-           "--emitter-lamps",
-           options.emitter_lamps,
-           "Model an emitter as this many point lamps, such as 4,2; by default as many as its "
-           "distance requires")
+    app.add_option("--emitter-lamps",
+                   options.emitter_lamps,
+                   "Model an emitter as this many point lamps, such as 4,2; by default as many as "
+                   "its distance requires")
         ->delimiter(',')
         ->expected(2)
         ->check(in_range(1, kMostLamps))
@@ -170,8 +171,8 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
         ->group(kPovRayOptions);
     app.add_option("--povray-ini",
                    options.povray_ini,
-                   "Pass on a POV-Ray setting that affects speed alone, such as "
-                   "Bounding_Method=2; repeatable")
+                   "Pass on a POV-Ray setting that affects speed alone, such as Bounding_Method=2; "
+                   "repeatable")
         ->type_name("KEY=VALUE")
         ->group(kPovRayOptions);
     add_povray_options(app, options.povray, options.stall_timeout_s);

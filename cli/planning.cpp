@@ -44,10 +44,10 @@ std::string ini_line(const std::string& setting) {
                           });
     if (!is_plain || std::ranges::find(kSpeedKeys, key) == kSpeedKeys.end()) {
         throw InputError(
-            fmt::format("--povray-ini: found {}; allowed: KEY=VALUE with one of {}. "
-                        "Others would change the image; for antialiasing there is --antialias",
-                        setting,
-                        fmt::join(kSpeedKeys, ", ")));
+            "--povray-ini: found {}; allowed: KEY=VALUE with one of {}. Others would change the "
+            "image; for antialiasing there is --antialias",
+            setting,
+            fmt::join(kSpeedKeys, ", "));
     }
     return setting + "\n";
 }
@@ -75,9 +75,9 @@ PlanRequest request_of(const PlanningOptions& options) {
     if (!options.paths_m.empty()) {
         request.paths = {.shortest_m = options.paths_m[0], .longest_m = options.paths_m[1]};
         if (options.paths_m[0] > options.paths_m[1]) {
-            throw InputError(fmt::format("--paths-m: found {},{}; allowed: the shorter first",
-                                         options.paths_m[0],
-                                         options.paths_m[1]));
+            throw InputError("--paths-m: found {},{}; allowed: the shorter first",
+                             options.paths_m[0],
+                             options.paths_m[1]);
         }
     }
     if (!options.emitter_lamps.empty()) {
@@ -92,7 +92,7 @@ auto naming_the_file(const PlanningOptions& options, Function function) {
     try {
         return function();
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
+        throw InputError("{}: {}", options.rig_file, error.what());
     }
 }
 
@@ -102,9 +102,9 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
     if (!options.renders || scene.empty()) {
         if (options.clock == 0.0) return nullptr;
         throw InputError(
-            fmt::format("--clock: found {} without a scene; allowed: with one of your own, by "
-                        "--scene or the rig's `scene`",
-                        options.clock));
+            "--clock: found {} without a scene; allowed: with one of your own, by --scene or the "
+            "rig's `scene`",
+            options.clock);
     }
     ProgressLine line;
     auto surveyed_scene = std::make_shared<const UserScene>(

@@ -34,10 +34,10 @@ void require_rendered(const fs::path& folder) {
     for (const char* name : {"image.exr", "spectral.exr"}) {
         if (!is_traced(folder / name)) continue;
         throw InputError(
-            fmt::format("{}: found an image of the reference tracer; allowed: one of POV-Ray's "
-                        "frames, as `aphotic integrate {}` makes it",
-                        (folder / name).string(),
-                        folder.string()));
+            "{}: found an image of the reference tracer; allowed: one of POV-Ray's frames, as "
+            "`aphotic integrate {}` makes it",
+            (folder / name).string(),
+            folder.string());
     }
 }
 

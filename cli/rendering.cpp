@@ -18,11 +18,11 @@ PovRay povray_for(const PlannedRender& planned,
         return find_povray(options.povray);
     } catch (const RunError& error) {
         if (planned.plan.scene.user_scene) throw;
-        throw RunError(fmt::format(
+        throw RunError(
             "{}. Without POV-Ray, `aphotic trace {} -o {}` makes the same images, by the reference",
             error.what(),
             shell_word(options.rig_file),
-            shell_word(folder)));
+            shell_word(folder));
     }
 }
 

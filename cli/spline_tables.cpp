@@ -39,10 +39,10 @@ std::vector<NewTable> tables_of(const SplineFile& found, const SplineOptions& op
 void refuse_to_overwrite(const std::vector<NewTable>& tables) {
     for (const NewTable& table : tables) {
         if (!fs::exists(fs::symlink_status(table.path))) continue;
-        throw InputError(fmt::format(
+        throw InputError(
             "{}: found a file of this name; allowed: none, unless --force is given, or another "
             "folder by -o",
-            table.path.string()));
+            table.path.string());
     }
 }
 
@@ -54,7 +54,7 @@ void write_all(const std::vector<NewTable>& tables) {
         std::ofstream out(files.back()->temporary(), std::ios::binary);
         out << table.text;
         out.close();
-        if (!out) throw RunError(fmt::format("{}: cannot be written", table.path.string()));
+        if (!out) throw RunError("{}: cannot be written", table.path.string());
     }
     for (const auto& file : files) file->commit();
 }
@@ -65,13 +65,13 @@ void note_what_differs(const SplineFile& found, const std::string& file) {
     }
     for (const SplineSpectrum& spectrum : found.spectra) {
         if (spectrum.is_linear()) continue;
-        fmt::print(stderr,
-                   "aphotic: {}:{}: {} is a {}: its knots are taken, and joined by straight "
-                   "lines\n",
-                   file,
-                   spectrum.line,
-                   spectrum.identifier,
-                   spectrum.form);
+        fmt::print(
+            stderr,
+            "aphotic: {}:{}: {} is a {}: its knots are taken, and joined by straight lines\n",
+            file,
+            spectrum.line,
+            spectrum.identifier,
+            spectrum.form);
     }
 }
 

@@ -74,8 +74,7 @@ ExitStatus stress(const StressCommandOptions& options) {
         return asked.name.find(options.only) == std::string::npos;
     });
     if (cases.empty()) {
-        throw InputError(
-            fmt::format("--only: found '{}'; allowed: part of a case's name", options.only));
+        throw InputError("--only: found '{}'; allowed: part of a case's name", options.only);
     }
     const FolderLock lock = claim_tree(options.folder);
     const StressRender render = [&](const Rig& rig, const StressCase& asked, const fs::path& to) {

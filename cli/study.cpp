@@ -73,7 +73,7 @@ void png_to_exr(const fs::path& file) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const std::vector<float> plane = png.samples(c);
         if (std::ranges::max(plane) >= 1.0F) {
-            throw RunError(fmt::format("{}: a pixel is clipped", png_file.string()));
+            throw RunError("{}: a pixel is clipped", png_file.string());
         }
         samples.insert(samples.end(), plane.begin(), plane.end());
     }
@@ -166,10 +166,10 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
     Rig rig = read_rig(options.rig_file);
     if (!rig.scene.empty()) {
         throw InputError(
-            fmt::format("{}: scene: found {}; allowed: none, for a study is of the rig's "
-                        "own floor, which the reference knows",
-                        options.rig_file,
-                        rig.scene.string()));
+            "{}: scene: found {}; allowed: none, for a study is of the rig's own floor, which the "
+            "reference knows",
+            options.rig_file,
+            rig.scene.string());
     }
     if (options.quick) rig = quick_rig(std::move(rig));
     const PovRay povray = find_povray(options.povray);

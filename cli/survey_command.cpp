@@ -61,11 +61,10 @@ void add_format_options(CLI::App& app, ResultFormat& format) {
            "--format", format.format, "Write tiff or png (16 bits, white 65535) or exr (floats)")
         ->check(CLI::IsMember({"tiff", "png", "exr"}))
         ->capture_default_str();
-    app.add_option(
-           "--compression",
-           format.compression,
-           "Compress losslessly: none, fast, or small (a few per cent smaller, about 1.5 times "
-           "slower)")
+    app.add_option("--compression",
+                   format.compression,
+                   "Compress losslessly: none, fast, or small (a few per cent smaller, about 1.5 "
+                   "times slower)")
         ->transform(CLI::CheckedTransformer(kCompressions).description(""))
         ->type_name("none|fast|small")
         ->default_str("fast");

@@ -37,9 +37,9 @@ struct TraceCommandOptions {
 void require_no_render(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(manifest_path(folder))) return;
     throw InputError(
-        fmt::format("{}: found the manifest of a render; allowed: a folder without one, as the "
-                    "traced images would replace the rendered ones",
-                    manifest_path(folder).string()));
+        "{}: found the manifest of a render; allowed: a folder without one, as the traced images "
+        "would replace the rendered ones",
+        manifest_path(folder).string());
 }
 
 struct TracedEmitter {

@@ -61,10 +61,10 @@ Rendering render_here(const ValidateCommandOptions& options,
 
 void require_promise(const std::string& what, const std::vector<std::string>& no_promise) {
     if (no_promise.empty()) return;
-    throw InputError(fmt::format(
+    throw InputError(
         "{}: has no error bound to validate against ({}); allowed: a scene whose render has one",
         what,
-        fmt::join(no_promise, "; ")));
+        fmt::join(no_promise, "; "));
 }
 
 // Of a render that can be held against the rig's reference.
@@ -74,12 +74,12 @@ Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
     require_promise(folder, manifest.no_promise);
     if (manifest.width_px == rig.camera.width_px && manifest.height_px == rig.camera.height_px)
         return manifest;
-    throw InputError(fmt::format("{}: found images of {} x {} pixels; allowed: the rig's {} x {}",
-                                 folder,
-                                 manifest.width_px,
-                                 manifest.height_px,
-                                 rig.camera.width_px,
-                                 rig.camera.height_px));
+    throw InputError("{}: found images of {} x {} pixels; allowed: the rig's {} x {}",
+                     folder,
+                     manifest.width_px,
+                     manifest.height_px,
+                     rig.camera.width_px,
+                     rig.camera.height_px);
 }
 
 // Of the largest share of pixels that one comparison leaves to its edges, and the largest error
@@ -87,17 +87,17 @@ Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
 std::string edges_in_words(const ValidationReport& report) {
     constexpr double kPercent = 100.0;
     const EdgeSummary edges = report.edges();
-    std::string words = edges.share == 0.0
-                            ? "no pixel is on an edge"
-                            : fmt::format(
-                                  "{:.2g} % of the pixels are on edges, without a bound; largest "
-                                  "|e| there {:.2g}",
-                                  kPercent * edges.share,
-                                  edges.max_error);
+    std::string words =
+        edges.share == 0.0
+            ? "no pixel is on an edge"
+            : fmt::format(
+                  "{:.2g} % of the pixels are on edges, without a bound; largest |e| there {:.2g}",
+                  kPercent * edges.share,
+                  edges.max_error);
     if (edges.share_in_penumbrae > 0.0) {
         words += fmt::format(
-            "\n  {:.2g} % of the pixels are in penumbrae, compared with the render's own "
-            "lamps; from an emitter of more lamps they differ by up to {:.2g}",
+            "\n  {:.2g} % of the pixels are in penumbrae, compared with the render's own lamps; "
+            "from an emitter of more lamps they differ by up to {:.2g}",
             kPercent * edges.share_in_penumbrae,
             edges.max_error_of_penumbrae);
     }

@@ -46,7 +46,7 @@ Imf::FrameBuffer planar_rows(std::span<const std::string> channels,
 }
 
 [[noreturn]] void fail(const fs::path& path, std::string_view what, const std::exception& why) {
-    throw RunError(fmt::format("{}: {}: {}", path.string(), what, why.what()));
+    throw RunError("{}: {}: {}", path.string(), what, why.what());
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ void ExrReader::read_rows(int first_row,
            channels.size() * static_cast<std::size_t>(rows) * static_cast<std::size_t>(width_px()));
     for (const std::string& name : channels) {
         if (file_->in.header().channels().findChannel(name) == nullptr) {
-            throw RunError(fmt::format("{}: has no channel {}", path_.string(), name));
+            throw RunError("{}: has no channel {}", path_.string(), name);
         }
     }
     const int first = file_->window.min.y + first_row;

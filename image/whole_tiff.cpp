@@ -32,7 +32,7 @@ std::uint64_t bytes_of_type(std::uint64_t type) {
         {1, 1}, {3, 2}, {4, 4}, {13, 4}, {16, 8}, {18, 8}};
     const auto found = kBytes.find(type);
     if (found != kBytes.end()) return found->second;
-    throw InputError(fmt::format("it has numbers of the type {} where integers belong", type));
+    throw InputError("it has numbers of the type {} where integers belong", type);
 }
 
 class Tiff {
@@ -66,8 +66,7 @@ class Tiff {
     void require_end(std::uint64_t offset, std::uint64_t count) const {
         if (count <= size_ && offset <= size_ - count) return;
         if (count > kMost - offset) throw InputError("it points beyond its end");
-        throw InputError(
-            fmt::format("it is cut short: found {} bytes of {} and more", size_, offset + count));
+        throw InputError("it is cut short: found {} bytes of {} and more", size_, offset + count);
     }
 
   private:
@@ -147,14 +146,14 @@ class Tags {
     [[nodiscard]] const std::vector<std::uint64_t>& all(std::uint64_t tag) const {
         const auto found = values_.find(tag);
         if (found != values_.end()) return found->second;
-        throw InputError(fmt::format("it is not whole: the tag {} is missing", tag));
+        throw InputError("it is not whole: the tag {} is missing", tag);
     }
 
     // 1 and more.
     [[nodiscard]] std::uint64_t one(std::uint64_t tag) const {
         const std::vector<std::uint64_t>& values = all(tag);
         if (values.empty() || values[0] == 0) {
-            throw InputError(fmt::format("it is not whole: the tag {} is 0 or empty", tag));
+            throw InputError("it is not whole: the tag {} is 0 or empty", tag);
         }
         return values[0];
     }
@@ -197,16 +196,14 @@ void require_whole_tiff(const std::filesystem::path& file) {
     const std::uint64_t parts = is_tiled ? tiles_of(tags) : strips_of(tags);
     if (offsets.size() != sizes.size() || offsets.size() < parts) {
         throw InputError(
-            fmt::format("it is not whole: found {} offsets and {} sizes of strips or tiles; "
-                        "needed: {}",
-                        offsets.size(),
-                        sizes.size(),
-                        parts));
+            "it is not whole: found {} offsets and {} sizes of strips or tiles; needed: {}",
+            offsets.size(),
+            sizes.size(),
+            parts);
     }
     for (std::uint64_t i = 0; i < parts; ++i) {
         if (sizes[i] == 0) {
-            throw InputError(
-                fmt::format("it is not whole: strip or tile {} of {} is empty", i + 1, parts));
+            throw InputError("it is not whole: strip or tile {} of {} is empty", i + 1, parts);
         }
         tiff.require_end(offsets[i], sizes[i]);
     }

@@ -36,10 +36,10 @@ fs::path located(const std::string& command, const std::string& origin) {
         is_path ? fs::path(command) : fs::path(boost::process::search_path(command).string());
     if (path.empty() || ::access(path.c_str(), X_OK) != 0 || fs::is_directory(path)) {
         throw RunError(
-            fmt::format("POV-Ray: no program '{}' ({}); install povray, or name it with "
-                        "--povray or APHOTIC_POVRAY",
-                        command,
-                        origin));
+            "POV-Ray: no program '{}' ({}); install povray, or name it with --povray or "
+            "APHOTIC_POVRAY",
+            command,
+            origin);
     }
     // It will run in another folder.
     return fs::absolute(path);
@@ -109,11 +109,11 @@ std::string version_from(std::string_view printed) {
     const std::optional<Version> version = introduced_version(printed);
     if (!version) throw RunError("it does not identify itself as POV-Ray");
     if (version->number < kLeastVersion) {
-        throw RunError(fmt::format("found version {}.{}; allowed: {}.{} or later",
-                                   version->number.first,
-                                   version->number.second,
-                                   kLeastVersion.first,
-                                   kLeastVersion.second));
+        throw RunError("found version {}.{}; allowed: {}.{} or later",
+                       version->number.first,
+                       version->number.second,
+                       kLeastVersion.first,
+                       kLeastVersion.second);
     }
     if (!writes_openexr(printed)) {
         throw RunError("it was built without OpenEXR, in which frames are written");
@@ -126,9 +126,9 @@ std::string path_option(std::string_view option, const fs::path& path) {
         path.string(), [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"'; });
     if (!is_readable) {
         throw InputError(
-            fmt::format("{}: found a path with letters beyond ASCII or a quotation mark; "
-                        "allowed: none, for POV-Ray cannot read them",
-                        path.string()));
+            "{}: found a path with letters beyond ASCII or a quotation mark; allowed: none, for "
+            "POV-Ray cannot read them",
+            path.string());
     }
     return fmt::format("{}\"{}\"", option, path.string());
 }
@@ -147,10 +147,10 @@ PovRay find_povray(const std::string& named) {
         if (!end.succeeded()) throw RunError("--version ended with " + end.words());
         return {.executable = executable, .version = version_from(read_log(log))};
     } catch (const RunError& error) {
-        throw RunError(fmt::format("POV-Ray: {}: {}{}",
-                                   executable.string(),
-                                   error.what(),
-                                   words_of_full_disk(scratch.path())));
+        throw RunError("POV-Ray: {}: {}{}",
+                       executable.string(),
+                       error.what(),
+                       words_of_full_disk(scratch.path()));
     }
 }
 

@@ -118,7 +118,7 @@ class Survey {
     void put_together(const std::vector<Lit>& strobes);
 
     [[noreturn]] void refuse(const std::string& what) const {
-        throw InputError(fmt::format("{}: {}", scene_.file.string(), what));
+        throw InputError("{}: {}", scene_.file.string(), what);
     }
 
     const PovRay& povray_;
@@ -161,8 +161,7 @@ Survey::Survey(const PovRay& povray,
     : povray_(povray), rig_(rig), options_(options) {
     scene_.file = fs::absolute(scene_file).lexically_normal();
     if (!fs::is_regular_file(scene_.file)) {
-        throw InputError(
-            fmt::format("{}: found no such file; allowed: a POV-Ray scene", scene_file.string()));
+        throw InputError("{}: found no such file; allowed: a POV-Ray scene", scene_file.string());
     }
     if (!is_plain_name(scene_.file.filename().string())) {
         refuse(
@@ -278,7 +277,7 @@ std::optional<ProcessEnd> Survey::poll(Running& running) const {
     try {
         return running.process.poll();
     } catch (const RunError& error) {
-        throw RunError(fmt::format("{}: {}", scene_.file.string(), error.what()));
+        throw RunError("{}: {}", scene_.file.string(), error.what());
     }
 }
 
@@ -375,8 +374,8 @@ Asked Survey::read_scene() {
 void Survey::require_ours(const Asked& asked) const {
     if (asked.strobes == 0) {
         refuse(
-            "found no strobe; allowed: Aphotic_Rig (), Aphotic_Rig_Strobes () or "
-            "Aphotic_Strobe (...)");
+            "found no strobe; allowed: Aphotic_Rig (), Aphotic_Rig_Strobes () or Aphotic_Strobe "
+            "(...)");
     }
     if (!asked.has_camera || asked.has_other_camera) {
         refuse(
@@ -385,11 +384,10 @@ void Survey::require_ours(const Asked& asked) const {
                         asked.has_camera ? "a second camera" : "no camera of aphotic.inc"));
     }
     if (const int others = asked.all_lights - asked.lights; others != 0) {
-        refuse(
-            fmt::format("found {} no strobe of aphotic.inc; allowed: none, for such light has no "
-                        "spectrum",
-                        others == 1 ? "1 light source that is"
-                                    : fmt::format("{} light sources that are", others)));
+        refuse(fmt::format(
+            "found {} no strobe of aphotic.inc; allowed: none, for such light has no spectrum",
+            others == 1 ? "1 light source that is"
+                        : fmt::format("{} light sources that are", others)));
     }
     if (asked.lights > kMostLightsInMedia && !rig_.water.is_clear()) {
         refuse(fmt::format(
@@ -492,15 +490,15 @@ void Survey::require_no_light_under_0(const Picture& bare) const {
         const auto least = std::ranges::min_element(*plane);
         if (!(*least < 0.0F)) continue;
         const auto pixel = static_cast<int>(least - plane->begin());
-        refuse(fmt::format(
-            "found light of {:.3g}, where the brightest is {:.3g}, at column {}, row {} "
-            "of {} x {}; allowed: 0 and more. Is there a colour under 0?",
-            *least,
-            *std::ranges::max_element(*plane),
-            pixel % width_px_,
-            pixel / width_px_,
-            width_px_,
-            height_px_));
+        refuse(
+            fmt::format("found light of {:.3g}, where the brightest is {:.3g}, at column {}, row "
+                        "{} of {} x {}; allowed: 0 and more. Is there a colour under 0?",
+                        *least,
+                        *std::ranges::max_element(*plane),
+                        pixel % width_px_,
+                        pixel / width_px_,
+                        width_px_,
+                        height_px_));
     }
 }
 
@@ -639,10 +637,10 @@ void Survey::require_no_dry_light(std::size_t pixels) {
     const std::string what =
         fmt::format("light that no water dims, in {} of {} pixels", pixels, width_px_ * height_px_);
     if (scene_.no_promise.empty()) {
-        refuse(fmt::format(
-            "found {}; allowed: water on its way. Are camera and strobes inside an object that is "
-            "not hollow?",
-            what));
+        refuse(
+            fmt::format("found {}; allowed: water on its way. Are camera and strobes inside an "
+                        "object that is not hollow?",
+                        what));
     }
     scene_.no_promise.push_back(what);
 }

@@ -32,8 +32,8 @@ std::optional<Manifest> earlier_manifest(const fs::path& folder) {
     try {
         return read_manifest(folder);
     } catch (const InputError& error) {
-        throw InputError(fmt::format(
-            "{}; nothing was changed. Remove that file to render everything again", error.what()));
+        throw InputError("{}; nothing was changed. Remove that file to render everything again",
+                         error.what());
     }
 }
 
@@ -61,7 +61,7 @@ void take_away(const fs::path& file) {
     std::error_code error;
     fs::remove(file, error);
     if (error) {
-        throw RunError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+        throw RunError("{}: cannot be removed: {}", file.string(), error.message());
     }
 }
 

@@ -26,9 +26,9 @@ double photons_per_joule(double lambda_nm) {
 Sensor::Sensor(std::vector<Spectrum> responses, ResponseKind kind)
     : responses_(std::move(responses)), kind_(kind) {
     if (responses_.size() != kChannels) {
-        throw InputError(fmt::format("found {} channel responses; allowed: {}, red, green, blue",
-                                     responses_.size(),
-                                     kChannels));
+        throw InputError("found {} channel responses; allowed: {}, red, green, blue",
+                         responses_.size(),
+                         kChannels);
     }
 }
 

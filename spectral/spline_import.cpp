@@ -172,18 +172,17 @@ class Parser {
             : is_printable
                 ? fmt::format("'{}'", printable(token_.text.substr(0, kMostShown)))
                 : fmt::format("the byte 0x{:02X}", static_cast<unsigned char>(token_.text[0]));
-        fail_at_line(
-            file_, token_.line, fmt::format("{}: found {}; allowed: {}", where_, found, allowed));
+        fail_at_line(file_, token_.line, "{}: found {}; allowed: {}", where_, found, allowed);
     }
 
     [[noreturn]] void fail_for_want_of_spectra() const {
         const std::string fitting =
             only_ == "*" ? "" : fmt::format(", with a NAME that fits '{}'", only_);
         throw InputError(
-            fmt::format("{}: found no spectrum; allowed: #declare NAME = spline {{ ... }} or "
-                        "#declare NAME = array[36] {{ ... }}{}",
-                        file_,
-                        fitting));
+            "{}: found no spectrum; allowed: #declare NAME = spline {{ ... }} or #declare NAME = "
+            "array[36] {{ ... }}{}",
+            file_,
+            fitting);
     }
 
     void read_declaration() {
@@ -233,11 +232,13 @@ class Parser {
             spectrum.knots.push_back(knot);
         }
         if (fmt::format("{}", spectrum.knots.size()) != kArraySize) {
-            fail_at_line(
-                file_,
-                spectrum.line,
-                fmt::format(
-                    "{}: found {} values; allowed: {}", where_, spectrum.knots.size(), kArraySize));
+            fail_at_line(file_,
+                         spectrum.line,
+
+                         "{}: found {} values; allowed: {}",
+                         where_,
+                         spectrum.knots.size(),
+                         kArraySize);
         }
     }
 
@@ -245,20 +246,21 @@ class Parser {
         if (kSplineRange.contains(knot.lambda_nm)) return;
         fail_at_line(file_,
                      knot.line,
-                     fmt::format("{}: found the wavelength {}; allowed: {} to {}, in nm",
-                                 where_,
-                                 knot.lambda_nm,
-                                 kSplineRange.first_nm,
-                                 kSplineRange.last_nm));
+                     "{}: found the wavelength {}; allowed: {} to {}, in nm",
+                     where_,
+                     knot.lambda_nm,
+                     kSplineRange.first_nm,
+                     kSplineRange.last_nm);
     }
 
     void sort_knots(SplineSpectrum& spectrum) const {
         auto& knots = spectrum.knots;
         if (knots.size() < 2) {
-            fail_at_line(
-                file_,
-                spectrum.line,
-                fmt::format("{}: found {} knots; a curve needs 2 or more", where_, knots.size()));
+            fail_at_line(file_,
+                         spectrum.line,
+                         "{}: found {} knots; a curve needs 2 or more",
+                         where_,
+                         knots.size());
         }
         std::stable_sort(knots.begin(), knots.end(), [](const auto& a, const auto& b) {
             return a.lambda_nm < b.lambda_nm;
@@ -268,13 +270,12 @@ class Parser {
                 return !(a.lambda_nm < b.lambda_nm);
             });
         if (twice == knots.end()) return;
-        fail_at_line(
-            file_,
-            std::next(twice)->line,
-            fmt::format("{}: found the wavelength {} again, first in line {}; allowed: once",
-                        where_,
-                        twice->lambda_nm,
-                        twice->line));
+        fail_at_line(file_,
+                     std::next(twice)->line,
+                     "{}: found the wavelength {} again, first in line {}; allowed: once",
+                     where_,
+                     twice->lambda_nm,
+                     twice->line);
     }
 
     // Two spectra may not go to one file, on disks that know no case either.
@@ -285,12 +286,11 @@ class Parser {
             fail_at_line(
                 file_,
                 spectrum.line,
-                fmt::format("{}: found a second spectrum for {}, the first is {} in line {}; "
-                            "allowed: one",
-                            where_,
-                            table,
-                            other.identifier,
-                            other.line));
+                "{}: found a second spectrum for {}, the first is {} in line {}; allowed: one",
+                where_,
+                table,
+                other.identifier,
+                other.line);
         }
         found_.spectra.push_back(std::move(spectrum));
     }
@@ -307,21 +307,19 @@ class Parser {
             std::adjacent_find(components.begin(), components.end(), std::not_equal_to<>()) !=
             components.end();
         if (unequal || components.size() < 2 || components.size() > kMaxVector) {
-            fail_at_line(
-                file_,
-                line,
-                fmt::format("{}: found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
-                            where_,
-                            fmt::join(components, ", "),
-                            kMaxVector));
+            fail_at_line(file_,
+                         line,
+                         "{}: found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
+                         where_,
+                         fmt::join(components, ", "),
+                         kMaxVector);
         }
         return components.front();
     }
 
     [[nodiscard]] double finite(double number, std::size_t line) const {
         if (std::isfinite(number)) return number;
-        fail_at_line(
-            file_, line, fmt::format("{}: found a number out of range; allowed: finite", where_));
+        fail_at_line(file_, line, "{}: found a number out of range; allowed: finite", where_);
     }
 
     double sum(int depth) {
@@ -387,12 +385,12 @@ void check_values(const std::string& file, const SplineSpectrum& spectrum, Curve
         if (fits) continue;
         fail_at_line(file,
                      knot.line,
-                     fmt::format("{}: found {} at {} nm; allowed for {}: {}",
-                                 spectrum.identifier,
-                                 knot.value,
-                                 knot.lambda_nm,
-                                 role_name(role),
-                                 is_lamp(role) ? "0 or more" : "0 to 1"));
+                     "{}: found {} at {} nm; allowed for {}: {}",
+                     spectrum.identifier,
+                     knot.value,
+                     knot.lambda_nm,
+                     role_name(role),
+                     is_lamp(role) ? "0 or more" : "0 to 1");
     }
 }
 

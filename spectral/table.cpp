@@ -112,9 +112,7 @@ double parse_field(const Table& table,
     const auto [stop, error] = std::from_chars(field.data(), end, number);
     if (error != std::errc() || stop != end || !std::isfinite(number)) {
         fail_at_line(
-            table.name,
-            line,
-            fmt::format("{}: found '{}'; allowed: a finite decimal number", column, field));
+            table.name, line, "{}: found '{}'; allowed: a finite decimal number", column, field);
     }
     return number;
 }
@@ -135,14 +133,14 @@ void take_header(Table& table, std::size_t line, const std::vector<std::string_v
         if (column.empty()) fail_at_line(table.name, line, "found a column without a name");
         const bool starts_like_a_name = std::isalpha(static_cast<unsigned char>(column[0])) != 0;
         if (!starts_like_a_name) {
-            fail_at_line(table.name,
-                         line,
-                         fmt::format("found '{}' where a header row such as "
-                                     "wavelength_nm,reflectance is expected",
-                                     column));
+            fail_at_line(
+                table.name,
+                line,
+                "found '{}' where a header row such as wavelength_nm,reflectance is expected",
+                column);
         }
         if (!seen.insert(column).second) {
-            fail_at_line(table.name, line, fmt::format("the column '{}' stands twice", column));
+            fail_at_line(table.name, line, "the column '{}' stands twice", column);
         }
     }
 }
@@ -151,9 +149,9 @@ void take_row(Table& table, std::size_t line, const std::vector<std::string_view
     if (fields.size() != table.columns.size()) {
         fail_at_line(table.name,
                      line,
-                     fmt::format("found {} fields; allowed: {}, as in the header row",
-                                 fields.size(),
-                                 table.columns.size()));
+                     "found {} fields; allowed: {}, as in the header row",
+                     fields.size(),
+                     table.columns.size());
     }
     TableRow row{line, {}};
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -189,10 +187,10 @@ void check_header(const Table& table, const RoleRule& rule) {
     }
     fail_at_line(table.name,
                  table.header_line,
-                 fmt::format("found the header row {}; allowed for {}: {}",
-                             fmt::join(table.columns, ","),
-                             rule.name,
-                             fmt::join(allowed, " or ")));
+                 "found the header row {}; allowed for {}: {}",
+                 fmt::join(table.columns, ","),
+                 rule.name,
+                 fmt::join(allowed, " or "));
 }
 
 void check_wavelengths(const Table& table) {
@@ -203,10 +201,9 @@ void check_wavelengths(const Table& table) {
             fail_at_line(
                 table.name,
                 row.line,
-                fmt::format("wavelength_nm: found {}; allowed: above {}, for wavelengths must "
-                            "increase",
-                            lambda_nm,
-                            last_nm));
+                "wavelength_nm: found {}; allowed: above {}, for wavelengths must increase",
+                lambda_nm,
+                last_nm);
         }
         last_nm = lambda_nm;
     }
@@ -218,13 +215,12 @@ void check_values(const Table& table, const RoleRule& rule) {
             const double value = row.fields[i];
             if (value >= 0.0 && value <= rule.max_value) continue;
             const bool bounded = rule.max_value != kNoUpperBound;
-            fail_at_line(
-                table.name,
-                row.line,
-                fmt::format("{}: found {}; allowed: {}",
-                            table.columns[i],
-                            value,
-                            bounded ? fmt::format("0 to {}", rule.max_value) : "0 or more"));
+            fail_at_line(table.name,
+                         row.line,
+                         "{}: found {}; allowed: {}",
+                         table.columns[i],
+                         value,
+                         bounded ? fmt::format("0 to {}", rule.max_value) : "0 or more");
         }
     }
 }
@@ -317,9 +313,9 @@ std::vector<CurveRole> roles_of(const Table& table) {
     if (fault) throw *fault;
     fail_at_line(table.name,
                  table.header_line,
-                 fmt::format("found the header row {}; allowed: {}",
-                             fmt::join(table.columns, ","),
-                             fmt::join(headers, ", ")));
+                 "found the header row {}; allowed: {}",
+                 fmt::join(table.columns, ","),
+                 fmt::join(headers, ", "));
 }
 
 }  // namespace aphotic

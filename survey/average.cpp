@@ -191,8 +191,7 @@ void divide_by_own_mean(RawImage& image) {
         count += 1.0;
     }
     const double mean = sum / count;
-    if (!(mean > 0.0))
-        throw InputError(fmt::format("its mean is {:.3g}; allowed: above 0, to divide by", mean));
+    if (!(mean > 0.0)) throw InputError("its mean is {:.3g}; allowed: above 0, to divide by", mean);
     for (float& sample : image.samples) sample = static_cast<float>(sample / mean);
 }
 

@@ -25,8 +25,8 @@ double median(std::vector<double> numbers) {
 
 SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     if (look.images.empty()) {
-        throw InputError(fmt::format(
-            "none of the {} images looked at can be corrected; {}", look.count, look.first_why));
+        throw InputError(
+            "none of the {} images looked at can be corrected; {}", look.count, look.first_why);
     }
     SurveyGain gain{.gain = {}, .middle = middle, .images = {}};
     std::array<std::vector<double>, kChannels> quotients;
@@ -39,11 +39,11 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     }
     if (gain.images.empty()) {
         throw InputError(
-            fmt::format("no gain can be taken from these images: of {} looked at, none has light "
-                        "and a map in every channel; allowed: --gain{}{}",
-                        look.count,
-                        look.first_why.empty() ? "" : "; ",
-                        look.first_why));
+            "no gain can be taken from these images: of {} looked at, none has light and a map in "
+            "every channel; allowed: --gain{}{}",
+            look.count,
+            look.first_why.empty() ? "" : "; ",
+            look.first_why);
     }
     for (std::size_t c = 0; c < kChannels; ++c)
         gain.gain[c] = gain.middle[c] / median(quotients[c]);

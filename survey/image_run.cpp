@@ -35,8 +35,8 @@ void require_sources_stay(const std::vector<ImageFile>& files, const ImageRunOpt
             const fs::path written = options.folder / result;
             if (!sources.contains(place_of(written))) continue;
             throw InputError(
-                fmt::format("{}: would be overwritten by the result; allowed: another place for -o",
-                            written.string()));
+                "{}: would be overwritten by the result; allowed: another place for -o",
+                written.string());
         }
     }
 }

@@ -99,8 +99,7 @@ void Journal::note(const std::string& name,
     }
     out_ << line_of(name, entry) << std::flush;
     if (!out_) {
-        throw RunError(
-            fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(errno)));
+        throw RunError("{}: cannot be written: {}", file_.string(), std::strerror(errno));
     }
     entries_.insert_or_assign(name, std::move(entry));
 }

@@ -112,8 +112,7 @@ LightAt light_of_map(const std::filesystem::path& map_file) {
         const std::vector<std::string> channels = reader.channels();
         for (const std::string& name : kNames) {
             if (std::ranges::find(channels, name) != channels.end()) continue;
-            throw InputError(
-                fmt::format("{}: has no channel {}; needed: R, G, B", map_file.string(), name));
+            throw InputError("{}: has no channel {}; needed: R, G, B", map_file.string(), name);
         }
         map.width_px = reader.width_px();
         map.height_px = reader.height_px();

@@ -114,10 +114,10 @@ std::vector<float> locally_equalised(std::span<const float> plane,
     const auto tiles = static_cast<std::size_t>(options.tiles);
     if (tiles > std::min(width, height)) {
         throw InputError(
-            fmt::format("local equalisation: found {} tiles; allowed: at most {}, the "
-                        "pixels of the image's shorter side",
-                        tiles,
-                        std::min(width, height)));
+            "local equalisation: found {} tiles; allowed: at most {}, the pixels of the image's "
+            "shorter side",
+            tiles,
+            std::min(width, height));
     }
     const auto ends = std::ranges::minmax(plane);
     const Scale scale{.least = ends.min, .most = ends.max};

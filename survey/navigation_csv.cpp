@@ -82,7 +82,7 @@ ColumnLayout layout_of(const std::string& name,
                        const std::vector<std::string_view>& columns) {
     for (const std::string_view column : {kImage, kAltitude, kPitch, kRoll}) {
         if (std::ranges::count(columns, column) > 1) {
-            fail_at_line(name, line, fmt::format("the column '{}' stands twice", column));
+            fail_at_line(name, line, "the column '{}' stands twice", column);
         }
     }
     for (const std::string_view needed : {kImage, kAltitude}) {
@@ -91,20 +91,19 @@ ColumnLayout layout_of(const std::string& name,
         const std::string near = nearest_name(needed, known);
         fail_at_line(name,
                      line,
-                     fmt::format("found the columns {}; needed: '{}'{}; allowed besides: {}, {}",
-                                 fmt::join(columns, ","),
-                                 needed,
-                                 near.empty() ? "" : fmt::format(" (is it '{}'?)", near),
-                                 kPitch,
-                                 kRoll));
+                     "found the columns {}; needed: '{}'{}; allowed besides: {}, {}",
+                     fmt::join(columns, ","),
+                     needed,
+                     near.empty() ? "" : fmt::format(" (is it '{}'?)", near),
+                     kPitch,
+                     kRoll);
     }
     // Of an optional one under another name, the rig's would be taken and nobody be told.
     for (const auto& [wanted, word] : {std::pair{kPitch, "pitch"}, std::pair{kRoll, "roll"}}) {
         if (column_named(columns, wanted)) continue;
         for (const std::string_view column : columns) {
             if (!column.starts_with(word)) continue;
-            fail_at_line(
-                name, line, fmt::format("found the column '{}'; allowed: '{}'", column, wanted));
+            fail_at_line(name, line, "found the column '{}'; allowed: '{}'", column, wanted);
         }
     }
     return {.has_commas = true,
