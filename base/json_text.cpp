@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/printable.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

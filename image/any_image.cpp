@@ -5,10 +5,8 @@
 #include "base/error.h"
 
 #include <dlfcn.h>
-#include <fmt/format.h>
 
 namespace aphotic {
-
 namespace {
 
 template <typename Function>

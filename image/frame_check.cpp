@@ -4,10 +4,7 @@
 #include "base/error.h"
 #include "image/exr.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <vector>
 
 namespace aphotic {

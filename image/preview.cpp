@@ -5,7 +5,6 @@
 #include "base/error.h"
 
 #include <cairo.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

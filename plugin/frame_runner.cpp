@@ -2,9 +2,9 @@
 #include "plugin/frame_runner.h"
 
 #include "base/atomic_file.h"
+#include "base/disk_space.h"
 #include "base/error.h"
 #include "image/frame_check.h"
-#include "plugin/full_disk.h"
 #include "plugin/interruption.h"
 #include "plugin/library_paths.h"
 #include "plugin/povray_log.h"
@@ -18,7 +18,6 @@
 #include <list>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <system_error>
 #include <thread>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray.h"
 
+#include "base/disk_space.h"
 #include "base/error.h"
-#include "plugin/full_disk.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
 #include "plugin/scratch_folder.h"
@@ -12,12 +12,11 @@
 #include <boost/process/search_path.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <iterator>
 #include <optional>
+#include <regex>
 #include <sstream>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -59,31 +58,12 @@ struct Version {
     std::string words;  // such as 3.7.0.10.unofficial
 };
 
-// "3.7" and what follows it up to a blank.
-std::optional<Version> version_at_start(std::string_view text) {
-    constexpr std::size_t kMostLetters = 100;
-    text = text.substr(0, text.find_first_of(" \t\r\n"));
-    if (text.empty() || text.front() == '-' || text.size() > kMostLetters) return std::nullopt;
-    Version version{.number = {}, .words = std::string(text)};
-    const char* end = text.data() + text.size();
-    const auto major = std::from_chars(text.data(), end, version.number.first);
-    if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.') return std::nullopt;
-    const char* behind_dot = major.ptr + 1;
-    if (behind_dot == end || *behind_dot == '-') return std::nullopt;
-    if (std::from_chars(behind_dot, end, version.number.second).ec != std::errc()) {
-        return std::nullopt;
-    }
-    return version;
-}
-
 // "POV-Ray 3.7.0", wherever it stands: complaints about its settings may come before it.
-std::optional<Version> introduced_version(std::string_view printed) {
-    constexpr std::string_view kName = "POV-Ray ";
-    for (auto at = printed.find(kName); at != std::string_view::npos;
-         at = printed.find(kName, at + 1)) {
-        if (auto version = version_at_start(printed.substr(at + kName.size()))) return version;
-    }
-    return std::nullopt;
+std::optional<Version> introduced_version(const std::string& printed) {
+    static const std::regex kIntroduction(R"(POV-Ray ((\d{1,9})\.(\d{1,9})[^ \t\r\n]{0,80}))");
+    std::smatch found;
+    if (!std::regex_search(printed, found, kIntroduction)) return std::nullopt;
+    return Version{.number = {std::stoi(found[2]), std::stoi(found[3])}, .words = found[1]};
 }
 
 // A line "Supported image formats: ... openexr ...".
@@ -106,7 +86,7 @@ std::string version_from(std::string_view printed) {
     // It introduces itself first, after a complaint or two; and what prints without end is not it.
     constexpr std::size_t kIntroduction_bytes = 16384;
     printed = printed.substr(0, kIntroduction_bytes);
-    const std::optional<Version> version = introduced_version(printed);
+    const std::optional<Version> version = introduced_version(std::string(printed));
     if (!version) throw RunError("it does not identify itself as POV-Ray");
     if (version->number < kLeastVersion) {
         throw RunError("found version {}.{}; allowed: {}.{} or later",
@@ -140,7 +120,6 @@ PovRay find_povray(const std::string& named) {
     const ProcessEnd end = run_process({.executable = executable,
                                         .arguments = {"--version"},
                                         .folder = scratch.path(),
-                                        .environment = {},
                                         .log = log},
                                        kProbeTimeoutS);
     try {

@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "plugin/process.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 #include <fstream>

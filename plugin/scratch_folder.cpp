@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 
-#include <fmt/format.h>
 #include <stdlib.h>  // mkdtemp
 
 #include <cerrno>

@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 namespace aphotic {
-
 namespace {
 
 std::vector<std::string> all_names() {

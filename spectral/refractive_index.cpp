@@ -13,7 +13,6 @@
 #include <cmath>
 
 namespace aphotic {
-
 namespace {
 
 constexpr double kNmPerUm = 1000.0;

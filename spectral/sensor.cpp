@@ -4,13 +4,10 @@
 #include "base/error.h"
 #include "spectral/curve_loader.h"
 
-#include <fmt/format.h>
-
 #include <string>
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 constexpr double kPlanck_j_s = 6.62607015e-34;

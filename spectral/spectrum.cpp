@@ -13,7 +13,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 bool all_finite(const std::vector<double>& numbers) {
@@ -94,6 +93,12 @@ std::string Spectrum::short_name() const {
 
 WavelengthRange Spectrum::range() const {
     return {lambda_nm_.front(), lambda_nm_.back()};
+}
+
+double product_at(std::span<const Spectrum> curves, double lambda_nm) {
+    double value = 1.0;
+    for (const Spectrum& curve : curves) value *= curve.at(lambda_nm);
+    return value;
 }
 
 WavelengthRange common_range(std::span<const Spectrum* const> curves) {

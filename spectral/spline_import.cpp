@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/spline_import.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/printable.h"
 
@@ -19,7 +20,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 constexpr std::array<std::string_view, 4> kSplineForms{
@@ -34,7 +34,7 @@ constexpr int kMaxDepth = 100;          // of brackets in brackets
 struct Token {
     enum class Kind { End, Number, Word, Text, Symbol };
     Kind kind = Kind::End;
-    std::string_view text;
+    std::string_view text{};
     std::size_t line = 0;
     double number = 0.0;
 };
@@ -50,14 +50,12 @@ bool is_digit(char c) {
 // A scene file's tokens, one at a time.
 class Lexer {
   public:
-    Lexer(const std::string& file, std::string_view text) : file_(file), rest_(text) {
-        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-        if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
-    }
+    Lexer(const std::string& file, std::string_view text)
+        : file_(file), rest_(without_byte_order_mark(text)) {}
 
     Token next() {
         pass_over_blanks();
-        if (rest_.empty()) return {.kind = Token::Kind::End, .text = {}, .line = line_};
+        if (rest_.empty()) return {.kind = Token::Kind::End, .line = line_};
         if (rest_[0] == '"') return text();
         if (is_letter(rest_[0])) return word();
         const bool fraction = rest_[0] == '.' && rest_.size() > 1 && is_digit(rest_[1]);

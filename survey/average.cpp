@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>

@@ -6,8 +6,6 @@
 #include "survey/site_planes.h"
 #include "survey/slow_light.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace aphotic {

@@ -188,9 +188,7 @@ BaselineReport correct_by_baseline(const Survey& survey,
     const fs::path notes = options.run.folder / kBaselineNotes;
     BaselineReport report{.baseline = name_of(options.baseline),
                           .settings = settings_of(survey, options),
-                          .folder = options.run.folder.string(),
-                          .looks_wrong = {},
-                          .run = {}};
+                          .folder = options.run.folder.string()};
     report.looks_wrong = suspicions_of(survey.files, survey.camera, options.run.jobs, watch);
     // Before the first image: also what an interrupted run leaves is no survey.
     write_text_file(notes, json_text(to_json(report)));

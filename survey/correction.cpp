@@ -5,8 +5,6 @@
 #include "image/image_size.h"
 #include "lightmap/cone_edge.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +12,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 std::span<const float> plane_of(const Lightmap& map, int channel) {

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/json_text.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -12,7 +11,6 @@
 #include <cmath>
 
 namespace aphotic {
-
 namespace {
 
 double median(std::vector<double> numbers) {
@@ -28,7 +26,7 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
         throw InputError(
             "none of the {} images looked at can be corrected; {}", look.count, look.first_why);
     }
-    SurveyGain gain{.gain = {}, .middle = middle, .images = {}};
+    SurveyGain gain{.middle = middle};
     std::array<std::vector<double>, kChannels> quotients;
     for (const ImageLook& image : look.images) {
         const PerChannel& quotient = image.quotient;

@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "base/words.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <map>

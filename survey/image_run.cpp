@@ -73,6 +73,12 @@ std::string state_of(const fs::path& image) {
     return fmt::format("{} {}", size, time);
 }
 
+nlohmann::ordered_json to_json(const std::vector<Skipped>& skipped) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const Skipped& one : skipped) json.push_back({{"image", one.image}, {"why", one.why}});
+    return json;
+}
+
 double RunOutcome::doubtful_share(std::string_view doubt) const {
     const auto count = counts.find(std::string(doubt));
     return pixels > 0.0 && count != counts.end() ? count->second / pixels : 0.0;

@@ -11,7 +11,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 // What a rig file allows, too.

@@ -15,7 +15,6 @@
 #include <string_view>
 
 namespace aphotic {
-
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -78,8 +77,7 @@ struct Pass {
                 if (like.width_px == 0) {
                     like = {.width_px = image.width_px,
                             .height_px = image.height_px,
-                            .mosaic = image.mosaic,
-                            .samples = {}};
+                            .mosaic = image.mosaic};
                 }
                 require_size(image, like.width_px, like.height_px, "as the first image");
                 use(image);

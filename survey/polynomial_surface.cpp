@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 
-#include <fmt/format.h>
 #include <Eigen/Cholesky>
 
 #include <utility>

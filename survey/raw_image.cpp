@@ -4,15 +4,11 @@
 #include "base/error.h"
 #include "image/image_size.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <utility>
 
 namespace aphotic {
-
 namespace {
 
 struct MosaicSites {

@@ -4,6 +4,7 @@
 #include "image/image_size.h"
 
 #include <fmt/format.h>
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <numeric>
 
 namespace aphotic {
-
 namespace {
 
 constexpr std::size_t kRed = 0;
@@ -63,20 +63,14 @@ struct Sums {
 };
 
 Sums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
-    const auto count = static_cast<double>(x.size());
-    double mean_x = 0.0;
-    double mean_y = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        mean_x += x[i] / count;
-        mean_y += y[i] / count;
-    }
-    Sums sums;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        sums.xx += (x[i] - mean_x) * (x[i] - mean_x);
-        sums.xy += (x[i] - mean_x) * (y[i] - mean_y);
-        sums.yy += (y[i] - mean_y) * (y[i] - mean_y);
-    }
-    return sums;
+    if (x.empty()) return {};
+    const auto less_mean = [](const std::vector<double>& numbers) -> Eigen::ArrayXd {
+        const Eigen::Map<const Eigen::ArrayXd> all(numbers.data(), std::ssize(numbers));
+        return all - all.mean();
+    };
+    const Eigen::ArrayXd dx = less_mean(x);
+    const Eigen::ArrayXd dy = less_mean(y);
+    return {.xx = dx.square().sum(), .xy = (dx * dy).sum(), .yy = dy.square().sum()};
 }
 
 // y = slope x + const by least squares; no line of too few points, or of points too near each

@@ -66,13 +66,11 @@ SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) 
     }
     const bool is_whole_numbers = image.full_scale > 0.0;
     const double scale = is_whole_numbers ? image.full_scale : 1.0;
-    SurveyImage taken{.raw = {.width_px = image.width_px,
-                              .height_px = image.height_px,
-                              .mosaic = camera.mosaic,
-                              .samples = {}},
-                      .levels = {.black = camera.black_level},
-                      .description = image.description,
-                      .date_time = image.date_time};
+    SurveyImage taken{
+        .raw = {.width_px = image.width_px, .height_px = image.height_px, .mosaic = camera.mosaic},
+        .levels = {.black = camera.black_level},
+        .description = image.description,
+        .date_time = image.date_time};
     taken.raw.samples = image.planes();
     if (image.channels.size() > 1) keep_planes(taken.raw.samples, taken.raw.pixels(), places);
     for (float& sample : taken.raw.samples) sample = static_cast<float>(sample * scale);
