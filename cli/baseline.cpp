@@ -5,7 +5,6 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/options.h"
-#include "cli/outcome.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "survey/baseline_run.h"
@@ -35,10 +34,7 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
     const auto name = std::ranges::find(kBaselineNames, options.name);
     options.baseline.baseline = static_cast<Baseline>(name - kBaselineNames.begin());
     const std::filesystem::path& folder = options.baseline.run.folder;
-    Survey survey{.files = image_files(options.images, folder),
-                  .navigation = {},
-                  .light = {},
-                  .camera = options.camera};
+    Survey survey{.files = image_files(options.images, folder), .camera = options.camera};
     if (needs_altitude(options.baseline.baseline) && !options.navigation.empty()) {
         survey.navigation = read_navigation_csv(options.navigation, Sled{});
     }
@@ -94,9 +90,7 @@ Action configure_baseline(CLI::App& app) {
     app.add_option("NAME", options->name, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
         ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
         ->required();
-    app.add_option(
-           "IMAGES", options->images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
-        ->required();
+    add_images(app, options->images);
     add_output_folder(app, options->baseline.run.folder)->required();
     app.add_option("--nav",
                    options->navigation,

@@ -7,7 +7,6 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/options.h"
-#include "cli/outcome.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
@@ -81,8 +80,6 @@ Survey survey_of(const CorrectCommandOptions& options) {
             "--altitude: found {},{}; allowed: the lower first", altitudes_m[0], altitudes_m[1]);
     }
     Survey survey{.files = image_files(options.images, options.correction.run.folder),
-                  .navigation = {},
-                  .light = {},
                   .camera = options.camera};
     if (!options.map.empty()) {
         survey.light = light_of_map(options.map);
@@ -91,11 +88,8 @@ Survey survey_of(const CorrectCommandOptions& options) {
     const Rig rig = read_rig(options.rig);
     survey.navigation = read_navigation_csv(options.nav, rig.sled);
     if (!altitudes_m.empty()) survey.navigation->limit_altitude(altitudes_m[0], altitudes_m[1]);
-    try {
-        survey.light = light_of_rig(rig, *survey.navigation, survey.files);
-    } catch (const InputError& error) {
-        throw InputError("{}: {}", options.rig, error.what());
-    }
+    survey.light =
+        naming(options.rig, [&] { return light_of_rig(rig, *survey.navigation, survey.files); });
     return survey;
 }
 
@@ -191,9 +185,7 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
 
 Action configure_correct(CLI::App& app) {
     const auto options = std::make_shared<CorrectCommandOptions>();
-    app.add_option(
-           "IMAGES", options->images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
-        ->required();
+    add_images(app, options->images);
     add_light_options(app, *options);
     add_output_folder(app, options->correction.run.folder)->required();
     add_raw_options(app, *options);

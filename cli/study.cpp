@@ -7,12 +7,10 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "cli/rendering.h"
 #include "image/any_image.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
@@ -25,7 +23,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 namespace aphotic::cli {
@@ -91,7 +88,7 @@ StudyFrames render_setting(const PovRay& povray,
                            const fs::path& folder) {
     const RenderPlan plan = plan_for(rig, setting);
     SceneSet set = make_scene_set(rig, plan);
-    RunOptions options{.jobs = setting.jobs, .report = {}, .stall_s = stall_s};
+    RunOptions options{.jobs = setting.jobs, .stall_s = stall_s};
     if (setting.antialias) {
         change_setting(set.ini,
                        "Antialias=off",
@@ -179,7 +176,7 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
                 .height_px = rig.camera.height_px,
                 .aphotic_version = APHOTIC_VERSION,
                 .povray_version = povray.version,
-                .cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
+                .cores = all_cores(),
                 .quick = options.quick,
                 .tolerance = options.tolerance};
     const std::vector<StudySetting> settings = study_settings(rig, options.quick, study.cores);

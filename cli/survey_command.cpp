@@ -10,7 +10,6 @@
 #include <optional>
 
 namespace aphotic::cli {
-
 namespace {
 
 // A line for each part of the work: it tells how long that part will take.
@@ -31,6 +30,11 @@ class ProgressOfParts {
 };
 
 }  // namespace
+
+void add_images(CLI::App& app, std::vector<std::string>& images) {
+    app.add_option("IMAGES", images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
+        ->required();
+}
 
 void add_camera_options(CLI::App& app, CameraNumbers& camera) {
     const auto wrong = [](const std::string& name) {

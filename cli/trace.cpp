@@ -6,7 +6,6 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -162,7 +161,7 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
         .threads = options.threads,
         .seconds = elapsed.count()};
     write_text_file(std::filesystem::path(options.folder) / "trace.json",
-                    dumped(to_json(traced)) + "\n");
+                    json_text(to_json(traced)));
     show(traced, options.json);
     return kDone;
 }

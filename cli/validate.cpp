@@ -5,22 +5,16 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "base/words.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/rendered_images.h"
-#include "cli/rendering.h"
-#include "image/exr.h"
-#include "plugin/render.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <memory>
 
 namespace aphotic::cli {
@@ -46,13 +40,8 @@ struct Rendering {
 Rendering render_here(const ValidateCommandOptions& options,
                       const PovRay& povray,
                       const SceneSet& scenes) {
-    const RenderedFrames frames = render_frames(povray,
-                                                options.folder,
-                                                scenes,
-                                                {.jobs = options.jobs,
-                                                 .report = {},
-                                                 .library_paths = options.planning.library_paths,
-                                                 .stall_s = options.planning.stall_timeout_s});
+    const RenderedFrames frames =
+        render_frames(povray, options.folder, scenes, run_options(options.planning, options.jobs));
     Rendering rendering{.manifest = frames.result.manifest, .render_s = frames.povray_s};
     rendering.integrate_s =
         integrate_folder(options.folder, rendering.manifest, {}, options.folder).seconds;
@@ -144,14 +133,6 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
         "  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);
 }
 
-void require_place_and_room(const ValidateCommandOptions& options, const PlannedRender& planned) {
-    const SceneSet scenes = scenes_of(planned, options.planning);
-    require_place_for_scenes(options.folder, scenes);
-    require_room(needs_of(scenes, options.folder, options.jobs),
-                 options.folder,
-                 options.planning.ignore_needs);
-}
-
 ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const bool is_rendered = !options.rendered_folder.empty();
@@ -164,7 +145,10 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
         (void)rendered_manifest(options.rendered_folder, planned.rig);
     } else {
         povray = povray_for(planned, options.planning, options.folder);
-        require_place_and_room(options, planned);
+        require_place_and_room(scenes_of(planned, options.planning),
+                               options.folder,
+                               options.jobs,
+                               options.planning.ignore_needs);
     }
     const std::vector<FolderLock> locks =
         claim_folders(options.folder, is_rendered ? options.rendered_folder : options.folder);
