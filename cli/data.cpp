@@ -21,6 +21,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -271,15 +272,14 @@ void refuse_to_overwrite(const std::vector<NewTable>& tables) {
 
 // Every file is whole before the first takes its place.
 void write_all(const std::vector<NewTable>& tables) {
-    std::vector<std::unique_ptr<AtomicFile>> files;
+    std::list<AtomicFile> files;
     for (const NewTable& table : tables) {
-        files.push_back(std::make_unique<AtomicFile>(table.path));
-        std::ofstream out(files.back()->temporary(), std::ios::binary);
+        std::ofstream out(files.emplace_back(table.path).temporary(), std::ios::binary);
         out << table.text;
         out.close();
         if (!out) throw RunError("{}: cannot be written", table.path.string());
     }
-    for (const auto& file : files) file->commit();
+    for (AtomicFile& file : files) file.commit();
 }
 
 void note_what_differs(const SplineFile& found, const std::string& file) {
