@@ -162,6 +162,11 @@ class Parser {
         return true;
     }
 
+    template <typename... T>
+    [[noreturn]] void fail(std::size_t line, fmt::format_string<T...> what, T&&... with) const {
+        fail_at_line(file_, line, "{}: {}", where_, fmt::format(what, std::forward<T>(with)...));
+    }
+
     [[noreturn]] void refuse(const std::string& allowed) const {
         const bool is_printable = token_.text.size() != 1 ||
                                   std::isprint(static_cast<unsigned char>(token_.text[0])) != 0;
@@ -170,7 +175,7 @@ class Parser {
             : is_printable
                 ? fmt::format("'{}'", printable(token_.text.substr(0, kMostShown)))
                 : fmt::format("the byte 0x{:02X}", static_cast<unsigned char>(token_.text[0]));
-        fail_at_line(file_, token_.line, "{}: found {}; allowed: {}", where_, found, allowed);
+        fail(token_.line, "found {}; allowed: {}", found, allowed);
     }
 
     [[noreturn]] void fail_for_want_of_spectra() const {
@@ -230,35 +235,23 @@ class Parser {
             spectrum.knots.push_back(knot);
         }
         if (fmt::format("{}", spectrum.knots.size()) != kArraySize) {
-            fail_at_line(file_,
-                         spectrum.line,
-
-                         "{}: found {} values; allowed: {}",
-                         where_,
-                         spectrum.knots.size(),
-                         kArraySize);
+            fail(spectrum.line, "found {} values; allowed: {}", spectrum.knots.size(), kArraySize);
         }
     }
 
     void check_wavelength(const SplineKnot& knot) const {
         if (kSplineRange.contains(knot.lambda_nm)) return;
-        fail_at_line(file_,
-                     knot.line,
-                     "{}: found the wavelength {}; allowed: {} to {}, in nm",
-                     where_,
-                     knot.lambda_nm,
-                     kSplineRange.first_nm,
-                     kSplineRange.last_nm);
+        fail(knot.line,
+             "found the wavelength {}; allowed: {} to {}, in nm",
+             knot.lambda_nm,
+             kSplineRange.first_nm,
+             kSplineRange.last_nm);
     }
 
     void sort_knots(SplineSpectrum& spectrum) const {
         auto& knots = spectrum.knots;
         if (knots.size() < 2) {
-            fail_at_line(file_,
-                         spectrum.line,
-                         "{}: found {} knots; a curve needs 2 or more",
-                         where_,
-                         knots.size());
+            fail(spectrum.line, "found {} knots; a curve needs 2 or more", knots.size());
         }
         std::stable_sort(knots.begin(), knots.end(), [](const auto& a, const auto& b) {
             return a.lambda_nm < b.lambda_nm;
@@ -268,12 +261,10 @@ class Parser {
                 return !(a.lambda_nm < b.lambda_nm);
             });
         if (twice == knots.end()) return;
-        fail_at_line(file_,
-                     std::next(twice)->line,
-                     "{}: found the wavelength {} again, first in line {}; allowed: once",
-                     where_,
-                     twice->lambda_nm,
-                     twice->line);
+        fail(std::next(twice)->line,
+             "found the wavelength {} again, first in line {}; allowed: once",
+             twice->lambda_nm,
+             twice->line);
     }
 
     // Two spectra may not go to one file, on disks that know no case either.
@@ -281,14 +272,11 @@ class Parser {
         const std::string table = spline_table_name(spectrum.identifier);
         for (const SplineSpectrum& other : found_.spectra) {
             if (spline_table_name(other.identifier) != table) continue;
-            fail_at_line(
-                file_,
-                spectrum.line,
-                "{}: found a second spectrum for {}, the first is {} in line {}; allowed: one",
-                where_,
-                table,
-                other.identifier,
-                other.line);
+            fail(spectrum.line,
+                 "found a second spectrum for {}, the first is {} in line {}; allowed: one",
+                 table,
+                 other.identifier,
+                 other.line);
         }
         found_.spectra.push_back(std::move(spectrum));
     }
@@ -305,19 +293,17 @@ class Parser {
             std::adjacent_find(components.begin(), components.end(), std::not_equal_to<>()) !=
             components.end();
         if (unequal || components.size() < 2 || components.size() > kMaxVector) {
-            fail_at_line(file_,
-                         line,
-                         "{}: found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
-                         where_,
-                         fmt::join(components, ", "),
-                         kMaxVector);
+            fail(line,
+                 "found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
+                 fmt::join(components, ", "),
+                 kMaxVector);
         }
         return components.front();
     }
 
     [[nodiscard]] double finite(double number, std::size_t line) const {
         if (std::isfinite(number)) return number;
-        fail_at_line(file_, line, "{}: found a number out of range; allowed: finite", where_);
+        fail(line, "found a number out of range; allowed: finite");
     }
 
     double sum(int depth) {
