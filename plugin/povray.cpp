@@ -58,9 +58,11 @@ struct Version {
     std::string words;  // such as 3.7.0.10.unofficial
 };
 
-// "POV-Ray 3.7.0", wherever it stands: complaints about its settings may come before it.
+// "POV-Ray 3.7.0.10.unofficial" up to a blank, wherever it stands: complaints about its settings
+// may come before it.
 std::optional<Version> introduced_version(const std::string& printed) {
-    static const std::regex kIntroduction(R"(POV-Ray ((\d{1,9})\.(\d{1,9})[^ \t\r\n]{0,80}))");
+    static const std::regex kIntroduction(
+        R"(POV-Ray ((\d{1,9})\.(\d{1,9})(?!\d)[^ \t\r\n]{0,80})(?=[ \t\r\n]|$))");
     std::smatch found;
     if (!std::regex_search(printed, found, kIntroduction)) return std::nullopt;
     return Version{.number = {std::stoi(found[2]), std::stoi(found[3])}, .words = found[1]};
