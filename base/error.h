@@ -49,7 +49,8 @@ template <typename First, typename... Rest>
                                fmt::format_string<First, Rest...> what,
                                First&& first,
                                Rest&&... rest) {
-    fail_at_line(file, line, what, std::forward<First>(first), std::forward<Rest>(rest)...);
+    fail_at_line(
+        file, line, fmt::format(what, std::forward<First>(first), std::forward<Rest>(rest)...));
 }
 
 // The work's result; what it finds wrong with its input is said of `where`: a file or folder.
