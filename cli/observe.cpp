@@ -11,6 +11,7 @@
 #include "survey/observation.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <memory>
