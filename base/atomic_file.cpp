@@ -76,8 +76,7 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::commit() {
     const auto fail = [&](int error) {
-        throw RunError(
-            fmt::format("{}: cannot be written: {}", final_path_.string(), std::strerror(error)));
+        throw RunError("{}: cannot be written: {}", final_path_.string(), std::strerror(error));
     };
     // In this order, or a power cut may leave the name of a file whose bytes are not there yet.
     if (!is_synced(temporary_)) fail(errno);
@@ -104,8 +103,7 @@ void write_text_file(const fs::path& path, std::string_view text) {
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     out.close();
     if (!out) {
-        throw RunError(
-            fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+        throw RunError("{}: cannot be written: {}", path.string(), std::strerror(errno));
     }
     file.commit();
 }
@@ -113,14 +111,14 @@ void write_text_file(const fs::path& path, std::string_view text) {
 std::string read_text_file(const fs::path& path, std::size_t most_bytes) {
     std::ifstream in(path, std::ios::binary);
     if (!in || fs::is_directory(path)) {
-        throw InputError(fmt::format(
-            "{}: cannot be read: {}", path.string(), in ? "it is a folder" : std::strerror(errno)));
+        throw InputError(
+            "{}: cannot be read: {}", path.string(), in ? "it is a folder" : std::strerror(errno));
     }
     const auto require_room = [&](std::uintmax_t bytes) {
         if (bytes <= most_bytes) return;
-        throw InputError(fmt::format("{0}: found more than {1} MiB; allowed: {1} MiB or less",
-                                     path.string(),
-                                     most_bytes / kMebibyte));
+        throw InputError("{0}: found more than {1} MiB; allowed: {1} MiB or less",
+                         path.string(),
+                         most_bytes / kMebibyte);
     };
     if (fs::is_regular_file(path)) require_room(fs::file_size(path));
     // Counted while reading too: a pipe or a device does not say its size.
@@ -130,7 +128,7 @@ std::string read_text_file(const fs::path& path, std::size_t most_bytes) {
         text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
         require_room(text.size());
     }
-    if (in.bad()) throw InputError(fmt::format("{}: cannot be read", path.string()));
+    if (in.bad()) throw InputError("{}: cannot be read", path.string());
     return text;
 }
 
@@ -138,11 +136,10 @@ void make_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) {
-        throw RunError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+        throw RunError("{}: cannot be created: {}", folder.string(), error.message());
     }
     if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-        throw RunError(
-            fmt::format("{}: cannot be written to: {}", folder.string(), std::strerror(errno)));
+        throw RunError("{}: cannot be written to: {}", folder.string(), std::strerror(errno));
     }
 }
 

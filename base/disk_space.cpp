@@ -3,9 +3,10 @@
 
 #include "base/error.h"
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 
-#include <fmt/format.h>
+#include <system_error>
 
 namespace aphotic {
 
@@ -28,8 +29,7 @@ std::uint64_t free_disk_bytes(const fs::path& folder) {
     std::error_code error;
     const fs::space_info space = fs::space(nearest_existing(folder), error);
     if (error) {
-        throw RunError(
-            fmt::format("{}: free space cannot be read: {}", folder.string(), error.message()));
+        throw RunError("{}: free space cannot be read: {}", folder.string(), error.message());
     }
     return space.available;
 }
@@ -39,6 +39,17 @@ bool on_one_disk(const fs::path& a, const fs::path& b) {
     struct stat of_b {};
     return ::stat(nearest_existing(a).c_str(), &of_a) == 0 &&
            ::stat(nearest_existing(b).c_str(), &of_b) == 0 && of_a.st_dev == of_b.st_dev;
+}
+
+std::string words_of_full_disk(const fs::path& folder) {
+    constexpr std::uintmax_t kLittle = std::uintmax_t{64} << 10U;
+    std::error_code error;
+    const std::uintmax_t left = fs::space(folder, error).available;
+    if (error || left > kLittle) return "";
+    return fmt::format("\n{}: {}: {} KiB are left",
+                       folder.string(),
+                       std::make_error_code(std::errc::no_space_on_device).message(),
+                       left >> 10U);
 }
 
 }  // namespace aphotic

@@ -3,8 +3,6 @@
 
 #include "base/error.h"
 
-#include <fmt/format.h>
-
 #include <system_error>
 
 namespace aphotic {
@@ -23,9 +21,9 @@ fs::path end_of(const fs::path& path) {
     fs::path end = fs::canonical(path, error);
     if (!error) return end;
     const bool dangles = error == std::errc::no_such_file_or_directory && fs::is_symlink(path);
-    throw InputError(fmt::format("{}: cannot be read: {}",
-                                 path.string(),
-                                 dangles ? "it is a link to what is not there" : error.message()));
+    throw InputError("{}: cannot be read: {}",
+                     path.string(),
+                     dangles ? "it is a link to what is not there" : error.message());
 }
 
 }  // namespace
@@ -35,21 +33,20 @@ fs::path file_beside(const fs::path& folder, const std::string& name) {
     constexpr std::string_view kAllowed = "a file in the same folder or below it";
     // By its words first: what lies elsewhere is not even looked for.
     if (leads_out(fs::path(name).lexically_normal())) {
-        throw InputError(fmt::format("found '{}'; allowed: {}", name, kAllowed));
+        throw InputError("found '{}'; allowed: {}", name, kAllowed);
     }
     const fs::path end = end_of(path);
     if (leads_out(end.lexically_relative(end_of(folder.empty() ? "." : folder)))) {
-        throw InputError(fmt::format("{}: found a link that leads to {}; allowed: {}",
-                                     path.string(),
-                                     end.string(),
-                                     kAllowed));
+        throw InputError("{}: found a link that leads to {}; allowed: {}",
+                         path.string(),
+                         end.string(),
+                         kAllowed);
     }
     if (!fs::is_regular_file(end)) {
-        throw InputError(
-            fmt::format("{}: cannot be read: it is {}; allowed: {}",
-                        path.string(),
-                        fs::is_directory(end) ? "a folder" : "a pipe, a device or a socket",
-                        kAllowed));
+        throw InputError("{}: cannot be read: it is {}; allowed: {}",
+                         path.string(),
+                         fs::is_directory(end) ? "a folder" : "a pipe, a device or a socket",
+                         kAllowed);
     }
     return path;
 }

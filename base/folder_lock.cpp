@@ -48,11 +48,9 @@ FolderLock::FolderLock(const fs::path& folder, FolderUse use)
     if (::flock(descriptor_, operation) == 0 || errno != EWOULDBLOCK) return;
     const std::string holder = holder_of(descriptor_);
     ::close(descriptor_);
-    throw RunError(
-        fmt::format("{}: another aphotic is at work in this folder{}; allowed: one at a "
-                    "time",
-                    folder.string(),
-                    holder.empty() ? "" : fmt::format(" (process {})", holder)));
+    throw RunError("{}: another aphotic is at work in this folder{}; allowed: one at a time",
+                   folder.string(),
+                   holder.empty() ? "" : fmt::format(" (process {})", holder));
 }
 
 FolderLock::~FolderLock() {

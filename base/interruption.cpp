@@ -12,7 +12,6 @@
 #include <mutex>
 
 namespace aphotic {
-
 namespace {
 
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};

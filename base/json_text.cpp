@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/printable.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -36,10 +35,8 @@ int depth_of(std::string_view text) {
 
 nlohmann::json parse_json(std::string_view text, const std::string& what) {
     if (const int depth = depth_of(text); depth > kMostJsonDepth) {
-        throw InputError(fmt::format("{}: found values nested in {} levels; allowed: up to {}",
-                                     what,
-                                     depth,
-                                     kMostJsonDepth));
+        throw InputError(
+            "{}: found values nested in {} levels; allowed: up to {}", what, depth, kMostJsonDepth);
     }
     nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
     if (json.is_discarded()) throw InputError(what + ": is not JSON");
@@ -63,11 +60,11 @@ std::int64_t whole_number_at(const nlohmann::json& object,
                              std::int64_t most) {
     const nlohmann::json& value = object.at(key);
     if (is_whole_number(value, least, most)) return value.get<std::int64_t>();
-    throw InputError(fmt::format("{}: found {}; allowed: a whole number from {} to {}",
-                                 key,
-                                 printable(value.dump()),
-                                 least,
-                                 most));
+    throw InputError("{}: found {}; allowed: a whole number from {} to {}",
+                     key,
+                     printable(value.dump()),
+                     least,
+                     most);
 }
 
 }  // namespace aphotic

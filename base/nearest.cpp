@@ -8,7 +8,6 @@
 #include <vector>
 
 namespace aphotic {
-
 namespace {
 
 bool same_letter(char a, char b) {

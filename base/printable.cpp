@@ -6,7 +6,6 @@
 #include <cstddef>
 
 namespace aphotic {
-
 namespace {
 
 // The bytes of the control character at the front of a text, 0 when there is none. Those beyond

@@ -52,14 +52,14 @@ std::string sha256_of_file(const std::filesystem::path& file) {
     // A pipe would be waited for, and a device has no end.
     const bool is_regular = std::filesystem::is_regular_file(file);
     std::ifstream in(is_regular ? file : std::filesystem::path(), std::ios::binary);
-    if (!in) throw RunError(fmt::format("{}: cannot be read", file.string()));
+    if (!in) throw RunError("{}: cannot be read", file.string());
     Sha256 digest;
     std::array<char, 1 << 16> block{};
     while (in) {
         in.read(block.data(), block.size());
         digest.add({block.data(), static_cast<std::size_t>(in.gcount())});
     }
-    if (in.bad()) throw RunError(fmt::format("{}: reading failed", file.string()));
+    if (in.bad()) throw RunError("{}: reading failed", file.string());
     return digest.hex();
 }
 

@@ -4,12 +4,11 @@
 #include "lightmap/atlas.h"
 
 #include "base/atomic_file.h"
+#include "base/degrees.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/words.h"
-#include "cli/atlas_axes.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -22,15 +21,130 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <sstream>
 
 namespace aphotic::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Of all axes together: HabCam's would be over a terabyte.
+constexpr std::size_t kMostBins = 100000;
+
+// Each a number, or FIRST:LAST:STEP with both ends; what is left out is the rig's own.
+struct AxisTexts {
+    std::string altitude;
+    std::string pitch;
+    std::string roll;
+    std::string water;
+};
+
+struct Bounds {
+    double least;
+    double most;
+};
+constexpr Bounds kAltitude_m{kLeastAltitude_m, kMostAltitude_m};
+constexpr Bounds kTilt_deg{-kMostTilt_deg, kMostTilt_deg};
+constexpr Bounds kMultiple{0.0, 1e6};
+
+// A, or FIRST:LAST:STEP with both ends.
+std::vector<double> axis_of(const std::string& option, const std::string& text, Bounds bounds) {
+    const auto fail = [&] {
+        throw InputError(
+            "{}: found {}; allowed: a number or FIRST:LAST:STEP, from {} to {}, of up to 10001 "
+            "values that end at LAST",
+            option,
+            text,
+            bounds.least,
+            bounds.most);
+    };
+    std::vector<double> parts;
+    std::istringstream in(text);
+    for (std::string part; std::getline(in, part, ':');) {
+        std::size_t used = 0;
+        try {
+            parts.push_back(std::stod(part, &used));
+        } catch (const std::exception&) {
+            fail();
+        }
+        if (used != part.size()) fail();
+    }
+    const bool is_one = parts.size() == 1;
+    if (!is_one && parts.size() != 3) fail();
+    const double first = parts.front();
+    const double last = is_one ? first : parts[1];
+    if (!(first >= bounds.least && first <= last && last <= bounds.most)) fail();
+    if (is_one || first == last) return {first};
+    constexpr double kMostSteps = 10000.0;
+    const double steps = (last - first) / parts[2];
+    const double whole = std::round(steps);
+    constexpr double kWhole = 1e-6;
+    if (!(steps >= 1.0 - kWhole && whole <= kMostSteps) || std::abs(steps - whole) > kWhole) fail();
+    std::vector<double> values;
+    constexpr double kDigits = 1e9;
+    for (int i = 0; i <= static_cast<int>(whole); ++i) {
+        values.push_back(std::round((first + i * parts[2]) * kDigits) / kDigits);
+    }
+    return values;
+}
+
+std::vector<double> in_radians(std::vector<double> values_deg) {
+    for (double& value : values_deg) value *= kRadiansPerDegree;
+    return values_deg;
+}
+
+void require_few(const MapAxes& axes) {
+    const std::size_t bins = bin_count(axes);
+    if (bins <= kMostBins) return;
+    throw InputError(
+        "--altitude, --pitch, --roll, --water-multiple: found {} x {} x {} x {} = {} bins; "
+        "allowed: up to {} in all",
+        axes.altitude_m.size(),
+        axes.pitch_rad.size(),
+        axes.roll_rad.size(),
+        axes.water_multiple.size(),
+        bins,
+        kMostBins);
+}
+
+void add_axis_options(CLI::App& app, AxisTexts& texts) {
+    constexpr const char* kSteps = "FIRST:LAST:STEP";
+    app.add_option(kAltitudeNames, texts.altitude, "Altitudes in metres, such as 1:4:0.1")
+        ->required()
+        ->option_text(kSteps);
+    app.add_option(kPitchNames, texts.pitch, "Pitches in degrees; by default the rig's")
+        ->option_text(kSteps);
+    app.add_option(kRollNames, texts.roll, "Rolls in degrees; by default the rig's")
+        ->option_text(kSteps);
+    app.add_option("--water-multiple",
+                   texts.water,
+                   "Multiples of the water's absorption; by default the rig's")
+        ->option_text(kSteps);
+}
+
+// Throws InputError, which names the option.
+MapAxes axes_of(const AxisTexts& texts, const Rig& rig) {
+    MapAxes axes{.altitude_m = axis_of("--altitude", texts.altitude, kAltitude_m),
+                 .pitch_rad = {rig.sled.pitch_rad},
+                 .roll_rad = {rig.sled.roll_rad},
+                 .water_multiple = {rig.water.multiple}};
+    if (!texts.pitch.empty()) {
+        axes.pitch_rad = in_radians(axis_of("--pitch", texts.pitch, kTilt_deg));
+    }
+    if (!texts.roll.empty()) {
+        axes.roll_rad = in_radians(axis_of("--roll", texts.roll, kTilt_deg));
+    }
+    if (!texts.water.empty()) {
+        axes.water_multiple = axis_of("--water-multiple", texts.water, kMultiple);
+    }
+    require_few(axes);
+    return axes;
+}
 
 struct AtlasCommandOptions {
     std::string rig_file;
@@ -116,7 +230,7 @@ struct MadeAtlas {
     fs::path folder;
     ChosenAxes chosen;
     std::size_t computed = 0;
-    AtlasExports exports;
+    AtlasExports exports{};
     double tolerance = 0.0;  // 0: none
     double seconds = 0.0;
 
@@ -196,7 +310,6 @@ MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes
     MadeAtlas made{.rig = rig,
                    .folder = options.folder,
                    .chosen = choose(options, rig, finest),
-                   .exports = {},
                    .tolerance = options.tolerance};
     announce(options, made.chosen.axes, work_of(options, rig, finest));
     set_exr_threads(options.map.threads);
@@ -216,18 +329,11 @@ MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes
     return made;
 }
 
-MadeAtlas make_named(const AtlasCommandOptions& options, const Rig& rig, const MapAxes& finest) {
-    try {
-        return make(options, rig, finest);
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
-    }
-}
-
 ExitStatus make_atlas(const AtlasCommandOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     const Rig rig = read_rig(options.rig_file);
-    MadeAtlas made = make_named(options, rig, axes_of(options.axes, rig));
+    const MapAxes finest = axes_of(options.axes, rig);
+    MadeAtlas made = naming(options.rig_file, [&] { return make(options, rig, finest); });
     made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     show(made, options.json);
     return made.holds() ? kDone : kAnswerIsNo;

@@ -5,7 +5,6 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/options.h"
-#include "cli/outcome.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "survey/baseline_run.h"
@@ -35,10 +34,7 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
     const auto name = std::ranges::find(kBaselineNames, options.name);
     options.baseline.baseline = static_cast<Baseline>(name - kBaselineNames.begin());
     const std::filesystem::path& folder = options.baseline.run.folder;
-    Survey survey{.files = image_files(options.images, folder),
-                  .navigation = {},
-                  .light = {},
-                  .camera = options.camera};
+    Survey survey{.files = image_files(options.images, folder), .camera = options.camera};
     if (needs_altitude(options.baseline.baseline) && !options.navigation.empty()) {
         survey.navigation = read_navigation_csv(options.navigation, Sled{});
     }
@@ -60,10 +56,10 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
 }
 
 void add_baseline_options(CLI::App& app, BaselineOptions& options) {
-    app.add_option("--sigma",
-                   options.sigma,
-                   "illumination-reflectance, homomorphic: width of the blur as a share of the "
-                   "image's")
+    app.add_option(
+           "--sigma",
+           options.sigma,
+           "illumination-reflectance, homomorphic: width of the blur as a share of the image's")
         ->check(in_range(1e-4, 10.0))
         ->capture_default_str();
     app.add_option("--low", options.low, "homomorphic: gain of low frequencies")
@@ -94,9 +90,7 @@ Action configure_baseline(CLI::App& app) {
     app.add_option("NAME", options->name, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
         ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
         ->required();
-    app.add_option(
-           "IMAGES", options->images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
-        ->required();
+    add_images(app, options->images);
     add_output_folder(app, options->baseline.run.folder)->required();
     app.add_option("--nav",
                    options->navigation,
@@ -112,11 +106,9 @@ Action configure_baseline(CLI::App& app) {
     app.footer(
         "The polynomials learn from all images given; the others correct each image by itself. An "
         "EXR holds the camera's own numbers less the black level; a TIFF or PNG has 65535 where "
-        "the "
-        "camera saturates. Interrupted, it continues where it stopped when run again. Images that "
-        "cannot be used are reported and skipped; the exit status is then 1. A mask's pixel is a "
-        "sum "
-        "of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
+        "the camera saturates. Interrupted, it continues where it stopped when run again. Images "
+        "that cannot be used are reported and skipped; the exit status is then 1. A mask's pixel "
+        "is a sum of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
     return [options] { return correct_by_baseline(*options); };
 }
 

@@ -7,7 +7,6 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/options.h"
-#include "cli/outcome.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
@@ -77,12 +76,10 @@ Survey survey_of(const CorrectCommandOptions& options) {
     }
     const std::vector<double>& altitudes_m = options.altitudes_m;
     if (!altitudes_m.empty() && altitudes_m[0] > altitudes_m[1]) {
-        throw InputError(fmt::format(
-            "--altitude: found {},{}; allowed: the lower first", altitudes_m[0], altitudes_m[1]));
+        throw InputError(
+            "--altitude: found {},{}; allowed: the lower first", altitudes_m[0], altitudes_m[1]);
     }
     Survey survey{.files = image_files(options.images, options.correction.run.folder),
-                  .navigation = {},
-                  .light = {},
                   .camera = options.camera};
     if (!options.map.empty()) {
         survey.light = light_of_map(options.map);
@@ -91,11 +88,8 @@ Survey survey_of(const CorrectCommandOptions& options) {
     const Rig rig = read_rig(options.rig);
     survey.navigation = read_navigation_csv(options.nav, rig.sled);
     if (!altitudes_m.empty()) survey.navigation->limit_altitude(altitudes_m[0], altitudes_m[1]);
-    try {
-        survey.light = light_of_rig(rig, *survey.navigation, survey.files);
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig, error.what()));
-    }
+    survey.light =
+        naming(options.rig, [&] { return light_of_rig(rig, *survey.navigation, survey.files); });
     return survey;
 }
 
@@ -114,11 +108,10 @@ ExitStatus correct(const CorrectCommandOptions& options) {
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
     app.add_option("--rig", options.rig, "The rig that took the images")->type_name("RIG");
-    app.add_option(
-           "--nav",
-           options.nav,
-           "Altitude, pitch and roll of each image: CSV with the columns image, altitude_m, "
-           "pitch_deg, roll_deg, or lines of these four without a header")
+    app.add_option("--nav",
+                   options.nav,
+                   "Altitude, pitch and roll of each image: CSV with the columns image, "
+                   "altitude_m, pitch_deg, roll_deg, or lines of these four without a header")
         ->type_name("FILE");
     app.add_option(
            "--map", options.map, "Use one lightmap (EXR) for all images instead of --rig and --nav")
@@ -171,10 +164,10 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
     app.add_option("--gain-images", options.correction.gain_images, "Take the gain from N images")
         ->check(in_range(1, kMostImages))
         ->capture_default_str();
-    app.add_option("--least-light",
-                   options.correction.limit.share,
-                   "Hold a pixel's gain where the map is below this share of its brightest in a "
-                   "channel")
+    app.add_option(
+           "--least-light",
+           options.correction.limit.share,
+           "Hold a pixel's gain where the map is below this share of its brightest in a channel")
         ->check(in_range(kLeastShare, 1.0))
         ->capture_default_str();
     app.add_option("--most-noise",
@@ -192,9 +185,7 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
 
 Action configure_correct(CLI::App& app) {
     const auto options = std::make_shared<CorrectCommandOptions>();
-    app.add_option(
-           "IMAGES", options->images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
-        ->required();
+    add_images(app, options->images);
     add_light_options(app, *options);
     add_output_folder(app, options->correction.run.folder)->required();
     add_raw_options(app, *options);
@@ -205,8 +196,7 @@ Action configure_correct(CLI::App& app) {
     app.footer(
         "Interrupted, it continues where it stopped when run again. Exit status 0 when every image "
         "is corrected, 1 when some are skipped: correction.json lists them. A mask's pixel is a "
-        "sum "
-        "of 1 dark, 2 saturated, 4 black, 8 on a cone's edge, 16 clipped by the format; 0 is "
+        "sum of 1 dark, 2 saturated, 4 black, 8 on a cone's edge, 16 clipped by the format; 0 is "
         "good.");
     return [options] { return correct(*options); };
 }

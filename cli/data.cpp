@@ -2,30 +2,34 @@
 //
 // aphotic data [NAME]: list the built-in tables, or show, plot or hand on one of them, or check
 // a table of the user's own, or make tables of POV-Ray's splines.
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/command.h"
 #include "cli/options.h"
-#include "cli/spline_tables.h"
+#include "cli/outcome.h"
 #include "report/plot.h"
 #include "report/svg.h"
 #include "spectral/curve_loader.h"
 #include "spectral/refractive_index.h"
+#include "spectral/spline_import.h"
 #include "spectral/table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <list>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace aphotic::cli {
-
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double kIndexStep_nm = 2.0;                 // of a plotted refractive index
 constexpr WavelengthRange kIndexPlot{300.0, 1100.0};  // what cameras and lamps can use of it
@@ -45,6 +49,15 @@ constexpr std::array kMetadataKeys{"title",
                                    "obtained",
                                    "uncertainty",
                                    "terms"};
+
+// Of --from-spline.
+struct SplineOptions {
+    std::string file;
+    std::string folder = ".";
+    std::string role = "reflectance";
+    std::string only = "*";
+    bool force = false;
+};
 
 struct DataCommandOptions {
     std::string name;
@@ -84,7 +97,7 @@ std::string csv_of(const Table& table) {
     return text;
 }
 
-nlohmann::json summary_json(const Entry& entry) {
+nlohmann::json summary_of(const Entry& entry) {
     return {{"name", entry.table.name},
             {"role", entry.role},
             {"quantity", entry.table.text_of("quantity")},
@@ -94,8 +107,8 @@ nlohmann::json summary_json(const Entry& entry) {
             {"title", entry.table.text_of("title")}};
 }
 
-nlohmann::json full_json(const Entry& entry) {
-    nlohmann::json json = summary_json(entry);
+nlohmann::json to_json(const Entry& entry) {
+    nlohmann::json json = summary_of(entry);
     json["metadata"] = entry.table.metadata;
     json["columns"] = entry.table.columns;
     json["values"] = nlohmann::json::array();
@@ -103,9 +116,10 @@ nlohmann::json full_json(const Entry& entry) {
     return json;
 }
 
-void print_json(const nlohmann::json& json) {
-    // A file's name need not be UTF-8; JSON must be.
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+nlohmann::json to_json(const std::vector<Entry>& entries) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const Entry& entry : entries) json.push_back(summary_of(entry));
+    return json;
 }
 
 // Columns padded to their widest cell; the last one is not.
@@ -124,13 +138,10 @@ void print_aligned(const std::vector<std::vector<std::string>>& lines) {
     }
 }
 
-void list_tables(bool as_json) {
-    nlohmann::json json = nlohmann::json::array();
+void print(const std::vector<Entry>& entries) {
     std::vector<std::vector<std::string>> lines{
         {"NAME", "ROLE", "RANGE (nm)", "ROWS", "QUANTITY", "TITLE"}};
-    for (const BuiltinTable& builtin : builtin_tables()) {
-        const Entry entry = entry_of(builtin_table(builtin.name));
-        json.push_back(summary_json(entry));
+    for (const Entry& entry : entries) {
         lines.push_back({entry.table.name,
                          entry.role,
                          range_text(entry.range),
@@ -138,11 +149,10 @@ void list_tables(bool as_json) {
                          entry.table.text_of("quantity"),
                          entry.table.text_of("title")});
     }
-    if (as_json) return print_json(json);
     print_aligned(lines);
 }
 
-void print_table(const Entry& entry) {
+void print(const Entry& entry) {
     const Table& table = entry.table;
     std::vector<std::vector<std::string>> lines{{"name:", table.name}};
     if (names_a_file(table.name)) {
@@ -227,10 +237,111 @@ Plot plot_of(const Entry& entry) {
     });
 }
 
+// --- --from-spline: a scene file's spectra as tables, all of them or none ------------------------
+
+struct NewTable {
+    fs::path path;
+    std::string text;
+    SplineSpectrum spectrum;
+
+    [[nodiscard]] double first_nm() const { return spectrum.knots.front().lambda_nm; }
+    [[nodiscard]] double last_nm() const { return spectrum.knots.back().lambda_nm; }
+};
+
+std::vector<NewTable> tables_of(const SplineFile& found, const SplineOptions& options) {
+    const CurveRole role =
+        options.role == "lamp" ? CurveRole::LampSpectrum : CurveRole::Reflectance;
+    std::vector<NewTable> tables;
+    for (const SplineSpectrum& spectrum : found.spectra) {
+        tables.push_back({fs::path(options.folder) / spline_table_name(spectrum.identifier),
+                          spline_table(options.file, spectrum, role),
+                          spectrum});
+    }
+    return tables;
+}
+
+void refuse_to_overwrite(const std::vector<NewTable>& tables) {
+    for (const NewTable& table : tables) {
+        if (!fs::exists(fs::symlink_status(table.path))) continue;
+        throw InputError(
+            "{}: found a file of this name; allowed: none, unless --force is given, or another "
+            "folder by -o",
+            table.path.string());
+    }
+}
+
+// Every file is whole before the first takes its place.
+void write_all(const std::vector<NewTable>& tables) {
+    std::list<AtomicFile> files;
+    for (const NewTable& table : tables) {
+        std::ofstream out(files.emplace_back(table.path).temporary(), std::ios::binary);
+        out << table.text;
+        out.close();
+        if (!out) throw RunError("{}: cannot be written", table.path.string());
+    }
+    for (AtomicFile& file : files) file.commit();
+}
+
+void note_what_differs(const SplineFile& found, const std::string& file) {
+    for (const std::size_t line : found.anonymous_lines) {
+        fmt::print(stderr, "aphotic: {}:{}: passed over a spline without a name\n", file, line);
+    }
+    for (const SplineSpectrum& spectrum : found.spectra) {
+        if (spectrum.is_linear()) continue;
+        fmt::print(
+            stderr,
+            "aphotic: {}:{}: {} is a {}: its knots are taken, and joined by straight lines\n",
+            file,
+            spectrum.line,
+            spectrum.identifier,
+            spectrum.form);
+    }
+}
+
+void print(const std::vector<NewTable>& tables) {
+    for (const NewTable& table : tables) {
+        fmt::print("wrote {}: {}, {} to {} nm, {} rows\n",
+                   table.path.string(),
+                   table.spectrum.identifier,
+                   table.first_nm(),
+                   table.last_nm(),
+                   table.spectrum.knots.size());
+    }
+}
+
+nlohmann::json to_json(const std::vector<NewTable>& tables) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const NewTable& table : tables) {
+        json.push_back({{"file", table.path.string()},
+                        {"identifier", table.spectrum.identifier},
+                        {"line", table.spectrum.line},
+                        {"form", table.spectrum.form},
+                        {"range_nm", {table.first_nm(), table.last_nm()}},
+                        {"rows", table.spectrum.knots.size()}});
+    }
+    return json;
+}
+
+ExitStatus write_spline_tables(const SplineOptions& options, bool as_json) {
+    const SplineFile found =
+        parse_splines(options.file, read_text_file(options.file), options.only);
+    const std::vector<NewTable> tables = tables_of(found, options);
+    if (!options.force) refuse_to_overwrite(tables);
+    make_folder(options.folder);
+    write_all(tables);
+    note_what_differs(found, options.file);
+    show(tables, as_json);
+    return kDone;
+}
+
 ExitStatus show_data(const DataCommandOptions& options) {
     if (!options.splines.file.empty()) return write_spline_tables(options.splines, options.json);
     if (options.name.empty()) {
-        list_tables(options.json);
+        std::vector<Entry> entries;
+        for (const BuiltinTable& builtin : builtin_tables()) {
+            entries.push_back(entry_of(builtin_table(builtin.name)));
+        }
+        show(entries, options.json);
         return kDone;
     }
     const Entry entry = entry_of(names_a_file(options.name) ? read_table(options.name)
@@ -238,10 +349,8 @@ ExitStatus show_data(const DataCommandOptions& options) {
     if (!options.plot_file.empty()) write_plots(std::array{plot_of(entry)}, options.plot_file);
     if (options.csv) {
         fmt::print("{}", csv_of(entry.table));
-    } else if (options.json) {
-        print_json(full_json(entry));
-    } else if (options.plot_file.empty()) {
-        print_table(entry);
+    } else if (options.json || options.plot_file.empty()) {
+        show(entry, options.json);
     } else {
         fmt::print("wrote {}\n", options.plot_file);
     }
@@ -253,31 +362,25 @@ void add_spline_options(CLI::App& app,
                         CLI::Option* csv,
                         DataCommandOptions& options) {
     SplineOptions& splines = options.splines;
-    constexpr const char* kSplineOptions = "Tables from POV-Ray's spectra";
+    const OptionGroup group(app, "Tables from POV-Ray's spectra");
     auto* from = app.add_option("--from-spline",
                                 splines.file,
                                 "Make a table of each spectrum in a scene or include file: "
                                 "splines, and SpectralRender's arrays")
                      ->type_name("FILE")
                      ->excludes(name)
-                     ->excludes(csv)
-                     ->group(kSplineOptions);
+                     ->excludes(csv);
     add_output_folder(app, splines.folder)
         ->description("Write the tables to this folder; by default the current one")
-        ->needs(from)
-        ->group(kSplineOptions);
+        ->needs(from);
     app.add_option("--role", splines.role, "The spectra are reflectance (the default) or lamp")
         ->type_name("ROLE")
         ->check(CLI::IsMember({"reflectance", "lamp"}))
-        ->needs(from)
-        ->group(kSplineOptions);
+        ->needs(from);
     app.add_option("--only", splines.only, "Skip spectra whose name does not match, as 'D_CC_*'")
         ->type_name("PATTERN")
-        ->needs(from)
-        ->group(kSplineOptions);
-    app.add_flag("--force", splines.force, "Overwrite existing tables")
-        ->needs(from)
-        ->group(kSplineOptions);
+        ->needs(from);
+    app.add_flag("--force", splines.force, "Overwrite existing tables")->needs(from);
 }
 
 Action configure_data(CLI::App& app) {

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -23,6 +22,8 @@
 namespace aphotic::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct GenerateCommandOptions {
     PlanningOptions planning;
     std::string folder;
@@ -32,33 +33,59 @@ struct GenerateCommandOptions {
 
 ExitStatus write_quick_look(const GenerateCommandOptions& options) {
     const Rig rig = read_rig(options.planning.rig_file);
-    write_text_file(
-        options.quick_look,
-        quick_look_sdl(rig, std::filesystem::path(options.planning.rig_file).parent_path()));
+    write_text_file(options.quick_look,
+                    quick_look_sdl(rig, fs::path(options.planning.rig_file).parent_path()));
     fmt::print("{}: what aphotic.inc takes of this rig for a quick look\n", options.quick_look);
     return kDone;
 }
 
-// Plain povray runs in the scene's folder: paths from there, so that both may be carried elsewhere.
-void print_own_scene(const SceneSet& scenes, const Manifest& manifest, const std::string& folder) {
-    const std::filesystem::path home = scenes.scene_file.parent_path();
-    const std::string here = std::filesystem::relative(folder, home).generic_string();
-    fmt::print(
-        "{}: {} for {} of {} in {}/povray\n"
-        "Render them in the scene's folder, for example with\n"
-        "  (cd {} && for scene in {}/povray/band_*.pov; do povray {} "
-        "\"+I\\\"$scene\\\"\"; done)\n"
-        "then run\n"
-        "  aphotic integrate {}\n",
-        manifest.rig_title,
-        counted(manifest.frames.size(), "frame"),
-        counted(manifest.wavelengths.size(), "wavelength"),
-        scenes.scene_file.filename().string(),
-        folder,
+struct Generated {
+    Manifest manifest;
+    std::string folder;
+    fs::path own_scene;  // the user's, or empty
+};
+
+nlohmann::ordered_json to_json(const Generated& made) {
+    nlohmann::ordered_json json{{"folder", made.folder}, {"scenes", nlohmann::json::array()}};
+    for (const ManifestFrame& frame : made.manifest.frames) {
+        json["scenes"].push_back(scene_path(made.folder, frame).string());
+    }
+    return json;
+}
+
+// What renders all frames. Of a user's scene plain povray runs in its folder: paths from there, so
+// that both may be carried elsewhere.
+std::string povray_loop(const Generated& made) {
+    if (made.own_scene.empty()) {
+        return fmt::format(
+            "(cd {}/povray && for scene in band_*.pov; do povray render.ini +I$scene; done)",
+            shell_word(made.folder));
+    }
+    const fs::path home = made.own_scene.parent_path();
+    const std::string here = fs::relative(made.folder, home).generic_string();
+    return fmt::format(
+        "(cd {} && for scene in {}/povray/band_*.pov; do povray {} \"+I\\\"$scene\\\"\"; done)",
         shell_word(home.string()),
         shell_word(here),
-        shell_word(fmt::format("\"{}/povray/render.ini\"", here)),
-        shell_word(folder));
+        shell_word(fmt::format("\"{}/povray/render.ini\"", here)));
+}
+
+void print(const Generated& made) {
+    const bool is_own = !made.own_scene.empty();
+    fmt::print(
+        "{}: {} for {}{} in {}/povray\n"
+        "Render them {}, for example with\n"
+        "  {}\n"
+        "then run\n"
+        "  aphotic integrate {}\n",
+        made.manifest.rig_title,
+        counted(made.manifest.frames.size(), is_own ? "frame" : "scene"),
+        counted(made.manifest.wavelengths.size(), "wavelength"),
+        is_own ? " of " + made.own_scene.filename().string() : "",
+        made.folder,
+        is_own ? "in the scene's folder" : "there",
+        povray_loop(made),
+        shell_word(made.folder));
 }
 
 ExitStatus generate_scenes(const GenerateCommandOptions& options) {
@@ -70,32 +97,8 @@ ExitStatus generate_scenes(const GenerateCommandOptions& options) {
     require_place_for_scenes(options.folder, scenes);
     require_room(needs_of_scenes(scenes), options.folder, options.planning.ignore_needs);
     const FolderLock lock = claim_folder(options.folder);
-    const Manifest manifest = generate(options.folder, scenes);
-    if (options.json) {
-        nlohmann::ordered_json json{{"folder", options.folder},
-                                    {"scenes", nlohmann::json::array()}};
-        for (const ManifestFrame& frame : manifest.frames) {
-            json["scenes"].push_back(scene_path(options.folder, frame).string());
-        }
-        fmt::print("{}\n", dumped(json));
-        return kDone;
-    }
-    if (!scenes.scene_file.empty()) {
-        print_own_scene(scenes, manifest, options.folder);
-        return kDone;
-    }
-    fmt::print(
-        "{}: {} for {} in {}/povray\n"
-        "Render them there, for example with\n"
-        "  (cd {}/povray && for scene in band_*.pov; do povray render.ini +I$scene; done)\n"
-        "then run\n"
-        "  aphotic integrate {}\n",
-        manifest.rig_title,
-        counted(manifest.frames.size(), "scene"),
-        counted(manifest.wavelengths.size(), "wavelength"),
-        options.folder,
-        shell_word(options.folder),
-        shell_word(options.folder));
+    show(Generated{generate(options.folder, scenes), options.folder, scenes.scene_file},
+         options.json);
     return kDone;
 }
 

@@ -5,14 +5,11 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "rig/rig_reader.h"
 #include "scene_gen/reweighting.h"
-
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
@@ -49,10 +46,10 @@ void require_own_folder(const fs::path& images, const IntegrateCommandOptions& o
     if (is_of_frames && options.rig_file.empty()) return;
     for (const fs::path& notes : {manifest_path(images), images / "trace.json"}) {
         if (!fs::exists(notes)) continue;
-        throw InputError(fmt::format(
+        throw InputError(
             "{}: found the notes of a render or trace; allowed: a folder without, as these images "
             "would replace its own",
-            notes.string()));
+            notes.string());
     }
 }
 
@@ -65,11 +62,7 @@ Manifest manifest_of(const IntegrateCommandOptions& options) {
         scene.materials = scene_materials(manifest.scene->materials, rig, manifest.scene->file);
         rig = rig_of_scene(std::move(rig), scene);
     }
-    try {
-        return reintegrate(rig, manifest, options.tolerance);
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
-    }
+    return naming(options.rig_file, [&] { return reintegrate(rig, manifest, options.tolerance); });
 }
 
 // What the image is made of, for whoever finds it later.
@@ -97,7 +90,7 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     const Integration integration =
         integrate_folder(options.folder, manifest, options.preview, images);
     if (!options.rig_file.empty()) {
-        write_text_file(images / "integration.json", dumped(account_of(options, manifest)) + "\n");
+        write_text_file(images / "integration.json", json_text(account_of(options, manifest)));
     }
     show(integration, options.json);
     return kDone;

@@ -9,43 +9,24 @@
 #include "base/words.h"
 #include "cli/atlas_map.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
+#include "cli/output_folder.h"
 #include "image/exr.h"
 #include "image/preview.h"
 #include "rig/rig_reader.h"
-#include "scene_gen/scene_set.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 namespace aphotic::cli {
 namespace {
 
-struct LightmapCommandOptions {
-    std::string rig_file;
-    std::string file;
-    std::optional<double> altitude_m;
-    std::optional<double> pitch_deg;
-    std::optional<double> roll_deg;
-    std::optional<double> water_multiple;
-    LightmapOptions map{.error = 1e-5, .threads = all_cores()};
-    bool per_strobe = false;
-    bool per_cone = false;
-    bool normalised = false;
-    std::string preview_file;
-    PreviewOptions preview;
-    bool ignore_needs = false;
-    bool json = false;
-};
-
 Rig rig_of(const LightmapCommandOptions& options) {
-    Rig rig = read_rig(options.rig_file);
+    Rig rig = read_rig(options.source);
     if (options.altitude_m) rig.sled.altitude_m = *options.altitude_m;
     if (options.pitch_deg) rig.sled.pitch_rad = *options.pitch_deg * kRadiansPerDegree;
     if (options.roll_deg) rig.sled.roll_rad = *options.roll_deg * kRadiansPerDegree;
@@ -72,8 +53,8 @@ std::string words_of(const MapPromise& promise) {
 struct MadeLightmap {
     const LightmapCommandOptions& options;
     Rig rig;
-    WrittenLightmap written;
-    MapPromise promise;
+    WrittenLightmap written{};
+    MapPromise promise{};
 };
 
 nlohmann::ordered_json to_json(const MadeLightmap& made) {
@@ -124,27 +105,23 @@ void print(const MadeLightmap& made) {
 }
 
 WrittenLightmap write_map(const LightmapCommandOptions& options, const Rig& rig) {
-    try {
-        LightmapRequest request{.file = options.file,
-                                .parts = parts_of(options, rig),
-                                .is_normalised = options.normalised,
-                                .map = options.map,
-                                .version = APHOTIC_VERSION};
-        require_room(lightmap_needs({.width_px = rig.camera.width_px,
-                                     .height_px = rig.camera.height_px,
-                                     .parts = request.parts.size(),
-                                     .has_preview = !options.preview_file.empty()}),
-                     std::filesystem::absolute(options.file).parent_path(),
-                     options.ignore_needs);
-        return write_lightmap(rig, request);
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
-    }
+    LightmapRequest request{.file = options.file,
+                            .parts = parts_of(options, rig),
+                            .is_normalised = options.normalised,
+                            .map = options.map,
+                            .version = APHOTIC_VERSION};
+    require_room(lightmap_needs({.width_px = rig.camera.width_px,
+                                 .height_px = rig.camera.height_px,
+                                 .parts = request.parts.size(),
+                                 .has_preview = !options.preview_file.empty()}),
+                 std::filesystem::absolute(options.file).parent_path(),
+                 options.ignore_needs);
+    return write_lightmap(rig, request);
 }
 
 ExitStatus make_lightmap(const LightmapCommandOptions& options) {
-    MadeLightmap made{.options = options, .rig = rig_of(options), .written = {}, .promise = {}};
-    made.written = write_map(options, made.rig);
+    MadeLightmap made{.options = options, .rig = rig_of(options)};
+    made.written = naming(options.source, [&] { return write_map(options, made.rig); });
     made.promise = map_promise(made.rig, options.map);
     if (!options.preview_file.empty()) {
         const Lightmap& map = made.written.map;
@@ -160,8 +137,8 @@ ExitStatus make_lightmap(const LightmapCommandOptions& options) {
 void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& options) {
     for (const char* option : {"--per-strobe", "--per-cone", "--error"}) {
         if (app.count(option) == 0) continue;
-        throw InputError(fmt::format(
-            "{}: found with the atlas {}; allowed: with a rig", option, options.rig_file));
+        throw InputError(
+            "{}: found with the atlas {}; allowed: with a rig", option, options.source);
     }
     if (app.count("--preview-white") > 0 && options.preview.white == PreviewWhite::Lamp) {
         throw InputError(
@@ -170,21 +147,10 @@ void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& 
 }
 
 ExitStatus make_map(const CLI::App& app, const LightmapCommandOptions& options) {
-    if (!std::filesystem::is_directory(options.rig_file)) return make_lightmap(options);
+    if (!std::filesystem::is_directory(options.source)) return make_lightmap(options);
     refuse_what_needs_a_rig(app, options);
-    PreviewOptions preview = options.preview;
-    if (preview.white == PreviewWhite::Lamp) preview.white = PreviewWhite::Image;  // by default
     set_exr_threads(options.map.threads);
-    return write_atlas_map({.folder = options.rig_file,
-                            .file = options.file,
-                            .altitude_m = options.altitude_m,
-                            .pitch_deg = options.pitch_deg,
-                            .roll_deg = options.roll_deg,
-                            .water_multiple = options.water_multiple,
-                            .normalised = options.normalised,
-                            .preview_file = options.preview_file,
-                            .preview = preview,
-                            .json = options.json});
+    return write_atlas_map(options);
 }
 
 void add_sled_options(CLI::App& app, LightmapCommandOptions& options) {
@@ -209,7 +175,8 @@ Action configure_lightmap(CLI::App& app) {
     constexpr double kLeastError = 1e-7;
     constexpr double kMostError = 0.1;
     const auto options = std::make_shared<LightmapCommandOptions>();
-    app.add_option("RIG", options->rig_file, "The rig file (TOML), or the folder of an atlas")
+    options->map = {.error = 1e-5, .threads = all_cores()};
+    app.add_option("RIG", options->source, "The rig file (TOML), or the folder of an atlas")
         ->required();
     app.add_option("-o,--output", options->file, "Write the map to this OpenEXR file")
         ->required()
@@ -241,8 +208,7 @@ Action configure_lightmap(CLI::App& app) {
     app.footer(
         "Maps the bare flat floor, without POV-Ray. The file holds what image.exr of a render "
         "does: R, G, B, linear, 32-bit floats. Given an atlas, blends the bins around the "
-        "altitude, "
-        "attitude and water; its preview's white is image (the default) or none.");
+        "altitude, attitude and water; its preview's white is image (the default) or none.");
     return [&app, options] { return make_map(app, *options); };
 }
 

@@ -21,27 +21,25 @@
 
 namespace {
 
-using aphotic::cli::Action;
-using aphotic::cli::Command;
-using aphotic::cli::ExitStatus;
+using namespace aphotic::cli;
 
 // In the order of --help.
-constexpr std::array kCommands{&aphotic::cli::kRender,
-                               &aphotic::cli::kPlan,
-                               &aphotic::cli::kGenerate,
-                               &aphotic::cli::kIntegrate,
-                               &aphotic::cli::kTrace,
-                               &aphotic::cli::kLightmap,
-                               &aphotic::cli::kAtlas,
-                               &aphotic::cli::kCorrect,
-                               &aphotic::cli::kObserve,
-                               &aphotic::cli::kBaseline,
-                               &aphotic::cli::kValidate,
-                               &aphotic::cli::kStudy,
-                               &aphotic::cli::kStress,
-                               &aphotic::cli::kCompare,
-                               &aphotic::cli::kBeam,
-                               &aphotic::cli::kData};
+constexpr std::array kCommands{&kRender,
+                               &kPlan,
+                               &kGenerate,
+                               &kIntegrate,
+                               &kTrace,
+                               &kLightmap,
+                               &kAtlas,
+                               &kCorrect,
+                               &kObserve,
+                               &kBaseline,
+                               &kValidate,
+                               &kStudy,
+                               &kStress,
+                               &kCompare,
+                               &kBeam,
+                               &kData};
 
 // A message quotes what it found: nothing in it may steer the terminal.
 void say(std::string_view message) {
@@ -62,17 +60,14 @@ ExitStatus run(const Action& action) {
         aphotic::end_by_signal(interrupted.signal());
     } catch (const aphotic::InputError& error) {
         say(error.what());
-        return aphotic::cli::kBadInput;
-    } catch (const aphotic::RunError& error) {
-        say(error.what());
-        return aphotic::cli::kRunFailed;
+        return kBadInput;
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "aphotic: out of memory\n");
-        return aphotic::cli::kRunFailed;
+        return kRunFailed;
     } catch (const std::exception& error) {
-        // The file system's own words, mostly.
+        // A RunError, or the file system's own words.
         say(error.what());
-        return aphotic::cli::kRunFailed;
+        return kRunFailed;
     }
 }
 
@@ -84,11 +79,11 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGCHLD, SIG_DFL);
     CLI::App app{
-        "Simulate what an underwater camera sled sees by its own strobes, and correct "
-        "its\nimages for their light.",
+        "Simulate what an underwater camera sled sees by its own strobes, and correct its\nimages "
+        "for their light.",
         "aphotic"};
     app.set_help_flag("-h,--help", "Print this help and exit");
-    app.formatter(std::make_shared<aphotic::cli::HelpFormatter>());
+    app.formatter(std::make_shared<HelpFormatter>());
     app.set_version_flag("--version", "aphotic " APHOTIC_VERSION, "Print the version and exit");
     app.require_subcommand(1);
     app.footer(
@@ -99,11 +94,11 @@ int main(int argc, char** argv) {
     for (const Command* command : kCommands) {
         CLI::App* sub = app.add_subcommand(command->name, command->summary)->group(command->group);
         const Action action = command->configure(*sub);
-        aphotic::cli::add_common_checks(*sub);
+        add_common_checks(*sub);
         sub->callback([&chosen, action, sub] {
             chosen = [action, sub] {
-                aphotic::cli::require_separate_files(*sub);
-                for (const auto& place : aphotic::cli::written_places(*sub)) {
+                require_separate_files(*sub);
+                for (const auto& place : written_places(*sub)) {
                     aphotic::remove_abandoned_of(place);
                 }
                 return action();
@@ -113,7 +108,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? aphotic::cli::kDone : aphotic::cli::kBadInput;
+        return app.exit(error) == 0 ? kDone : kBadInput;
     }
     return run(chosen);
 }

@@ -6,7 +6,6 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/options.h"
-#include "cli/outcome.h"
 #include "cli/survey_command.h"
 #include "survey/navigation_csv.h"
 #include "survey/observation.h"
@@ -56,7 +55,6 @@ void print_observation(const Observation& observation, const std::string& map_fi
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
     const Survey survey{.files = image_files(options.images, options.output),
                         .navigation = read_navigation_csv(options.navigation, Sled{}),
-                        .light = {},
                         .camera = options.camera};
     const Observation observation =
         observe(survey, options.observation, terminal_watch(options.strict));
@@ -88,9 +86,7 @@ void add_average_options(CLI::App& app, ObservationOptions& options) {
 
 Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
-    app.add_option(
-           "IMAGES", options->images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
-        ->required();
+    add_images(app, options->images);
     app.add_option("--nav",
                    options->navigation,
                    "Where the sled was: CSV with the columns image and altitude_m, or HabCam's "

@@ -135,11 +135,10 @@ void require_separate_files(const CLI::App& command) {
                 const bool takes =
                     !is_written(*other) && fs::is_regular_file(file) && takes_place_of(file, named);
                 if (!is_same && !takes) continue;
-                throw InputError(
-                    fmt::format("{}: found {}, which {} names too; allowed: a file of its own",
-                                written->get_name(),
-                                file.string(),
-                                other->get_name()));
+                throw InputError("{}: found {}, which {} names too; allowed: a file of its own",
+                                 written->get_name(),
+                                 file.string(),
+                                 other->get_name());
             }
         }
     }

@@ -28,6 +28,20 @@ inline constexpr double kMostTilt_deg = 89.9;
 
 [[nodiscard]] int all_cores();
 
+// Options that are added while it lives stand under this heading of --help.
+class OptionGroup {
+  public:
+    OptionGroup(CLI::App& app, const std::string& name) : app_(app) {
+        app.option_defaults()->group(name);
+    }
+    ~OptionGroup() { app_.option_defaults()->group("Options"); }
+    OptionGroup(const OptionGroup&) = delete;
+    OptionGroup& operator=(const OptionGroup&) = delete;
+
+  private:
+    CLI::App& app_;
+};
+
 void add_rig(CLI::App& app, std::string& file);
 void add_json(CLI::App& app, bool& json, const std::string& words = "Print the result as JSON");
 

@@ -17,12 +17,6 @@ namespace aphotic::cli {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::string dumped(const Json& json) {
-    // Titles and paths are the user's and need not be UTF-8; JSON must be.
-    constexpr int kIndent = 2;
-    return json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
-}
-
 MadeImages made_images(const fs::path& folder, const CameraImage& image) {
     MadeImages made{.folder = folder, .width_px = image.width_px, .height_px = image.height_px};
     const auto plane = static_cast<std::ptrdiff_t>(image.samples.size() / kChannels);

@@ -4,6 +4,7 @@
 // people.
 #pragma once
 
+#include "base/json_text.h"
 #include "image/preview.h"
 #include "spectral/manifest.h"
 
@@ -17,13 +18,10 @@
 
 namespace aphotic::cli {
 
-// JSON as it is printed.
-[[nodiscard]] std::string dumped(const nlohmann::ordered_json& json);
-
 template <typename Result>
 void show(const Result& result, bool as_json) {
     if (as_json) {
-        fmt::print("{}\n", dumped(to_json(result)));
+        fmt::print("{}", json_text(to_json(result)));
     } else {
         print(result);
     }

@@ -2,12 +2,98 @@
 #include "cli/output_folder.h"
 
 #include "base/atomic_file.h"
+#include "base/disk_space.h"
+#include "base/error.h"
+#include "scene_gen/include_library.h"
 
+#include <algorithm>
+#include <optional>
 #include <system_error>
 
 namespace aphotic::cli {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path kPovrayTemporary = "/tmp";  // POV-Ray 3.7 asks for no other
+
+std::uint64_t scenes_bytes(const SceneSet& scenes) {
+    constexpr std::uint64_t kDiskBlock_bytes = 4096;   // what the least of files takes
+    constexpr std::uint64_t kWavelength_bytes = 1024;  // of the manifest, twice as long as seen
+    std::uint64_t bytes = scenes.ini.size() + 3 * kDiskBlock_bytes +
+                          kWavelength_bytes * scenes.manifest.wavelengths.size();
+    for (const FrameScene& scene : scenes.scenes) bytes += scene.sdl.size() + kDiskBlock_bytes;
+    for (const IncludeFile& file : include_library()) bytes += file.text.size() + kDiskBlock_bytes;
+    return bytes;
+}
+
+// A manifest that cannot be read is the render's to complain of.
+std::optional<Manifest> earlier_manifest(const fs::path& folder) {
+    if (folder.empty() || !fs::exists(manifest_path(folder))) return std::nullopt;
+    try {
+        return read_manifest(folder);
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
+std::size_t frames_to_render(const SceneSet& scenes, const fs::path& folder) {
+    const std::optional<Manifest> earlier = earlier_manifest(folder);
+    if (!earlier) return scenes.manifest.frames.size();
+    const auto is_there = [&](const ManifestFrame& frame) {
+        return std::ranges::any_of(earlier->frames, [&](const ManifestFrame& before) {
+            return before.done() && before.name == frame.name &&
+                   before.scene_sha256 == frame.scene_sha256 &&
+                   fs::exists(image_path(folder, before));
+        });
+    };
+    return scenes.manifest.frames.size() -
+           static_cast<std::size_t>(std::ranges::count_if(scenes.manifest.frames, is_there));
+}
+
+}  // namespace
+
+void add_needs_option(CLI::App& app, bool& ignore_needs) {
+    app.add_flag("--ignore-needs", ignore_needs, "Start even if disk looks insufficient");
+}
+
+void require_room(const DiskNeeds& needs, const fs::path& folder, bool ignore_needs) {
+    if (ignore_needs) return;
+    const FreeDisk free{.folder_bytes = free_disk_bytes(folder),
+                        .temporary_bytes = free_disk_bytes(kPovrayTemporary),
+                        .is_one_disk = on_one_disk(folder, kPovrayTemporary)};
+    const std::string lacking = shortage(needs, free, folder.string());
+    if (lacking.empty()) return;
+    throw RunError(
+        "{}. Nothing was begun; --ignore-needs begins all the same, for images often compress",
+        lacking);
+}
+
+DiskNeeds needs_of(const SceneSet& scenes, const fs::path& folder, int jobs) {
+    return render_needs({.size = image_size(scenes.manifest),
+                         .frames = frames_to_render(scenes, folder),
+                         .scenes_bytes = scenes_bytes(scenes),
+                         .jobs = jobs});
+}
+
+void require_place_and_room(const SceneSet& scenes,
+                            const fs::path& folder,
+                            int jobs,
+                            bool ignore_needs) {
+    require_place_for_scenes(folder, scenes);
+    require_room(needs_of(scenes, folder, jobs), folder, ignore_needs);
+}
+
+DiskNeeds needs_of_scenes(const SceneSet& scenes) {
+    return {.folder_bytes = scenes_bytes(scenes)};
+}
+
+ImageSize image_size(const Manifest& manifest) {
+    return {.width_px = manifest.width_px,
+            .height_px = manifest.height_px,
+            .wavelengths = manifest.wavelengths.size()};
+}
 
 FolderLock claim_folder(const fs::path& folder) {
     make_folder(folder);

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The folder that a command writes to: made, locked, and rid of what killed runs left half written.
+// The folder that a command writes to: made, locked, and rid of what killed runs left half written;
+// and whether it has room for all that may come (scene_gen/disk_estimate.h).
 #pragma once
 
 #include "base/folder_lock.h"
+#include "scene_gen/disk_estimate.h"
+#include "scene_gen/scene_set.h"
+
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <vector>
@@ -20,5 +25,27 @@ namespace aphotic::cli {
 // meanwhile; it may be the same one.
 [[nodiscard]] std::vector<FolderLock> claim_folders(const std::filesystem::path& written,
                                                     const std::filesystem::path& read);
+
+void add_needs_option(CLI::App& app, bool& ignore_needs);
+
+// Throws RunError, which says what is needed and what is free, unless it is to be ignored.
+void require_room(const DiskNeeds& needs, const std::filesystem::path& folder, bool ignore_needs);
+
+// Of a render of these scenes into the folder. Frames that an earlier run left there of the same
+// scenes are kept, and take no more room. Without a folder, none are there.
+[[nodiscard]] DiskNeeds needs_of(const SceneSet& scenes,
+                                 const std::filesystem::path& folder,
+                                 int jobs);
+
+// Before a render: whether the folder may take these scenes, and has room for what comes of them.
+void require_place_and_room(const SceneSet& scenes,
+                            const std::filesystem::path& folder,
+                            int jobs,
+                            bool ignore_needs);
+
+// Of scenes and manifest alone.
+[[nodiscard]] DiskNeeds needs_of_scenes(const SceneSet& scenes);
+
+[[nodiscard]] ImageSize image_size(const Manifest& manifest);
 
 }  // namespace aphotic::cli

@@ -3,18 +3,21 @@
 // aphotic plan RIG: what a render would take and what it promises, before anything is rendered.
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/outcome.h"
-#include "cli/plan_plot.h"
+#include "cli/output_folder.h"
 #include "cli/planning.h"
+#include "report/plot.h"
+#include "report/svg.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 #include <string>
-#include <thread>
+#include <utility>
 
 namespace aphotic::cli {
 namespace {
@@ -72,7 +75,7 @@ struct PlannedNeeds {
 };
 
 PlannedNeeds planned_needs(const SceneSet& scenes) {
-    const int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int jobs = all_cores();
     return {.render = needs_of(scenes, "", jobs),
             .files = largest_files(image_size(scenes.manifest)),
             .jobs = jobs};
@@ -107,7 +110,13 @@ void print_needs(const PlannedNeeds& needs, std::size_t frames) {
     }
 }
 
-void print_json(const PlannedRender& planned, const SceneSet& scenes) {
+struct Planned {
+    PlannedRender render;
+    SceneSet scenes;
+};
+
+Json to_json(const Planned& made) {
+    const auto& [planned, scenes] = made;
     const Manifest& manifest = scenes.manifest;
     const RenderPlan& plan = planned.plan;
     Json json{{"rig_title", manifest.rig_title},
@@ -134,7 +143,7 @@ void print_json(const PlannedRender& planned, const SceneSet& scenes) {
     for (const Omission& omission : plan.omissions) {
         json["omissions"].push_back({{"what", omission.what}, {"reason", omission.reason}});
     }
-    fmt::print("{}\n", dumped(json));
+    return json;
 }
 
 void print_promise(const RenderPlan& plan) {
@@ -188,7 +197,8 @@ void print_port(const PlannedRender& planned) {
         planned.plan.scene.pixel_shift);
 }
 
-void print_for_people(const PlannedRender& planned, const SceneSet& scenes) {
+void print(const Planned& made) {
+    const auto& [planned, scenes] = made;
     const Manifest& manifest = scenes.manifest;
     const RenderPlan& plan = planned.plan;
     fmt::print("{}: {} x {} pixels, {} in {}, {}\n",
@@ -222,6 +232,103 @@ void print_for_people(const PlannedRender& planned, const SceneSet& scenes) {
     }
 }
 
+// --- The plot -----------------------------------------------------------------------------------
+
+std::string source_name(const std::vector<Spectrum>& source) {
+    std::string name;
+    for (const Spectrum& curve : source) name += (name.empty() ? "" : " on ") + curve.name();
+    return name;
+}
+
+// Spectral shape: its largest value is 1.
+PlotCurve light_on(const LightFamily& family,
+                   const std::vector<Spectrum>& source,
+                   double path_m,
+                   WavelengthRange range) {
+    constexpr int kSteps = 640;
+    PlotCurve curve;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double nm = std::lerp(range.first_nm, range.last_nm, i / double{kSteps});
+        double light = std::exp(-family.water.attenuation_per_m(nm) * path_m);
+        for (const Spectrum& factor : source) light *= factor.at(nm);
+        curve.x.push_back(nm);
+        curve.y.push_back(light);
+    }
+    const double most = *std::ranges::max_element(curve.y);
+    if (most > 0.0) {
+        for (double& y : curve.y) y /= most;
+    }
+    return curve;
+}
+
+Plot light_panel(const Rig& rig, const RenderPlan& plan) {
+    const LightFamily& family = plan.family;
+    Plot panel{.title = rig.title,
+               .x_label = "wavelength (nm)",
+               .y_label = "light, relative to its peak",
+               .curves = {}};
+    for (const PlannedWavelength& w : plan.wavelengths) panel.marks_x.push_back(w.lambda_nm);
+    for (std::size_t s = 0; s < family.sources.size(); ++s) {
+        for (const double path_m : {family.shortest_path_m, family.longest_path_m}) {
+            PlotCurve curve = light_on(family, family.sources[s], path_m, rig.camera.range);
+            curve.label = fmt::format("{}, {:.3g} m", source_name(family.sources[s]), path_m);
+            curve.tone = s;
+            curve.dashed = path_m != family.shortest_path_m;
+            panel.curves.push_back(std::move(curve));
+        }
+    }
+    return panel;
+}
+
+double largest_error(const std::vector<QuadratureFitter::PathError>& errors) {
+    double largest = 0.0;
+    for (const auto& at : errors) {
+        for (const double e : at.error) largest = std::max(largest, std::abs(e));
+    }
+    return largest;
+}
+
+Plot error_panel(const Rig& rig, const RenderPlan& plan) {
+    const QuadratureFitter fitter(rig.camera.sensor, plan.family, rig.camera.range);
+    FittedRule rule{.quality = plan.quality};
+    for (const PlannedWavelength& w : plan.wavelengths) {
+        rule.wavelengths.push_back({.lambda_nm = w.lambda_nm, .weight = w.weight});
+    }
+    const std::vector<FrameLight> frames = frames_light(fitter, plan.wavelengths);
+
+    std::vector<QuadratureFitter::PathError> worst;
+    std::size_t of_source = 0;
+    for (std::size_t s = 0; s < plan.family.sources.size(); ++s) {
+        auto errors = fitter.errors_over_path(rule, frames, s);
+        if (!worst.empty() && largest_error(errors) <= largest_error(worst)) continue;
+        worst = std::move(errors);
+        of_source = s;
+    }
+    Plot panel{.title = fmt::format("{} wavelengths and their weights: {}",
+                                    plan.wavelengths.size(),
+                                    source_name(plan.family.sources[of_source])),
+               .x_label = "path from lamp to floor to camera (m)",
+               .y_label = "relative error of the signal",
+               .curves = {}};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        PlotCurve curve{.label = std::string(kChannelNames[c]), .x = {}, .y = {}};
+        curve.tone = kChannelTones[c];
+        for (const auto& at : worst) {
+            curve.x.push_back(at.path_m);
+            curve.y.push_back(at.error[c]);
+        }
+        panel.curves.push_back(std::move(curve));
+    }
+    return panel;
+}
+
+// The light that each material can send, by its shortest and its longest path, with the wavelengths
+// marked; and below it the error of each channel over path length, of the material on which it is
+// largest.
+void plot_plan(const Rig& rig, const RenderPlan& plan, const std::filesystem::path& file) {
+    write_plots(std::array{light_panel(rig, plan), error_panel(rig, plan)}, file);
+}
+
 Action configure_plan(CLI::App& app) {
     const auto options = std::make_shared<PlanCommandOptions>();
     app.add_option("--plot",
@@ -231,10 +338,10 @@ Action configure_plan(CLI::App& app) {
     add_json(app, options->json, "Print the plan as JSON");
     add_planning_options(app, options->planning);
     return [options] {
-        const PlannedRender planned = plan_rig(options->planning);
-        const SceneSet scenes = scenes_of(planned, options->planning);
-        if (!options->plot.empty()) plot_plan(planned.rig, planned.plan, options->plot);
-        options->json ? print_json(planned, scenes) : print_for_people(planned, scenes);
+        PlannedRender render = plan_rig(options->planning);
+        SceneSet scenes = scenes_of(render, options->planning);
+        if (!options->plot.empty()) plot_plan(render.rig, render.plan, options->plot);
+        show(Planned{std::move(render), std::move(scenes)}, options->json);
         return kDone;
     };
 }

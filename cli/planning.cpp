@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/words.h"
 #include "plugin/probe.h"
 #include "rig/rig_reader.h"
 
@@ -14,7 +15,6 @@
 #include <cctype>
 #include <chrono>
 #include <memory>
-#include <thread>
 
 namespace aphotic::cli {
 namespace {
@@ -44,10 +44,10 @@ std::string ini_line(const std::string& setting) {
                           });
     if (!is_plain || std::ranges::find(kSpeedKeys, key) == kSpeedKeys.end()) {
         throw InputError(
-            fmt::format("--povray-ini: found {}; allowed: KEY=VALUE with one of {}. "
-                        "Others would change the image; for antialiasing there is --antialias",
-                        setting,
-                        fmt::join(kSpeedKeys, ", ")));
+            "--povray-ini: found {}; allowed: KEY=VALUE with one of {}. Others would change the "
+            "image; for antialiasing there is --antialias",
+            setting,
+            fmt::join(kSpeedKeys, ", "));
     }
     return setting + "\n";
 }
@@ -75,9 +75,9 @@ PlanRequest request_of(const PlanningOptions& options) {
     if (!options.paths_m.empty()) {
         request.paths = {.shortest_m = options.paths_m[0], .longest_m = options.paths_m[1]};
         if (options.paths_m[0] > options.paths_m[1]) {
-            throw InputError(fmt::format("--paths-m: found {},{}; allowed: the shorter first",
-                                         options.paths_m[0],
-                                         options.paths_m[1]));
+            throw InputError("--paths-m: found {},{}; allowed: the shorter first",
+                             options.paths_m[0],
+                             options.paths_m[1]);
         }
     }
     if (!options.emitter_lamps.empty()) {
@@ -87,31 +87,22 @@ PlanRequest request_of(const PlanningOptions& options) {
     return request;
 }
 
-template <typename Function>
-auto naming_the_file(const PlanningOptions& options, Function function) {
-    try {
-        return function();
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", options.rig_file, error.what()));
-    }
-}
-
 std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions& options) {
     const std::filesystem::path scene =
         options.scene.empty() ? rig.scene : std::filesystem::path(options.scene);
     if (!options.renders || scene.empty()) {
         if (options.clock == 0.0) return nullptr;
         throw InputError(
-            fmt::format("--clock: found {} without a scene; allowed: with one of your own, by "
-                        "--scene or the rig's `scene`",
-                        options.clock));
+            "--clock: found {} without a scene; allowed: with one of your own, by --scene or the "
+            "rig's `scene`",
+            options.clock);
     }
     ProgressLine line;
     auto surveyed_scene = std::make_shared<const UserScene>(
         survey_scene(find_povray(options.povray),
                      rig,
                      scene,
-                     {.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
+                     {.jobs = all_cores(),
                       .library_paths = options.library_paths,
                       .progress = [&](double share) { line.show("probing the scene", share); },
                       .stall_s = options.stall_timeout_s,
@@ -132,12 +123,49 @@ PlannedRender plan_rig(const PlanningOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     request.scene.user_scene = surveyed(rig, options);
     const std::chrono::duration<double> probe = std::chrono::steady_clock::now() - start;
-    RenderPlan plan = naming_the_file(options, [&] { return plan_render(rig, request); });
+    RenderPlan plan = naming(options.rig_file, [&] { return plan_render(rig, request); });
     return {.rig = std::move(rig), .plan = std::move(plan), .probe_s = probe.count()};
 }
 
 SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options) {
-    return naming_the_file(options, [&] { return make_scene_set(planned.rig, planned.plan); });
+    return naming(options.rig_file, [&] { return make_scene_set(planned.rig, planned.plan); });
+}
+
+PovRay povray_for(const PlannedRender& planned,
+                  const PlanningOptions& options,
+                  const std::string& folder) {
+    try {
+        return find_povray(options.povray);
+    } catch (const RunError& error) {
+        if (planned.plan.scene.user_scene) throw;
+        throw RunError(
+            "{}. Without POV-Ray, `aphotic trace {} -o {}` makes the same images, by the reference",
+            error.what(),
+            shell_word(options.rig_file),
+            shell_word(folder));
+    }
+}
+
+RunOptions run_options(const PlanningOptions& options, int jobs) {
+    return {
+        .jobs = jobs, .library_paths = options.library_paths, .stall_s = options.stall_timeout_s};
+}
+
+RenderedFrames render_frames(const PovRay& povray,
+                             const std::filesystem::path& folder,
+                             const SceneSet& scenes,
+                             RunOptions options) {
+    const auto start = std::chrono::steady_clock::now();
+    RenderedFrames frames;
+    ProgressLine line;
+    options.report = [&](const FrameProgress& progress) {
+        line.show(fmt::format("rendering: {} of {} frames", progress.frames_done, progress.frames),
+                  progress.share);
+    };
+    frames.result = render(povray, folder, scenes, options);
+    frames.povray_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return frames;
 }
 
 }  // namespace aphotic::cli

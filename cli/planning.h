@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A rig, its plan and its scenes, the same for every command that plans a render.
+// A rig, its plan, its scenes and its frames, the same for every command that plans a render.
 #pragma once
 
 #include "cli/options.h"
+#include "plugin/render.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
+
+#include <filesystem>
+#include <string>
 
 namespace aphotic::cli {
 
@@ -19,7 +23,25 @@ struct PlannedRender {
 // rig's file.
 [[nodiscard]] PlannedRender plan_rig(const PlanningOptions& options);
 
-// The scenes of the plan.
 [[nodiscard]] SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options);
+
+// The POV-Ray that the options name. Where there is none that serves, the message also says what
+// makes the same images without it: not of a scene of the user's own, which the tracer cannot read.
+[[nodiscard]] PovRay povray_for(const PlannedRender& planned,
+                                const PlanningOptions& options,
+                                const std::string& folder);
+
+[[nodiscard]] RunOptions run_options(const PlanningOptions& options, int jobs);
+
+struct RenderedFrames {
+    RenderResult result;
+    double povray_s = 0.0;
+};
+
+// Runs POV-Ray with a line of progress, which is the options' report, and takes the time.
+[[nodiscard]] RenderedFrames render_frames(const PovRay& povray,
+                                           const std::filesystem::path& folder,
+                                           const SceneSet& scenes,
+                                           RunOptions options);
 
 }  // namespace aphotic::cli

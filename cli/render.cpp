@@ -5,12 +5,10 @@
 
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "cli/rendering.h"
 
 #include <fmt/format.h>
 
@@ -35,7 +33,7 @@ struct Rendered {
     std::size_t frames_rendered = 0;
     std::size_t frames_kept = 0;
     double povray_s = 0.0;
-    std::optional<double> probe_s;  // of a scene of the user's own
+    std::optional<double> probe_s{};  // of a scene of the user's own
 };
 
 nlohmann::ordered_json to_json(const Rendered& rendered) {
@@ -65,19 +63,11 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const SceneSet scenes = scenes_of(planned, options.planning);
     const PovRay povray = povray_for(planned, options.planning, options.folder);
-    require_place_for_scenes(options.folder, scenes);
-    require_room(needs_of(scenes, options.folder, options.jobs),
-                 options.folder,
-                 options.planning.ignore_needs);
+    require_place_and_room(scenes, options.folder, options.jobs, options.planning.ignore_needs);
 
     const FolderLock lock = claim_folder(options.folder);
-    const RenderedFrames frames = render_frames(povray,
-                                                options.folder,
-                                                scenes,
-                                                {.jobs = options.jobs,
-                                                 .report = {},
-                                                 .library_paths = options.planning.library_paths,
-                                                 .stall_s = options.planning.stall_timeout_s});
+    const RenderedFrames frames =
+        render_frames(povray, options.folder, scenes, run_options(options.planning, options.jobs));
     const RenderResult& result = frames.result;
     Rendered rendered{.integration = integrate_folder(
                           options.folder, result.manifest, options.preview, options.folder),
@@ -85,8 +75,7 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
                       .jobs = scenes.scene_writes_files ? 1 : options.jobs,
                       .frames_rendered = result.rendered,
                       .frames_kept = result.kept,
-                      .povray_s = frames.povray_s,
-                      .probe_s = {}};
+                      .povray_s = frames.povray_s};
     if (planned.plan.scene.user_scene) rendered.probe_s = planned.probe_s;
     show(rendered, options.json);
     return kDone;

@@ -6,8 +6,6 @@
 #include "image/traced_image.h"
 #include "spectral/integrator.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -17,27 +15,14 @@ namespace aphotic::cli {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-// Whole planes of one channel each, out of folder/spectral.exr.
-std::vector<float> radiance_planes(const fs::path& file, const std::vector<std::string>& channels) {
-    ExrReader image(file);
-    std::vector<float> samples(channels.size() * static_cast<std::size_t>(image.width_px()) *
-                               static_cast<std::size_t>(image.height_px()));
-    image.read_rows(0, image.height_px(), channels, samples);
-    return samples;
-}
-
-}  // namespace
-
 void require_rendered(const fs::path& folder) {
     for (const char* name : {"image.exr", "spectral.exr"}) {
         if (!is_traced(folder / name)) continue;
         throw InputError(
-            fmt::format("{}: found an image of the reference tracer; allowed: one of POV-Ray's "
-                        "frames, as `aphotic integrate {}` makes it",
-                        (folder / name).string(),
-                        folder.string()));
+            "{}: found an image of the reference tracer; allowed: one of POV-Ray's frames, as "
+            "`aphotic integrate {}` makes it",
+            (folder / name).string(),
+            folder.string());
     }
 }
 
@@ -45,15 +30,8 @@ RenderedImages images_in(const fs::path& folder,
                          const Rig& rig,
                          const Manifest& manifest,
                          const LightFamily& family) {
-    RenderedImages images{.lambda_nm = {},
-                          .exposure_log2 = {},
-                          .index_nm = {},
-                          .shift_error = {},
-                          .promise = {},
-                          .black = {},
-                          .radiance = {},
-                          .signals = read_signals(folder / "image.exr"),
-                          .lamps = {}};
+    RenderedImages images;
+    images.signals = read_signals(folder / "image.exr");
     for (const Strobe& strobe : rig.strobes) {
         // The frames may be of another rig, which knows no such strobe.
         const auto known = std::ranges::find(manifest.strobes, strobe.name, &ManifestStrobe::name);
@@ -76,8 +54,7 @@ RenderedImages images_in(const fs::path& folder,
     }
     images.radiance = [folder, channels](std::size_t first, std::size_t count) {
         const auto from = channels.begin() + static_cast<std::ptrdiff_t>(first);
-        return radiance_planes(folder / "spectral.exr",
-                               {from, from + static_cast<std::ptrdiff_t>(count)});
+        return ExrReader(folder / "spectral.exr").planes({from, count});
     };
     return images;
 }

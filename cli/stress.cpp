@@ -44,8 +44,8 @@ RenderedImages render_case(const PovRay& povray,
     request.wavelengths_nm = asked.wavelengths_nm;
     if (asked.peak_log2) request.scene.peak_log2 = *asked.peak_log2;
     const RenderPlan plan = plan_render(rig, request);
-    const RenderResult result = render(
-        povray, folder, make_scene_set(rig, plan), {.jobs = 1, .report = {}, .stall_s = stall_s});
+    const RenderResult result =
+        render(povray, folder, make_scene_set(rig, plan), {.jobs = 1, .stall_s = stall_s});
     integrate(folder, result.manifest);
     return images_in(folder, rig, result.manifest, plan.family);
 }
@@ -74,8 +74,7 @@ ExitStatus stress(const StressCommandOptions& options) {
         return asked.name.find(options.only) == std::string::npos;
     });
     if (cases.empty()) {
-        throw InputError(
-            fmt::format("--only: found '{}'; allowed: part of a case's name", options.only));
+        throw InputError("--only: found '{}'; allowed: part of a case's name", options.only);
     }
     const FolderLock lock = claim_tree(options.folder);
     const StressRender render = [&](const Rig& rig, const StressCase& asked, const fs::path& to) {

@@ -7,12 +7,10 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "cli/rendering.h"
 #include "image/any_image.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
@@ -25,7 +23,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 namespace aphotic::cli {
@@ -73,7 +70,7 @@ void png_to_exr(const fs::path& file) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const std::vector<float> plane = png.samples(c);
         if (std::ranges::max(plane) >= 1.0F) {
-            throw RunError(fmt::format("{}: a pixel is clipped", png_file.string()));
+            throw RunError("{}: a pixel is clipped", png_file.string());
         }
         samples.insert(samples.end(), plane.begin(), plane.end());
     }
@@ -91,7 +88,7 @@ StudyFrames render_setting(const PovRay& povray,
                            const fs::path& folder) {
     const RenderPlan plan = plan_for(rig, setting);
     SceneSet set = make_scene_set(rig, plan);
-    RunOptions options{.jobs = setting.jobs, .report = {}, .stall_s = stall_s};
+    RunOptions options{.jobs = setting.jobs, .stall_s = stall_s};
     if (setting.antialias) {
         change_setting(set.ini,
                        "Antialias=off",
@@ -166,10 +163,10 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
     Rig rig = read_rig(options.rig_file);
     if (!rig.scene.empty()) {
         throw InputError(
-            fmt::format("{}: scene: found {}; allowed: none, for a study is of the rig's "
-                        "own floor, which the reference knows",
-                        options.rig_file,
-                        rig.scene.string()));
+            "{}: scene: found {}; allowed: none, for a study is of the rig's own floor, which the "
+            "reference knows",
+            options.rig_file,
+            rig.scene.string());
     }
     if (options.quick) rig = quick_rig(std::move(rig));
     const PovRay povray = find_povray(options.povray);
@@ -179,7 +176,7 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
                 .height_px = rig.camera.height_px,
                 .aphotic_version = APHOTIC_VERSION,
                 .povray_version = povray.version,
-                .cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
+                .cores = all_cores(),
                 .quick = options.quick,
                 .tolerance = options.tolerance};
     const std::vector<StudySetting> settings = study_settings(rig, options.quick, study.cores);

@@ -10,7 +10,6 @@
 #include <optional>
 
 namespace aphotic::cli {
-
 namespace {
 
 // A line for each part of the work: it tells how long that part will take.
@@ -31,6 +30,11 @@ class ProgressOfParts {
 };
 
 }  // namespace
+
+void add_images(CLI::App& app, std::vector<std::string>& images) {
+    app.add_option("IMAGES", images, "Raw images, or folders of them: TIFF, PNG, EXR, JPEG")
+        ->required();
+}
 
 void add_camera_options(CLI::App& app, CameraNumbers& camera) {
     const auto wrong = [](const std::string& name) {
@@ -61,11 +65,10 @@ void add_format_options(CLI::App& app, ResultFormat& format) {
            "--format", format.format, "Write tiff or png (16 bits, white 65535) or exr (floats)")
         ->check(CLI::IsMember({"tiff", "png", "exr"}))
         ->capture_default_str();
-    app.add_option(
-           "--compression",
-           format.compression,
-           "Compress losslessly: none, fast, or small (a few per cent smaller, about 1.5 times "
-           "slower)")
+    app.add_option("--compression",
+                   format.compression,
+                   "Compress losslessly: none, fast, or small (a few per cent smaller, about 1.5 "
+                   "times slower)")
         ->transform(CLI::CheckedTransformer(kCompressions).description(""))
         ->type_name("none|fast|small")
         ->default_str("fast");

@@ -9,8 +9,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <string>
+#include <vector>
+
 namespace aphotic::cli {
 
+void add_images(CLI::App& app, std::vector<std::string>& images);
 void add_camera_options(CLI::App& app, CameraNumbers& camera);  // --bayer and --black-level
 void add_white_level_option(CLI::App& app, CameraNumbers& camera);
 void add_format_options(CLI::App& app, ResultFormat& format);  // --mask, --format, --compression

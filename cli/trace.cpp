@@ -6,7 +6,6 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -37,9 +36,9 @@ struct TraceCommandOptions {
 void require_no_render(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(manifest_path(folder))) return;
     throw InputError(
-        fmt::format("{}: found the manifest of a render; allowed: a folder without one, as the "
-                    "traced images would replace the rendered ones",
-                    manifest_path(folder).string()));
+        "{}: found the manifest of a render; allowed: a folder without one, as the traced images "
+        "would replace the rendered ones",
+        manifest_path(folder).string());
 }
 
 struct TracedEmitter {
@@ -162,7 +161,7 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
         .threads = options.threads,
         .seconds = elapsed.count()};
     write_text_file(std::filesystem::path(options.folder) / "trace.json",
-                    dumped(to_json(traced)) + "\n");
+                    json_text(to_json(traced)));
     show(traced, options.json);
     return kDone;
 }

@@ -5,22 +5,16 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "base/words.h"
 #include "cli/command.h"
-#include "cli/needs_check.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/rendered_images.h"
-#include "cli/rendering.h"
-#include "image/exr.h"
-#include "plugin/render.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <memory>
 
 namespace aphotic::cli {
@@ -46,13 +40,8 @@ struct Rendering {
 Rendering render_here(const ValidateCommandOptions& options,
                       const PovRay& povray,
                       const SceneSet& scenes) {
-    const RenderedFrames frames = render_frames(povray,
-                                                options.folder,
-                                                scenes,
-                                                {.jobs = options.jobs,
-                                                 .report = {},
-                                                 .library_paths = options.planning.library_paths,
-                                                 .stall_s = options.planning.stall_timeout_s});
+    const RenderedFrames frames =
+        render_frames(povray, options.folder, scenes, run_options(options.planning, options.jobs));
     Rendering rendering{.manifest = frames.result.manifest, .render_s = frames.povray_s};
     rendering.integrate_s =
         integrate_folder(options.folder, rendering.manifest, {}, options.folder).seconds;
@@ -61,10 +50,10 @@ Rendering render_here(const ValidateCommandOptions& options,
 
 void require_promise(const std::string& what, const std::vector<std::string>& no_promise) {
     if (no_promise.empty()) return;
-    throw InputError(fmt::format(
+    throw InputError(
         "{}: has no error bound to validate against ({}); allowed: a scene whose render has one",
         what,
-        fmt::join(no_promise, "; ")));
+        fmt::join(no_promise, "; "));
 }
 
 // Of a render that can be held against the rig's reference.
@@ -74,12 +63,12 @@ Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
     require_promise(folder, manifest.no_promise);
     if (manifest.width_px == rig.camera.width_px && manifest.height_px == rig.camera.height_px)
         return manifest;
-    throw InputError(fmt::format("{}: found images of {} x {} pixels; allowed: the rig's {} x {}",
-                                 folder,
-                                 manifest.width_px,
-                                 manifest.height_px,
-                                 rig.camera.width_px,
-                                 rig.camera.height_px));
+    throw InputError("{}: found images of {} x {} pixels; allowed: the rig's {} x {}",
+                     folder,
+                     manifest.width_px,
+                     manifest.height_px,
+                     rig.camera.width_px,
+                     rig.camera.height_px);
 }
 
 // Of the largest share of pixels that one comparison leaves to its edges, and the largest error
@@ -87,17 +76,17 @@ Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
 std::string edges_in_words(const ValidationReport& report) {
     constexpr double kPercent = 100.0;
     const EdgeSummary edges = report.edges();
-    std::string words = edges.share == 0.0
-                            ? "no pixel is on an edge"
-                            : fmt::format(
-                                  "{:.2g} % of the pixels are on edges, without a bound; largest "
-                                  "|e| there {:.2g}",
-                                  kPercent * edges.share,
-                                  edges.max_error);
+    std::string words =
+        edges.share == 0.0
+            ? "no pixel is on an edge"
+            : fmt::format(
+                  "{:.2g} % of the pixels are on edges, without a bound; largest |e| there {:.2g}",
+                  kPercent * edges.share,
+                  edges.max_error);
     if (edges.share_in_penumbrae > 0.0) {
         words += fmt::format(
-            "\n  {:.2g} % of the pixels are in penumbrae, compared with the render's own "
-            "lamps; from an emitter of more lamps they differ by up to {:.2g}",
+            "\n  {:.2g} % of the pixels are in penumbrae, compared with the render's own lamps; "
+            "from an emitter of more lamps they differ by up to {:.2g}",
             kPercent * edges.share_in_penumbrae,
             edges.max_error_of_penumbrae);
     }
@@ -144,14 +133,6 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
         "  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);
 }
 
-void require_place_and_room(const ValidateCommandOptions& options, const PlannedRender& planned) {
-    const SceneSet scenes = scenes_of(planned, options.planning);
-    require_place_for_scenes(options.folder, scenes);
-    require_room(needs_of(scenes, options.folder, options.jobs),
-                 options.folder,
-                 options.planning.ignore_needs);
-}
-
 ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const bool is_rendered = !options.rendered_folder.empty();
@@ -164,7 +145,10 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
         (void)rendered_manifest(options.rendered_folder, planned.rig);
     } else {
         povray = povray_for(planned, options.planning, options.folder);
-        require_place_and_room(options, planned);
+        require_place_and_room(scenes_of(planned, options.planning),
+                               options.folder,
+                               options.jobs,
+                               options.planning.ignore_needs);
     }
     const std::vector<FolderLock> locks =
         claim_folders(options.folder, is_rendered ? options.rendered_folder : options.folder);

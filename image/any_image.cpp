@@ -5,10 +5,8 @@
 #include "base/error.h"
 
 #include <dlfcn.h>
-#include <fmt/format.h>
 
 namespace aphotic {
-
 namespace {
 
 template <typename Function>
@@ -22,7 +20,7 @@ Function from_part(const char* name) {
                    : ::dlopen(APHOTIC_PARTS "/aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
     }();
     if (kPart == nullptr) {
-        throw RunError(fmt::format("the image reader cannot be loaded: {}", ::dlerror()));
+        throw RunError("the image reader cannot be loaded: {}", ::dlerror());
     }
     const auto function = reinterpret_cast<Function>(::dlsym(kPart, name));
     if (function == nullptr) throw RunError("aphotic_any_image.so is not of this version");

@@ -9,7 +9,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,8 +46,8 @@ struct WrittenImage {
     std::span<const float> planes;
     SampleType type = SampleType::Bits16;
     Compression compression = Compression::Fast;
-    std::string description;
-    std::string date_time;  // empty: not known. Never now: the same image is the same file
+    std::string description{};
+    std::string date_time{};  // empty: not known. Never now: the same image is the same file
 };
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image);
 

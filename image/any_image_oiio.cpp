@@ -97,7 +97,7 @@ constexpr std::array<std::string_view, 13> kFormats{"bmp",
 // The first of several lines names the cause.
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reasons) {
     const std::string why = reasons.substr(0, reasons.find('\n'));
-    throw aphotic::InputError(fmt::format("{}: cannot be read: {}", file.string(), why));
+    throw aphotic::InputError("{}: cannot be read: {}", file.string(), why);
 }
 
 std::shared_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
@@ -157,7 +157,7 @@ extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
 extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
                                         const aphotic::WrittenImage& image) {
     const auto fail = [&](const std::string& why) {
-        throw aphotic::RunError(fmt::format("{}: cannot be written: {}", file.string(), why));
+        throw aphotic::RunError("{}: cannot be written: {}", file.string(), why);
     };
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(file.string());
     if (!output) fail(OIIO::geterror());
@@ -195,7 +195,7 @@ extern "C" void aphotic_resize(std::vector<float>& plane,
     std::vector<float> samples(result.spec().image_pixels());
     if (result.has_error() ||
         !result.get_pixels(result.roi(), OIIO::TypeDesc::FLOAT, samples.data())) {
-        throw aphotic::InputError(fmt::format("resizing: {}", result.geterror()));
+        throw aphotic::InputError("resizing: {}", result.geterror());
     }
     plane = std::move(samples);
 }

@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, kChannels> kChannelNames{"R", "G",
 struct CameraImage {
     int width_px = 0;
     int height_px = 0;
-    std::vector<float> samples;
+    std::vector<float> samples{};
 };
 
 }  // namespace aphotic

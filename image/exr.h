@@ -40,6 +40,9 @@ class ExrReader {
                    std::span<const std::string> channels,
                    std::span<float> samples);
 
+    // All rows.
+    [[nodiscard]] std::vector<float> planes(std::span<const std::string> channels);
+
   private:
     struct File;
     std::unique_ptr<File> file_;

@@ -4,10 +4,7 @@
 #include "base/error.h"
 #include "image/exr.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <vector>
 
 namespace aphotic {
@@ -24,24 +21,24 @@ void check_samples(const fs::path& file,
     const auto bad = std::find_if_not(samples.begin(), samples.end(), is_good);
     if (bad == samples.end()) return;
     const auto index = bad - samples.begin();
-    throw RunError(fmt::format("{}: channel {} is {} at column {}, row {}; allowed: 0 to below {}",
-                               file.string(),
-                               channel,
-                               *bad,
-                               index % width_px,
-                               first_row + index / width_px,
-                               kLargestHalf));
+    throw RunError("{}: channel {} is {} at column {}, row {}; allowed: 0 to below {}",
+                   file.string(),
+                   channel,
+                   *bad,
+                   index % width_px,
+                   first_row + index / width_px,
+                   kLargestHalf);
 }
 
 void check_size(
     const fs::path& file, int found_width_px, int found_height_px, int width_px, int height_px) {
     if (found_width_px == width_px && found_height_px == height_px) return;
-    throw RunError(fmt::format("{}: found {} x {} pixels; wanted {} x {}",
-                               file.string(),
-                               found_width_px,
-                               found_height_px,
-                               width_px,
-                               height_px));
+    throw RunError("{}: found {} x {} pixels; wanted {} x {}",
+                   file.string(),
+                   found_width_px,
+                   found_height_px,
+                   width_px,
+                   height_px);
 }
 
 void check_frame(const fs::path& file, int width_px, int height_px) {

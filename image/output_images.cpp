@@ -6,7 +6,6 @@
 #include <algorithm>
 
 namespace aphotic {
-
 namespace {
 
 const std::vector<std::string> kSignalChannels(kChannelNames.begin(), kChannelNames.end());
@@ -15,12 +14,9 @@ const std::vector<std::string> kSignalChannels(kChannelNames.begin(), kChannelNa
 
 CameraImage read_signals(const std::filesystem::path& file) {
     ExrReader reader(file);
-    CameraImage image{
-        .width_px = reader.width_px(), .height_px = reader.height_px(), .samples = {}};
-    image.samples.resize(kChannels * static_cast<std::size_t>(image.width_px) *
-                         static_cast<std::size_t>(image.height_px));
-    reader.read_rows(0, image.height_px, kSignalChannels, image.samples);
-    return image;
+    return {.width_px = reader.width_px(),
+            .height_px = reader.height_px(),
+            .samples = reader.planes(kSignalChannels)};
 }
 
 std::string spectral_channel(double lambda_nm) {
@@ -34,7 +30,7 @@ OutputImages::OutputImages(const std::filesystem::path& folder,
                            int height_px,
                            std::span<const double> lambda_nm,
                            const ExrAttributes& attributes)
-    : image_{.width_px = width_px, .height_px = height_px, .samples = {}},
+    : image_{.width_px = width_px, .height_px = height_px},
       image_file_(folder / "image.exr", width_px, height_px, kSignalChannels, attributes) {
     image_.samples.resize(kChannels * static_cast<std::size_t>(width_px) *
                           static_cast<std::size_t>(height_px));

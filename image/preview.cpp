@@ -5,7 +5,6 @@
 #include "base/error.h"
 
 #include <cairo.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,10 +62,10 @@ double bright_value(const CameraImage& image, const Channels& scale) {
 
 void require(cairo_status_t status, int width_px, int height_px) {
     if (status == CAIRO_STATUS_SUCCESS) return;
-    throw RunError(fmt::format("no picture of {} x {} pixels can be made: {}",
-                               width_px,
-                               height_px,
-                               cairo_status_to_string(status)));
+    throw RunError("no picture of {} x {} pixels can be made: {}",
+                   width_px,
+                   height_px,
+                   cairo_status_to_string(status));
 }
 
 }  // namespace
@@ -130,7 +129,7 @@ void write_preview(const CameraImage& image,
     try {
         png = preview_png(image, preview_scale(image, lamp_signal, options));
     } catch (const RunError& error) {
-        throw RunError(fmt::format("{}: {}", file.string(), error.what()));
+        throw RunError("{}: {}", file.string(), error.what());
     }
     write_text_file(file, png);
 }

@@ -3,21 +3,14 @@
 
 #include "base/error.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <fstream>
 #include <limits>
 #include <map>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace aphotic {
-
 namespace {
 
 constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
@@ -32,7 +25,7 @@ std::uint64_t bytes_of_type(std::uint64_t type) {
         {1, 1}, {3, 2}, {4, 4}, {13, 4}, {16, 8}, {18, 8}};
     const auto found = kBytes.find(type);
     if (found != kBytes.end()) return found->second;
-    throw InputError(fmt::format("it has numbers of the type {} where integers belong", type));
+    throw InputError("it has numbers of the type {} where integers belong", type);
 }
 
 class Tiff {
@@ -43,31 +36,41 @@ class Tiff {
         const std::string mark = bytes(0, 2);
         is_big_endian_ = mark == "MM";
         is_bigtiff_ = number(2, 2) == kBigVersion;
-    }
-
-    // The numbers of those tags of the first directory that are asked for. Of a tag that stands
-    // twice the first counts, as with libtiff.
-    [[nodiscard]] std::map<std::uint64_t, std::vector<std::uint64_t>> values(
-        std::span<const std::uint64_t> wanted) {
         const std::uint64_t directory = is_bigtiff_ ? number(8, 8) : number(4, 4);
         const std::uint64_t entries = number(directory, is_bigtiff_ ? 8 : 2);
         const std::uint64_t first = directory + (is_bigtiff_ ? 8 : 2);
         const std::uint64_t step = is_bigtiff_ ? 20 : 12;
         require_end(first, product(entries, step));
-        std::map<std::uint64_t, std::vector<std::uint64_t>> values;
+        // Of a tag that stands twice the first counts, as with libtiff.
         for (std::uint64_t at = first; at < first + entries * step; at += step) {
-            const std::uint64_t tag = number(at, 2);
-            if (std::ranges::find(wanted, tag) == wanted.end() || values.contains(tag)) continue;
-            values[tag] = values_of(at);
+            entries_.emplace(number(at, 2), at);
         }
-        return values;
+    }
+
+    // Of the first directory.
+    [[nodiscard]] bool has(std::uint64_t tag) const { return entries_.contains(tag); }
+
+    [[nodiscard]] std::vector<std::uint64_t> all(std::uint64_t tag) {
+        const auto found = entries_.find(tag);
+        if (found != entries_.end()) return values_of(found->second);
+        throw InputError("it is not whole: the tag {} is missing", tag);
+    }
+
+    // 1 and more.
+    [[nodiscard]] std::uint64_t one(std::uint64_t tag) {
+        const std::vector<std::uint64_t> values = all(tag);
+        if (!values.empty() && values[0] != 0) return values[0];
+        throw InputError("it is not whole: the tag {} is 0 or empty", tag);
+    }
+
+    [[nodiscard]] std::uint64_t one(std::uint64_t tag, std::uint64_t usual) {
+        return has(tag) ? one(tag) : usual;
     }
 
     void require_end(std::uint64_t offset, std::uint64_t count) const {
         if (count <= size_ && offset <= size_ - count) return;
         if (count > kMost - offset) throw InputError("it points beyond its end");
-        throw InputError(
-            fmt::format("it is cut short: found {} bytes of {} and more", size_, offset + count));
+        throw InputError("it is cut short: found {} bytes of {} and more", size_, offset + count);
     }
 
   private:
@@ -110,6 +113,7 @@ class Tiff {
 
     std::ifstream stream_;
     std::uint64_t size_;
+    std::map<std::uint64_t, std::uint64_t> entries_;  // where each stands, by tag
     bool is_big_endian_ = false;
     bool is_bigtiff_ = false;
 };
@@ -125,88 +129,43 @@ constexpr std::uint64_t kTileWidth = 322;
 constexpr std::uint64_t kTileHeight = 323;
 constexpr std::uint64_t kTileOffsets = 324;
 constexpr std::uint64_t kTileBytes = 325;
-constexpr std::array kTags{kWidth,
-                           kHeight,
-                           kStripOffsets,
-                           kSamplesPerPixel,
-                           kRowsPerStrip,
-                           kStripBytes,
-                           kPlanarConfig,
-                           kTileWidth,
-                           kTileHeight,
-                           kTileOffsets,
-                           kTileBytes};
-
-class Tags {
-  public:
-    explicit Tags(std::map<std::uint64_t, std::vector<std::uint64_t>> values)
-        : values_(std::move(values)) {}
-
-    [[nodiscard]] bool has(std::uint64_t tag) const { return values_.contains(tag); }
-
-    [[nodiscard]] const std::vector<std::uint64_t>& all(std::uint64_t tag) const {
-        const auto found = values_.find(tag);
-        if (found != values_.end()) return found->second;
-        throw InputError(fmt::format("it is not whole: the tag {} is missing", tag));
-    }
-
-    // 1 and more.
-    [[nodiscard]] std::uint64_t one(std::uint64_t tag) const {
-        const std::vector<std::uint64_t>& values = all(tag);
-        if (values.empty() || values[0] == 0) {
-            throw InputError(fmt::format("it is not whole: the tag {} is 0 or empty", tag));
-        }
-        return values[0];
-    }
-
-    [[nodiscard]] std::uint64_t one(std::uint64_t tag, std::uint64_t usual) const {
-        return has(tag) ? one(tag) : usual;
-    }
-
-  private:
-    std::map<std::uint64_t, std::vector<std::uint64_t>> values_;
-};
-
 std::uint64_t quotient_up(std::uint64_t number, std::uint64_t by) {
     return number / by + (number % by != 0 ? 1 : 0);
 }
 
-std::uint64_t planes_of(const Tags& tags) {
+std::uint64_t planes_of(Tiff& tiff) {
     constexpr std::uint64_t kSeparate = 2;
-    return tags.one(kPlanarConfig, 1) == kSeparate ? tags.one(kSamplesPerPixel, 1) : 1;
+    return tiff.one(kPlanarConfig, 1) == kSeparate ? tiff.one(kSamplesPerPixel, 1) : 1;
 }
 
-std::uint64_t strips_of(const Tags& tags) {
-    return product(quotient_up(tags.one(kHeight), tags.one(kRowsPerStrip, kMost)), planes_of(tags));
+std::uint64_t strips_of(Tiff& tiff) {
+    return product(quotient_up(tiff.one(kHeight), tiff.one(kRowsPerStrip, kMost)), planes_of(tiff));
 }
 
-std::uint64_t tiles_of(const Tags& tags) {
-    return product(product(quotient_up(tags.one(kWidth), tags.one(kTileWidth)),
-                           quotient_up(tags.one(kHeight), tags.one(kTileHeight))),
-                   planes_of(tags));
+std::uint64_t tiles_of(Tiff& tiff) {
+    return product(product(quotient_up(tiff.one(kWidth), tiff.one(kTileWidth)),
+                           quotient_up(tiff.one(kHeight), tiff.one(kTileHeight))),
+                   planes_of(tiff));
 }
 
 }  // namespace
 
 void require_whole_tiff(const std::filesystem::path& file) {
     Tiff tiff(file);
-    const Tags tags(tiff.values(kTags));
-    const bool is_tiled = tags.has(kTileWidth) || tags.has(kTileOffsets);
-    const std::vector<std::uint64_t>& offsets = tags.all(is_tiled ? kTileOffsets : kStripOffsets);
-    const std::vector<std::uint64_t>& sizes = tags.all(is_tiled ? kTileBytes : kStripBytes);
-    const std::uint64_t parts = is_tiled ? tiles_of(tags) : strips_of(tags);
+    const bool is_tiled = tiff.has(kTileWidth) || tiff.has(kTileOffsets);
+    const std::vector<std::uint64_t> offsets = tiff.all(is_tiled ? kTileOffsets : kStripOffsets);
+    const std::vector<std::uint64_t> sizes = tiff.all(is_tiled ? kTileBytes : kStripBytes);
+    const std::uint64_t parts = is_tiled ? tiles_of(tiff) : strips_of(tiff);
     if (offsets.size() != sizes.size() || offsets.size() < parts) {
         throw InputError(
-            fmt::format("it is not whole: found {} offsets and {} sizes of strips or tiles; "
-                        "needed: {}",
-                        offsets.size(),
-                        sizes.size(),
-                        parts));
+            "it is not whole: found {} offsets and {} sizes of strips or tiles; needed: {}",
+            offsets.size(),
+            sizes.size(),
+            parts);
     }
     for (std::uint64_t i = 0; i < parts; ++i) {
         if (sizes[i] == 0) {
-            throw InputError(
-                fmt::format("it is not whole: strip or tile {} of {} is empty", i + 1, parts));
+            throw InputError("it is not whole: strip or tile {} of {} is empty", i + 1, parts);
         }
         tiff.require_end(offsets[i], sizes[i]);
     }

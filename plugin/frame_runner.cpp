@@ -2,10 +2,10 @@
 #include "plugin/frame_runner.h"
 
 #include "base/atomic_file.h"
+#include "base/disk_space.h"
 #include "base/error.h"
 #include "base/interruption.h"
 #include "image/frame_check.h"
-#include "plugin/full_disk.h"
 #include "plugin/library_paths.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
@@ -18,7 +18,6 @@
 #include <list>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <system_error>
 #include <thread>
 
@@ -115,8 +114,8 @@ double reported_share(const fs::path& log) {
 void require_success(const Running& run, const ProcessEnd& end) {
     if (end.succeeded()) return;
     const std::string said = error_in_log(read_log(run.log));
-    throw RunError(fmt::format(
-        "{}{}{}\nIts log: {}", end.words(), said.empty() ? "" : ":\n", said, run.log.string()));
+    throw RunError(
+        "{}{}{}\nIts log: {}", end.words(), said.empty() ? "" : ":\n", said, run.log.string());
 }
 
 // The end of a frame's run, when it has come.
@@ -126,10 +125,10 @@ std::optional<ProcessEnd> poll(Running& run, const fs::path& folder) {
         if (end) require_success(run, *end);
         return end;
     } catch (const RunError& error) {
-        throw RunError(fmt::format("POV-Ray failed on {}: {}{}",
-                                   scene_path(folder, run.frame).string(),
-                                   error.what(),
-                                   words_of_full_disk(folder)));
+        throw RunError("POV-Ray failed on {}: {}{}",
+                       scene_path(folder, run.frame).string(),
+                       error.what(),
+                       words_of_full_disk(folder));
     }
 }
 
@@ -144,11 +143,11 @@ void check(const Running& run,
         if (!fs::exists(part)) throw RunError("POV-Ray exited normally without an image");
         check_frame(part, width_px, height_px);
     } catch (const RunError& error) {
-        throw RunError(fmt::format("{}: {}\nIts log: {}{}",
-                                   scene_path(folder, run.frame).string(),
-                                   error.what(),
-                                   run.log.string(),
-                                   words_of_full_disk(folder)));
+        throw RunError("{}: {}\nIts log: {}{}",
+                       scene_path(folder, run.frame).string(),
+                       error.what(),
+                       run.log.string(),
+                       words_of_full_disk(folder));
     }
 }
 

@@ -31,7 +31,7 @@ struct FrameProgress {
 struct RunOptions {
     // Frames at a time; the threads of each, so that they use as many cores together.
     int jobs = 1;
-    std::function<void(const FrameProgress&)> report;
+    std::function<void(const FrameProgress&)> report{};
     // Called with the name of each image before it is checked: for scenes whose settings ask
     // POV-Ray for another format than EXR, makes the EXR of what stands beside it.
     std::function<void(const std::filesystem::path&)> convert{};

@@ -2,7 +2,6 @@
 #include "plugin/life_signs.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plugin/povray.h"
 
+#include "base/disk_space.h"
 #include "base/error.h"
-#include "plugin/full_disk.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
 #include "plugin/scratch_folder.h"
@@ -12,12 +12,11 @@
 #include <boost/process/search_path.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <iterator>
 #include <optional>
+#include <regex>
 #include <sstream>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -36,10 +35,10 @@ fs::path located(const std::string& command, const std::string& origin) {
         is_path ? fs::path(command) : fs::path(boost::process::search_path(command).string());
     if (path.empty() || ::access(path.c_str(), X_OK) != 0 || fs::is_directory(path)) {
         throw RunError(
-            fmt::format("POV-Ray: no program '{}' ({}); install povray, or name it with "
-                        "--povray or APHOTIC_POVRAY",
-                        command,
-                        origin));
+            "POV-Ray: no program '{}' ({}); install povray, or name it with --povray or "
+            "APHOTIC_POVRAY",
+            command,
+            origin);
     }
     // It will run in another folder.
     return fs::absolute(path);
@@ -59,31 +58,14 @@ struct Version {
     std::string words;  // such as 3.7.0.10.unofficial
 };
 
-// "3.7" and what follows it up to a blank.
-std::optional<Version> version_at_start(std::string_view text) {
-    constexpr std::size_t kMostLetters = 100;
-    text = text.substr(0, text.find_first_of(" \t\r\n"));
-    if (text.empty() || text.front() == '-' || text.size() > kMostLetters) return std::nullopt;
-    Version version{.number = {}, .words = std::string(text)};
-    const char* end = text.data() + text.size();
-    const auto major = std::from_chars(text.data(), end, version.number.first);
-    if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.') return std::nullopt;
-    const char* behind_dot = major.ptr + 1;
-    if (behind_dot == end || *behind_dot == '-') return std::nullopt;
-    if (std::from_chars(behind_dot, end, version.number.second).ec != std::errc()) {
-        return std::nullopt;
-    }
-    return version;
-}
-
-// "POV-Ray 3.7.0", wherever it stands: complaints about its settings may come before it.
-std::optional<Version> introduced_version(std::string_view printed) {
-    constexpr std::string_view kName = "POV-Ray ";
-    for (auto at = printed.find(kName); at != std::string_view::npos;
-         at = printed.find(kName, at + 1)) {
-        if (auto version = version_at_start(printed.substr(at + kName.size()))) return version;
-    }
-    return std::nullopt;
+// "POV-Ray 3.7.0.10.unofficial" up to a blank, wherever it stands: complaints about its settings
+// may come before it.
+std::optional<Version> introduced_version(const std::string& printed) {
+    static const std::regex kIntroduction(
+        R"(POV-Ray ((\d{1,9})\.(\d{1,9})(?!\d)[^ \t\r\n]{0,80})(?=[ \t\r\n]|$))");
+    std::smatch found;
+    if (!std::regex_search(printed, found, kIntroduction)) return std::nullopt;
+    return Version{.number = {std::stoi(found[2]), std::stoi(found[3])}, .words = found[1]};
 }
 
 // A line "Supported image formats: ... openexr ...".
@@ -106,14 +88,14 @@ std::string version_from(std::string_view printed) {
     // It introduces itself first, after a complaint or two; and what prints without end is not it.
     constexpr std::size_t kIntroduction_bytes = 16384;
     printed = printed.substr(0, kIntroduction_bytes);
-    const std::optional<Version> version = introduced_version(printed);
+    const std::optional<Version> version = introduced_version(std::string(printed));
     if (!version) throw RunError("it does not identify itself as POV-Ray");
     if (version->number < kLeastVersion) {
-        throw RunError(fmt::format("found version {}.{}; allowed: {}.{} or later",
-                                   version->number.first,
-                                   version->number.second,
-                                   kLeastVersion.first,
-                                   kLeastVersion.second));
+        throw RunError("found version {}.{}; allowed: {}.{} or later",
+                       version->number.first,
+                       version->number.second,
+                       kLeastVersion.first,
+                       kLeastVersion.second);
     }
     if (!writes_openexr(printed)) {
         throw RunError("it was built without OpenEXR, in which frames are written");
@@ -126,9 +108,9 @@ std::string path_option(std::string_view option, const fs::path& path) {
         path.string(), [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"'; });
     if (!is_readable) {
         throw InputError(
-            fmt::format("{}: found a path with letters beyond ASCII or a quotation mark; "
-                        "allowed: none, for POV-Ray cannot read them",
-                        path.string()));
+            "{}: found a path with letters beyond ASCII or a quotation mark; allowed: none, for "
+            "POV-Ray cannot read them",
+            path.string());
     }
     return fmt::format("{}\"{}\"", option, path.string());
 }
@@ -140,17 +122,16 @@ PovRay find_povray(const std::string& named) {
     const ProcessEnd end = run_process({.executable = executable,
                                         .arguments = {"--version"},
                                         .folder = scratch.path(),
-                                        .environment = {},
                                         .log = log},
                                        kProbeTimeoutS);
     try {
         if (!end.succeeded()) throw RunError("--version ended with " + end.words());
         return {.executable = executable, .version = version_from(read_log(log))};
     } catch (const RunError& error) {
-        throw RunError(fmt::format("POV-Ray: {}: {}{}",
-                                   executable.string(),
-                                   error.what(),
-                                   words_of_full_disk(scratch.path())));
+        throw RunError("POV-Ray: {}: {}{}",
+                       executable.string(),
+                       error.what(),
+                       words_of_full_disk(scratch.path()));
     }
 }
 

@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "plugin/process.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
 #include <fstream>
@@ -17,7 +15,7 @@ namespace aphotic {
 std::string read_log(const std::filesystem::path& log) {
     std::ifstream in(log, std::ios::binary | std::ios::ate);
     const std::streamoff size = in.tellg();
-    if (size < 0) throw RunError(fmt::format("{}: cannot be read", log.string()));
+    if (size < 0) throw RunError("{}: cannot be read", log.string());
     std::string text(std::min(static_cast<std::size_t>(size), std::size_t{kMostLogBytes}), '\0');
     in.seekg(0);
     in.read(text.data(), static_cast<std::streamsize>(text.size()));

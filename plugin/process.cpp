@@ -90,10 +90,10 @@ struct Process::Child {
     template <typename Number>
     [[noreturn]] void stop(fmt::format_string<Number> words, Number number) {
         take_end();
-        throw RunError(fmt::format("{} {}\nIts log: {}",
-                                   request.executable.string(),
-                                   fmt::format(words, std::move(number)),
-                                   request.log.string()));
+        throw RunError("{} {}\nIts log: {}",
+                       request.executable.string(),
+                       fmt::format(words, std::move(number)),
+                       request.log.string());
     }
 };
 
@@ -102,13 +102,12 @@ Process::Process(const ProcessRequest& request) {
     // Boost goes on in our own folder if it cannot change into this one, starts the program though
     // its log cannot be opened, and writes over the beginning of an older one.
     if (!std::filesystem::is_directory(request.folder)) {
-        throw RunError(fmt::format("{}: cannot be started: {} is not a folder",
-                                   request.executable.string(),
-                                   request.folder.string()));
+        throw RunError("{}: cannot be started: {} is not a folder",
+                       request.executable.string(),
+                       request.folder.string());
     }
     if (!std::ofstream(request.log)) {
-        throw RunError(
-            fmt::format("{}: cannot be written: {}", request.log.string(), std::strerror(errno)));
+        throw RunError("{}: cannot be written: {}", request.log.string(), std::strerror(errno));
     }
     std::error_code error;
     bp::child child(bp::exe = request.executable.string(),
@@ -119,8 +118,7 @@ Process::Process(const ProcessRequest& request) {
                     DieWithParent{},
                     error);
     if (error) {
-        throw RunError(
-            fmt::format("{}: cannot be started: {}", request.executable.string(), error.message()));
+        throw RunError("{}: cannot be started: {}", request.executable.string(), error.message());
     }
     const pid_t pid = child.id();
     child.detach();  // to be waited for by us, not by Boost
@@ -154,8 +152,8 @@ ProcessEnd run_process(const ProcessRequest& request, double timeout_s) {
         throw_if_interrupted();
         if (const auto end = process.poll()) return *end;
         if (std::chrono::steady_clock::now() > deadline) {
-            throw RunError(fmt::format(
-                "{}: did not answer within {} s", request.executable.string(), timeout_s));
+            throw RunError(
+                "{}: did not answer within {} s", request.executable.string(), timeout_s);
         }
         std::this_thread::sleep_for(kPollInterval);
     }

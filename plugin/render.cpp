@@ -8,9 +8,8 @@
 #include "image/traced_image.h"
 #include "scene_gen/user_scene.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <system_error>
 
@@ -21,9 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::optional<ManifestFrame> frame_named(const Manifest& manifest, const std::string& name) {
-    const auto found = std::find_if(manifest.frames.begin(),
-                                    manifest.frames.end(),
-                                    [&](const ManifestFrame& frame) { return frame.name == name; });
+    const auto found = std::ranges::find(manifest.frames, name, &ManifestFrame::name);
     return found == manifest.frames.end() ? std::nullopt : std::optional(*found);
 }
 
@@ -32,8 +29,8 @@ std::optional<Manifest> earlier_manifest(const fs::path& folder) {
     try {
         return read_manifest(folder);
     } catch (const InputError& error) {
-        throw InputError(fmt::format(
-            "{}; nothing was changed. Remove that file to render everything again", error.what()));
+        throw InputError("{}; nothing was changed. Remove that file to render everything again",
+                         error.what());
     }
 }
 
@@ -57,11 +54,21 @@ bool still_holds(const fs::path& folder,
            is_whole(image_path(folder, earlier), manifest);
 }
 
+// Notes the images of the earlier run that still hold.
+void keep_what_holds(const fs::path& folder, const Manifest& earlier, Manifest& manifest) {
+    for (ManifestFrame& frame : manifest.frames) {
+        const auto before = frame_named(earlier, frame.name);
+        if (before && still_holds(folder, *before, frame, manifest)) {
+            frame.image_sha256 = before->image_sha256;
+        }
+    }
+}
+
 void take_away(const fs::path& file) {
     std::error_code error;
     fs::remove(file, error);
     if (error) {
-        throw RunError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+        throw RunError("{}: cannot be removed: {}", file.string(), error.message());
     }
 }
 
@@ -107,18 +114,12 @@ RenderResult render(const PovRay& povray,
     result.manifest.povray_version = povray.version;
 
     const std::optional<Manifest> earlier = earlier_manifest(folder);
-    std::vector<ManifestFrame> missing;
-    for (ManifestFrame& frame : result.manifest.frames) {
-        std::optional<ManifestFrame> before;
-        if (earlier && earlier->povray_version == povray.version) {
-            before = frame_named(*earlier, frame.name);
-        }
-        if (before && still_holds(folder, *before, frame, set.manifest)) {
-            frame.image_sha256 = before->image_sha256;
-        } else {
-            missing.push_back(frame);
-        }
+    if (earlier && earlier->povray_version == povray.version) {
+        keep_what_holds(folder, *earlier, result.manifest);
     }
+    std::vector<ManifestFrame> missing;
+    std::ranges::remove_copy_if(
+        result.manifest.frames, std::back_inserter(missing), &ManifestFrame::done);
     result.rendered = missing.size();
     result.kept = set.scenes.size() - missing.size();
     take_away_what_is_past(folder, earlier, result.manifest);
@@ -146,15 +147,17 @@ Manifest generate(const fs::path& folder, const SceneSet& set) {
     make_folder(folder);
     Manifest manifest = set.manifest;
     const std::optional<Manifest> earlier = earlier_manifest(folder);
-    if (earlier) manifest.povray_version = earlier->povray_version;
-    for (ManifestFrame& frame : manifest.frames) {
-        std::optional<ManifestFrame> before;
-        if (earlier) before = frame_named(*earlier, frame.name);
-        if (before && still_holds(folder, *before, frame, set.manifest)) {
-            frame.image_sha256 = before->image_sha256;
-        } else if (!before || before->done() || before->scene_sha256 != frame.scene_sha256) {
-            take_away(image_path(folder, frame));
-        }
+    if (earlier) {
+        manifest.povray_version = earlier->povray_version;
+        keep_what_holds(folder, *earlier, manifest);
+    }
+    for (const ManifestFrame& frame : manifest.frames) {
+        if (frame.done()) continue;
+        const auto before = earlier ? frame_named(*earlier, frame.name) : std::nullopt;
+        // One rendered by hand, which was never noted, may be this one.
+        const bool may_be_this =
+            before && !before->done() && before->scene_sha256 == frame.scene_sha256;
+        if (!may_be_this) take_away(image_path(folder, frame));
     }
     take_away_what_is_past(folder, earlier, manifest);
     write_scenes(folder, set);

@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 
-#include <fmt/format.h>
 #include <stdlib.h>  // mkdtemp
 
 #include <cerrno>
@@ -23,9 +22,8 @@ fs::path temporary_folder() {
     fs::path folder = fs::temp_directory_path(error);
     if (!error) return folder;
     const char* variable = std::getenv("TMPDIR");
-    throw RunError(
-        fmt::format("TMPDIR: found {}; allowed: a folder that is there, or nothing, for /tmp",
-                    variable == nullptr ? "nothing, and no folder /tmp" : variable));
+    throw RunError("TMPDIR: found {}; allowed: a folder that is there, or nothing, for /tmp",
+                   variable == nullptr ? "nothing, and no folder /tmp" : variable);
 }
 
 }  // namespace
@@ -33,8 +31,7 @@ fs::path temporary_folder() {
 ScratchFolder::ScratchFolder() {
     std::string pattern = (temporary_folder() / "aphotic-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) {
-        throw RunError(
-            fmt::format("{}: cannot create a temporary folder: {}", pattern, std::strerror(errno)));
+        throw RunError("{}: cannot create a temporary folder: {}", pattern, std::strerror(errno));
     }
     path_ = pattern;
 }

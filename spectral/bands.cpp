@@ -3,8 +3,6 @@
 
 #include "base/error.h"
 
-#include <fmt/format.h>
-
 namespace aphotic {
 
 std::vector<WeightedWavelength> equal_bands(const Sensor& sensor,
@@ -13,7 +11,7 @@ std::vector<WeightedWavelength> equal_bands(const Sensor& sensor,
     const double width_nm = (range.last_nm - range.first_nm) / count;
     std::vector<WeightedWavelength> bands;
     for (int j = 0; j < count; ++j) {
-        WeightedWavelength w{.lambda_nm = range.first_nm + (j + 0.5) * width_nm, .weight = {}};
+        WeightedWavelength w{.lambda_nm = range.first_nm + (j + 0.5) * width_nm};
         for (int c = 0; c < kChannels; ++c) {
             w.weight[static_cast<std::size_t>(c)] = width_nm * sensor.response(c, w.lambda_nm);
         }
@@ -29,12 +27,12 @@ void require_wavelengths(WavelengthRange range, std::span<const double> lambda_n
         const bool increases = j == 0 || lambda_nm[j] >= lambda_nm[j - 1] + kLeastStepNm;
         if (increases && range.contains(lambda_nm[j])) continue;
         throw InputError(
-            fmt::format("wavelengths: found {} nm in place {}; allowed: increasing "
-                        "wavelengths from {} to {} nm",
-                        lambda_nm[j],
-                        j + 1,
-                        range.first_nm,
-                        range.last_nm));
+            "wavelengths: found {} nm in place {}; allowed: increasing wavelengths from {} to {} "
+            "nm",
+            lambda_nm[j],
+            j + 1,
+            range.first_nm,
+            range.last_nm);
     }
 }
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 namespace aphotic {
-
 namespace {
 
 constexpr std::array<std::pair<std::string_view, int>, 17> kPrefixes{{{"", 0},
@@ -54,11 +53,11 @@ std::optional<double> wavelength_nm(std::string_view part) {
 
 struct SpectralName {
     std::string_view quantity;
-    std::vector<double> lambda_nm;  // the last first
+    std::vector<double> lambda_nm{};  // the last first
 };
 
 SpectralName spectral_name(std::string_view name) {
-    SpectralName read{.quantity = name, .lambda_nm = {}};
+    SpectralName read{.quantity = name};
     for (;;) {
         const std::size_t point = read.quantity.rfind('.');
         if (point == std::string_view::npos) return read;

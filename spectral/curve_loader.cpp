@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 namespace aphotic {
-
 namespace {
 
 std::vector<std::string> all_names() {
@@ -22,21 +21,20 @@ std::vector<std::string> all_names() {
     const std::vector<std::string> names = all_names();
     const std::string nearest = nearest_name(name, names);
     throw InputError(
-        fmt::format("no built-in table is called '{}'{}; allowed: {}, or a file "
-                    "whose name ends in .csv",
-                    name,
-                    nearest.empty() ? "" : "; did you mean '" + nearest + "'?",
-                    fmt::join(names, ", ")));
+        "no built-in table is called '{}'{}; allowed: {}, or a file whose name ends in .csv",
+        name,
+        nearest.empty() ? "" : "; did you mean '" + nearest + "'?",
+        fmt::join(names, ", "));
 }
 
 void require_role(const Table& builtin, CurveRole role) {
     const std::string found = builtin.text_of("role");
     if (found == role_name(role)) return;
-    throw InputError(fmt::format("'{}' is a built-in table of role {}, not {}; allowed: {}",
-                                 builtin.name,
-                                 found,
-                                 role_name(role),
-                                 fmt::join(builtin_names(role_name(role)), ", ")));
+    throw InputError("'{}' is a built-in table of role {}, not {}; allowed: {}",
+                     builtin.name,
+                     found,
+                     role_name(role),
+                     fmt::join(builtin_names(role_name(role)), ", "));
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ void require_finite(const fs::path& folder, const Manifest& manifest, const Bloc
     const auto width = static_cast<std::size_t>(manifest.width_px);
     const std::size_t channel = index / block.plane;
     const std::size_t pixel = index % block.plane;
-    throw RunError(fmt::format(
+    throw RunError(
         "{}: {} comes out as {} at column {}, row {}; allowed: weights and exposures that keep it "
         "finite",
         manifest_path(folder).string(),
@@ -98,19 +98,17 @@ void require_finite(const fs::path& folder, const Manifest& manifest, const Bloc
             : fmt::format("{} nm", manifest.wavelengths[channel - kChannels].lambda_nm),
         *at,
         pixel % width,
-        static_cast<std::size_t>(block.first_row) + pixel / width));
+        static_cast<std::size_t>(block.first_row) + pixel / width);
 }
 
 void require_noted_frames(const fs::path& folder, const Manifest& manifest) {
     for (const ManifestFrame& frame : manifest.frames) {
         const fs::path file = image_path(folder, frame);
         if (!fs::exists(file)) {
-            throw RunError(
-                fmt::format("{}: this frame is missing; render it first", file.string()));
+            throw RunError("{}: this frame is missing; render it first", file.string());
         }
         if (frame.done() && sha256_of_file(file) != frame.image_sha256) {
-            throw RunError(
-                fmt::format("{}: is not the image that the manifest notes", file.string()));
+            throw RunError("{}: is not the image that the manifest notes", file.string());
         }
     }
 }

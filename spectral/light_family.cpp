@@ -41,12 +41,6 @@ const std::vector<std::vector<Node>>& gauss_legendre_rules() {
     return kRules;
 }
 
-double source_at(const std::vector<Spectrum>& source, double lambda_nm) {
-    double value = 1.0;
-    for (const Spectrum& curve : source) value *= curve.at(lambda_nm);
-    return value;
-}
-
 // One member of the family: a source and a path.
 struct Member {
     const std::vector<Spectrum>* source;
@@ -78,7 +72,7 @@ double light(const LightFamily& family,
              double lambda_nm) {
     // One sign of it stands for both: its size is what asks for points.
     const double tilt = family.tilt ? family.tilt->at(lambda_nm) : 0.0;
-    return source_at(*member.source, lambda_nm) *
+    return product_at(*member.source, lambda_nm) *
            std::exp((least_loss_per_m - family.water.attenuation_per_m(lambda_nm)) * member.path_m +
                     tilt);
 }
@@ -102,7 +96,7 @@ std::vector<WeightedWavelength> nodes_between(const Sensor& sensor,
     std::vector<WeightedWavelength> nodes;
     const double width_nm = last_nm - first_nm;
     for (const Node& node : gauss_legendre_rules()[points]) {
-        WeightedWavelength w{.lambda_nm = first_nm + node.x * width_nm, .weight = {}};
+        WeightedWavelength w{.lambda_nm = first_nm + node.x * width_nm};
         for (std::size_t c = 0; c < kChannels; ++c) {
             w.weight[c] =
                 node.weight * width_nm * sensor.response(static_cast<int>(c), w.lambda_nm);

@@ -31,7 +31,7 @@ namespace aphotic {
 
 struct LightFamily {
     // Each source is the product of its curves.
-    std::vector<std::vector<Spectrum>> sources;
+    std::vector<std::vector<Spectrum>> sources{};
     Water water;
     double shortest_path_m = 0.0;
     double longest_path_m = 0.0;

@@ -163,11 +163,11 @@ class Reader {
         const std::string found = key.empty()             ? object_.dump()
                                   : object_.contains(key) ? object_.at(key).dump()
                                                           : "nothing";
-        throw InputError(fmt::format("{}: {}: found {}; allowed: {}",
-                                     where_,
-                                     key.empty() ? "value" : key,
-                                     found.substr(0, 80),
-                                     allowed));
+        throw InputError("{}: {}: found {}; allowed: {}",
+                         where_,
+                         key.empty() ? "value" : key,
+                         found.substr(0, 80),
+                         allowed);
     }
 
     const Json& object_;
@@ -321,11 +321,11 @@ Manifest read_manifest(const fs::path& folder) {
     std::string noted;
     Reader(json, file.string())(kChecksum, noted);
     if (noted != checksum_of(json)) {
-        throw InputError(fmt::format(
+        throw InputError(
             "{}: {}: is not that of the rest, which was changed since it was written; allowed: a "
             "manifest as aphotic wrote it",
             file.string(),
-            kChecksum));
+            kChecksum);
     }
     return manifest;
 }
@@ -335,11 +335,11 @@ Manifest parse_manifest(const std::string& file_name, std::string_view text) {
     const Reader reader(json, file_name);
     std::string format;
     reader("format", format);
-    reader.require("format",
-                   fmt::format("\"{}\", which this version writes: render again, into another "
-                               "folder",
-                               kFormat),
-                   format == kFormat);
+    reader.require(
+        "format",
+        fmt::format("\"{}\", which this version writes: render again, into another folder",
+                    kFormat),
+        format == kFormat);
     Manifest manifest;
     fields(reader, manifest);
     return manifest;

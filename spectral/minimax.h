@@ -33,7 +33,7 @@ struct MinimaxOptions {
     int iterations = 60;
     double ridge = 1e-7;
     double give_up = std::numeric_limits<double>::infinity();
-    Eigen::ArrayXd weights;  // to start from, such as a similar fit's; empty: equal
+    Eigen::ArrayXd weights{};  // to start from, such as a similar fit's; empty: equal
 };
 
 [[nodiscard]] MinimaxFit minimax_fit(const Eigen::MatrixXd& a,

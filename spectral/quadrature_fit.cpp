@@ -47,12 +47,6 @@ ArrayXd paths_at(const LightFamily& family, const ArrayXd& share) {
     return family.shortest_path_m * (share * std::log(ratio)).exp();
 }
 
-double product_at(const std::vector<Spectrum>& curves, double lambda_nm) {
-    double value = 1.0;
-    for (const Spectrum& curve : curves) value *= curve.at(lambda_nm);
-    return value;
-}
-
 }  // namespace
 
 double worst_error(std::span<const RuleQuality> channels) {
@@ -115,7 +109,6 @@ double QuadratureFitter::tilt_shape_error() const {
 FrameLight QuadratureFitter::frame_at(double lambda_nm) const {
     FrameLight frame{.lambda_nm = lambda_nm,
                      .attenuation_per_m = family_.water.attenuation_per_m(lambda_nm),
-                     .sources = {},
                      .tilt = family_.tilt ? family_.tilt->at(lambda_nm) : 0.0};
     for (const auto& curves : family_.sources) {
         frame.sources.push_back(product_at(curves, lambda_nm));
@@ -127,11 +120,7 @@ QuadratureFitter::Sample QuadratureFitter::sample(ArrayXd paths_m,
                                                   std::vector<double> tilts) const {
     const Index paths = paths_m.size();
     const Index sources = grid_sources_.cols();
-    Sample sample{.path_m = std::move(paths_m),
-                  .tilts = std::move(tilts),
-                  .signals = {},
-                  .response = {},
-                  .light = {}};
+    Sample sample{.path_m = std::move(paths_m), .tilts = std::move(tilts)};
     const Index members = sources * static_cast<Index>(sample.tilts.size()) * paths;
     sample.signals.resize(members, kChannels);
     sample.light.resize(members);
@@ -190,10 +179,8 @@ QuadratureFitter::View QuadratureFitter::view_of(const MatrixXd& light,
     const ArrayXd response = sample.response.col(channel);
     const double best = response.size() > 0 ? response.maxCoeff() : 0.0;
     std::vector<Index> seen;
-    View view{.relative = {},
-              .whole_response = grid_weights_.col(channel).sum(),
-              .unseen = ArrayXd::Zero(light.cols()),
-              .is_usable = {}};
+    View view{.whole_response = grid_weights_.col(channel).sum(),
+              .unseen = ArrayXd::Zero(light.cols())};
     for (Index i = 0; i < response.size(); ++i) {
         if (response(i) > kBlind * best) {
             seen.push_back(i);
@@ -260,7 +247,7 @@ FittedRule QuadratureFitter::fit(std::span<const FrameLight> frames, double fram
     const MatrixXd checked = light_of(checking_, frames);
     FittedRule rule;
     for (const FrameLight& frame : frames) {
-        rule.wavelengths.push_back({.lambda_nm = frame.lambda_nm, .weight = {}});
+        rule.wavelengths.push_back({.lambda_nm = frame.lambda_nm});
     }
     for (std::size_t c = 0; c < kChannels; ++c) {
         const auto channel = static_cast<Index>(c);
@@ -275,10 +262,8 @@ FittedRule QuadratureFitter::fit(std::span<const FrameLight> frames, double fram
         rule.quality[c] = {.error = 1.0, .amplification = 0.0};  // of no weights at all
         double best = 1.0 + kFreeAmplification * frame_error;
         for (const double ridge : kRidges) {
-            const MinimaxFit fit =
-                minimax_fit(rows,
-                            VectorXd::Ones(rows.rows()),
-                            {.iterations = kIterations, .ridge = ridge, .weights = {}});
+            const MinimaxFit fit = minimax_fit(
+                rows, VectorXd::Ones(rows.rows()), {.iterations = kIterations, .ridge = ridge});
             RuleQuality quality = quality_of(check, fit.x);
             quality.error += tilt_shape_error();
             // Freely amplified rounding is no reason to hold down.
@@ -442,7 +427,7 @@ std::vector<QuadratureFitter::PathError> QuadratureFitter::errors_over_path(
     const Index first = (static_cast<Index>(source) * tilts + tilts / 2) * paths;
     std::vector<PathError> errors;
     for (Index p = 0; p < paths; ++p) {
-        PathError error{.path_m = checking_.path_m(p), .error = {}};
+        PathError error{.path_m = checking_.path_m(p)};
         for (std::size_t c = 0; c < kChannels; ++c) {
             double found = 0.0;
             for (std::size_t j = 0; j < frames.size(); ++j) {

@@ -57,7 +57,7 @@ struct RuleQuality {
 [[nodiscard]] double worst_promise(std::span<const RuleQuality> channels, double frame_error);
 
 struct FittedRule {
-    std::vector<WeightedWavelength> wavelengths;
+    std::vector<WeightedWavelength> wavelengths{};
     std::array<RuleQuality, kChannels> quality;  // zero for a channel that sees nothing
 
     [[nodiscard]] double error() const { return worst_error(quality); }
@@ -70,8 +70,8 @@ struct FittedRule {
 struct FrameLight {
     double lambda_nm = 0.0;
     double attenuation_per_m = 0.0;
-    std::vector<double> sources;  // in the order of LightFamily::sources
-    double tilt = 0.0;            // LightFamily::tilt at the wavelength whose indices it has
+    std::vector<double> sources{};  // in the order of LightFamily::sources
+    double tilt = 0.0;              // LightFamily::tilt at the wavelength whose indices it has
 };
 
 class QuadratureFitter {
@@ -120,7 +120,7 @@ class QuadratureFitter {
     // The error against path length, of source and channel: for plots.
     struct PathError {
         double path_m;
-        std::array<double, kChannels> error;
+        std::array<double, kChannels> error{};
     };
     [[nodiscard]] std::vector<PathError> errors_over_path(const FittedRule& rule,
                                                           std::span<const FrameLight> frames,
@@ -138,19 +138,20 @@ class QuadratureFitter {
     struct Sample {
         Eigen::ArrayXd path_m;
         std::vector<double> tilts;
-        Eigen::ArrayXXd signals;   // members by channels
-        Eigen::ArrayXXd response;  // the same, relative to all of a member's light; 0: it has none
-        Eigen::ArrayXd light;      // all of a member's, int f dlambda
+        Eigen::ArrayXXd signals{};  // members by channels
+        Eigen::ArrayXXd
+            response{};          // the same, relative to all of a member's light; 0: it has none
+        Eigen::ArrayXd light{};  // all of a member's, int f dlambda
     };
     // What one channel knows of frames: their light to the members that it sees, relative to what
     // it sees of them, and which of the frames it may use.
     struct View {
-        Eigen::MatrixXd relative;
+        Eigen::MatrixXd relative{};
         double whole_response = 0.0;  // int Q_c dlambda
         // By frame: its light over the range, relative to all of a member's that the channel is
         // blind to, the largest.
         Eigen::ArrayXd unseen;
-        std::vector<bool> is_usable;
+        std::vector<bool> is_usable{};
 
         // What may not be used is as good as dark.
         [[nodiscard]] Eigen::MatrixXd usable() const;

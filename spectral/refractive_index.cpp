@@ -13,7 +13,6 @@
 #include <cmath>
 
 namespace aphotic {
-
 namespace {
 
 constexpr double kNmPerUm = 1000.0;
@@ -22,12 +21,12 @@ constexpr std::size_t kQuanFryTerms = 10;
 void require_between(
     std::string_view what, double found, double least, double most, std::string_view unit) {
     if (least <= found && found <= most) return;
-    throw InputError(fmt::format("refractive index of seawater: {} found {} {}; allowed: {} to {}",
-                                 what,
-                                 found,
-                                 unit,
-                                 least,
-                                 most));
+    throw InputError("refractive index of seawater: {} found {} {}; allowed: {} to {}",
+                     what,
+                     found,
+                     unit,
+                     least,
+                     most);
 }
 
 std::array<double, kQuanFryTerms> read_quan_fry() {
@@ -71,13 +70,11 @@ Glass::Glass(const Table& table)
 
 double Glass::index(double lambda_nm) const {
     if (!range_.contains(lambda_nm)) {
-        throw InputError(
-            fmt::format("refractive index of '{}' covers {} to {} nm and has no "
-                        "value at {} nm",
-                        name_,
-                        range_.first_nm,
-                        range_.last_nm,
-                        lambda_nm));
+        throw InputError("refractive index of '{}' covers {} to {} nm and has no value at {} nm",
+                         name_,
+                         range_.first_nm,
+                         range_.last_nm,
+                         lambda_nm);
     }
     const double x = lambda_nm / kNmPerUm;
     double n2 = form_ == Form::Sellmeier ? 1.0 : 0.0;
@@ -91,8 +88,8 @@ double Glass::index(double lambda_nm) const {
 Glass builtin_glass(std::string_view name) {
     const std::vector<std::string> names = builtin_names("glass");
     if (std::find(names.begin(), names.end(), name) == names.end()) {
-        throw InputError(fmt::format(
-            "no built-in glass is called '{}'; allowed: {}", name, fmt::join(names, ", ")));
+        throw InputError(
+            "no built-in glass is called '{}'; allowed: {}", name, fmt::join(names, ", "));
     }
     return Glass(builtin_table(name));
 }
@@ -107,8 +104,8 @@ WavelengthRange stated_range(const Table& table) {
     if (has_between) text.remove_prefix(kBetween.size());
     range.last_nm = take_number(text);
     if (!has_between || text != " nm" || !(range.first_nm < range.last_nm)) {
-        throw InputError(fmt::format(
-            "{}: found '# range: {}'; allowed: '# range: A to B nm'", table.name, stated));
+        throw InputError(
+            "{}: found '# range: {}'; allowed: '# range: A to B nm'", table.name, stated);
     }
     return range;
 }

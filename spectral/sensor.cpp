@@ -4,13 +4,10 @@
 #include "base/error.h"
 #include "spectral/curve_loader.h"
 
-#include <fmt/format.h>
-
 #include <string>
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 constexpr double kPlanck_j_s = 6.62607015e-34;
@@ -26,9 +23,9 @@ double photons_per_joule(double lambda_nm) {
 Sensor::Sensor(std::vector<Spectrum> responses, ResponseKind kind)
     : responses_(std::move(responses)), kind_(kind) {
     if (responses_.size() != kChannels) {
-        throw InputError(fmt::format("found {} channel responses; allowed: {}, red, green, blue",
-                                     responses_.size(),
-                                     kChannels));
+        throw InputError("found {} channel responses; allowed: {}, red, green, blue",
+                         responses_.size(),
+                         kChannels);
     }
 }
 

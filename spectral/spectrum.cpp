@@ -13,7 +13,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 bool all_finite(const std::vector<double>& numbers) {
@@ -56,31 +55,30 @@ Spectrum::Spectrum(std::string name,
       values_(std::move(values)),
       source_(std::move(source)) {
     if (lambda_nm_.size() != values_.size()) {
-        throw InputError(fmt::format(
-            "{}: {} wavelengths but {} values", name_, lambda_nm_.size(), values_.size()));
+        throw InputError(
+            "{}: {} wavelengths but {} values", name_, lambda_nm_.size(), values_.size());
     }
     if (lambda_nm_.size() < 2) {
-        throw InputError(
-            fmt::format("{}: found {} knots; a curve needs 2 or more", name_, lambda_nm_.size()));
+        throw InputError("{}: found {} knots; a curve needs 2 or more", name_, lambda_nm_.size());
     }
     if (!all_finite(lambda_nm_) || !all_finite(values_)) {
-        throw InputError(fmt::format("{}: holds a number that is not finite", name_));
+        throw InputError("{}: holds a number that is not finite", name_);
     }
     const auto fall =
         std::adjacent_find(lambda_nm_.begin(), lambda_nm_.end(), std::greater_equal<>());
     if (fall != lambda_nm_.end()) {
-        throw InputError(fmt::format(
-            "{}: wavelength {} nm follows {} nm; allowed: increasing", name_, fall[1], fall[0]));
+        throw InputError(
+            "{}: wavelength {} nm follows {} nm; allowed: increasing", name_, fall[1], fall[0]);
     }
 }
 
 double Spectrum::at(double lambda_nm) const {
     if (!range().contains(lambda_nm)) {
-        throw InputError(fmt::format("{} covers {} to {} nm and has no value at {} nm",
-                                     name_,
-                                     range().first_nm,
-                                     range().last_nm,
-                                     lambda_nm));
+        throw InputError("{} covers {} to {} nm and has no value at {} nm",
+                         name_,
+                         range().first_nm,
+                         range().last_nm,
+                         lambda_nm);
     }
     // The last knot belongs to the last interval.
     const auto above = std::upper_bound(lambda_nm_.begin(), lambda_nm_.end() - 1, lambda_nm);
@@ -97,6 +95,12 @@ WavelengthRange Spectrum::range() const {
     return {lambda_nm_.front(), lambda_nm_.back()};
 }
 
+double product_at(std::span<const Spectrum> curves, double lambda_nm) {
+    double value = 1.0;
+    for (const Spectrum& curve : curves) value *= curve.at(lambda_nm);
+    return value;
+}
+
 WavelengthRange common_range(std::span<const Spectrum* const> curves) {
     // No curve at all bounds nothing.
     WavelengthRange common{-std::numeric_limits<double>::infinity(),
@@ -110,9 +114,9 @@ WavelengthRange common_range(std::span<const Spectrum* const> curves) {
 
 void require_cover(std::span<const Spectrum* const> curves, WavelengthRange range) {
     if (!(range.first_nm <= range.last_nm)) {
-        throw InputError(fmt::format("the range {} to {} nm is empty; allowed: first below last",
-                                     range.first_nm,
-                                     range.last_nm));
+        throw InputError("the range {} to {} nm is empty; allowed: first below last",
+                         range.first_nm,
+                         range.last_nm);
     }
     std::string faults;
     for (const Spectrum* curve : curves) {

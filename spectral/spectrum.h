@@ -67,6 +67,9 @@ class Spectrum {
 // The same knots and values, under whatever names.
 [[nodiscard]] bool is_same_curve(const Spectrum& a, const Spectrum& b);
 
+// Their product.
+[[nodiscard]] double product_at(std::span<const Spectrum> curves, double lambda_nm);
+
 // The range that all curves cover; first_nm > last_nm when there is none.
 [[nodiscard]] WavelengthRange common_range(std::span<const Spectrum* const> curves);
 

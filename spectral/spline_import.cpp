@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/spline_import.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/printable.h"
 
@@ -19,7 +20,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 constexpr std::array<std::string_view, 4> kSplineForms{
@@ -34,7 +34,7 @@ constexpr int kMaxDepth = 100;          // of brackets in brackets
 struct Token {
     enum class Kind { End, Number, Word, Text, Symbol };
     Kind kind = Kind::End;
-    std::string_view text;
+    std::string_view text{};
     std::size_t line = 0;
     double number = 0.0;
 };
@@ -50,14 +50,12 @@ bool is_digit(char c) {
 // A scene file's tokens, one at a time.
 class Lexer {
   public:
-    Lexer(const std::string& file, std::string_view text) : file_(file), rest_(text) {
-        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-        if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
-    }
+    Lexer(const std::string& file, std::string_view text)
+        : file_(file), rest_(without_byte_order_mark(text)) {}
 
     Token next() {
         pass_over_blanks();
-        if (rest_.empty()) return {.kind = Token::Kind::End, .text = {}, .line = line_};
+        if (rest_.empty()) return {.kind = Token::Kind::End, .line = line_};
         if (rest_[0] == '"') return text();
         if (is_letter(rest_[0])) return word();
         const bool fraction = rest_[0] == '.' && rest_.size() > 1 && is_digit(rest_[1]);
@@ -164,6 +162,11 @@ class Parser {
         return true;
     }
 
+    template <typename... T>
+    [[noreturn]] void fail(std::size_t line, fmt::format_string<T...> what, T&&... with) const {
+        fail_at_line(file_, line, "{}: {}", where_, fmt::format(what, std::forward<T>(with)...));
+    }
+
     [[noreturn]] void refuse(const std::string& allowed) const {
         const bool is_printable = token_.text.size() != 1 ||
                                   std::isprint(static_cast<unsigned char>(token_.text[0])) != 0;
@@ -172,18 +175,17 @@ class Parser {
             : is_printable
                 ? fmt::format("'{}'", printable(token_.text.substr(0, kMostShown)))
                 : fmt::format("the byte 0x{:02X}", static_cast<unsigned char>(token_.text[0]));
-        fail_at_line(
-            file_, token_.line, fmt::format("{}: found {}; allowed: {}", where_, found, allowed));
+        fail(token_.line, "found {}; allowed: {}", found, allowed);
     }
 
     [[noreturn]] void fail_for_want_of_spectra() const {
         const std::string fitting =
             only_ == "*" ? "" : fmt::format(", with a NAME that fits '{}'", only_);
         throw InputError(
-            fmt::format("{}: found no spectrum; allowed: #declare NAME = spline {{ ... }} or "
-                        "#declare NAME = array[36] {{ ... }}{}",
-                        file_,
-                        fitting));
+            "{}: found no spectrum; allowed: #declare NAME = spline {{ ... }} or #declare NAME = "
+            "array[36] {{ ... }}{}",
+            file_,
+            fitting);
     }
 
     void read_declaration() {
@@ -233,32 +235,23 @@ class Parser {
             spectrum.knots.push_back(knot);
         }
         if (fmt::format("{}", spectrum.knots.size()) != kArraySize) {
-            fail_at_line(
-                file_,
-                spectrum.line,
-                fmt::format(
-                    "{}: found {} values; allowed: {}", where_, spectrum.knots.size(), kArraySize));
+            fail(spectrum.line, "found {} values; allowed: {}", spectrum.knots.size(), kArraySize);
         }
     }
 
     void check_wavelength(const SplineKnot& knot) const {
         if (kSplineRange.contains(knot.lambda_nm)) return;
-        fail_at_line(file_,
-                     knot.line,
-                     fmt::format("{}: found the wavelength {}; allowed: {} to {}, in nm",
-                                 where_,
-                                 knot.lambda_nm,
-                                 kSplineRange.first_nm,
-                                 kSplineRange.last_nm));
+        fail(knot.line,
+             "found the wavelength {}; allowed: {} to {}, in nm",
+             knot.lambda_nm,
+             kSplineRange.first_nm,
+             kSplineRange.last_nm);
     }
 
     void sort_knots(SplineSpectrum& spectrum) const {
         auto& knots = spectrum.knots;
         if (knots.size() < 2) {
-            fail_at_line(
-                file_,
-                spectrum.line,
-                fmt::format("{}: found {} knots; a curve needs 2 or more", where_, knots.size()));
+            fail(spectrum.line, "found {} knots; a curve needs 2 or more", knots.size());
         }
         std::stable_sort(knots.begin(), knots.end(), [](const auto& a, const auto& b) {
             return a.lambda_nm < b.lambda_nm;
@@ -268,13 +261,10 @@ class Parser {
                 return !(a.lambda_nm < b.lambda_nm);
             });
         if (twice == knots.end()) return;
-        fail_at_line(
-            file_,
-            std::next(twice)->line,
-            fmt::format("{}: found the wavelength {} again, first in line {}; allowed: once",
-                        where_,
-                        twice->lambda_nm,
-                        twice->line));
+        fail(std::next(twice)->line,
+             "found the wavelength {} again, first in line {}; allowed: once",
+             twice->lambda_nm,
+             twice->line);
     }
 
     // Two spectra may not go to one file, on disks that know no case either.
@@ -282,15 +272,11 @@ class Parser {
         const std::string table = spline_table_name(spectrum.identifier);
         for (const SplineSpectrum& other : found_.spectra) {
             if (spline_table_name(other.identifier) != table) continue;
-            fail_at_line(
-                file_,
-                spectrum.line,
-                fmt::format("{}: found a second spectrum for {}, the first is {} in line {}; "
-                            "allowed: one",
-                            where_,
-                            table,
-                            other.identifier,
-                            other.line));
+            fail(spectrum.line,
+                 "found a second spectrum for {}, the first is {} in line {}; allowed: one",
+                 table,
+                 other.identifier,
+                 other.line);
         }
         found_.spectra.push_back(std::move(spectrum));
     }
@@ -307,21 +293,17 @@ class Parser {
             std::adjacent_find(components.begin(), components.end(), std::not_equal_to<>()) !=
             components.end();
         if (unequal || components.size() < 2 || components.size() > kMaxVector) {
-            fail_at_line(
-                file_,
-                line,
-                fmt::format("{}: found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
-                            where_,
-                            fmt::join(components, ", "),
-                            kMaxVector));
+            fail(line,
+                 "found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
+                 fmt::join(components, ", "),
+                 kMaxVector);
         }
         return components.front();
     }
 
     [[nodiscard]] double finite(double number, std::size_t line) const {
         if (std::isfinite(number)) return number;
-        fail_at_line(
-            file_, line, fmt::format("{}: found a number out of range; allowed: finite", where_));
+        fail(line, "found a number out of range; allowed: finite");
     }
 
     double sum(int depth) {
@@ -387,12 +369,12 @@ void check_values(const std::string& file, const SplineSpectrum& spectrum, Curve
         if (fits) continue;
         fail_at_line(file,
                      knot.line,
-                     fmt::format("{}: found {} at {} nm; allowed for {}: {}",
-                                 spectrum.identifier,
-                                 knot.value,
-                                 knot.lambda_nm,
-                                 role_name(role),
-                                 is_lamp(role) ? "0 or more" : "0 to 1"));
+                     "{}: found {} at {} nm; allowed for {}: {}",
+                     spectrum.identifier,
+                     knot.value,
+                     knot.lambda_nm,
+                     role_name(role),
+                     is_lamp(role) ? "0 or more" : "0 to 1");
     }
 }
 

@@ -2,11 +2,13 @@
 #include "spectral/table.h"
 
 #include "base/atomic_file.h"
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/sha256.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <boost/locale/utf.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -17,7 +19,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 constexpr double kNoUpperBound = std::numeric_limits<double>::infinity();
@@ -56,51 +57,17 @@ const std::vector<RoleRule>& role_rules() {
 }
 
 const RoleRule& rule_of(CurveRole role) {
-    return *std::find_if(role_rules().begin(), role_rules().end(), [role](const RoleRule& rule) {
-        return rule.role == role;
-    });
-}
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r";
-    const std::size_t first = text.find_first_not_of(kBlanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
-// The continuation bytes that follow this first byte of a UTF-8 character; -1 if it is none.
-int continuation_bytes(unsigned char byte) {
-    if (byte < 0x80) return 0;
-    if (byte >= 0xC2 && byte < 0xE0) return 1;
-    if (byte >= 0xE0 && byte < 0xF0) return 2;
-    if (byte >= 0xF0 && byte < 0xF5) return 3;
-    return -1;
+    return *std::ranges::find(role_rules(), role, &RoleRule::role);
 }
 
 bool is_utf8_text(std::string_view line) {
-    int expected = 0;
-    for (const char c : line) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (expected > 0) {
-            if ((byte & 0xC0U) != 0x80) return false;
-            --expected;
-            continue;
-        }
-        if (byte < 0x20 && c != '\t' && c != '\r') return false;
-        expected = continuation_bytes(byte);
-        if (expected < 0) return false;
+    using Utf8 = boost::locale::utf::utf_traits<char>;
+    for (auto at = line.begin(); at != line.end();) {
+        const auto point = Utf8::decode(at, line.end());
+        if (!boost::locale::utf::is_valid_codepoint(point)) return false;
+        if (point < 0x20 && point != '\t' && point != '\r') return false;
     }
-    return expected == 0;
-}
-
-std::vector<std::string_view> split(std::string_view line) {
-    std::vector<std::string_view> fields;
-    for (std::size_t start = 0; start <= line.size();) {
-        const std::size_t end = std::min(line.find(',', start), line.size());
-        fields.push_back(trimmed(line.substr(start, end - start)));
-        start = end + 1;
-    }
-    return fields;
+    return true;
 }
 
 double parse_field(const Table& table,
@@ -112,9 +79,7 @@ double parse_field(const Table& table,
     const auto [stop, error] = std::from_chars(field.data(), end, number);
     if (error != std::errc() || stop != end || !std::isfinite(number)) {
         fail_at_line(
-            table.name,
-            line,
-            fmt::format("{}: found '{}'; allowed: a finite decimal number", column, field));
+            table.name, line, "{}: found '{}'; allowed: a finite decimal number", column, field);
     }
     return number;
 }
@@ -135,14 +100,14 @@ void take_header(Table& table, std::size_t line, const std::vector<std::string_v
         if (column.empty()) fail_at_line(table.name, line, "found a column without a name");
         const bool starts_like_a_name = std::isalpha(static_cast<unsigned char>(column[0])) != 0;
         if (!starts_like_a_name) {
-            fail_at_line(table.name,
-                         line,
-                         fmt::format("found '{}' where a header row such as "
-                                     "wavelength_nm,reflectance is expected",
-                                     column));
+            fail_at_line(
+                table.name,
+                line,
+                "found '{}' where a header row such as wavelength_nm,reflectance is expected",
+                column);
         }
         if (!seen.insert(column).second) {
-            fail_at_line(table.name, line, fmt::format("the column '{}' stands twice", column));
+            fail_at_line(table.name, line, "the column '{}' stands twice", column);
         }
     }
 }
@@ -151,9 +116,9 @@ void take_row(Table& table, std::size_t line, const std::vector<std::string_view
     if (fields.size() != table.columns.size()) {
         fail_at_line(table.name,
                      line,
-                     fmt::format("found {} fields; allowed: {}, as in the header row",
-                                 fields.size(),
-                                 table.columns.size()));
+                     "found {} fields; allowed: {}, as in the header row",
+                     fields.size(),
+                     table.columns.size());
     }
     TableRow row{line, {}};
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -171,9 +136,9 @@ void take_line(Table& table, std::size_t line, std::string_view text) {
     if (content.front() == '#') {
         take_comment(table, content.substr(1));
     } else if (table.columns.empty()) {
-        take_header(table, line, split(content));
+        take_header(table, line, comma_fields(content));
     } else {
-        take_row(table, line, split(content));
+        take_row(table, line, comma_fields(content));
     }
 }
 
@@ -189,10 +154,10 @@ void check_header(const Table& table, const RoleRule& rule) {
     }
     fail_at_line(table.name,
                  table.header_line,
-                 fmt::format("found the header row {}; allowed for {}: {}",
-                             fmt::join(table.columns, ","),
-                             rule.name,
-                             fmt::join(allowed, " or ")));
+                 "found the header row {}; allowed for {}: {}",
+                 fmt::join(table.columns, ","),
+                 rule.name,
+                 fmt::join(allowed, " or "));
 }
 
 void check_wavelengths(const Table& table) {
@@ -203,10 +168,9 @@ void check_wavelengths(const Table& table) {
             fail_at_line(
                 table.name,
                 row.line,
-                fmt::format("wavelength_nm: found {}; allowed: above {}, for wavelengths must "
-                            "increase",
-                            lambda_nm,
-                            last_nm));
+                "wavelength_nm: found {}; allowed: above {}, for wavelengths must increase",
+                lambda_nm,
+                last_nm);
         }
         last_nm = lambda_nm;
     }
@@ -218,13 +182,12 @@ void check_values(const Table& table, const RoleRule& rule) {
             const double value = row.fields[i];
             if (value >= 0.0 && value <= rule.max_value) continue;
             const bool bounded = rule.max_value != kNoUpperBound;
-            fail_at_line(
-                table.name,
-                row.line,
-                fmt::format("{}: found {}; allowed: {}",
-                            table.columns[i],
-                            value,
-                            bounded ? fmt::format("0 to {}", rule.max_value) : "0 or more"));
+            fail_at_line(table.name,
+                         row.line,
+                         "{}: found {}; allowed: {}",
+                         table.columns[i],
+                         value,
+                         bounded ? fmt::format("0 to {}", rule.max_value) : "0 or more");
         }
     }
 }
@@ -243,18 +206,12 @@ std::string Table::text_of(const std::string& key) const {
 }
 
 Table parse_table(const std::string& name, std::string_view text) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     Table table;
     table.name = name;
-    std::size_t line = 0;
-    for (std::size_t start = 0; start < text.size();) {
-        const std::size_t end = std::min(text.find('\n', start), text.size());
-        take_line(table, ++line, text.substr(start, end - start));
-        start = end + 1;
-    }
-    if (table.columns.empty()) fail_at_line(name, line + 1, "the file ends without a header row");
-    if (table.rows.empty()) fail_at_line(name, line + 1, "the file ends without a row of numbers");
+    const std::size_t lines = for_each_line(
+        text, [&](std::size_t line, std::string_view words) { take_line(table, line, words); });
+    if (table.columns.empty()) fail_at_line(name, lines + 1, "the file ends without a header row");
+    if (table.rows.empty()) fail_at_line(name, lines + 1, "the file ends without a row of numbers");
     return table;
 }
 
@@ -270,10 +227,8 @@ std::string_view role_name(CurveRole role) {
 }
 
 std::optional<CurveRole> role_named(std::string_view name) {
-    for (const RoleRule& rule : role_rules()) {
-        if (rule.name == name) return rule.role;
-    }
-    return std::nullopt;
+    const auto found = std::ranges::find(role_rules(), name, &RoleRule::name);
+    return found == role_rules().end() ? std::nullopt : std::optional(found->role);
 }
 
 std::vector<Spectrum> curves_of(const Table& table, CurveRole role) {
@@ -317,9 +272,9 @@ std::vector<CurveRole> roles_of(const Table& table) {
     if (fault) throw *fault;
     fail_at_line(table.name,
                  table.header_line,
-                 fmt::format("found the header row {}; allowed: {}",
-                             fmt::join(table.columns, ","),
-                             fmt::join(headers, ", ")));
+                 "found the header row {}; allowed: {}",
+                 fmt::join(table.columns, ","),
+                 fmt::join(headers, ", "));
 }
 
 }  // namespace aphotic

@@ -3,8 +3,6 @@
 
 #include "base/error.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -318,11 +316,10 @@ FittedRule plan_wavelengths(const QuadratureFitter& fitter,
         }
         return best;
     }
-    throw InputError(
-        fmt::format("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
-                    target.tolerance,
-                    tolerance_to_ask_for(best.promise(target.frame_error)),
-                    best.wavelengths.size()));
+    throw InputError("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
+                     target.tolerance,
+                     tolerance_to_ask_for(best.promise(target.frame_error)),
+                     best.wavelengths.size());
 }
 
 }  // namespace aphotic

@@ -4,9 +4,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -97,33 +96,25 @@ Estimate estimate_of(std::span<float> samples, Average average, double trim) {
 
 // A few places at a time, so that each image is read by whole cache lines.
 constexpr std::size_t kPlaces = 64;
-constexpr std::size_t kPlacesOfAPart = 64 * kPlaces;  // that a thread takes at once
 
-struct Places {
-    std::size_t first = 0;
-    std::size_t last = 0;  // one beyond
-};
-
+// Of `many` places from the first on, up to kPlaces.
 void average_places(std::span<const std::vector<float>> images,
-                    Places places,
+                    std::size_t first,
+                    std::size_t many,
                     Average average,
                     double trim,
                     Observed& observed) {
-    std::vector<float> samples(kPlaces * images.size());
-    std::vector<std::size_t> counts(kPlaces);
-    for (std::size_t first = places.first; first < places.last; first += kPlaces) {
-        const std::size_t many = std::min(kPlaces, places.last - first);
-        std::ranges::fill(counts, 0);
-        for (const std::vector<float>& image : images) {
-            for (std::size_t i = 0; i < many; ++i) {
-                if (std::isnan(image[first + i])) continue;
-                samples[i * images.size() + counts[i]++] = image[first + i];
-            }
-        }
+    std::vector<float> samples(many * images.size());
+    std::array<std::size_t, kPlaces> counts{};
+    for (const std::vector<float>& image : images) {
         for (std::size_t i = 0; i < many; ++i) {
-            const auto of_place = std::span(samples).subspan(i * images.size(), counts[i]);
-            put(observed, first + i, estimate_of(of_place, average, trim), counts[i]);
+            if (std::isnan(image[first + i])) continue;
+            samples[i * images.size() + counts[i]++] = image[first + i];
         }
+    }
+    for (std::size_t i = 0; i < many; ++i) {
+        const auto of_place = std::span(samples).subspan(i * images.size(), counts[i]);
+        put(observed, first + i, estimate_of(of_place, average, trim), counts[i]);
     }
 }
 
@@ -158,11 +149,10 @@ Observed average_of(std::span<const std::vector<float>> images,
     assert(trim >= 0.0 && trim < 0.5 && threads > 0);
     const std::size_t samples = images.empty() ? 0 : images.front().size();
     Observed observed = unobserved(samples);
-    const std::size_t parts = (samples + kPlacesOfAPart - 1) / kPlacesOfAPart;
+    const std::size_t parts = (samples + kPlaces - 1) / kPlaces;
     parallel_for(parts, static_cast<std::size_t>(threads), [&](std::size_t part, std::size_t) {
-        const std::size_t first = part * kPlacesOfAPart;
-        const Places places{.first = first, .last = std::min(first + kPlacesOfAPart, samples)};
-        average_places(images, places, average, trim, observed);
+        const std::size_t first = part * kPlaces;
+        average_places(images, first, std::min(kPlaces, samples - first), average, trim, observed);
     });
     return observed;
 }
@@ -191,8 +181,7 @@ void divide_by_own_mean(RawImage& image) {
         count += 1.0;
     }
     const double mean = sum / count;
-    if (!(mean > 0.0))
-        throw InputError(fmt::format("its mean is {:.3g}; allowed: above 0, to divide by", mean));
+    if (!(mean > 0.0)) throw InputError("its mean is {:.3g}; allowed: above 0, to divide by", mean);
     for (float& sample : image.samples) sample = static_cast<float>(sample / mean);
 }
 

@@ -6,8 +6,6 @@
 #include "survey/site_planes.h"
 #include "survey/slow_light.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace aphotic {
@@ -60,8 +58,7 @@ std::vector<float> BaselineCorrector::without_pattern(const std::vector<float>& 
 
 RawImage BaselineCorrector::corrected(const RawImage& image, double altitude_m) const {
     if (learns() && learned(altitude_m) == 0) {
-        throw InputError(
-            fmt::format("no image of the survey was learned at {:.2f} m of altitude", altitude_m));
+        throw InputError("no image of the survey was learned at {:.2f} m of altitude", altitude_m);
     }
     std::vector<SitePlane> planes = site_planes(image);
     for (std::size_t site = 0; site < planes.size(); ++site) {

@@ -21,7 +21,6 @@
 #include <array>
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <string_view>
 #include <vector>
 

@@ -143,9 +143,8 @@ class BaselineWork {
     [[nodiscard]] static float white_of(const SurveyImage& taken) {
         const float white = taken.levels.white - taken.levels.black;
         if (std::isfinite(white) && white > 0.0F) return white;
-        throw InputError(
-            fmt::format("--white-level: found {}; allowed: over the black level, or --format exr",
-                        taken.levels.white));
+        throw InputError("--white-level: found {}; allowed: over the black level, or --format exr",
+                         taken.levels.white);
     }
 
     [[nodiscard]] static std::vector<std::uint8_t> doubts_of(const SurveyImage& taken) {
@@ -182,16 +181,14 @@ BaselineReport correct_by_baseline(const Survey& survey,
                                    const BaselineRunOptions& options,
                                    const RunWatch& watch) {
     if (needs_altitude(options.baseline) && !survey.navigation) {
-        throw InputError(fmt::format("{}: needs --nav, for the altitude of each image",
-                                     name_of(options.baseline)));
+        throw InputError("{}: needs --nav, for the altitude of each image",
+                         name_of(options.baseline));
     }
     const ResultFolder folder(options.run, survey.files);
     const fs::path notes = options.run.folder / kBaselineNotes;
     BaselineReport report{.baseline = name_of(options.baseline),
                           .settings = settings_of(survey, options),
-                          .folder = options.run.folder.string(),
-                          .looks_wrong = {},
-                          .run = {}};
+                          .folder = options.run.folder.string()};
     report.looks_wrong = suspicions_of(survey.files, survey.camera, options.run.jobs, watch);
     // Before the first image: also what an interrupted run leaves is no survey.
     write_text_file(notes, json_text(to_json(report)));

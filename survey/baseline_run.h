@@ -37,8 +37,8 @@ struct BaselineReport {
     std::string_view baseline;
     nlohmann::ordered_json settings;
     std::string folder;
-    std::vector<Suspicion> looks_wrong;
-    std::optional<RunOutcome> run;  // none: it has not ended
+    std::vector<Suspicion> looks_wrong{};
+    std::optional<RunOutcome> run{};  // none: it has not ended
 };
 [[nodiscard]] nlohmann::ordered_json to_json(const BaselineReport& report);
 

@@ -5,8 +5,6 @@
 #include "image/image_size.h"
 #include "lightmap/cone_edge.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +12,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 std::span<const float> plane_of(const Lightmap& map, int channel) {
@@ -58,11 +55,11 @@ void require_finite(const std::vector<float>& samples, int width_px, std::string
         std::ranges::find_if(samples, [](float sample) { return !std::isfinite(sample); });
     if (found == samples.end()) return;
     const auto index = found - samples.begin();
-    throw InputError(fmt::format("{} is {} at sample {}, {}; allowed: finite numbers",
-                                 what,
-                                 *found,
-                                 index % width_px,
-                                 index / width_px));
+    throw InputError("{} is {} at sample {}, {}; allowed: finite numbers",
+                     what,
+                     *found,
+                     index % width_px,
+                     index / width_px);
 }
 
 float brightest(const Lightmap& map, int channel) {

@@ -59,8 +59,7 @@ std::optional<SurveyGain> known_gain(const Survey& survey,
     if (!options.gain.empty()) {
         const auto& given = options.gain;
         return SurveyGain{.gain = {given.front(), given[given.size() / 2], given.back()},
-                          .middle = wanted_middle(survey, options),
-                          .images = {}};
+                          .middle = wanted_middle(survey, options)};
     }
     const fs::path notes = options.run.folder / kCorrectionNotes;
     return fs::exists(notes) ? kept_gain(read_text_file(notes), settings_sha256) : std::nullopt;

@@ -13,7 +13,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 ImageLook look_at_image(const ImageFile& file, const Survey& survey, double least_light) {
@@ -77,7 +76,7 @@ SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWa
         watch.progress("looking at the survey",
                        static_cast<double>(++count) / static_cast<double>(choices.size()));
     });
-    SurveyLook result{.images = {}, .count = choices.size(), .first_why = {}};
+    SurveyLook result{.count = choices.size()};
     for (std::size_t i = 0; i < choices.size(); ++i) {
         if (looks[i]) {
             result.images.push_back(std::move(*looks[i]));
@@ -95,9 +94,7 @@ std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
                                      const RunWatch& watch) {
     constexpr std::size_t kImages = 8;
     const SurveyLook look =
-        look_at({.files = files, .navigation = {}, .light = {}, .camera = camera},
-                {.most_images = kImages, .jobs = jobs},
-                watch);
+        look_at({.files = files, .camera = camera}, {.most_images = kImages, .jobs = jobs}, watch);
     std::vector<Suspicion> found = suspicions(look.images, camera.mosaic);
     watch.looks_wrong(found);
     return found;

@@ -24,9 +24,9 @@ struct LookRequest {
 };
 
 struct SurveyLook {
-    std::vector<ImageLook> images;  // those that can be used
-    std::size_t count = 0;          // that were looked at
-    std::string first_why;          // why the first of the others cannot, and which; or empty
+    std::vector<ImageLook> images{};  // those that can be used
+    std::size_t count = 0;            // that were looked at
+    std::string first_why{};          // why the first of the others cannot, and which; or empty
 };
 
 [[nodiscard]] SurveyLook look_at(const Survey& survey,

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/json_text.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -12,7 +11,6 @@
 #include <cmath>
 
 namespace aphotic {
-
 namespace {
 
 double median(std::vector<double> numbers) {
@@ -25,10 +23,10 @@ double median(std::vector<double> numbers) {
 
 SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     if (look.images.empty()) {
-        throw InputError(fmt::format(
-            "none of the {} images looked at can be corrected; {}", look.count, look.first_why));
+        throw InputError(
+            "none of the {} images looked at can be corrected; {}", look.count, look.first_why);
     }
-    SurveyGain gain{.gain = {}, .middle = middle, .images = {}};
+    SurveyGain gain{.middle = middle};
     std::array<std::vector<double>, kChannels> quotients;
     for (const ImageLook& image : look.images) {
         const PerChannel& quotient = image.quotient;
@@ -39,11 +37,11 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     }
     if (gain.images.empty()) {
         throw InputError(
-            fmt::format("no gain can be taken from these images: of {} looked at, none has light "
-                        "and a map in every channel; allowed: --gain{}{}",
-                        look.count,
-                        look.first_why.empty() ? "" : "; ",
-                        look.first_why));
+            "no gain can be taken from these images: of {} looked at, none has light and a map in "
+            "every channel; allowed: --gain{}{}",
+            look.count,
+            look.first_why.empty() ? "" : "; ",
+            look.first_why);
     }
     for (std::size_t c = 0; c < kChannels; ++c)
         gain.gain[c] = gain.middle[c] / median(quotients[c]);

@@ -18,7 +18,7 @@ namespace aphotic {
 struct SurveyGain {
     PerChannel gain{};
     PerChannel middle{};
-    std::vector<std::string> images;  // that it was taken from; none when it was given
+    std::vector<std::string> images{};  // that it was taken from; none when it was given
 };
 
 // The median of the middle quotients of the images that were looked at. An InputError when there is

@@ -4,8 +4,6 @@
 #include "base/error.h"
 #include "base/words.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
@@ -42,9 +40,9 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Imag
     std::error_code none;
     if (fs::equivalent(folder, output, none)) {
         throw InputError(
-            fmt::format("{}: found the folder to write to; allowed: folders of images, "
-                        "with the results elsewhere",
-                        folder.string()));
+            "{}: found the folder to write to; allowed: folders of images, with the results "
+            "elsewhere",
+            folder.string());
     }
     const auto first = std::ssize(files);
     const auto options = fs::directory_options::follow_directory_symlink;
@@ -62,7 +60,7 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Imag
             {.source = file, .name = without_extension(file.lexically_relative(folder))});
     }
     if (std::ssize(files) == first) {
-        throw InputError(fmt::format("{}: the folder holds no image", folder.string()));
+        throw InputError("{}: the folder holds no image", folder.string());
     }
     std::ranges::sort(files.begin() + first, files.end(), {}, &ImageFile::name);
 }
@@ -75,7 +73,7 @@ std::vector<ImageFile> image_files(const std::vector<std::string>& arguments,
     for (const std::string& argument : arguments) {
         std::error_code none;
         if (!fs::exists(argument, none)) {
-            throw InputError(fmt::format("{}: there is no such file or folder", argument));
+            throw InputError("{}: there is no such file or folder", argument);
         }
         if (fs::is_directory(argument, none)) {
             add_folder(argument, output, files);
@@ -88,10 +86,10 @@ std::vector<ImageFile> image_files(const std::vector<std::string>& arguments,
     for (const ImageFile& file : files) {
         const auto [other, is_new] = by_name.emplace(file.name, &file);
         if (is_new) continue;
-        throw InputError(fmt::format("{} and {} would both become {}",
-                                     other->second->source.string(),
-                                     file.source.string(),
-                                     (output / file.name).string()));
+        throw InputError("{} and {} would both become {}",
+                         other->second->source.string(),
+                         file.source.string(),
+                         (output / file.name).string());
     }
     return files;
 }

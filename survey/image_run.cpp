@@ -35,8 +35,8 @@ void require_sources_stay(const std::vector<ImageFile>& files, const ImageRunOpt
             const fs::path written = options.folder / result;
             if (!sources.contains(place_of(written))) continue;
             throw InputError(
-                fmt::format("{}: would be overwritten by the result; allowed: another place for -o",
-                            written.string()));
+                "{}: would be overwritten by the result; allowed: another place for -o",
+                written.string());
         }
     }
 }
@@ -71,6 +71,12 @@ std::string state_of(const fs::path& image) {
     if (size_error) throw InputError(size_error.message());
     if (time_error) throw InputError(time_error.message());
     return fmt::format("{} {}", size, time);
+}
+
+nlohmann::ordered_json to_json(const std::vector<Skipped>& skipped) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const Skipped& one : skipped) json.push_back({{"image", one.image}, {"why", one.why}});
+    return json;
 }
 
 double RunOutcome::doubtful_share(std::string_view doubt) const {

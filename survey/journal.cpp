@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/json_text.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -35,7 +34,6 @@ std::optional<std::pair<std::string, JournalEntry>> entry_of(const std::string& 
     try {
         const nlohmann::json read = parse_json(line, "journal");
         JournalEntry entry{.digest = read.at("digest").get<std::string>(),
-                           .file_bytes = {},
                            .counts = read.at("counts").get<Counts>()};
         for (const auto& [file, bytes] : read.at("files").items()) {
             if (!bytes.is_number_unsigned()) return std::nullopt;
@@ -93,14 +91,13 @@ void Journal::note(const std::string& name,
                    const std::string& digest,
                    const std::vector<fs::path>& files,
                    const Counts& counts) {
-    JournalEntry entry{.digest = digest, .file_bytes = {}, .counts = counts};
+    JournalEntry entry{.digest = digest, .counts = counts};
     for (const fs::path& file : files) {
         entry.file_bytes[file.string()] = fs::file_size(file_.parent_path() / file);
     }
     out_ << line_of(name, entry) << std::flush;
     if (!out_) {
-        throw RunError(
-            fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(errno)));
+        throw RunError("{}: cannot be written: {}", file_.string(), std::strerror(errno));
     }
     entries_.insert_or_assign(name, std::move(entry));
 }

@@ -24,7 +24,7 @@ using Counts = std::map<std::string, double>;
 
 struct JournalEntry {
     std::string digest;
-    std::map<std::string, std::uintmax_t> file_bytes;
+    std::map<std::string, std::uintmax_t> file_bytes{};
     Counts counts;
 };
 

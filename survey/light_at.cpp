@@ -9,15 +9,12 @@
 #include "spectral/light_family.h"
 #include "survey/survey_check.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <set>
 
 namespace aphotic {
-
 namespace {
 
 struct RigLight {
@@ -112,14 +109,9 @@ LightAt light_of_map(const std::filesystem::path& map_file) {
         const std::vector<std::string> channels = reader.channels();
         for (const std::string& name : kNames) {
             if (std::ranges::find(channels, name) != channels.end()) continue;
-            throw InputError(
-                fmt::format("{}: has no channel {}; needed: R, G, B", map_file.string(), name));
+            throw InputError("{}: has no channel {}; needed: R, G, B", map_file.string(), name);
         }
-        map.width_px = reader.width_px();
-        map.height_px = reader.height_px();
-        map.samples.resize(kNames.size() * static_cast<std::size_t>(map.width_px) *
-                           static_cast<std::size_t>(map.height_px));
-        reader.read_rows(0, map.height_px, kNames, map.samples);
+        map = {reader.width_px(), reader.height_px(), reader.planes(kNames)};
     } catch (const RunError& error) {
         throw InputError(error.what());  // the user named it
     }
@@ -130,18 +122,12 @@ LightAt light_of_map(const std::filesystem::path& map_file) {
     return {.digest = sha256_of_file(map_file),
             .size = {map.width_px, map.height_px},
             .map = [map](const Sled&) { return map; },
-            .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); },
-            .map_as_radians = {},
-            .floor_colour = std::nullopt};
+            .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); }};
 }
 
 PerChannel floor_colour(const Rig& rig) {
     constexpr double kError = 1e-6;
-    LightFamily family{.sources = {},
-                       .water = rig.water,
-                       .shortest_path_m = 0.0,
-                       .longest_path_m = 0.0,
-                       .tilt = std::nullopt};
+    LightFamily family{.water = rig.water, .shortest_path_m = 0.0, .longest_path_m = 0.0};
     for (const Strobe& strobe : rig.strobes) {
         family.sources.push_back({strobe.spectrum});
         family.sources.push_back({strobe.spectrum, rig.seafloor.reflectance});

@@ -28,8 +28,8 @@ struct LightAt {
     std::function<std::vector<std::uint8_t>(const Sled& sled, int within_px)> edges;
     // The map of tilts that the navigation tells in radians instead of degrees; none where that
     // puts a strobe under the floor. Empty where they are surely degrees.
-    std::function<std::optional<Lightmap>(const Sled& sled)> map_as_radians;
-    std::optional<PerChannel> floor_colour;  // none: nothing is known of the floor
+    std::function<std::optional<Lightmap>(const Sled& sled)> map_as_radians{};
+    std::optional<PerChannel> floor_colour{};  // none: nothing is known of the floor
 };
 
 // For the poses of these images: those that have none are passed over here.

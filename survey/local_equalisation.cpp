@@ -3,8 +3,6 @@
 
 #include "base/error.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -70,39 +68,28 @@ Between tiles_about(std::size_t pixel, std::size_t pixels, std::size_t tiles) {
             .share = inside - static_cast<double>(first)};
 }
 
-class Tiles {
-  public:
-    Tiles(std::span<const float> plane, std::size_t width, std::size_t tiles, Scale scale)
-        : plane_(plane),
-          width_(width),
-          height_(plane.size() / width),
-          tiles_(tiles),
-          scale_(scale) {}
-
-    [[nodiscard]] Shares shares(std::size_t across, std::size_t down, double clip) const {
-        std::array<double, kBins> counts{};
-        double samples = 0.0;
-        for (std::size_t row = first(down, height_); row < first(down + 1, height_); ++row) {
-            for (std::size_t column = first(across, width_); column < first(across + 1, width_);
-                 ++column) {
-                counts[bin_at(scale_.place(plane_[row * width_ + column]))] += 1.0;
-                samples += 1.0;
-            }
+// Of the tile's samples, by bin: F.
+Shares shares_in_tile(std::span<const float> plane,
+                      std::size_t width,
+                      std::size_t tile,
+                      const LocalEqualisation& options,
+                      const Scale& scale) {
+    const auto tiles = static_cast<std::size_t>(options.tiles);
+    const std::size_t height = plane.size() / width;
+    const std::size_t across = tile % tiles;
+    const std::size_t down = tile / tiles;
+    std::array<double, kBins> counts{};
+    double samples = 0.0;
+    for (std::size_t row = down * height / tiles; row < (down + 1) * height / tiles; ++row) {
+        const std::size_t first = across * width / tiles;
+        const std::size_t end = (across + 1) * width / tiles;
+        for (const float sample : plane.subspan(row * width + first, end - first)) {
+            counts[bin_at(scale.place(sample))] += 1.0;
+            samples += 1.0;
         }
-        return shares_of(counts, samples, clip);
     }
-
-  private:
-    [[nodiscard]] std::size_t first(std::size_t tile, std::size_t pixels) const {
-        return tile * pixels / tiles_;
-    }
-
-    std::span<const float> plane_;
-    std::size_t width_;
-    std::size_t height_;
-    std::size_t tiles_;
-    Scale scale_;
-};
+    return shares_of(counts, samples, options.clip);
+}
 
 }  // namespace
 
@@ -114,19 +101,18 @@ std::vector<float> locally_equalised(std::span<const float> plane,
     const auto tiles = static_cast<std::size_t>(options.tiles);
     if (tiles > std::min(width, height)) {
         throw InputError(
-            fmt::format("local equalisation: found {} tiles; allowed: at most {}, the "
-                        "pixels of the image's shorter side",
-                        tiles,
-                        std::min(width, height)));
+            "local equalisation: found {} tiles; allowed: at most {}, the pixels of the image's "
+            "shorter side",
+            tiles,
+            std::min(width, height));
     }
     const auto ends = std::ranges::minmax(plane);
     const Scale scale{.least = ends.min, .most = ends.max};
     std::vector<float> result(plane.begin(), plane.end());
     if (scale.least == scale.most) return result;
-    const Tiles parts(plane, width, tiles, scale);
     std::vector<Shares> shares;
     for (std::size_t tile = 0; tile < tiles * tiles; ++tile)
-        shares.push_back(parts.shares(tile % tiles, tile / tiles, options.clip));
+        shares.push_back(shares_in_tile(plane, width, tile, options, scale));
 
     for (std::size_t row = 0; row < height; ++row) {
         const Between down = tiles_about(row, height, tiles);

@@ -11,7 +11,6 @@
 #include <utility>
 
 namespace aphotic {
-
 namespace {
 
 // What a rig file allows, too.
@@ -33,7 +32,7 @@ std::string key_of(std::string_view image) {
                                const ImagePose& pose,
                                const std::string& what) {
     if (pose.line > 0) fail_at_line(source, pose.line, what);
-    throw InputError(fmt::format("{}: {}", source, what));
+    throw InputError("{}: {}", source, what);
 }
 
 void require(const std::string& source,
@@ -73,11 +72,10 @@ Navigation::Navigation(std::string source, const std::vector<ImagePose>& poses, 
 const ImagePose& Navigation::pose_of(const std::filesystem::path& image) const {
     const auto found = poses_.find(key_of(image.string()));
     if (found == poses_.end()) {
-        throw InputError(fmt::format(
+        throw InputError(
             "{} has no line for it{}",
             source_,
-            nameless_line_ > 0 ? fmt::format("; line {} has no image's name", nameless_line_)
-                               : ""));
+            nameless_line_ > 0 ? fmt::format("; line {} has no image's name", nameless_line_) : "");
     }
     const ImagePose& pose = found->second;
     const Sled& sled = pose.sled;
@@ -86,10 +84,10 @@ const ImagePose& Navigation::pose_of(const std::filesystem::path& image) const {
     require(source_, pose, "pitch_deg", sled.pitch_rad / kRadiansPerDegree, kTilt_deg);
     require(source_, pose, "roll_deg", sled.roll_rad / kRadiansPerDegree, kTilt_deg);
     if (sled.altitude_m < least_m_ || sled.altitude_m > most_m_) {
-        throw InputError(fmt::format("altitude_m: found {}; allowed by --altitude: {} to {}",
-                                     sled.altitude_m,
-                                     least_m_,
-                                     most_m_));
+        throw InputError("altitude_m: found {}; allowed by --altitude: {} to {}",
+                         sled.altitude_m,
+                         least_m_,
+                         most_m_);
     }
     return pose;
 }

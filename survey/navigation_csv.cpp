@@ -2,6 +2,7 @@
 #include "survey/navigation_csv.h"
 
 #include "base/atomic_file.h"
+#include "base/csv.h"
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/nearest.h"
@@ -19,33 +20,18 @@
 #include <vector>
 
 namespace aphotic {
-
 namespace {
-
-constexpr std::string_view kBlanks = " \t\r";
 
 constexpr std::string_view kImage = "image";
 constexpr std::string_view kAltitude = "altitude_m";
 constexpr std::string_view kPitch = "pitch_deg";
 constexpr std::string_view kRoll = "roll_deg";
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(kBlanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
-std::string_view unquoted(std::string_view field) {
-    const bool is_quoted = field.size() > 1 && field.front() == '"' && field.back() == '"';
-    return is_quoted ? field.substr(1, field.size() - 2) : field;
-}
-
-std::vector<std::string_view> comma_fields(std::string_view line) {
-    std::vector<std::string_view> fields;
-    for (std::size_t start = 0; start <= line.size();) {
-        const std::size_t end = std::min(line.find(',', start), line.size());
-        fields.push_back(trimmed(unquoted(trimmed(line.substr(start, end - start)))));
-        start = end + 1;
+std::vector<std::string_view> unquoted_fields(std::string_view line) {
+    std::vector<std::string_view> fields = comma_fields(line);
+    for (std::string_view& field : fields) {
+        const bool is_quoted = field.size() > 1 && field.front() == '"' && field.back() == '"';
+        if (is_quoted) field = trimmed(field.substr(1, field.size() - 2));
     }
     return fields;
 }
@@ -82,7 +68,7 @@ ColumnLayout layout_of(const std::string& name,
                        const std::vector<std::string_view>& columns) {
     for (const std::string_view column : {kImage, kAltitude, kPitch, kRoll}) {
         if (std::ranges::count(columns, column) > 1) {
-            fail_at_line(name, line, fmt::format("the column '{}' stands twice", column));
+            fail_at_line(name, line, "the column '{}' stands twice", column);
         }
     }
     for (const std::string_view needed : {kImage, kAltitude}) {
@@ -91,20 +77,19 @@ ColumnLayout layout_of(const std::string& name,
         const std::string near = nearest_name(needed, known);
         fail_at_line(name,
                      line,
-                     fmt::format("found the columns {}; needed: '{}'{}; allowed besides: {}, {}",
-                                 fmt::join(columns, ","),
-                                 needed,
-                                 near.empty() ? "" : fmt::format(" (is it '{}'?)", near),
-                                 kPitch,
-                                 kRoll));
+                     "found the columns {}; needed: '{}'{}; allowed besides: {}, {}",
+                     fmt::join(columns, ","),
+                     needed,
+                     near.empty() ? "" : fmt::format(" (is it '{}'?)", near),
+                     kPitch,
+                     kRoll);
     }
     // Of an optional one under another name, the rig's would be taken and nobody be told.
     for (const auto& [wanted, word] : {std::pair{kPitch, "pitch"}, std::pair{kRoll, "roll"}}) {
         if (column_named(columns, wanted)) continue;
         for (const std::string_view column : columns) {
             if (!column.starts_with(word)) continue;
-            fail_at_line(
-                name, line, fmt::format("found the column '{}'; allowed: '{}'", column, wanted));
+            fail_at_line(name, line, "found the column '{}'; allowed: '{}'", column, wanted);
         }
     }
     return {.has_commas = true,
@@ -141,7 +126,7 @@ ImagePose pose_in(std::size_t line,
                   const ColumnLayout& layout,
                   const std::vector<std::string_view>& fields,
                   const Sled& rig_sled) {
-    ImagePose pose{.image = {}, .sled = rig_sled, .line = line, .fault = {}};
+    ImagePose pose{.sled = rig_sled, .line = line};
     if (layout.image < fields.size()) pose.image = std::string(fields[layout.image]);
     if (fields.size() != layout.fields) {
         pose.fault =
@@ -166,34 +151,27 @@ ImagePose pose_in(std::size_t line,
 Navigation parse_navigation_csv(const std::string& name,
                                 std::string_view text,
                                 const Sled& rig_sled) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     std::vector<ImagePose> poses;
     ToldAngles told;
     std::optional<ColumnLayout> layout;
-    std::size_t line = 0;
-    for (std::size_t start = 0; start < text.size();) {
-        const std::size_t end = std::min(text.find('\n', start), text.size());
-        const std::string_view content = trimmed(text.substr(start, end - start));
-        ++line;
-        start = end + 1;
+    const std::size_t lines = for_each_line(text, [&](std::size_t line, std::string_view words) {
+        const std::string_view content = trimmed(words);
         // Spreadsheets end a table with rows of commas alone.
         const bool is_empty = content.find_first_not_of(',') == std::string_view::npos;
-        if (is_empty || content.front() == '#') continue;
-        if (!layout && content.find(',') != std::string_view::npos) {
-            layout = layout_of(name, line, comma_fields(content));
+        if (is_empty || content.front() == '#') return;
+        const bool has_commas = content.find(',') != std::string_view::npos;
+        if (!layout && has_commas) {
+            layout = layout_of(name, line, unquoted_fields(content));
             told = {.pitch = layout->pitch.has_value(), .roll = layout->roll.has_value()};
-            continue;
+            return;
         }
         if (!layout) layout = ColumnLayout{};
-        poses.push_back(pose_in(line,
-                                *layout,
-                                layout->has_commas ? comma_fields(content) : blank_fields(content),
-                                rig_sled));
-    }
+        const auto fields = layout->has_commas ? unquoted_fields(content) : blank_fields(content);
+        poses.push_back(pose_in(line, *layout, fields, rig_sled));
+    });
     Navigation navigation(name, poses, told);
     if (navigation.size() == 0)
-        fail_at_line(name, line + 1, "the file ends without a line of an image");
+        fail_at_line(name, lines + 1, "the file ends without a line of an image");
     return navigation;
 }
 

@@ -15,7 +15,6 @@
 #include <string_view>
 
 namespace aphotic {
-
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -78,8 +77,7 @@ struct Pass {
                 if (like.width_px == 0) {
                     like = {.width_px = image.width_px,
                             .height_px = image.height_px,
-                            .mosaic = image.mosaic,
-                            .samples = {}};
+                            .mosaic = image.mosaic};
                 }
                 require_size(image, like.width_px, like.height_px, "as the first image");
                 use(image);
@@ -142,9 +140,9 @@ Observed average_by_bands(Pass& pass, Selection& selection, const ObservationOpt
             share(first),
             share(first + many));
         if (selection.skipped.size() > skipped) {
-            throw RunError(fmt::format("{}: changed while it was read: {}",
-                                       selection.skipped.back().image,
-                                       selection.skipped.back().why));
+            throw RunError("{}: changed while it was read: {}",
+                           selection.skipped.back().image,
+                           selection.skipped.back().why);
         }
         const Observed part =
             average_of(images, options.average, options.trim, static_cast<int>(options.jobs));
@@ -166,11 +164,11 @@ void require_images(const Selection& selection, const ObservationOptions& option
                                                 selection.skipped.size(),
                                                 selection.skipped.front().image,
                                                 selection.skipped.front().why);
-    throw InputError(fmt::format("no image to be used within {} m of {} m{}{}",
-                                 options.within_m,
-                                 options.altitude_m,
-                                 others,
-                                 first));
+    throw InputError("no image to be used within {} m of {} m{}{}",
+                     options.within_m,
+                     options.altitude_m,
+                     others,
+                     first);
 }
 
 Sled mean_sled(const std::vector<ChosenImage>& images) {

@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 
-#include <fmt/format.h>
 #include <Eigen/Cholesky>
 
 #include <utility>
@@ -43,13 +42,13 @@ PolynomialSurface::PolynomialSurface(int width_px, int height_px, int order)
       along_y_(legendre(height_px, order)),
       moments_(Eigen::MatrixXd::Zero(order + 1, order + 1)) {
     if (width_px <= order || height_px <= order) {
-        throw InputError(fmt::format(
+        throw InputError(
             "a polynomial of order {}: found an image of {} x {} pixels; allowed: {} or more each "
             "way",
             order,
             width_px,
             height_px,
-            order + 1));
+            order + 1);
     }
 }
 

@@ -4,15 +4,11 @@
 #include "base/error.h"
 #include "image/image_size.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <utility>
 
 namespace aphotic {
-
 namespace {
 
 struct MosaicSites {
@@ -81,12 +77,12 @@ int channel_at(Mosaic mosaic, int column, int row) {
 
 void require_size(const RawImage& image, int width_px, int height_px, std::string_view as) {
     if (image.width_px == width_px && image.height_px == height_px) return;
-    throw InputError(fmt::format("found {} x {} pixels; allowed: {} x {}, {}",
-                                 image.width_px,
-                                 image.height_px,
-                                 width_px,
-                                 height_px,
-                                 as));
+    throw InputError("found {} x {} pixels; allowed: {} x {}, {}",
+                     image.width_px,
+                     image.height_px,
+                     width_px,
+                     height_px,
+                     as);
 }
 
 std::vector<float> demosaiced(std::span<const float> plane,

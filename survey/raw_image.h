@@ -10,7 +10,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -30,7 +29,7 @@ struct RawImage {
     int width_px = 0;
     int height_px = 0;
     Mosaic mosaic = Mosaic::None;
-    std::vector<float> samples;  // row by row; without a mosaic R, G, B planar
+    std::vector<float> samples{};  // row by row; without a mosaic R, G, B planar
 
     [[nodiscard]] std::size_t pixels() const {
         return static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);

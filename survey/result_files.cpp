@@ -81,9 +81,7 @@ void write_mask(const fs::path& file, const CorrectedImage& result, Compression 
                      .channels = {"Y"},
                      .planes = plane,
                      .type = SampleType::Bits8,
-                     .compression = compression,
-                     .description = "",
-                     .date_time = ""});
+                     .compression = compression});
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace aphotic {
 
 struct Survey {
     std::vector<ImageFile> files;
-    std::optional<Navigation> navigation;  // none: nothing here depends on a pose
-    LightAt light;                         // without maps, as by default, it is not known
+    std::optional<Navigation> navigation{};  // none: nothing here depends on a pose
+    LightAt light{};                         // without maps, as by default, it is not known
     CameraNumbers camera;
 
     // An InputError when the navigation has no pose for it.

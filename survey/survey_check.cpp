@@ -4,6 +4,7 @@
 #include "image/image_size.h"
 
 #include <fmt/format.h>
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <numeric>
 
 namespace aphotic {
-
 namespace {
 
 constexpr std::size_t kRed = 0;
@@ -63,20 +63,14 @@ struct Sums {
 };
 
 Sums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
-    const auto count = static_cast<double>(x.size());
-    double mean_x = 0.0;
-    double mean_y = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        mean_x += x[i] / count;
-        mean_y += y[i] / count;
-    }
-    Sums sums;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        sums.xx += (x[i] - mean_x) * (x[i] - mean_x);
-        sums.xy += (x[i] - mean_x) * (y[i] - mean_y);
-        sums.yy += (y[i] - mean_y) * (y[i] - mean_y);
-    }
-    return sums;
+    if (x.empty()) return {};
+    const auto less_mean = [](const std::vector<double>& numbers) -> Eigen::ArrayXd {
+        const Eigen::Map<const Eigen::ArrayXd> all(numbers.data(), std::ssize(numbers));
+        return all - all.mean();
+    };
+    const Eigen::ArrayXd dx = less_mean(x);
+    const Eigen::ArrayXd dy = less_mean(y);
+    return {.xx = dx.square().sum(), .xy = (dx * dy).sum(), .yy = dy.square().sum()};
 }
 
 // y = slope x + const by least squares; no line of too few points, or of points too near each
@@ -137,14 +131,14 @@ void check_white(std::span<const ImageLook> looks, std::vector<Suspicion>& found
         share < kPileShare || all.at_top < kPile * all.just_below / all.numbers) {
         return;
     }
-    found.push_back({.about = "white-level",
-                     .what = fmt::format(
-                         "{:.2g} % of the samples are {:g}, the largest number of all, as where a "
-                         "sensor is saturated{}",
-                         kPercent * share,
-                         all.top,
-                         std::isfinite(white) ? fmt::format("; the white level is {:g}", white)
-                                              : "; there is no white level")});
+    found.push_back(
+        {.about = "white-level",
+         .what = fmt::format("{:.2g} % of the samples are {:g}, the largest number of all, as "
+                             "where a sensor is saturated{}",
+                             kPercent * share,
+                             all.top,
+                             std::isfinite(white) ? fmt::format("; the white level is {:g}", white)
+                                                  : "; there is no white level")});
 }
 
 double ratio_of(double a, double b) {
@@ -170,13 +164,12 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
     const double other = median_of(others) - 1.0;
     if (green < kGreen || other > kOtherSites * green) return;
     found.push_back({.about = "bayer",
-                     .what = fmt::format(
-                         "the two sites that {} makes green differ by {:.2g} %, the other two by "
-                         "{:.2g} %: the pattern is {}",
-                         mosaic_name(mosaic),
-                         kPercent * green,
-                         kPercent * other,
-                         is_green_beside ? "GRBG or GBRG" : "RGGB or BGGR")});
+                     .what = fmt::format("the two sites that {} makes green differ by {:.2g} %, "
+                                         "the other two by {:.2g} %: the pattern is {}",
+                                         mosaic_name(mosaic),
+                                         kPercent * green,
+                                         kPercent * other,
+                                         is_green_beside ? "GRBG or GBRG" : "RGGB or BGGR")});
 }
 
 void check_colour(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<Suspicion>& found) {
@@ -212,15 +205,14 @@ void check_altitude(std::span<const ImageLook> looks, std::vector<Suspicion>& fo
     }
     const Line line = line_through(maps, images);
     if (std::abs(line.slope - 1.0) < std::max(kSlope, kStandardErrors * line.error)) return;
-    found.push_back(
-        {.about = "altitude",
-         .what = fmt::format("brightness varies {:.3g}-fold where the maps vary {:.3g}-fold ({}; "
-                             "slope {:.2g}, expected 1). Wrong altitude column, or exposure not "
-                             "constant?",
-                             fold_of(images),
-                             fold_of(maps),
-                             range_of(looks),
-                             line.slope)});
+    found.push_back({.about = "altitude",
+                     .what = fmt::format(
+                         "brightness varies {:.3g}-fold where the maps vary {:.3g}-fold ({}; slope "
+                         "{:.2g}, expected 1). Wrong altitude column, or exposure not constant?",
+                         fold_of(images),
+                         fold_of(maps),
+                         range_of(looks),
+                         line.slope)});
 }
 
 void check_gains(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
@@ -238,14 +230,13 @@ void check_gains(std::span<const ImageLook> looks, std::vector<Suspicion>& found
     const bool has_poses = has_altitudes(looks);
     found.push_back(
         {.about = has_poses ? "altitude" : "map",
-         .what = fmt::format(
-             "{} and the images differ in colour: R, G and B need gains of {:.3g}, {:.3g} and "
-             "{:.3g}. Wrong {}water or camera response?",
-             has_poses ? fmt::format("the maps at {}", range_of(looks)) : "the map",
-             1.0,
-             gain[kGreenChannel] / gain[kRed],
-             gain[kBlue] / gain[kRed],
-             has_poses ? "altitude column, " : "")});
+         .what = fmt::format("{} and the images differ in colour: R, G and B need gains of {:.3g}, "
+                             "{:.3g} and {:.3g}. Wrong {}water or camera response?",
+                             has_poses ? fmt::format("the maps at {}", range_of(looks)) : "the map",
+                             1.0,
+                             gain[kGreenChannel] / gain[kRed],
+                             gain[kBlue] / gain[kRed],
+                             has_poses ? "altitude column, " : "")});
 }
 
 void check_attitude(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void refuse_channels(const AnyImage& image, std::string_view allowed) {
-    throw InputError(fmt::format(
-        "found the channels {}; allowed: {}", fmt::join(image.channels, ", "), allowed));
+    throw InputError(
+        "found the channels {}; allowed: {}", fmt::join(image.channels, ", "), allowed);
 }
 
 // Where those that are wanted stand among the file's.
@@ -60,20 +60,17 @@ void keep_planes(std::vector<float>& planes,
 SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) {
     const std::vector<std::size_t> places = places_of(image, camera.mosaic);
     if (camera.mosaic != Mosaic::None && std::min(image.width_px, image.height_px) < 2) {
-        throw InputError(
-            fmt::format("found {} x {} pixels; allowed: 2 or more each way, of a mosaic",
-                        image.width_px,
-                        image.height_px));
+        throw InputError("found {} x {} pixels; allowed: 2 or more each way, of a mosaic",
+                         image.width_px,
+                         image.height_px);
     }
     const bool is_whole_numbers = image.full_scale > 0.0;
     const double scale = is_whole_numbers ? image.full_scale : 1.0;
-    SurveyImage taken{.raw = {.width_px = image.width_px,
-                              .height_px = image.height_px,
-                              .mosaic = camera.mosaic,
-                              .samples = {}},
-                      .levels = {.black = camera.black_level},
-                      .description = image.description,
-                      .date_time = image.date_time};
+    SurveyImage taken{
+        .raw = {.width_px = image.width_px, .height_px = image.height_px, .mosaic = camera.mosaic},
+        .levels = {.black = camera.black_level},
+        .description = image.description,
+        .date_time = image.date_time};
     taken.raw.samples = image.planes();
     if (image.channels.size() > 1) keep_planes(taken.raw.samples, taken.raw.pixels(), places);
     for (float& sample : taken.raw.samples) sample = static_cast<float>(sample * scale);

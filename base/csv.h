@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Lines and fields of the text files that people and spreadsheets write. Lines end in LF or CR LF.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr std::string_view kBlanks = " \t\r";
+
+[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(kBlanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+[[nodiscard]] inline std::vector<std::string_view> comma_fields(std::string_view line) {
+    std::vector<std::string_view> fields;
+    for (std::size_t start = 0; start <= line.size();) {
+        const std::size_t end = std::min(line.find(',', start), line.size());
+        fields.push_back(trimmed(line.substr(start, end - start)));
+        start = end + 1;
+    }
+    return fields;
+}
+
+// What spreadsheets put before UTF-8.
+[[nodiscard]] inline std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
+// Calls visit(number from 1, line), and returns how many there are.
+template <typename Visit>
+std::size_t for_each_line(std::string_view text, const Visit& visit) {
+    text = without_byte_order_mark(text);
+    std::size_t number = 0;
+    for (std::size_t start = 0; start < text.size();) {
+        const std::size_t end = std::min(text.find('\n', start), text.size());
+        visit(++number, text.substr(start, end - start));
+        start = end + 1;
+    }
+    return number;
+}
+
+}  // namespace aphotic
