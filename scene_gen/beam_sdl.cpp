@@ -41,15 +41,24 @@ double plane_distance(const BeamTable& table) {
     return std::ceil(table.vertical_rad.back() - table.vertical_rad.front()) + 1.0;
 }
 
-// 0 outside the nodes' range.
-std::string within_sdl(const std::string& angle,
-                       const std::vector<double>& nodes,
-                       const std::string& value) {
-    return fmt::format("select({0} - {1}, 0, select({2} - {0}, 0, {3}))",
-                       angle,
-                       operand_sdl(nodes.front()),
-                       operand_sdl(nodes.back()),
-                       value);
+std::string from_on_sdl(const std::string& angle, double least, const std::string& value) {
+    return fmt::format("select({} - {}, 0, {})", angle, operand_sdl(least), value);
+}
+
+std::string up_to_sdl(const std::string& angle, double most, const std::string& value) {
+    return fmt::format("select({} - {}, 0, {})", sdl_number(most), angle, value);
+}
+
+// 0 where the table ends, less what no direction can be beyond: each test costs time.
+std::string within_sdl(const BeamTable& table, const std::string& value) {
+    const std::vector<double>& v = table.vertical_rad;
+    const std::vector<double>& h = table.horizontal_rad;
+    const std::string up_to_last = up_to_sdl("v", v.back(), value);
+    if (table.angles == TableAngles::TypeC) {
+        return v.front() == 0.0 ? up_to_last : from_on_sdl("v", v.front(), up_to_last);
+    }
+    return from_on_sdl(
+        "v", v.front(), from_on_sdl("h", h.front(), up_to_sdl("h", h.back(), up_to_last)));
 }
 
 // The table over its angles v and h.
@@ -62,41 +71,28 @@ std::string planes_sdl(const BeamTable& table, const std::string& name) {
     for (std::size_t k = 0; k < columns; ++k) {
         planes.push_back(node_sdl(table.horizontal_rad[k], static_cast<double>(k)));
         for (std::size_t i = 0; i < rows; ++i) {
-            const double at = static_cast<double>(k) * distance + table.vertical_rad[i] -
-                              table.vertical_rad.front();
+            const double at = static_cast<double>(k) * distance + table.vertical_rad[i];
             nodes.push_back(node_sdl(at, table.intensity[k * rows + i]));
         }
     }
-    std::string sdl = spline_sdl(name + "_Nodes", nodes);
-    const std::string first = operand_sdl(table.vertical_rad.front());
+    const std::string sdl = spline_sdl(name + "_Nodes", nodes);
     if (columns == 1) {
-        return sdl + function_sdl(name + "_At",
-                                  "v, h",
-                                  within_sdl("v",
-                                             table.vertical_rad,
-                                             fmt::format("{}_Nodes (v - {}).x", name, first)));
+        return sdl + function_sdl(
+                         name + "_At", "v", within_sdl(table, fmt::format("{}_Nodes (v).x", name)));
     }
-    sdl += spline_sdl(name + "_Planes", planes);
     // c counts the planes, k is the one before it.
-    sdl += function_sdl(name + "_Between",
-                        "v, k, c",
-                        fmt::format("(1 - (c - k)) * {0}_Nodes (k * {1} + v).x + (c - k) * "
-                                    "{0}_Nodes ((k + 1) * {1} + v).x",
-                                    name,
-                                    distance));
-    sdl += function_sdl(name + "_Across",
-                        "v, c",
-                        fmt::format("{}_Between (v, min({}, floor(c)), c)", name, columns - 2));
-    return sdl +
-           function_sdl(
-               name + "_At",
-               "v, h",
-               within_sdl(
-                   "v",
-                   table.vertical_rad,
-                   within_sdl("h",
-                              table.horizontal_rad,
-                              fmt::format("{0}_Across (v - {1}, {0}_Planes (h).x)", name, first))));
+    const std::string between = fmt::format(
+        "(1 - (c - k)) * {0}_Nodes (k * {1} + v).x + (c - k) * {0}_Nodes ((k + 1) * {1} + v).x",
+        name,
+        distance);
+    const std::string across =
+        fmt::format("{}_Between (v, min({}, floor(c)), c)", name, columns - 2);
+    return sdl + spline_sdl(name + "_Planes", planes) +
+           function_sdl(name + "_Between", "v, k, c", between) +
+           function_sdl(name + "_Across", "v, c", across) +
+           function_sdl(name + "_At",
+                        "v, h",
+                        within_sdl(table, fmt::format("{0}_Across (v, {0}_Planes (h).x)", name)));
 }
 
 std::string table_value_sdl(const BeamTable& table, const std::string& name) {
@@ -109,7 +105,7 @@ std::string table_value_sdl(const BeamTable& table, const std::string& name) {
             break;
     }
     if (table.horizontal_rad.size() == 1)
-        return fmt::format("{}_At (atan2(sqrt(x*x + y*y), z), 0)", name);
+        return fmt::format("{}_At (atan2(sqrt(x*x + y*y), z))", name);
     return fmt::format(
         "{}_At (atan2(sqrt(x*x + y*y), z), select(-y, atan2(-y, x) + 2*pi, select(x, pi, 0), "
         "atan2(-y, x)))",

@@ -573,7 +573,7 @@ const std::vector<Misuse> kMisuses{
     {"BeamOfOneDimension",
      "#declare Beam = array[2] {60, 1}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
      "Aphotic_Strobe: Beam must be an array [n][2]"},
-    {"BeamOfFourColumns",
+    {"BeamOfFiveColumns",
      "#declare Beam = array[1][5] {{60, 1, 2, 3, 4}}\nAphotic_Strobe (0, z, Beam, \"arc\", 1, 0)",
      "Aphotic_Strobe: Beam must be an array [n][2]"},
     {"PatternOfNone",
@@ -701,9 +701,10 @@ TEST_F(AphoticInc, SettingsThatComeTooLateAreErrors) {
                      "Aphotic_Seafloor (2, 0, 0, \"light\")\nAphotic_End ()\nAphotic_End ()\n"));
 }
 
-// One that is added wants an entry above. Each entry provokes one of its own but for three: too
-// wide and too narrow share theirs, so do intensity and power, and of water in a container POV-Ray
-// itself complains. The frame of another version is below.
+// One that is added wants an entry above. Each entry provokes one of its own but for six: too
+// wide and too narrow share theirs, so do intensity and power, three beams of a wrong form, and a
+// lamp in a shell with a shell round a lamp; of water in a container POV-Ray itself complains. The
+// frame of another version is below.
 TEST(AphoticIncErrors, AreAllProvoked) {
     const std::string_view text = include_library().front().text;
     std::size_t errors = 0;
@@ -711,7 +712,7 @@ TEST(AphoticIncErrors, AreAllProvoked) {
          at = text.find("#error", at + 1)) {
         ++errors;
     }
-    EXPECT_EQ(errors, kMisuses.size() - 3 + 1);
+    EXPECT_EQ(errors, kMisuses.size() - 6 + 1);
 }
 
 TEST_F(AphoticInc, RefusesAFrameOfAnotherVersion) {
