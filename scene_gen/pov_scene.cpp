@@ -333,7 +333,7 @@ Parts parts_of(const Rig& rig, std::span<const LampGrid> lamps, const SceneOptio
     Parts parts{.lamps = named_lamps_of(rig),
                 .reflectances = reflectances_of(rig, options),
                 .fade_m = fade_distance_m(rig, options),
-                 .unit_m = options.user_scene ? 1.0 : unit_with_shells_m(rig, lamps)};
+                .unit_m = options.user_scene ? 1.0 : unit_with_shells_m(rig, lamps)};
     parts.rig = rig_sdl(rig,
                         strobes_in_scene(rig, lamps, options),
                         parts.lamps,

@@ -23,8 +23,7 @@ TEST(LampFlux, OfEqualEnergyIsTheIntegralOfV) {
 
 // A source at 555 nm, all within one step of the table, has 683 lm/W but for what V falls in it.
 TEST(LampFlux, OfGreenIsTheMostThereIs) {
-    const Spectrum lamp(
-        "green", {360.0, 552.9, 555.0, 557.1, 830.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
+    const Spectrum lamp("green", {360.0, 552.9, 555.0, 557.1, 830.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
     EXPECT_NEAR(luminous_flux_lm(lamp) / radiant_flux_w(lamp), 683.0, 0.5);
 }
 

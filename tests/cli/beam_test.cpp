@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/atomic_file.h"
+#include "support/run_command.h"
+#include "tests/support/temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace aphotic::beam_command_test {
+namespace {
+
+const std::string kLed = std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml:led";
+
+class CommandBeam : public testing::Test {
+  protected:
+    CommandResult beam(std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "beam");
+        return run_aphotic(folder_.path(), arguments);
+    }
+    nlohmann::json json(std::vector<std::string> arguments) {
+        arguments.emplace_back("--json");
+        const CommandResult result = beam(std::move(arguments));
+        EXPECT_EQ(result.status, 0) << result.err;
+        return nlohmann::json::parse(result.out);
+    }
+
+    TempFolder folder_;
+};
+
+// cos^n with n = ln 0.5 / ln cos 50: (n + 1) / (2 pi) on the axis, times the lamp's lumens in
+// candela.
+TEST_F(CommandBeam, SaysWhatADataSheetDoes) {
+    const double n = std::log(0.5) / std::log(std::cos(50.0 / 180.0 * std::numbers::pi));
+    const double on_axis = (n + 1.0) / (2.0 * std::numbers::pi);
+    const nlohmann::json led = json({kLed});
+    EXPECT_NEAR(led["flux"].get<double>(), 1.0, 1e-9);
+    EXPECT_NEAR(led["largest_per_sr"].get<double>(), on_axis, 1e-9);
+    EXPECT_NEAR(led["fwhm_along_deg"].get<double>(), 100.0, 1e-4);
+    EXPECT_NEAR(led["fwhm_across_deg"].get<double>(), 100.0, 1e-4);
+    ASSERT_EQ(led["lamps"].size(), 4U);
+    EXPECT_NEAR(led["lamps"][0]["luminous_flux_lm"].get<double>(), 30000.0, 1e-6);
+    EXPECT_NEAR(led["lamps"][0]["largest_cd"].get<double>() / (30000.0 * on_axis), 1.0, 1e-9);
+    EXPECT_NE(beam({kLed}).out.find("100.00 degrees along, 100.00 across"), std::string::npos);
+}
+
+// Bilinear between nodes of a degree, cos^1.57 errs by its bend: 1.6 (pi/180)^2 / 8.
+TEST_F(CommandBeam, HandsABeamOnAndReadsItBack) {
+    const double bend = 1.57 * std::pow(std::numbers::pi / 180.0, 2) / 8.0;
+    for (const std::string name : {"led.ies", "led.ldt", "led.csv"}) {
+        const nlohmann::json made = json({kLed, "--export", name});
+        EXPECT_NEAR(made["export_error"].get<double>() / bend, 1.0, 0.1) << name;
+        const nlohmann::json read = json({name});
+        EXPECT_NEAR(read["fwhm_along_deg"].get<double>(), 100.0, 0.02) << name;
+        EXPECT_NEAR(
+            read["largest_per_sr"].get<double>() / made["largest_per_sr"].get<double>(), 1.0, 1e-4);
+        if (name == "led.csv") continue;
+        EXPECT_NEAR(read["lamps"][0]["luminous_flux_lm"].get<double>(), 30000.0, 3.0) << name;
+    }
+}
+
+TEST_F(CommandBeam, FindsTheClosestCones) {
+    const nlohmann::json one = json({kLed, "--fit-cones", "1"});
+    const nlohmann::json four = json({kLed, "--fit-cones", "4"});
+    EXPECT_EQ(four["cones"].size(), 4U);
+    EXPECT_LT(four["cones_error"].get<double>(), one["cones_error"].get<double>());
+    // Printed so that a rig can take them.
+    EXPECT_NE(beam({kLed, "--fit-cones", "2"}).out.find("cones = [\n  { part = \"cone1\""),
+              std::string::npos);
+}
+
+TEST_F(CommandBeam, Plots) {
+    const CommandResult plotted = beam({kLed, "--plot", "led.svg"});
+    ASSERT_EQ(plotted.status, 0) << plotted.err;
+    const std::string svg = read_text_file(folder_.path() / "led.svg");
+    EXPECT_NE(svg.find("angle off the axis"), std::string::npos);
+    EXPECT_NE(svg.find("as thrown"), std::string::npos);
+}
+
+TEST_F(CommandBeam, NamesWhatThereIs) {
+    const std::string rig = std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml";
+    const CommandResult other = beam({rig + ":flash"});
+    EXPECT_EQ(other.status, 2);
+    EXPECT_NE(other.err.find("found no strobe with the beam 'flash'; allowed: led"),
+              std::string::npos)
+        << other.err;
+    const CommandResult none = beam({rig});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("allowed: RIG:NAME, a beam of a rig, or a .ies, .ldt or .csv file"),
+              std::string::npos)
+        << none.err;
+    EXPECT_EQ(beam({"missing.ies"}).status, 2);
+}
+
+}  // namespace
+}  // namespace aphotic::beam_command_test
