@@ -10,7 +10,10 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 #include <span>
+#include <utility>
+#include <variant>
 
 namespace aphotic {
 
@@ -88,7 +91,9 @@ struct Angles {
 };
 
 Angles goniometer_angles(TableAngles type, const Vector3d& lamp) {
-    const auto& [x, y, z] = std::tuple(lamp.x(), lamp.y(), lamp.z());
+    const double x = lamp.x();
+    const double y = lamp.y();
+    const double z = lamp.z();
     switch (type) {
         case TableAngles::TypeA:
             return {std::atan2(x, std::hypot(y, z)), std::atan2(y, z)};
@@ -106,7 +111,11 @@ double intensity_of(const BeamTable& table, const Vector3d& lamp) {
     const auto vertical = place_among(table.vertical_rad, angles.vertical_rad);
     if (!vertical) return 0.0;
     if (table.horizontal_rad.size() == 1) return value_along(table, 0, *vertical);
-    const auto horizontal = place_among(table.horizontal_rad, angles.horizontal_rad);
+    // Of type C they go all the way round, whichever way 360 degrees were rounded.
+    const double around_rad = table.angles == TableAngles::TypeC
+                                  ? std::min(angles.horizontal_rad, table.horizontal_rad.back())
+                                  : angles.horizontal_rad;
+    const auto horizontal = place_among(table.horizontal_rad, around_rad);
     if (!horizontal) return 0.0;
     return std::lerp(value_along(table, horizontal->below, *vertical),
                      value_along(table, horizontal->below + 1, *vertical),

@@ -129,6 +129,17 @@ TEST(ExactLight, LongDoubleIsGoodForFifteenDigitsOfHabCam) {
     EXPECT_LT(worst_of_long_double(habcam(), 550.0), kLongRounding);
 }
 
+TEST(ExactLight, LongDoubleIsGoodForFifteenDigitsOfSoftEdges) {
+    Rig rig = habcam();
+    for (Strobe& strobe : rig.strobes) {
+        for (Cone& cone : strobe.beam.cones) {
+            cone.edge_rad = 0.7 * cone.half_angle_rad;
+            cone.exponent = 3.5;
+        }
+    }
+    EXPECT_LT(worst_of_long_double(rig, 550.0), kLongRounding);
+}
+
 TEST(ExactLight, LongDoubleHoldsWhereDoublesEnd) {
     Rig rig = habcam();
     for (const double K_per_m : {175.0, 1e3}) {  // optical depths of 700 and 4000

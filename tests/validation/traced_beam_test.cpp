@@ -14,9 +14,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
-#include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic::traced_beam_test {
@@ -163,6 +164,19 @@ TEST(TracedTable, OfTypeCRunsToPortAndTurnsFromAlongToAcross) {
     EXPECT_GT(turned.intensity(towards(kAlong)), 0.0);
     EXPECT_EQ(turned.intensity(towards(-kAlong)), 0.0);
     EXPECT_TRUE(plain.shines_backwards());
+}
+
+// Light in the plane of H = 0 = 360 degrees, just beside which rounding may put it.
+TEST(TracedTable, OfTypeCHasNoSeam) {
+    BeamTable table{.angles = TableAngles::TypeC,
+                    .vertical_rad = degrees({0.0, 90.0}),
+                    .horizontal_rad = degrees({0.0, 180.0, 360.0}),
+                    .intensity = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0}};
+    table.horizontal_rad.back() = std::nextafter(2.0 * kPi, 0.0);
+    const TracedBeam beam(beam_of(table), Vector3d::UnitZ());
+    for (const double aside : {-1e-17, 0.0, 1e-17}) {
+        EXPECT_NEAR(beam.intensity({0.5, aside, 1.0}), 1.0 / (2.0 * kPi), kRounding);
+    }
 }
 
 // w = (sin V cos H, sin H, cos V cos H), of the flux (60 degrees) sin(60 degrees).
