@@ -15,8 +15,9 @@ namespace {
 // An emitter's rim at its corners and half way between them, and its middle; a point's own
 // position.
 std::vector<LampTerms> places_of(const Strobe& strobe) {
-    LampTerms place{
-        .position_m = strobe.position_m, .axis = strobe.axis, .lobes = {}, .other_exponents = {}};
+    LampTerms place{.position_m = strobe.position_m,
+                    .frame = turned_frame(strobe.beam, strobe.axis),
+                    .light = nullptr};
     if (!strobe.emitter) return {place};
     // The centres of a grid of three by three cells lie two thirds of the way to the rim.
     constexpr double kToTheRim = 1.5;
@@ -26,13 +27,6 @@ std::vector<LampTerms> places_of(const Strobe& strobe) {
         places.push_back(place);
     }
     return places;
-}
-
-std::vector<double> cosines_of_edges(const Strobe& strobe) {
-    std::vector<double> cosines;
-    if (strobe.power == 0.0) return cosines;
-    for (const double edge_rad : edges_rad(strobe.beam)) cosines.push_back(std::cos(edge_rad));
-    return cosines;
 }
 
 // Bytes of two rows that differ, in bits of their own.
@@ -65,10 +59,10 @@ ConeEdges::ConeEdges(const Rig& rig) : rig_(rig), ends_nm_{rig.camera.range.firs
     if (rig.camera.port) ends_nm_.push_back(rig.camera.range.last_nm);
     most_.push_back(static_cast<std::uint8_t>(ends_nm_.size()));
     for (const Strobe& strobe : rig.strobes) {
-        const Lamp lamp{.places = places_of(strobe), .cosines = cosines_of_edges(strobe)};
-        if (lamp.cosines.empty()) continue;
+        const Lamp lamp{.places = places_of(strobe), .edges = beam_edges(strobe)};
+        if (lamp.edges.count() == 0) continue;
         most_.insert(most_.end(),
-                     lamp.cosines.size(),
+                     lamp.edges.count(),
                      static_cast<std::uint8_t>(ends_nm_.size() * lamp.places.size()));
         lamps_.push_back(lamp);
     }
@@ -76,7 +70,7 @@ ConeEdges::ConeEdges(const Rig& rig) : rig_(rig), ends_nm_{rig.camera.range.firs
 
 void ConeEdges::count_row(int row, const std::vector<RayTerms>& ends, Counts& counts) const {
     RayBlock rays;
-    LampBlock lit;
+    DirectionBlock V;
     for (auto& thing : counts) std::ranges::fill(thing, 0);
     for (int column = 0; column < rig_.camera.width_px; column += kRowBlock) {
         const std::size_t first = size_of(column);
@@ -86,12 +80,12 @@ void ConeEdges::count_row(int row, const std::vector<RayTerms>& ends, Counts& co
             std::size_t thing = 1;
             for (const Lamp& lamp : lamps_) {
                 for (const LampTerms& place : lamp.places) {
-                    shine(rays, place, lit);
-                    for (std::size_t k = 0; k < lamp.cosines.size(); ++k) {
-                        count_within(rays, lit, lamp.cosines[k], &counts[thing + k][first]);
+                    (lamp.edges.has_rim ? aim_turned : aim_round)(rays, place, V);
+                    for (std::size_t k = 0; k < lamp.edges.count(); ++k) {
+                        count_within(lamp.edges, k, rays, V, &counts[thing + k][first]);
                     }
                 }
-                thing += lamp.cosines.size();
+                thing += lamp.edges.count();
             }
         }
     }

@@ -130,17 +130,15 @@ std::string in_words(const Sled& sled) {
 }
 
 std::vector<LampTerms> lamps_of(const Rig& rig, const Strobe& strobe, const Plane& floor) {
-    LampTerms terms{.position_m = strobe.position_m,
-                    .axis = strobe.axis,
-                    .height_m = 0.0,
-                    .lobes = lobes_of(strobe.beam),
-                    .other_exponents = other_exponents(lobes_of(strobe.beam)),
-                    .phong = rig.seafloor.phong,
-                    .phong_size = rig.seafloor.phong_size};
     const auto positions_m = lamp_positions_m(strobe, grid_of_lamps(rig, strobe));
     const double share =
         strobe.power / (std::numbers::pi * static_cast<double>(positions_m.size()));
-    for (Lobe& lobe : terms.lobes) lobe.on_axis = share * lobe.on_axis;
+    LampTerms terms{.position_m = strobe.position_m,
+                    .frame = turned_frame(strobe.beam, strobe.axis),
+                    .height_m = 0.0,
+                    .light = std::make_shared<BeamLight>(beam_light(strobe.beam, share)),
+                    .phong = rig.seafloor.phong,
+                    .phong_size = rig.seafloor.phong_size};
     std::vector<LampTerms> lamps;
     for (const Eigen::Vector3d& position_m : positions_m) {
         terms.position_m = position_m;
@@ -165,6 +163,7 @@ void store(const SumBlock& sums, int row, int first_column, Lightmap& map) {
 // One lamp, and which tables serve it.
 struct PlacedLamp {
     LampTerms terms;
+    std::size_t strobe;
     std::size_t spectrum;
 };
 
@@ -176,7 +175,7 @@ struct Workspace {
     Outside outside;
 };
 
-// The middle index first, for it tells where the cones end.
+// The middle index first, for it tells where the beams end.
 std::vector<std::size_t> node_order(std::size_t nodes) {
     std::vector<std::size_t> order{nodes / 2};
     for (std::size_t j = 0; j < nodes; ++j) {
@@ -245,6 +244,7 @@ LightmapMaker::LightmapMaker(const Rig& rig,
                              const LightmapOptions& options)
     : rig_(rig), options_(options), spectrum_of_strobe_(lamps_by_strobe(rig)) {
     require_bare_floor(rig);
+    for (const Strobe& strobe : rig.strobes) edges_.push_back(beam_edges(strobe));
     paths_ = paths ? *paths : path_range(rig);
     // The rig's own end where the floor does, or else where its light does.
     if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
@@ -313,7 +313,7 @@ LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
     require_over_floor(rig_, sled);
     for (std::size_t s = 0; s < rig_.strobes.size() && steps_.count > 0; ++s) {
         for (const LampTerms& lamp : lamps_of(flown, rig_.strobes[s], floor)) {
-            scene.lamps.push_back({.terms = lamp, .spectrum = spectrum_of_strobe_[s]});
+            scene.lamps.push_back({.terms = lamp, .strobe = s, .spectrum = spectrum_of_strobe_[s]});
         }
     }
     return scene;
@@ -350,9 +350,7 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
         const LightTables& tables = tables_[lamp.spectrum];
         for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
             const RayBlock& rays = work.rays[j];
-            shine(rays, lamp.terms, work.lit);
-            if (j == 0) find_lobes(lamp.terms, work.lit);
-            follow_lobes(lamp.terms, work.lit);
+            shine(rays, lamp.terms, j == 0 ? Edges::Found : Edges::Kept, work.lit);
             const Outside found = weigh(rays, lamp.terms, steps_, work.lit);
             work.outside.before += found.before;
             work.outside.beyond += found.beyond;
@@ -389,27 +387,31 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
 std::vector<double> LightmapMaker::cones(const Sled& sled) const {
     const auto width = static_cast<std::size_t>(rig_.camera.width_px);
     std::vector<double> found(width * static_cast<std::size_t>(rig_.camera.height_px), 0.0);
-    Scene scene = scene_of(sled);
+    const Scene scene = scene_of(sled);
     // Whole numbers below 2^40, whose sums are exact and seldom the same by chance.
     std::mt19937_64 engine(1);
     constexpr std::uint64_t kShift = 24;
-    for (PlacedLamp& lamp : scene.lamps) {
-        for (Lobe& lobe : lamp.terms.lobes) {
-            lobe.on_axis = static_cast<double>(engine() >> kShift);
-        }
+    std::vector<std::vector<double>> numbers;  // by lamp and edge
+    for (const PlacedLamp& lamp : scene.lamps) {
+        numbers.emplace_back(edges_[lamp.strobe].count());
+        for (double& number : numbers.back()) number = static_cast<double>(engine() >> kShift);
     }
-    const auto work = std::make_unique<Workspace>();
+    RayBlock rays;
+    DirectionBlock V;
+    RowBlock<std::uint8_t> is_within;
     for (int row = 0; row < rig_.camera.height_px; ++row) {
         for (int column = 0; column < rig_.camera.width_px; column += kRowBlock) {
-            look_along(scene.rays.front(), steps_, row, column, work->rays.front());
+            look_along(scene.rays.front(), steps_, row, column, rays);
             const auto first = static_cast<std::size_t>(column);
-            for (const PlacedLamp& lamp : scene.lamps) {
-                shine(work->rays.front(), lamp.terms, work->lit);
-                find_lobes(lamp.terms, work->lit);
-                for (std::size_t i = 0; i < kRowBlock && first + i < width; ++i) {
-                    double& number = found[static_cast<std::size_t>(row) * width + first + i];
-                    number += work->lit.intensity[i];
-                    for (const RowBlock<double>& power : work->lit.powers) number += power[i];
+            const std::size_t count = std::min<std::size_t>(kRowBlock, width - first);
+            for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+                const PlacedLamp& lamp = scene.lamps[k];
+                aim_turned(rays, lamp.terms, V);
+                for (std::size_t e = 0; e < numbers[k].size(); ++e) {
+                    is_within.fill(0);
+                    count_within(edges_[lamp.strobe], e, rays, V, is_within.data());
+                    double* const to = &found[static_cast<std::size_t>(row) * width + first];
+                    for (std::size_t i = 0; i < count; ++i) to[i] += numbers[k][e] * is_within[i];
                 }
             }
         }

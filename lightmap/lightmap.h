@@ -15,7 +15,7 @@
 //   S_c = sum_j  G_j T_jc(l_j),      T_jc(l) = int f Q_c L_j(n(lambda)) exp(-K l) dlambda
 //
 // with G_j and l_j the geometry of the ray of n_j: exact where G exp(-K l) is of degree
-// kIndexNodes - 1 in n over the range. A cone's edge, which dispersion spreads over several pixels,
+// kIndexNodes - 1 in n over the range. A beam's edge, which dispersion spreads over several pixels,
 // is sharp here and stands where the middle index has it.
 //
 // An emitter of a size is the grid of lamps of rig/geometry.h. Where the image sees no floor,
@@ -23,6 +23,7 @@
 // when all that lies beyond is darker than kDarkShare of the brightest.
 #pragma once
 
+#include "lightmap/beam_edges.h"
 #include "lightmap/path_table.h"
 #include "rig/path_range.h"
 #include "rig/rig.h"
@@ -80,8 +81,8 @@ class LightmapMaker {
     // Some rows alone.
     void rows_into(const Sled& sled, int first_row, int count, Lightmap& map) const;
 
-    // For each pixel a number that tells which cones of which lamps reach there: where two maps
-    // have the same, no edge lies between.
+    // For each pixel a number that tells within which edges of which lamps' beams it is: where two
+    // maps have the same, no edge lies between.
     [[nodiscard]] std::vector<double> cones(const Sled& sled) const;
 
     [[nodiscard]] const PathRange& paths() const { return paths_; }
@@ -112,6 +113,7 @@ class LightmapMaker {
     std::vector<double> index_nodes_nm_;  // wavelengths whose rays are traced; one without a port
     std::vector<LightTables> tables_;     // by lamp spectrum
     std::vector<std::size_t> spectrum_of_strobe_;
+    std::vector<BeamEdges> edges_;  // by strobe
 };
 
 // Throws InputError, which names the sled's pose and the strobe, unless the sled holds all lamps of

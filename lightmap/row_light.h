@@ -18,8 +18,8 @@
 //
 //   m.l = (2 w^2 h - D.V) / (|D| |V|)
 //
-// A lobe of a beam that falls as another power of the cosine, n, has its intensity on the axis
-// times cos^(n - 1)(theta) in place of that on the axis.
+// For any beam, I = intensity * reach / |V| (beam_light.h), where cones have reach = V.a. So
+// I cos(i) / d^2 = intensity * reach h w^3 / |V|^4.
 //
 // Through a flat port, (u, v) the slopes of the pixel's ray in air, D = (u a, v a, 1) and
 // o = (u b, v b, distance + thickness), for tan = sin/cos on both sides of Snell's law gives
@@ -34,7 +34,9 @@
 // the table or in two, whose cubics need no look-up pixel by pixel.
 #pragma once
 
+#include "lightmap/beam_light.h"
 #include "lightmap/path_table.h"
+#include "lightmap/row_block.h"
 #include "rig/geometry.h"
 #include "rig/rig.h"
 
@@ -42,15 +44,11 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 namespace aphotic {
-
-inline constexpr int kRowBlock = 128;
-// As wide as the widest vectors.
-template <class T>
-struct alignas(64) RowBlock : std::array<T, kRowBlock> {};
 
 // What is the same for all rays of a map at one index.
 struct RayTerms {
@@ -86,26 +84,17 @@ void look_along(
 
 struct LampTerms {
     Eigen::Vector3d position_m;
-    Eigen::Vector3d axis;
-    double height_m = 0.0;                // over the floor
-    std::vector<Lobe> lobes;              // on_axis: power A_k / (pi N)
-    std::vector<double> other_exponents;  // of the lobes, than 1, each once
+    BeamFrame frame;                         // of its beam, turned
+    double height_m = 0.0;                   // over the floor
+    std::shared_ptr<const BeamLight> light;  // of the beam times power / (pi N)
     double phong = 0.0;
     double phong_size = 0.0;
 };
 
-[[nodiscard]] std::vector<double> other_exponents(const std::vector<Lobe>& lobes);
-
 // What the rays get of one lamp, ready to be looked up.
 struct LampBlock {
-    RowBlock<double> V_axis;     // V.a
-    RowBlock<double> V2;         // |V|^2
-    RowBlock<double> intensity;  // I/cos(theta), of the lobes that reach there
-    // What the lobes of exponent 1 give of it; and for each other, those lobes' intensity on the
-    // axis as far as they reach.
-    RowBlock<double> cosines;
-    std::vector<RowBlock<double>> powers;
-    RowBlock<double> log2_cosine;
+    DirectionBlock V;
+    BeamBlock beam;
     RowBlock<float> place;  // of the path in the table, in steps
     RowBlock<int> step;
     RowBlock<float> within_step;  // 0 to 1
@@ -113,16 +102,15 @@ struct LampBlock {
     RowBlock<float> highlight;    // factor of U, T without reflectance
 };
 
-void shine(const RayBlock& rays, const LampTerms& lamp, LampBlock& block);
-// Which lobes reach the rays last shone on; it stays for rays of other indices.
-void find_lobes(const LampTerms& lamp, LampBlock& block);
-// The intensity, by the lobes that were found, for the rays last shone on.
-void follow_lobes(const LampTerms& lamp, LampBlock& block);
+// V, with its sides where the beam asks for them or without, and the beam there.
+void aim_round(const RayBlock& rays, const LampTerms& lamp, DirectionBlock& V);
+void aim_turned(const RayBlock& rays, const LampTerms& lamp, DirectionBlock& V);
+void shine(const RayBlock& rays, const LampTerms& lamp, Edges edges, LampBlock& block);
 // One more for each of kRowBlock pixels that see the floor; and that see it within a cone of this
 // cosine, of the rays last shone on.
 void count_seen(const RayBlock& rays, std::uint8_t* counts);
 void count_within(const RayBlock& rays,
-                  const LampBlock& block,
+                  const DirectionBlock& V,
                   double cosine,
                   std::uint8_t* counts);
 

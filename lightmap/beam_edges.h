@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where a strobe's beam ends sharply, over blocks of pixels: circles about its axis, and a rim that
+// is none (rig/beam.h).
+#pragma once
+
+#include "lightmap/direction_block.h"
+#include "rig/beam.h"
+#include "rig/rig.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace aphotic {
+
+struct RayBlock;
+
+struct BeamEdges {
+    std::vector<double> cosines;  // of the circles
+    bool has_rim = false;
+    Beam beam;
+    BeamFrame frame;         // as the beam has it
+    BeamFrame turned_frame;  // as directions are in it
+
+    [[nodiscard]] std::size_t count() const { return cosines.size() + (has_rim ? 1 : 0); }
+};
+
+// A strobe without power has none.
+[[nodiscard]] BeamEdges beam_edges(const Strobe& strobe);
+
+// One more for each of kRowBlock pixels that see the floor within the edge of this number, less
+// than count(). V with its sides.
+void count_within(const BeamEdges& edges,
+                  std::size_t edge,
+                  const RayBlock& rays,
+                  const DirectionBlock& V,
+                  std::uint8_t* counts);
+
+}  // namespace aphotic
