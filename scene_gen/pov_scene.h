@@ -8,7 +8,9 @@
 //   2^e Phi power A_k cos^n(theta) / (pi d^2) (rho cos(i) + phong max(0, r.l)^phong_size)
 //       exp(-K (d + r))                           summed over strobes, cones and lamps
 //
-// the radiance L(lambda) of docs/physics.md times 2^e, the frame's exposure (exposure.h).
+// the radiance L(lambda) of docs/physics.md times 2^e, the frame's exposure (exposure.h). A beam of
+// another kind has its intensity for A_k cos^n(theta), by a filter shell (beam_sdl.h): then the
+// scene's unit is so small that shells, a thousandth of it in size, shadow no pixel.
 //
 // Behind a port a frame is rendered with the refractive indices of one wavelength
 // (frame_groups.h).
