@@ -135,6 +135,19 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Beams, testing::ValuesIn(kKinds), [](const auto&
     return std::string(kind.param.name);
 });
 
+// POV-Ray takes what is filtered below a share of the light for full shadow.
+TEST(Beams, DimDirectionsAreLit) {
+    constexpr double kDim = 1e-8;
+    const Rig rig = lit_by(beam_of(BeamTable{.angles = TableAngles::TypeC,
+                                             .vertical_rad = radians({0, 5, 10, 90}),
+                                             .horizontal_rad = {0},
+                                             .intensity = {1.0, 1.0, kDim, kDim}}));
+    const Difference found = against_closed_form(rig, scenes_of(rig, {450.0}));
+    EXPECT_LE(found.worst, kHalfFloatError) << testing::PrintToString(found);
+    EXPECT_LT(found.darkest_sample, 10.0 * kDim * found.brightest_sample);
+    EXPECT_GT(found.darkest_sample, 0.0);
+}
+
 TEST(Beams, ShineBehindAPortToo) {
     Rig rig = lit_by(all_about());
     rig.camera.port = {.distance_m = 0.042, .thickness_m = 0.009, .glass = builtin_glass("bk7")};
