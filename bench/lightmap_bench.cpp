@@ -18,6 +18,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <string>
 
 namespace aphotic {
@@ -88,6 +89,74 @@ BENCHMARK_CAPTURE(make_map, habcam_one_thread, "habcam", 1)
     ->Iterations(50);
 BENCHMARK_CAPTURE(make_map, port, "port", kThreads)->Unit(benchmark::kMillisecond)->Iterations(30);
 
+// HabCam with another beam, by one thread.
+void make_map_of(benchmark::State& state,
+                 const std::string& name,
+                 const std::function<void(Beam&)>& change) {
+    Rig rig = scene("habcam");
+    for (Strobe& strobe : rig.strobes) {
+        change(strobe.beam);
+        strobe.beam = scaled_to_flux(strobe.beam);
+    }
+    const LightmapMaker maker(rig, std::nullopt, {.error = 1e-5, .threads = 1});
+    Lightmap map;
+    time_passes(state, name, [&] {
+        maker.map_into(rig.sled, map);
+        benchmark::DoNotOptimize(map.samples.data());
+    });
+}
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+// 91 x 73 directions, a kink at each.
+BeamTable table() {
+    BeamTable table;
+    for (int v = 0; v <= 90; ++v) table.vertical_rad.push_back(v * kDegree);
+    for (int h = 0; h <= 72; ++h) {
+        table.horizontal_rad.push_back(5.0 * h * kDegree);
+        for (int v = 0; v <= 90; ++v) table.intensity.push_back(2.0 + (h % 72 * 7 + v * 3) % 5);
+    }
+    return table;
+}
+
+void make_soft(Beam& beam) {
+    for (Cone& cone : beam.cones) cone.edge_rad = 0.3 * cone.half_angle_rad;
+}
+
+void make_windowed(Beam& beam) {
+    make_soft(beam);
+    beam.window = BeamWindow{};
+}
+
+void make_data_sheet(Beam& beam) {
+    beam.cones = {{.part = "", .half_angle_rad = 90.0 * kDegree, .weight = 1.0, .exponent = 1.57}};
+}
+
+void make_powers(Beam& beam) {
+    for (Cone& cone : beam.cones) cone.exponent = 3.0;
+}
+
+void make_table(Beam& beam) {
+    beam = {.name = "table", .cones = {}, .pattern = table()};
+}
+
+void make_optics(Beam& beam) {
+    beam = {.name = "optics",
+            .cones = {},
+            .pattern = BeamOptics{.along_m = 0.0635,
+                                  .across_m = 0.0302,
+                                  .focal_length_m = 0.065,
+                                  .distance_m = 0.05,
+                                  .aperture_m = 0.06}};
+}
+
+BENCHMARK_CAPTURE(make_map_of, soft, "soft edges", make_soft)->Iterations(30);
+BENCHMARK_CAPTURE(make_map_of, window, "soft edges behind a window", make_windowed)->Iterations(30);
+BENCHMARK_CAPTURE(make_map_of, data_sheet, "fwhm of 100 degrees", make_data_sheet)->Iterations(30);
+BENCHMARK_CAPTURE(make_map_of, powers, "cones of exponent 3", make_powers)->Iterations(30);
+BENCHMARK_CAPTURE(make_map_of, table, "table of 91 x 73", make_table)->Iterations(30);
+BENCHMARK_CAPTURE(make_map_of, optics, "optics", make_optics)->Iterations(30);
+
 void tabulate(benchmark::State& state) {
     const Rig rig = scene("habcam");
     time_passes(state, "tables", [&] {
@@ -129,6 +198,19 @@ void print_ratios() {
                  trace.processor_s / kThreads);
 }
 
+void print_beams() {
+    const double cones_s = least()["habcam, 1"].processor_s;
+    for (const char* name : {"soft edges",
+                             "soft edges behind a window",
+                             "fwhm of 100 degrees",
+                             "cones of exponent 3",
+                             "table of 91 x 73",
+                             "optics"}) {
+        fmt::print(
+            "{}: {:.2f} times as long as cones\n", name, least()[name].processor_s / cones_s);
+    }
+}
+
 }  // namespace
 }  // namespace aphotic
 
@@ -136,5 +218,6 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     benchmark::RunSpecifiedBenchmarks();
     aphotic::print_ratios();
+    aphotic::print_beams();
     return 0;
 }
