@@ -238,7 +238,8 @@ void look_into(const TableLight& light,
     if (edges == Edges::Found) {
         work.is_within.fill(1.0);
         note(light.vertical, work.angles.vertical);
-        if (has_turn) note(light.horizontal, work.angles.horizontal);
+        // Type C's goes all about; what a fit is off by must not put it before 0.
+        if (light.angles != TableAngles::TypeC) note(light.horizontal, work.angles.horizontal);
     }
     Places vertical;
     find_places(light.vertical, work.angles.vertical, vertical);

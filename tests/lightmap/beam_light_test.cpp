@@ -42,12 +42,14 @@ Rig plain_rig(int width_px, int height_px) {
 }
 
 // Light of a point of the floor, per unit of what the camera makes of it.
-double light_at(const Rig& rig, const Strobe& strobe, const Plane& floor, const WaterRay& ray) {
+double light_at(const Strobe& strobe,
+                const std::vector<Eigen::Vector3d>& positions_m,
+                const Plane& floor,
+                const WaterRay& ray) {
     const auto leg_m = distance_to(floor, ray);
     if (!leg_m) return 0.0;
     const Eigen::Vector3d point_m = ray.origin_m + *leg_m * ray.direction;
     const BeamFrame frame = frame_about(strobe.axis);
-    const auto positions_m = lamp_positions_m(strobe, lamp_grid(rig, strobe, 0.0));
     double sum = 0.0;
     for (const Eigen::Vector3d& position_m : positions_m) {
         const Eigen::Vector3d way_m = point_m - position_m;
@@ -61,12 +63,18 @@ double light_at(const Rig& rig, const Strobe& strobe, const Plane& floor, const 
 std::vector<double> lights_of(const Rig& rig) {
     const Plane floor = floor_plane(rig.sled);
     const double lambda_nm = std::midpoint(rig.camera.range.first_nm, rig.camera.range.last_nm);
+    std::vector<std::vector<Eigen::Vector3d>> positions_m;
+    for (const Strobe& strobe : rig.strobes) {
+        positions_m.push_back(lamp_positions_m(strobe, lamp_grid(rig, strobe, 0.0)));
+    }
     std::vector<double> lights;
     for (int row = 0; row < rig.camera.height_px; ++row) {
         for (int column = 0; column < rig.camera.width_px; ++column) {
             const WaterRay ray = pixel_ray(rig, column + 0.5, row + 0.5, lambda_nm);
             double sum = 0.0;
-            for (const Strobe& strobe : rig.strobes) sum += light_at(rig, strobe, floor, ray);
+            for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+                sum += light_at(rig.strobes[s], positions_m[s], floor, ray);
+            }
             lights.push_back(sum);
         }
     }
