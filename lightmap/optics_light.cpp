@@ -39,9 +39,10 @@ APHOTIC_WIDE void find_image(const OpticsLight& light,
     const double along = light.half_along;
     const double across = light.half_across;
     for (std::size_t i = 0; i < kBlockCount; ++i) {
-        const bool is_in = (V.axis[i] > 0.0) & (std::abs(V.along[i]) <= along * V.axis[i]) &
-                           (std::abs(V.across[i]) <= across * V.axis[i]);
-        is_within[i] = is_in ? 1.0 : 0.0;
+        const double beyond_along = std::abs(V.along[i]) - along * V.axis[i];
+        const double beyond_across = std::abs(V.across[i]) - across * V.axis[i];
+        const bool is_in = std::max(beyond_along, beyond_across) <= 0.0;
+        is_within[i] = is_in && V.axis[i] > 0.0 ? 1.0 : 0.0;
     }
 }
 

@@ -91,7 +91,8 @@ APHOTIC_WIDE void keep_within(const RowBlock<double>& angles,
                               double last,
                               RowBlock<double>& is_within) {
     for (std::size_t i = 0; i < kBlockCount; ++i) {
-        const bool is_in = (angles[i] >= first) & (angles[i] <= last);
+        const double angle = angles[i];
+        const bool is_in = (angle >= first) & (angle <= last);
         is_within[i] = is_in ? is_within[i] : 0.0;
     }
 }
