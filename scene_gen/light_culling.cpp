@@ -97,7 +97,9 @@ std::vector<Omission> omissions(const Rig& rig, bool is_user_scene) {
         }
         for (const Beam& part : parts_of(strobe.beam)) {
             const std::string what =
-                fmt::format("the {} cone of strobe '{}'", part.name, strobe.name);
+                part.cones.empty()
+                    ? fmt::format("the beam of strobe '{}'", strobe.name)
+                    : fmt::format("the {} cone of strobe '{}'", part.name, strobe.name);
             if (is_dark(part)) {
                 left_out.push_back({what, "its weight is 0"});
             } else if (!is_user_scene && !lights_the_view(rig, strobe, part)) {
