@@ -15,7 +15,10 @@
 namespace aphotic::cli {
 
 namespace fs = std::filesystem;
+
+namespace {
 using Json = nlohmann::ordered_json;
+}
 
 MadeImages made_images(const fs::path& folder, const CameraImage& image) {
     MadeImages made{.folder = folder, .width_px = image.width_px, .height_px = image.height_px};
