@@ -230,8 +230,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Trap{"ShellTooSmall", "Aphotic_Shell_Radius = 0.0011", "Aphotic_Shell_Radius = 0.0005"},
         Trap{"OverOneWraps",
-             "min(1, max(0, Intensity (x, y, z) / Most))",
-             "1.5 * Intensity (x, y, z) / Most"},
+             "min(1, max(0, Intensity (x / r, y / r, z / r) / Most))",
+             "1.5 * Intensity (x / r, y / r, z / r) / Most"},
         Trap{"TableTurnedTheOtherWay", "atan2(-y, x)", "atan2(y, x)"}),
     [](const auto& trap) { return std::string(trap.param.name); });
 
