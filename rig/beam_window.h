@@ -10,8 +10,9 @@
 //            with the light that goes to and fro between them, unpolarised in all
 //   n^2 ..   the solid angle that shrinks: d(omega) / d(omega_w)
 //
-// A beam of 100 degrees in air is one of 70 in water, and n^2 = 1.8 times as bright on the axis.
-// The flux is what it was, less what the faces reflect. Nothing comes out beyond
+// Light 50 degrees off the axis in air is 35 off it in water, and the axis is n^2 = 1.8 times as
+// bright but for T. A cos^n of 100 degrees at half maximum becomes 80 wide, not 70: the factor
+// grows outwards. The flux is what it was, less what the faces reflect. Nothing comes out beyond
 // asin(1/n), some 48 degrees.
 //
 // Limits: the window is perpendicular to the axis, wide, and so near to the lamp that the light
