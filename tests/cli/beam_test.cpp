@@ -46,12 +46,16 @@ TEST_F(CommandBeam, SaysWhatADataSheetDoes) {
     EXPECT_NE(beam({kLed}).out.find("100.00 degrees along, 100.00 across"), std::string::npos);
 }
 
-// Bilinear between nodes of a degree, cos^1.57 errs by its bend: 1.6 (pi/180)^2 / 8.
+// Linear between nodes of a degree, cos^n errs most in the last, where it bends towards 0.
 TEST_F(CommandBeam, HandsABeamOnAndReadsItBack) {
-    const double bend = 1.57 * std::pow(std::numbers::pi / 180.0, 2) / 8.0;
+    const double n = std::log(0.5) / std::log(std::cos(50.0 / 180.0 * std::numbers::pi));
+    const auto before_end = [&](double degrees) {
+        return std::pow(std::sin(degrees / 180.0 * std::numbers::pi), n);
+    };
+    const double bend = 0.5 * before_end(1.0) - before_end(0.5);
     for (const std::string name : {"led.ies", "led.ldt", "led.csv"}) {
         const nlohmann::json made = json({kLed, "--export", name});
-        EXPECT_NEAR(made["export_error"].get<double>() / bend, 1.0, 0.1) << name;
+        EXPECT_NEAR(made["export_error"].get<double>() / bend, 1.0, 1e-6) << name;
         const nlohmann::json read = json({name});
         EXPECT_NEAR(read["fwhm_along_deg"].get<double>(), 100.0, 0.02) << name;
         EXPECT_NEAR(

@@ -33,6 +33,7 @@ const std::vector<std::string> kCommands{"render",
                                          "correct",
                                          "observe",
                                          "baseline",
+                                         "beam",
                                          "compare",
                                          "data"};
 
