@@ -55,6 +55,22 @@ std::string rig_with_emitters() {
         honest_rig(), "beam       = \"fresnel\"", "beam = \"fresnel\"\nemitter_mm = [63.5, 30.2]");
 }
 
+std::string rig_with_beam(const std::string& lines) {
+    const std::string honest = honest_rig();
+    const std::size_t first = honest.find("weights = \"flux\"");
+    const std::size_t last = honest.find("[[strobe]]");
+    return honest.substr(0, first) + lines + "\n\n" + honest.substr(last);
+}
+
+// Angles that types B and C both allow; what they mean by them differs.
+std::string ies_of_type(int type) {
+    return "IESNA:LM-63-2002\n[TEST] made\n[TESTLAB] none\n[ISSUEDATE] none\n[MANUFAC] none\n"
+           "TILT=NONE\n1 1000 1 4 3 " +
+           std::to_string(type) +
+           " 2 0 0 0\n1 1 10\n0 30 60 90\n0 45 90\n"
+           "900 700 200 0\n800 500 100 0\n600 300 50 0\n";
+}
+
 // Of the edges that an emitter softens: many times any bound.
 constexpr double kFarOut = 0.01;
 
@@ -283,6 +299,42 @@ TEST_F(Sabotage, TwoWavelengthsOfAFrameSwapped) {
         std::swap(manifest.wavelengths[0].channel, manifest.wavelengths[1].channel);
         std::swap(manifest.wavelengths[0].exposure_log2, manifest.wavelengths[1].exposure_log2);
     });
+}
+
+TEST_F(Sabotage, AWindowWithoutTheSquareOfTheIndex) {
+    expect_no_when_scenes_are(
+        kAllOfThem,
+        "s/w \\* w \\* e/e/",
+        rig_with_beam("fwhm_deg = 100\nmeasured_in = \"air\"\nwindow = \"pmma\""));
+}
+
+TEST_F(Sabotage, AShellTooSmall) {
+    write_file(folder_.path() / "lamp.csv", "theta_deg,intensity\n0,4\n20,3\n50,1\n90,0\n");
+    expect_no_when_scenes_are(kAllOfThem,
+                              "s/Aphotic_Shell_Radius = 0.0011/Aphotic_Shell_Radius = 0.0005/",
+                              rig_with_beam("table = \"lamp.csv\""));
+}
+
+TEST_F(Sabotage, APatternOverOne) {
+    write_file(folder_.path() / "lamp.csv", "theta_deg,intensity\n0,4\n20,3\n50,1\n90,0\n");
+    expect_no_when_scenes_are(
+        kAllOfThem,
+        "s/min(1, max(0, Intensity \\(.*\\) . Most))/1.5 * Intensity \\1 \\/ Most/",
+        rig_with_beam("table = \"lamp.csv\""));
+}
+
+TEST_F(Sabotage, ATableTurnedTheOtherWay) {
+    write_file(folder_.path() / "lamp.ies", ies_of_type(2));
+    const std::string honest = rig_with_beam("table = \"lamp.ies\"\nturn_deg = 30");
+    expect_no_when_rendered_from(
+        kAllOfThem, replaced(honest, "turn_deg = 30", "turn_deg = -30"), honest);
+}
+
+TEST_F(Sabotage, TypeBReadAsC) {
+    write_file(folder_.path() / "b.ies", ies_of_type(2));
+    write_file(folder_.path() / "c.ies", ies_of_type(1));
+    const std::string honest = rig_with_beam("table = \"b.ies\"");
+    expect_no_when_rendered_from(kAllOfThem, replaced(honest, "b.ies", "c.ies"), honest);
 }
 
 }  // namespace
