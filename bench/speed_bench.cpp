@@ -21,7 +21,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -69,6 +71,68 @@ void lightmap(benchmark::State& state, const std::string& name, int threads) {
 BENCHMARK_CAPTURE(lightmap, habcam, "habcam", kThreads)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap, habcam_one_thread, "habcam", 1)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap, port, "port", kThreads)->Apply(least_of_many);
+
+// The same strobes with other beams, by one thread: over habcam_one_thread, what a kind costs.
+
+constexpr BeamWindow kAcrylic{.glass_index = 1.49, .water_index = 1.34};
+
+void make_soft(Beam& beam) {
+    for (Cone& cone : beam.cones) cone.edge_rad = 0.3 * cone.half_angle_rad;
+}
+
+void make_data_sheet(Beam& beam) {
+    beam.cones = {{.part = "fwhm",
+                   .half_angle_rad = 0.5 * std::numbers::pi,
+                   .weight = 1.0,
+                   .exponent = 1.57}};
+}
+
+// 91 x 73 directions, with a kink at each.
+void make_table(Beam& beam) {
+    constexpr double kDegree = std::numbers::pi / 180.0;
+    BeamTable table;
+    for (int v = 0; v <= 90; ++v) table.vertical_rad.push_back(v * kDegree);
+    for (int h = 0; h <= 72; ++h) {
+        table.horizontal_rad.push_back(5.0 * h * kDegree);
+        for (int v = 0; v <= 90; ++v) table.intensity.push_back(2.0 + (h % 72 * 7 + v * 3) % 5);
+    }
+    table.horizontal_rad.back() = 2.0 * std::numbers::pi;
+    beam.cones.clear();
+    beam.pattern = std::move(table);
+}
+
+void make_optics(Beam& beam) {
+    beam.cones.clear();
+    beam.pattern = BeamOptics{.along_m = 0.0635,
+                              .across_m = 0.0302,
+                              .focal_length_m = 0.065,
+                              .distance_m = 0.05,
+                              .aperture_m = 0.065};
+}
+
+void make_optics_in_air(Beam& beam) {
+    make_optics(beam);
+    beam.window = kAcrylic;
+}
+
+void lightmap_of(benchmark::State& state, void (*change)(Beam&)) {
+    Rig rig = scene();
+    for (Strobe& strobe : rig.strobes) {
+        change(strobe.beam);
+        strobe.beam = scaled_to_flux(std::move(strobe.beam));
+    }
+    const LightmapMaker maker(rig, std::nullopt, {.error = 1e-5, .threads = 1});
+    Lightmap map;
+    for (auto _ : state) {
+        maker.map_into(rig.sled, map);
+        benchmark::DoNotOptimize(map.samples.data());
+    }
+}
+BENCHMARK_CAPTURE(lightmap_of, soft_edges, make_soft)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_of, data_sheet, make_data_sheet)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_of, table, make_table)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_of, optics, make_optics)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_of, optics_in_air, make_optics_in_air)->Apply(least_of_many);
 
 void table(benchmark::State& state) {
     const Rig rig = scene();
