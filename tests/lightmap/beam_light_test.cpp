@@ -134,14 +134,14 @@ void expect_everywhere(const Beam& beam, const std::string& what) {
         for (Strobe& strobe : rig.strobes) strobe.beam = beam;
         return rig;
     };
-    expect_light(with_beam(plain_rig(96, 72)), what);
-    Rig fine = plain_rig(1360, 9);
+    expect_light(with_beam(plain_rig(96, 24)), what);
+    Rig fine = plain_rig(1360, 3);
     expect_light(with_beam(fine), what + ", many pixels");
-    Rig behind_port = plain_rig(64, 48);
+    Rig behind_port = plain_rig(64, 16);
     behind_port.camera.port = {
         .distance_m = 0.02, .thickness_m = 0.01, .glass = builtin_glass("bk7")};
     expect_light(with_beam(behind_port), what + ", behind a port");
-    Rig of_size = plain_rig(32, 24);
+    Rig of_size = plain_rig(32, 8);
     of_size.strobes.erase(of_size.strobes.begin() + 2, of_size.strobes.end());
     for (Strobe& strobe : of_size.strobes) strobe.emitter = {.across_m = 0.0635, .along_m = 0.0302};
     expect_light(with_beam(of_size), what + ", of a size");
