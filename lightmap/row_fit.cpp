@@ -61,7 +61,7 @@ APHOTIC_WIDE void evaluate(const std::array<double, kTerms>& powers, RowBlock<do
 }  // namespace
 
 const std::array<std::size_t, kFitSamples>& fit_pixels() {
-    static const std::array<std::size_t, kFitSamples> pixels = [] {
+    static const std::array<std::size_t, kFitSamples> kPixels = [] {
         std::array<std::size_t, kFitSamples> found{};
         for (std::size_t k = 0; k < kFitSamples; ++k) {
             const double angle = std::numbers::pi * static_cast<double>(k) / (kFitSamples - 1);
@@ -69,7 +69,7 @@ const std::array<std::size_t, kFitSamples>& fit_pixels() {
         }
         return found;
     }();
-    return pixels;
+    return kPixels;
 }
 
 void take_samples(const DirectionBlock& V, bool has_sides, DirectionBlock& samples) {
@@ -88,11 +88,11 @@ bool fit(const RowBlock<double>& samples,
          double absolute,
          double relative,
          RowBlock<double>& values) {
-    static const FitMatrix matrix = fit_matrix();
+    static const FitMatrix kMatrix = fit_matrix();
     const auto& pixels = fit_pixels();
     std::array<double, kTerms> powers{};
     for (std::size_t i = 0; i < kFitSamples; ++i) {
-        for (std::size_t k = 0; k < kTerms; ++k) powers[k] += matrix[i][k] * samples[i];
+        for (std::size_t k = 0; k < kTerms; ++k) powers[k] += kMatrix[i][k] * samples[i];
     }
     evaluate(powers, values);
     bool is_fit = true;
