@@ -273,7 +273,7 @@ void print(const MadeAtlas& made) {
                made.computed,
                made.seconds);
     fmt::print(
-        "  measured between bins, light without the cones' edges is off by up to {:.2g}, {:.2g} "
+        "  measured between bins, light without the beams' edges is off by up to {:.2g}, {:.2g} "
         "rms\n",
         error.worst,
         error.rms);
@@ -348,7 +348,7 @@ Action configure_atlas(CLI::App& app) {
     app.add_option("--tolerance",
                    options->tolerance,
                    "Keep only as many of these bins as interpolate within this relative error, "
-                   "cones' edges aside")
+                   "beams' edges aside")
         ->check(in_range(kLeastTolerance, 1.0))
         ->option_text("E");
     app.add_option("--export",

@@ -99,7 +99,7 @@ void print(const BlendedMap& blended) {
     if (blended.bins > 1) {
         fmt::print(
             "  measured over the atlas, blending is off by up to {:.2g} for light without the "
-            "cones' edges,\n  {:.2g} rms for whole maps\n",
+            "beams' edges,\n  {:.2g} rms for whole maps\n",
             blended.manifest.interpolation.worst,
             blended.manifest.interpolation.whole_rms);
     }

@@ -177,7 +177,7 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
         ->capture_default_str();
     app.add_option("--edge-px",
                    options.correction.edge_px,
-                   "Mark N pixels around a cone's edge as doubtful")
+                   "Mark N pixels around a beam's edge as doubtful")
         ->check(in_range(0, kMostEdge_px))
         ->capture_default_str();
     add_format_options(app, options.correction.run.format);
@@ -196,7 +196,7 @@ Action configure_correct(CLI::App& app) {
     app.footer(
         "Interrupted, it continues where it stopped when run again. Exit status 0 when every image "
         "is corrected, 1 when some are skipped: correction.json lists them. A mask's pixel is a "
-        "sum of 1 dark, 2 saturated, 4 black, 8 on a cone's edge, 16 clipped by the format; 0 is "
+        "sum of 1 dark, 2 saturated, 4 black, 8 on a beam's edge, 16 clipped by the format; 0 is "
         "good.");
     return [options] { return correct(*options); };
 }

@@ -43,7 +43,7 @@ std::vector<RigPart> parts_of(const LightmapCommandOptions& options, const Rig& 
 }
 
 std::string words_of(const MapPromise& promise) {
-    return fmt::format("{} to {:.1e} of a signal off the cones' edges{}{}",
+    return fmt::format("{} to {:.1e} of a signal off the beams' edges{}{}",
                        promise.is_bounded ? "exact" : "near",
                        promise.error,
                        promise.is_bounded ? "" : ", as measured behind ports and not bounded",

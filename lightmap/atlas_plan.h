@@ -9,7 +9,7 @@
 // peak somewhat aside of it, and errors of several axes may have opposite signs, and so be less
 // inside a cell than on its edges.
 //
-// It is that of the light without the cones' edges, each cone going on to 90 degrees. What an edge
+// It is that of the light without the beams' edges, each cone going on to 90 degrees. What an edge
 // crosses on its way through the cell is no better than the step there, however fine the bins: a
 // tolerance says nothing of it. How much that is of the whole maps is measured apart, in the
 // middles of cells, kWholeCells of them at most, spread evenly.

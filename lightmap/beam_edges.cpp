@@ -3,7 +3,9 @@
 
 #include "lightmap/row_light.h"
 
+#include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace aphotic {
 
@@ -18,6 +20,28 @@ BeamEdges beam_edges(const Strobe& strobe) {
         edges.cosines.push_back(std::cos(edge_rad));
     edges.has_rim = has_rim(strobe.beam);
     return edges;
+}
+
+bool is_smooth_between(const BeamEdges& edges) {
+    const bool is_table = std::holds_alternative<BeamTable>(edges.beam.pattern);
+    return !edges.has_rim && !is_table && (edges.cosines.empty() || edges.beam.window);
+}
+
+bool is_between(const BeamEdges& edges,
+                const DirectionBlock& V,
+                std::size_t first,
+                std::size_t count) {
+    const auto cosine = [&](std::size_t i) { return V.axis[i] / std::sqrt(V.square[i]); };
+    for (const double edge : edges.cosines) {
+        double nearest = std::abs(cosine(first) - edge);
+        double widest_step = 0.0;
+        for (std::size_t i = first + 1; i < first + count; ++i) {
+            nearest = std::min(nearest, std::abs(cosine(i) - edge));
+            widest_step = std::max(widest_step, std::abs(cosine(i) - cosine(i - 1)));
+        }
+        if (nearest <= widest_step) return false;
+    }
+    return true;
 }
 
 void count_within(const BeamEdges& edges,

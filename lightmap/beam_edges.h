@@ -28,6 +28,16 @@ struct BeamEdges {
 // A strobe without power has none.
 [[nodiscard]] BeamEdges beam_edges(const Strobe& strobe);
 
+// Whether light has steps at circles of windows alone, and no kinks in between: a row of it is
+// worth fitting (row_fit.h). Cones have too many circles.
+[[nodiscard]] bool is_smooth_between(const BeamEdges& edges);
+// Whether none of these circles passes between the first of these directions and the last, along a
+// line on which they are `count`. Of close ones it is not sure, and says no.
+[[nodiscard]] bool is_between(const BeamEdges& edges,
+                              const DirectionBlock& V,
+                              std::size_t first,
+                              std::size_t count);
+
 // One more for each of kRowBlock pixels that see the floor within the edge of this number, less
 // than count(). V with its sides.
 void count_within(const BeamEdges& edges,

@@ -75,7 +75,7 @@ void ConeEdges::count_row(int row, const std::vector<RayTerms>& ends, Counts& co
     for (int column = 0; column < rig_.camera.width_px; column += kRowBlock) {
         const std::size_t first = size_of(column);
         for (const RayTerms& end : ends) {
-            look_along(end, {}, row, column, rays);
+            look_along(end, {}, row, neighbours(end, column), rays);
             count_seen(rays, &counts[0][first]);
             std::size_t thing = 1;
             for (const Lamp& lamp : lamps_) {

@@ -167,13 +167,21 @@ struct PlacedLamp {
     std::size_t spectrum;
 };
 
+using FitBlock = std::array<bool, kSampledBlocks>;
+
 // Of one thread.
 struct Workspace {
     std::array<RayBlock, kIndexNodes> rays;
     LampBlock lit;
     SumBlock sums;
+    SumBlock sampled;  // of kSampledBlocks
+    FitBlock may_fit;  // which of them
     Outside outside;
 };
+
+std::size_t block_of(int column) {
+    return static_cast<std::size_t>(column / kRowBlock);
+}
 
 // The middle index first, for it tells where the beams end.
 std::vector<std::size_t> node_order(std::size_t nodes) {
@@ -199,6 +207,8 @@ struct LightmapMaker::Scene {
     std::vector<std::size_t> nodes;  // of the index, the middle one first
     std::vector<RayTerms> rays;      // in their order
     std::vector<PlacedLamp> lamps;
+    std::vector<ColumnBlock> blocks;   // of a row
+    std::vector<ColumnBlock> samples;  // of its blocks; none where they are not worth it
 };
 
 PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds) {
@@ -308,6 +318,12 @@ LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
     for (const std::size_t j : scene.nodes) {
         scene.rays.push_back(ray_terms(rig_, floor, index_nodes_nm_[j]));
     }
+    for (int column = 0; column < rig_.camera.width_px; column += kRowBlock) {
+        scene.blocks.push_back(neighbours(scene.rays.front(), column));
+        const bool is_sampled = std::ranges::all_of(edges_, is_smooth_between);
+        if (is_sampled && block_of(column) % kSampledBlocks == 0)
+            scene.samples.push_back(samples_of_blocks(scene.rays.front(), column));
+    }
     Rig flown = rig_;
     flown.sled = sled;
     require_over_floor(rig_, sled);
@@ -360,14 +376,46 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
             look_up(work.lit, work.lit.highlight, tables.highlight[scene.nodes[j]], work.sums);
         }
     };
-    const auto make_row = [&](int row, Workspace& work) {
-        for (int column = 0; column < map.width_px; column += kRowBlock) {
-            for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
-                look_along(scene.rays[j], steps_, first_row + row, column, work.rays[j]);
+    const auto look = [&](int row, const ColumnBlock& columns, Workspace& work) {
+        for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
+            look_along(scene.rays[j], steps_, first_row + row, columns, work.rays[j]);
+        }
+        for (RowBlock<float>& sum : work.sums) sum.fill(0.0F);
+    };
+    const auto sample = [&](int row, const ColumnBlock& columns, Workspace& work) {
+        const Outside before = work.outside;
+        look(row, columns, work);
+        work.may_fit.fill(true);
+        for (const PlacedLamp& lamp : scene.lamps) {
+            add_lamp(lamp, work);
+            for (std::size_t b = 0; b < kSampledBlocks; ++b) {
+                work.may_fit[b] &=
+                    is_between(edges_[lamp.strobe], work.lit.V, b * kFitSamples, kFitSamples);
             }
-            for (RowBlock<float>& sum : work.sums) sum.fill(0.0F);
-            for (const PlacedLamp& lamp : scene.lamps) add_lamp(lamp, work);
-            store(work.sums, row, column, map);
+        }
+        // Said where a pixel of the image is outside, and samples may be beyond it.
+        if (work.outside != before) work.may_fit.fill(false);
+        work.outside = before;
+        work.sampled = work.sums;
+    };
+    const auto is_fit = [&](std::size_t block, Workspace& work) {
+        const std::size_t b = block % kSampledBlocks;
+        bool is_fit = work.may_fit[b];
+        for (std::size_t c = 0; c < kChannels && is_fit; ++c) {
+            is_fit = fit(&work.sampled[c][b * kFitSamples], work.sums[c]);
+        }
+        return is_fit;
+    };
+    const auto make_row = [&](int row, Workspace& work) {
+        for (std::size_t block = 0; block < scene.blocks.size(); ++block) {
+            const bool is_sampled = !scene.samples.empty();
+            if (is_sampled && block % kSampledBlocks == 0)
+                sample(row, scene.samples[block / kSampledBlocks], work);
+            if (!is_sampled || !is_fit(block, work)) {
+                look(row, scene.blocks[block], work);
+                for (const PlacedLamp& lamp : scene.lamps) add_lamp(lamp, work);
+            }
+            store(work.sums, row, static_cast<int>(block) * kRowBlock, map);
         }
     };
     std::vector<Workspace> workspaces(static_cast<std::size_t>(options_.threads));
@@ -401,7 +449,7 @@ std::vector<double> LightmapMaker::cones(const Sled& sled) const {
     RowBlock<std::uint8_t> is_within;
     for (int row = 0; row < rig_.camera.height_px; ++row) {
         for (int column = 0; column < rig_.camera.width_px; column += kRowBlock) {
-            look_along(scene.rays.front(), steps_, row, column, rays);
+            look_along(scene.rays.front(), steps_, row, scene.blocks[block_of(column)], rays);
             const auto first = static_cast<std::size_t>(column);
             const std::size_t count = std::min<std::size_t>(kRowBlock, width - first);
             for (std::size_t k = 0; k < scene.lamps.size(); ++k) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -101,6 +102,19 @@ bool fit(const RowBlock<double>& samples,
         is_fit &= off <= absolute + relative * std::abs(samples[i]);
     }
     return is_fit;
+}
+
+bool fit(const float* samples, RowBlock<float>& values) {
+    RowBlock<double> of_samples;
+    RowBlock<double> of_block;
+    for (std::size_t i = 0; i < kFitSamples; ++i) {
+        if (!(samples[i] > 0.0F)) return false;
+        of_samples[i] = static_cast<double>(samples[i]);
+    }
+    if (!fit(of_samples, 0.0, kRowFitError, of_block)) return false;
+    std::ranges::transform(
+        of_block, values.begin(), [](double value) { return static_cast<float>(value); });
+    return true;
 }
 
 }  // namespace aphotic

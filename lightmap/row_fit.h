@@ -28,4 +28,9 @@ void take_samples(const DirectionBlock& V, bool has_sides, DirectionBlock& sampl
                        double relative,
                        RowBlock<double>& values);
 
+// The block's values from those of kFitSamples pixels, which are above 0: false where there is no
+// fit within kRowFitError of each, which is a few roundings of floats.
+inline constexpr double kRowFitError = 1e-6;
+[[nodiscard]] bool fit(const float* samples, RowBlock<float>& values);
+
 }  // namespace aphotic

@@ -8,21 +8,24 @@ namespace aphotic {
 
 namespace {
 
-APHOTIC_WIDE void go_straight(const RayTerms& terms, double u, double first_v, RayBlock& rays) {
+APHOTIC_WIDE void go_straight(double u, const RowBlock<double>& v, RayBlock& rays) {
     for (std::size_t i = 0; i < kBlockCount; ++i) {
         rays.D_x[i] = u;
-        rays.D_y[i] = first_v + static_cast<double>(static_cast<int>(i)) * terms.slope_per_px;
+        rays.D_y[i] = v[i];
         rays.o_x[i] = 0.0;
         rays.o_y[i] = 0.0;
     }
 }
 
 // How a pixel's slopes in air turn into those in water, and where they leave the port.
-APHOTIC_WIDE void bend(const RayTerms& terms, double u, double first_v, RayBlock& rays) {
+APHOTIC_WIDE void bend(const RayTerms& terms,
+                       double u,
+                       const RowBlock<double>& slopes,
+                       RayBlock& rays) {
     const double n_w2 = terms.water_index * terms.water_index;
     const double n_g2 = terms.glass_index * terms.glass_index;
     for (std::size_t i = 0; i < kBlockCount; ++i) {
-        const double v = first_v + static_cast<double>(static_cast<int>(i)) * terms.slope_per_px;
+        const double v = slopes[i];
         const double q = u * u + v * v;
         const double in_water = 1.0 / std::sqrt(n_w2 + (n_w2 - 1.0) * q);
         const double leaving_m =
@@ -124,17 +127,41 @@ RayTerms ray_terms(const Rig& rig, const Plane& floor, double lambda_nm) {
     return terms;
 }
 
-void look_along(
-    const RayTerms& terms, const PathSteps& steps, int row, int first_column, RayBlock& rays) {
+namespace {
+
+double slope_of(const RayTerms& terms, int first_column, std::size_t pixel) {
+    return (first_column + 0.5 - terms.middle_column) * terms.slope_per_px +
+           static_cast<double>(pixel) * terms.slope_per_px;
+}
+
+}  // namespace
+
+ColumnBlock neighbours(const RayTerms& terms, int first_column) {
+    ColumnBlock columns{.v = {}, .count = std::min(kRowBlock, terms.width_px - first_column)};
+    for (std::size_t i = 0; i < kBlockCount; ++i) columns.v[i] = slope_of(terms, first_column, i);
+    return columns;
+}
+
+ColumnBlock samples_of_blocks(const RayTerms& terms, int first_column) {
+    ColumnBlock columns;
+    for (std::size_t i = 0; i < kBlockCount; ++i) {
+        const int block_column = first_column + static_cast<int>(i / kFitSamples) * kRowBlock;
+        columns.v[i] = slope_of(terms, block_column, fit_pixels()[i % kFitSamples]);
+    }
+    return columns;
+}
+
+void look_along(const RayTerms& terms,
+                const PathSteps& steps,
+                int row,
+                const ColumnBlock& columns,
+                RayBlock& rays) {
     const double u = (terms.middle_row - (row + 0.5)) * terms.slope_per_px;
-    const double first_v = (first_column + 0.5 - terms.middle_column) * terms.slope_per_px;
     rays.o_z = terms.distance_m + terms.thickness_m;
     const bool has_port = terms.water_index != 1.0;
-    has_port ? bend(terms, u, first_v, rays) : go_straight(terms, u, first_v, rays);
+    has_port ? bend(terms, u, columns.v, rays) : go_straight(u, columns.v, rays);
     meet_floor(terms, steps, rays);
-    for (int i = terms.width_px - first_column; i < kRowBlock; ++i) {
-        rays.w3[static_cast<std::size_t>(i)] = 0.0F;
-    }
+    for (int i = columns.count; i < kRowBlock; ++i) rays.w3[static_cast<std::size_t>(i)] = 0.0F;
 }
 
 namespace {

@@ -27,7 +27,7 @@
 //   a = 1/sqrt(n_w^2 + (n_w^2 - 1) q)     b = distance + thickness/sqrt(n_g^2 + (n_g^2 - 1) q)
 //
 // with q = u^2 + v^2. What is a small difference of large numbers, w towards the horizon, V.a at
-// the end of a cone of 90 degrees, and which side of a cone's edge a pixel is on, is done in double
+// the end of a cone of 90 degrees, and which side of a beam's edge a pixel is on, is done in double
 // precision, products in float.
 //
 // Over the few pixels of a block the path hardly changes. So nearly all of them are in one step of
@@ -37,6 +37,7 @@
 #include "lightmap/beam_light.h"
 #include "lightmap/path_table.h"
 #include "lightmap/row_block.h"
+#include "lightmap/row_fit.h"
 #include "rig/geometry.h"
 #include "rig/rig.h"
 
@@ -79,8 +80,20 @@ struct RayBlock {
     RowBlock<float> leg_steps;  // r in steps of the table, less the place of its start
 };
 
-void look_along(
-    const RayTerms& terms, const PathSteps& steps, int row, int first_column, RayBlock& rays);
+// The pixels of a block: neighbours, or the samples of several blocks (row_fit.h).
+struct ColumnBlock {
+    RowBlock<double> v;     // the slope of each in air
+    int count = kRowBlock;  // in the image
+};
+[[nodiscard]] ColumnBlock neighbours(const RayTerms& terms, int first_column);
+inline constexpr std::size_t kSampledBlocks = kBlockCount / kFitSamples;
+[[nodiscard]] ColumnBlock samples_of_blocks(const RayTerms& terms, int first_column);
+
+void look_along(const RayTerms& terms,
+                const PathSteps& steps,
+                int row,
+                const ColumnBlock& columns,
+                RayBlock& rays);
 
 struct LampTerms {
     Eigen::Vector3d position_m;
@@ -118,6 +131,8 @@ void count_within(const RayBlock& rays,
 struct Outside {
     int before = 0;
     int beyond = 0;
+
+    bool operator==(const Outside&) const = default;
 };
 // The factors and the place in the table; black outside it.
 [[nodiscard]] Outside weigh(const RayBlock& rays,

@@ -520,20 +520,29 @@ std::string beam_signature(const Beam& beam) {
                                                 fmt::join(vertical_rad, " "),
                                                 fmt::join(horizontal_rad, " "),
                                                 fmt::join(intensity, " "));
-        parts.push_back(fmt::format(
-            "table {} {} of {}", static_cast<int>(angles), sha256_of_text(numbers), per_flux));
+        parts.push_back(
+            fmt::format("beam of a table of type {}, {} x {} directions, SHA-256 {}, times {}",
+                        "ABC"[static_cast<std::size_t>(angles)],
+                        vertical_rad.size(),
+                        horizontal_rad.size(),
+                        sha256_of_text(numbers),
+                        per_flux));
     }
     if (const auto* optics = std::get_if<BeamOptics>(&pattern)) {
         const auto& [along_m, across_m, focal_length_m, distance_m, aperture_m] = *optics;
-        parts.push_back(fmt::format(
-            "optics {} {} {} {} {}", along_m, across_m, focal_length_m, distance_m, aperture_m));
+        parts.push_back(fmt::format("beam of optics {} {} {} {} {} m",
+                                    along_m,
+                                    across_m,
+                                    focal_length_m,
+                                    distance_m,
+                                    aperture_m));
     }
     if (turn_rad != 0.0) parts.push_back(fmt::format("turned {}", turn_rad));
     if (window) {
         const auto& [glass_index, water_index] = *window;
         parts.push_back(fmt::format("window {} {}", glass_index, water_index));
     }
-    return fmt::format("{}", fmt::join(parts, ", "));
+    return fmt::format("{}{}", is_pattern(beam) ? "" : "cones ", fmt::join(parts, ", "));
 }
 
 }  // namespace aphotic

@@ -47,14 +47,7 @@ class ValueLines {
         std::string word(next(what));
         if (std::ranges::count(word, ',') == 1 && word.find('.') == std::string::npos)
             std::ranges::replace(word, ',', '.');
-        const std::optional<double> value = finite_decimal(word);
-        if (!value) {
-            fail_at_line(
-                file_,
-                line_,
-                fmt::format("{}: found {}; allowed: a finite number", what, shown_word(word)));
-        }
-        return {.value = *value, .line = line_};
+        return number_of(file_, line_, word, what);
     }
 
     std::vector<FileNumber> numbers(std::size_t count, std::string_view what) {

@@ -55,14 +55,7 @@ class NumberReader {
         if (word.empty()) {
             fail_at_line(file_, line_, fmt::format("the file ends where {} should be", what));
         }
-        const std::optional<double> value = finite_decimal(word);
-        if (!value) {
-            fail_at_line(
-                file_,
-                line_,
-                fmt::format("{}: found {}; allowed: a finite number", what, shown_word(word)));
-        }
-        return {.value = *value, .line = line_};
+        return number_of(file_, line_, word, what);
     }
 
     std::vector<FileNumber> next(std::size_t count, std::string_view what) {

@@ -93,6 +93,19 @@ std::optional<double> finite_decimal(std::string_view word) {
     return is_number ? std::optional(number) : std::nullopt;
 }
 
+FileNumber number_of(const std::string& file,
+                     std::size_t line,
+                     std::string_view word,
+                     std::string_view what) {
+    const std::optional<double> value = finite_decimal(word);
+    if (!value) {
+        fail_at_line(file,
+                     line,
+                     fmt::format("{}: found {}; allowed: a finite number", what, shown_word(word)));
+    }
+    return {.value = *value, .line = line};
+}
+
 void fail_number(const std::string& file,
                  const FileNumber& number,
                  std::string_view what,

@@ -35,6 +35,10 @@ struct FileNumber {
     double value = 0.0;
     std::size_t line = 0;
 };
+[[nodiscard]] FileNumber number_of(const std::string& file,
+                                   std::size_t line,
+                                   std::string_view word,
+                                   std::string_view what);
 [[noreturn]] void fail_number(const std::string& file,
                               const FileNumber& number,
                               std::string_view what,

@@ -8,7 +8,7 @@
 //   promise = error + amplification frame_error
 //
 // (spectral/quadrature_fit.h). frame_error is kFrameError, and kLampError more where point lamps
-// stand for an emitter. It holds for every pixel off the edges of cones and objects that is
+// stand for an emitter. It holds for every pixel off the edges of beams and objects that is
 // brighter than black (1e-8 of the brightest), relative to its own signal. A scene of the user's
 // may hold what voids it: no_promise says what.
 #pragma once

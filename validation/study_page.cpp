@@ -216,7 +216,7 @@ std::string notes(const Study& study) {
                       "what counts as black: 10⁻⁸ of the channel’s brightest") +
            html_paragraph(
                "Errors are of |<i>e</i>| in the worst of the three channels, over all pixels off "
-               "the edges of cones, shadows and objects: the largest, the 99.9 percentile and the "
+               "the edges of beams, shadows and objects: the largest, the 99.9 percentile and the "
                "root mean square. "
                "No factor is fitted: the absolute scale is part of it. Pixels on the edge of a "
                "cone, which lie on both sides of it, are measured on their own.") +

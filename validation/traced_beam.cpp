@@ -90,20 +90,29 @@ struct Angles {
     double horizontal_rad;
 };
 
+// Up from the plane across an axis, and round it.
+double elevation(const Vector3d& w, const Vector3d& axis) {
+    return std::atan2(w.dot(axis), w.cross(axis).norm());
+}
+
+double azimuth(const Vector3d& w, const Vector3d& from, const Vector3d& to) {
+    return std::atan2(w.dot(to), w.dot(from));
+}
+
 Angles goniometer_angles(TableAngles type, const Vector3d& lamp) {
-    const double x = lamp.x();
-    const double y = lamp.y();
-    const double z = lamp.z();
+    const Vector3d x = Vector3d::UnitX();
+    const Vector3d y = Vector3d::UnitY();
+    const Vector3d z = Vector3d::UnitZ();
     switch (type) {
         case TableAngles::TypeA:
-            return {std::atan2(x, std::hypot(y, z)), std::atan2(y, z)};
+            return {elevation(lamp, x), azimuth(lamp, z, y)};
         case TableAngles::TypeB:
-            return {std::atan2(x, z), std::atan2(y, std::hypot(x, z))};
+            return {azimuth(lamp, z, x), elevation(lamp, y)};
         case TableAngles::TypeC:
             break;
     }
-    const double around = std::atan2(-y, x);
-    return {std::atan2(std::hypot(x, y), z), around < 0.0 ? around + 2.0 * kPi : around};
+    const double around = azimuth(lamp, x, -y);
+    return {angle_between(lamp, z), around < 0.0 ? around + 2.0 * kPi : around};
 }
 
 double intensity_of(const BeamTable& table, const Vector3d& lamp) {

@@ -84,15 +84,19 @@ std::string ies_of_type_b() {
     return text;
 }
 
+void write_rig(const std::filesystem::path& folder, const Kind& kind, bool has_port) {
+    write_file(folder / "rig.toml", rig_of(kind, has_port));
+    write_file(folder / "two.csv", csv_of_two_angles());
+    write_file(folder / "b.ies", ies_of_type_b());
+    write_file(folder / "one.csv", "theta_deg,intensity\n0,5\n12,4.6\n33,2\n61,0.4\n90,0\n");
+}
+
 class EveryBeam : public testing::TestWithParam<std::tuple<Kind, bool>> {};
 
 TEST_P(EveryBeam, Validates) {
     const auto& [kind, has_port] = GetParam();
     const TempFolder folder;
-    write_file(folder.path() / "rig.toml", rig_of(kind, has_port));
-    write_file(folder.path() / "two.csv", csv_of_two_angles());
-    write_file(folder.path() / "b.ies", ies_of_type_b());
-    write_file(folder.path() / "one.csv", "theta_deg,intensity\n0,5\n12,4.6\n33,2\n61,0.4\n90,0\n");
+    write_rig(folder.path(), kind, has_port);
     const CommandResult run = run_aphotic(folder.path(),
                                           {"validate",
                                            "rig.toml",
@@ -142,6 +146,28 @@ INSTANTIATE_TEST_SUITE_P(
         return std::string(std::get<0>(kind.param).name) +
                (std::get<1>(kind.param) ? "BehindAPort" : "");
     });
+
+// A table is part of the rig: what was rendered by another is neither kept nor weighed.
+TEST(BeamTableFile, ThatChangesChangesTheFrames) {
+    const TempFolder folder;
+    write_rig(folder.path(), {"OneAngle", "table = \"one.csv\"", true}, false);
+    const std::vector<std::string> render{
+        "render", "rig.toml", "-o", "out", "--wavelengths", "450,550,650"};
+    const auto rendered = [&] {
+        const CommandResult run = run_aphotic(folder.path(), render);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return run.out;
+    };
+    EXPECT_NE(rendered().find("1 frame rendered, 0 kept"), std::string::npos);
+    EXPECT_NE(rendered().find("0 frames rendered, 1 kept"), std::string::npos);
+
+    write_file(folder.path() / "one.csv", "theta_deg,intensity\n0,5\n12,4.6\n33,2\n61,0.3\n90,0\n");
+    const CommandResult integrated =
+        run_aphotic(folder.path(), {"integrate", "out", "--rig", "rig.toml"});
+    EXPECT_EQ(integrated.status, 2) << integrated.out;
+    EXPECT_NE(integrated.err.find("beam"), std::string::npos) << integrated.err;
+    EXPECT_NE(rendered().find("1 frame rendered, 0 kept"), std::string::npos);
+}
 
 }  // namespace
 }  // namespace aphotic::every_beam_test

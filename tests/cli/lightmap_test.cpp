@@ -50,7 +50,7 @@ class CommandLightmap : public testing::Test {
     TempFolder folder_;
 };
 
-// One pixel in a thousand may be on a cone's edge, and step.
+// One pixel in a thousand may be on a beam's edge, and step.
 void expect_equal(const std::vector<float>& found, const std::vector<float>& wanted) {
     constexpr double kOnEdges = 1e-3;
     ASSERT_EQ(found.size(), wanted.size());
@@ -117,7 +117,7 @@ TEST_F(CommandLightmap, PromisesWhatHolds) {
         EXPECT_EQ(run.status, 0) << run.err;
         EXPECT_NE(run.out.find(words + ";\n"), std::string::npos) << run.out;
     };
-    const std::string off_edges = " of a signal off the cones' edges";
+    const std::string off_edges = " of a signal off the beams' edges";
     expect_words("exact to 1.1e-05" + off_edges, lightmap());
     expect_words("exact to 8.2e-07" + off_edges, lightmap({"--error", "1e-7"}));
     const std::string text = read_text_file(folder_.path() / "rig.toml");

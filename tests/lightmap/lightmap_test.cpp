@@ -9,8 +9,10 @@
 #include "rig/rig_reader.h"
 #include "spectral/curve_loader.h"
 #include "support/effort.h"
+#include "support/random_beam.h"
 #include "validation/tracer.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +25,7 @@
 namespace aphotic::lightmap_test {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-// What is promised to users at every pixel off the cones' edges.
+// What is promised to users at every pixel off the beams' edges.
 constexpr double kPromise = 1e-4;
 // The error that is asked for, the tracer's own grid, and the rounding of a sum of a dozen floats.
 constexpr double kAsked = 1e-5;
@@ -229,6 +230,19 @@ TEST(Lightmap, IsThatOfTheTracerForOtherExponents) {
         strobe.beam.cones[2].exponent = 8.0;
     }
     expect_equal(rig, kWithoutPort, "emitters of exponent 8");
+}
+
+TEST(Lightmap, IsThatOfTheTracerForEveryKindOfBeam) {
+    for (const BeamKind kind : kBeamKinds) {
+        std::mt19937 engine(7100);  // NOLINT(cert-msc51-cpp): the same rigs in each run
+        Dice dice(7100);
+        for (int i = 0; i < cases(6); ++i) {
+            Rig rig = random_rig(engine);
+            for (Strobe& strobe : rig.strobes) strobe.beam = random_beam_of(kind, dice);
+            expect_equal(
+                rig, kWithoutPort, fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
+        }
+    }
 }
 
 TEST(Lightmap, IsThatOfTheTracerForGlossyFloors) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "rig/beam.h"
-#include "support/random_rig.h"
+#include "support/dice.h"
 
 #include <array>
 #include <cmath>
@@ -18,6 +18,21 @@ namespace aphotic {
 enum class BeamKind { Cones, TableA, TableB, TableC, Optics };
 inline constexpr std::array<BeamKind, 5> kBeamKinds{
     BeamKind::Cones, BeamKind::TableA, BeamKind::TableB, BeamKind::TableC, BeamKind::Optics};
+
+// Sharp cones of a Lambertian falloff, as the paper's.
+inline Beam random_beam(Dice& dice) {
+    Beam beam{.name = "random",
+              .weights = dice.chance(0.8) ? ConeWeights::Flux : ConeWeights::Literal,
+              .cones = {}};
+    const int cones = dice.whole(1, 3);
+    for (int k = 0; k < cones; ++k) {
+        const double half_angle_deg = dice.chance(0.3) ? 90.0 : dice.over_octaves(3.0, 90.0);
+        beam.cones.push_back({.part = "random",
+                              .half_angle_rad = half_angle_deg * kDegree,
+                              .weight = dice.between(0.05, 1.0)});
+    }
+    return beam;
+}
 
 // Sharp and soft cones of any falloff.
 inline std::vector<Cone> random_cones(Dice& dice) {

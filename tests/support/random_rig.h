@@ -4,12 +4,11 @@
 // what the reader of rigs allows. A seed is a rig, the same on every machine.
 //
 //   random_rig(seed)       the floor alone under point lamps, 48 x 36 pixels
-//   random_full_rig(seed)  the same rig with what else there is: emitters of a size, objects, cones
-//                          of no weight, strobes of no power
+//   random_full_rig(seed)  the same rig with what else there is: beams of any kind, emitters of a
+//                          size, objects, cones of no weight, strobes of no power
 //   random_nasty_rig(seed) the same geometry with users' worst tables: filters that rise over
-//   hundreds
-//                          of decades, lamps of a single line, notches, knots that almost coincide,
-//                          and 30 decades between lamps
+//                          hundreds of decades, lamps of a single line, notches, knots that almost
+//                          coincide, and 30 decades between lamps
 //
 // A test that fails prints the seed with in_words(); run alone with APHOTIC_RIG_SEED=<seed>, it
 // tries that rig and no other.
@@ -20,6 +19,7 @@
 #include "rig/solid.h"
 #include "spectral/curve_loader.h"
 #include "support/box_mesh.h"
+#include "support/random_beam.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -38,35 +38,6 @@
 #include <vector>
 
 namespace aphotic {
-
-inline constexpr double kDegree = std::numbers::pi / 180.0;
-
-// The same throws with every standard library: only the engine is the standard's.
-class Dice {
-  public:
-    explicit Dice(std::uint64_t seed) : engine_(seed) {}
-
-    double between(double least, double most) { return least + (most - least) * unit(); }
-    // Every octave as likely as any other.
-    double over_octaves(double least, double most) {
-        return least * std::exp2(std::log2(most / least) * unit());
-    }
-    int whole(int least, int most) { return least + static_cast<int>(unit() * (most - least + 1)); }
-    bool chance(double share) { return unit() < share; }
-    std::size_t index_in(const auto& list) {
-        return static_cast<std::size_t>(unit() * static_cast<double>(list.size()));
-    }
-    template <std::size_t N>
-    std::string_view one_of(const std::array<std::string_view, N>& names) {
-        return names[index_in(names)];
-    }
-
-  private:
-    // The engine's upper 53 bits, in [0, 1).
-    double unit() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
-
-    std::mt19937_64 engine_;
-};
 
 // Straight lines between random values, some of them the least.
 inline Spectrum random_curve(Dice& dice, double least, double most) {
@@ -147,20 +118,6 @@ inline Camera random_camera(Dice& dice) {
         camera.range.first_nm = dice.between(380.0, 440.0);
     }
     return camera;
-}
-
-inline Beam random_beam(Dice& dice) {
-    Beam beam{.name = "random",
-              .weights = dice.chance(0.8) ? ConeWeights::Flux : ConeWeights::Literal,
-              .cones = {}};
-    const int cones = dice.whole(1, 3);
-    for (int k = 0; k < cones; ++k) {
-        const double half_angle_deg = dice.chance(0.3) ? 90.0 : dice.over_octaves(3.0, 90.0);
-        beam.cones.push_back({.part = "random",
-                              .half_angle_rad = half_angle_deg * kDegree,
-                              .weight = dice.between(0.05, 1.0)});
-    }
-    return beam;
 }
 
 // Around the camera, outside any housing, and above the floor.
@@ -277,6 +234,9 @@ inline Rig random_full_rig(std::uint64_t seed) {
                               .along_m = dice.between(0.0, 0.05)};
         }
         if (dice.chance(0.1)) strobe.beam.cones[dice.index_in(strobe.beam.cones)].weight = 0.0;
+        if (dice.chance(0.3)) {
+            strobe.beam = random_beam_of(kBeamKinds.at(dice.index_in(kBeamKinds)), dice);
+        }
         if (dice.chance(0.05)) strobe.power = 0.0;
     }
     const int objects = dice.chance(0.3) ? dice.whole(1, 3) : 0;

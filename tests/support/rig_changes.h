@@ -5,14 +5,16 @@
 //   scaled       all lengths in the water times s, all losses per metre over s: light falls with
 //   the
 //                square of the distance, L(s) = L / s^2. Of the camera only the port has lengths in
-//                the scene; focal length and pixel pitch count by their ratio alone
-//   mirrored     port and starboard exchanged: the columns run the other way
+//                the scene; focal length and pixel pitch count by their ratio alone, as a beam's
+//                optics do
+//   mirrored     port and starboard exchanged, in beams as well: the columns run the other way
 //   turned       a quarter of a turn about the camera's axis, forward to starboard: the rows of a
 //                square image become its columns. What lies along the sled's axes, an emitter's
 //                sides, is not turned with it
 //   with_power   every strobe's power times a factor: so is every sample
 #pragma once
 
+#include "rig/beam.h"
 #include "rig/rig.h"
 
 #include <Eigen/Geometry>
@@ -70,6 +72,30 @@ inline Rig scaled(Rig rig, double s) {
     return rig;
 }
 
+// Of a beam whose lamp's frame is mirrored across `across`: the planes come in reverse order, at
+// the other side of 0; about the axis, at the rest of the turn.
+inline BeamTable mirrored(BeamTable table) {
+    if (table.horizontal_rad.size() == 1) return table;
+    const double whole_rad = table.angles == TableAngles::TypeC ? table.horizontal_rad.back() : 0.0;
+    BeamTable other = table;
+    const std::size_t planes = table.horizontal_rad.size();
+    const std::size_t rows = table.vertical_rad.size();
+    for (std::size_t h = 0; h < planes; ++h) {
+        const std::size_t from = planes - 1 - h;
+        other.horizontal_rad[h] = whole_rad - table.horizontal_rad[from];
+        for (std::size_t v = 0; v < rows; ++v) {
+            other.intensity[h * rows + v] = table.intensity[from * rows + v];
+        }
+    }
+    return other;
+}
+
+inline Beam mirrored(Beam beam) {
+    if (auto* table = std::get_if<BeamTable>(&beam.pattern)) *table = mirrored(*table);
+    beam.turn_rad = -beam.turn_rad;
+    return beam;
+}
+
 inline Rig mirrored(Rig rig) {
     const auto mirror = [](const Eigen::Vector3d& p) {
         return Eigen::Vector3d(p.x(), -p.y(), p.z());
@@ -78,6 +104,7 @@ inline Rig mirrored(Rig rig) {
     for (Strobe& strobe : rig.strobes) {
         strobe.position_m = mirror(strobe.position_m);
         strobe.axis = mirror(strobe.axis);
+        strobe.beam = mirrored(strobe.beam);
     }
     for (Object& object : rig.objects) object.shape = moved(object.shape, mirror);
     return rig;
@@ -97,7 +124,11 @@ inline Rig turned(Rig rig) {
     // The floor's point straight below the pupil lies on the axis of the turn: it stays.
     for (Strobe& strobe : rig.strobes) {
         strobe.position_m = turn(strobe.position_m);
+        // The beam turns along, and its frame does not quite.
+        const Eigen::Vector3d along = turn(frame_about(strobe.axis).along);
         strobe.axis = turn(strobe.axis);
+        const BeamFrame frame = frame_about(strobe.axis);
+        strobe.beam.turn_rad += std::atan2(along.dot(frame.across), along.dot(frame.along));
     }
     for (Object& object : rig.objects) object.shape = moved(object.shape, turn);
     return rig;
