@@ -31,17 +31,18 @@ bool is_between(const BeamEdges& edges,
                 const DirectionBlock& V,
                 std::size_t first,
                 std::size_t count) {
-    const auto cosine = [&](std::size_t i) { return V.axis[i] / std::sqrt(V.square[i]); };
-    for (const double edge : edges.cosines) {
-        double nearest = std::abs(cosine(first) - edge);
-        double widest_step = 0.0;
-        for (std::size_t i = first + 1; i < first + count; ++i) {
-            nearest = std::min(nearest, std::abs(cosine(i) - edge));
-            widest_step = std::max(widest_step, std::abs(cosine(i) - cosine(i - 1)));
-        }
-        if (nearest <= widest_step) return false;
-    }
-    return true;
+    if (edges.cosines.empty()) return true;
+    RowBlock<double> cosine;
+    for (std::size_t i = 0; i < count; ++i)
+        cosine[i] = V.axis[first + i] / std::sqrt(V.square[first + i]);
+    double widest_step = 0.0;
+    for (std::size_t i = 1; i < count; ++i)
+        widest_step = std::max(widest_step, std::abs(cosine[i] - cosine[i - 1]));
+    return std::ranges::all_of(edges.cosines, [&](double edge) {
+        return std::all_of(cosine.begin(),
+                           cosine.begin() + static_cast<std::ptrdiff_t>(count),
+                           [&](double c) { return std::abs(c - edge) > widest_step; });
+    });
 }
 
 void count_within(const BeamEdges& edges,

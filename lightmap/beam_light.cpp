@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/beam_light.h"
 
-#include "lightmap/row_fit.h"
-
 #include <cmath>
 
 namespace aphotic {
@@ -35,13 +33,15 @@ APHOTIC_WIDE void find_let_out(const DirectionBlock& in_air, RowBlock<double>& i
     for (std::size_t i = 0; i < kBlockCount; ++i) is_let_out[i] = in_air.axis[i] > 0.0 ? 1.0 : 0.0;
 }
 
-// One polarisation's T / cos(theta), of what rig/beam_window.cpp has for each face: with the sums
-// and differences of both faces' shares, Fresnel's products have one denominator.
-APHOTIC_IN_LOOP double let_through(
-    double outer_near, double outer_far, double inner_near, double inner_far, double light) {
+// Of one polarisation, light / (T / cos(theta)) of what rig/beam_window.cpp has for each face: with
+// the sums and differences of both faces' shares, Fresnel's products have one denominator.
+APHOTIC_IN_LOOP double denominator(double outer_near,
+                                   double outer_far,
+                                   double inner_near,
+                                   double inner_far) {
     const double sums = (outer_near + outer_far) * (inner_near + inner_far);
     const double differences = (outer_near - outer_far) * (inner_near - inner_far);
-    return light / (sums * sums - differences * differences);
+    return sums * sums - differences * differences;
 }
 
 // rig/beam_window.h's factor.
@@ -59,9 +59,9 @@ APHOTIC_WIDE void take_factors(const BeamWindow& window,
         const double cos_glass = std::sqrt(1.0 - sine2 * per_g2);
         const double cos_water = std::sqrt(1.0 - sine2 * per_n2);
         const double light = 16.0 * g * g * n * cos_glass * cos_glass * cos_water;
-        const double s = let_through(c, g * cos_glass, g * cos_glass, n * cos_water, light);
-        const double p = let_through(g * c, cos_glass, n * cos_glass, g * cos_water, light);
-        factors[i] = 0.5 * (s + p) * n * n * cos_water;
+        const double s = denominator(c, g * cos_glass, g * cos_glass, n * cos_water);
+        const double p = denominator(g * c, cos_glass, n * cos_glass, g * cos_water);
+        factors[i] = 0.5 * light * (s + p) / (s * p) * n * n * cos_water;
     }
 }
 
@@ -69,17 +69,6 @@ APHOTIC_WIDE void multiply(const RowBlock<double>& a,
                            const RowBlock<double>& b,
                            RowBlock<double>& product) {
     for (std::size_t i = 0; i < kBlockCount; ++i) product[i] *= a[i] * b[i];
-}
-
-// Smooth along a row, but close to the last that the window lets out.
-void weigh_window(const BeamWindow& window, BeamBlock& block) {
-    constexpr double kFitError = 1e-8;  // relative; a float's rounding is six times as much
-    take_samples(block.in_air, false, block.samples);
-    take_factors(window, block.samples, block.factor_of_samples);
-    if (!fit(block.factor_of_samples, 0.0, kFitError, block.window_factor)) {
-        take_factors(window, block.in_air, block.window_factor);
-    }
-    multiply(block.window_factor, block.is_let_out, block.intensity);
 }
 
 template <class... Fs>
@@ -138,7 +127,10 @@ void look_into(const BeamLight& light, const DirectionBlock& V, Edges edges, Bea
                              block.reach = &seen.axis;
                          }},
                light.kind);
-    if (light.window) weigh_window(*light.window, block);
+    if (light.window) {
+        take_factors(*light.window, block.in_air, block.window_factor);
+        multiply(block.window_factor, block.is_let_out, block.intensity);
+    }
 }
 
 }  // namespace aphotic

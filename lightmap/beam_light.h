@@ -51,8 +51,6 @@ struct BeamBlock {
     OpticsWork optics;
     DirectionBlock in_air;
     RowBlock<double> window_factor;
-    DirectionBlock samples;
-    RowBlock<double> factor_of_samples;
     RowBlock<double> is_let_out;  // 1 or 0
 };
 

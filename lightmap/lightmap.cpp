@@ -174,10 +174,23 @@ struct Workspace {
     std::array<RayBlock, kIndexNodes> rays;
     LampBlock lit;
     SumBlock sums;
-    SumBlock sampled;  // of kSampledBlocks
-    FitBlock may_fit;  // which of them
+    std::array<RowBlock<double>, kChannels> totals;  // of many lamps, whose floats would not do
+    SumBlock sampled;                                // of kSampledBlocks
+    FitBlock may_fit;                                // which of them
     Outside outside;
 };
+
+// As many as the promise's sum of a dozen floats has.
+constexpr std::size_t kLampsInFloats = 8;
+
+void move_to_totals(Workspace& work) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        for (std::size_t i = 0; i < kBlockCount; ++i) {
+            work.totals[c][i] += static_cast<double>(work.sums[c][i]);
+        }
+        work.sums[c].fill(0.0F);
+    }
+}
 
 std::size_t block_of(int column) {
     return static_cast<std::size_t>(column / kRowBlock);
@@ -243,7 +256,7 @@ MapPromise map_promise(const Rig& rig, const LightmapOptions& options) {
     constexpr double kRounding = 12.0 * 0x1p-24;
     constexpr double kOverTheIndex = 1e-4;
     const bool has_port = rig.camera.port.has_value();
-    return {.error = options.error + kRounding + (has_port ? kOverTheIndex : 0.0),
+    return {.error = options.error + kRounding + kRowFitError + (has_port ? kOverTheIndex : 0.0),
             .is_bounded = !has_port,
             .is_of_lamp_grids = std::ranges::any_of(
                 rig.strobes, [](const Strobe& strobe) { return strobe.emitter.has_value(); })};
@@ -314,15 +327,20 @@ void LightmapMaker::tabulate_lamp(const Spectrum& lamp,
 
 LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
     const Plane floor = floor_plane(sled);
-    Scene scene{.nodes = node_order(index_nodes_nm_.size()), .rays = {}, .lamps = {}};
+    Scene scene{.nodes = node_order(index_nodes_nm_.size()),
+                .rays = {},
+                .lamps = {},
+                .blocks = {},
+                .samples = {}};
     for (const std::size_t j : scene.nodes) {
         scene.rays.push_back(ray_terms(rig_, floor, index_nodes_nm_[j]));
     }
-    for (int column = 0; column < rig_.camera.width_px; column += kRowBlock) {
-        scene.blocks.push_back(neighbours(scene.rays.front(), column));
-        const bool is_sampled = std::ranges::all_of(edges_, is_smooth_between);
-        if (is_sampled && block_of(column) % kSampledBlocks == 0)
-            scene.samples.push_back(samples_of_blocks(scene.rays.front(), column));
+    const int width_px = rig_.camera.width_px;
+    const bool is_sampled = width_px >= kRowBlock && std::ranges::all_of(edges_, is_smooth_between);
+    for (int block = 0; block * kRowBlock < width_px; ++block) {
+        scene.blocks.push_back(neighbours(scene.rays.front(), block * kRowBlock));
+        if (is_sampled && static_cast<std::size_t>(block) % kSampledBlocks == 0)
+            scene.samples.push_back(samples_of_blocks(scene.rays.front(), block));
     }
     Rig flown = rig_;
     flown.sled = sled;
@@ -381,18 +399,33 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
             look_along(scene.rays[j], steps_, first_row + row, columns, work.rays[j]);
         }
         for (RowBlock<float>& sum : work.sums) sum.fill(0.0F);
+        for (RowBlock<double>& total : work.totals) total.fill(0.0);
+    };
+    const auto add_lamps = [&](Workspace& work, const auto& after_each) {
+        for (std::size_t k = 0; k < scene.lamps.size(); ++k) {
+            add_lamp(scene.lamps[k], work);
+            after_each(scene.lamps[k]);
+            const bool is_last = k + 1 == scene.lamps.size();
+            if ((k + 1) % kLampsInFloats == 0 && !is_last) move_to_totals(work);
+        }
+        if (scene.lamps.size() <= kLampsInFloats) return;
+        move_to_totals(work);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            std::ranges::transform(work.totals[c], work.sums[c].begin(), [](double total) {
+                return static_cast<float>(total);
+            });
+        }
     };
     const auto sample = [&](int row, const ColumnBlock& columns, Workspace& work) {
         const Outside before = work.outside;
         look(row, columns, work);
         work.may_fit.fill(true);
-        for (const PlacedLamp& lamp : scene.lamps) {
-            add_lamp(lamp, work);
+        add_lamps(work, [&](const PlacedLamp& lamp) {
             for (std::size_t b = 0; b < kSampledBlocks; ++b) {
                 work.may_fit[b] &=
                     is_between(edges_[lamp.strobe], work.lit.V, b * kFitSamples, kFitSamples);
             }
-        }
+        });
         // Said where a pixel of the image is outside, and samples may be beyond it.
         if (work.outside != before) work.may_fit.fill(false);
         work.outside = before;
@@ -400,21 +433,24 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
     };
     const auto is_fit = [&](std::size_t block, Workspace& work) {
         const std::size_t b = block % kSampledBlocks;
-        bool is_fit = work.may_fit[b];
-        for (std::size_t c = 0; c < kChannels && is_fit; ++c) {
-            is_fit = fit(&work.sampled[c][b * kFitSamples], work.sums[c]);
+        bool fits = work.may_fit[b];
+        for (std::size_t c = 0; c < kChannels && fits; ++c) {
+            fits = fit(&work.sampled[c][b * kFitSamples], work.sums[c]);
         }
-        return is_fit;
+        return fits;
     };
     const auto make_row = [&](int row, Workspace& work) {
         for (std::size_t block = 0; block < scene.blocks.size(); ++block) {
             const bool is_sampled = !scene.samples.empty();
             if (is_sampled && block % kSampledBlocks == 0)
                 sample(row, scene.samples[block / kSampledBlocks], work);
-            if (!is_sampled || !is_fit(block, work)) {
-                look(row, scene.blocks[block], work);
-                for (const PlacedLamp& lamp : scene.lamps) add_lamp(lamp, work);
+            if (is_sampled && is_fit(block, work)) {
+                const int first = first_sampled_column(scene.rays.front(), static_cast<int>(block));
+                store(work.sums, row, first, map);
+                continue;
             }
+            look(row, scene.blocks[block], work);
+            add_lamps(work, [](const PlacedLamp&) {});
             store(work.sums, row, static_cast<int>(block) * kRowBlock, map);
         }
     };

@@ -37,8 +37,6 @@ struct OpticsWork {
     DiscLines x1;
     DiscLines y0;
     DiscLines y1;
-    DirectionBlock samples;
-    RowBlock<double> area_of_samples;
     RowBlock<double> is_within;  // the sharp image: 1 or 0
 };
 

@@ -142,11 +142,16 @@ ColumnBlock neighbours(const RayTerms& terms, int first_column) {
     return columns;
 }
 
-ColumnBlock samples_of_blocks(const RayTerms& terms, int first_column) {
+int first_sampled_column(const RayTerms& terms, int block) {
+    return std::min(block * kRowBlock, terms.width_px - kRowBlock);
+}
+
+ColumnBlock samples_of_blocks(const RayTerms& terms, int first_block) {
     ColumnBlock columns;
     for (std::size_t i = 0; i < kBlockCount; ++i) {
-        const int block_column = first_column + static_cast<int>(i / kFitSamples) * kRowBlock;
-        columns.v[i] = slope_of(terms, block_column, fit_pixels()[i % kFitSamples]);
+        const int block = first_block + static_cast<int>(i / kFitSamples);
+        columns.v[i] =
+            slope_of(terms, first_sampled_column(terms, block), fit_pixels()[i % kFitSamples]);
     }
     return columns;
 }

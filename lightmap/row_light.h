@@ -80,14 +80,16 @@ struct RayBlock {
     RowBlock<float> leg_steps;  // r in steps of the table, less the place of its start
 };
 
-// The pixels of a block: neighbours, or the samples of several blocks (row_fit.h).
+// The pixels of a block: neighbours, or the samples of kSampledBlocks blocks (row_fit.h). A row's
+// last block ends with the row where samples are taken, for there may be no floor beyond.
 struct ColumnBlock {
     RowBlock<double> v;     // the slope of each in air
     int count = kRowBlock;  // in the image
 };
 [[nodiscard]] ColumnBlock neighbours(const RayTerms& terms, int first_column);
 inline constexpr std::size_t kSampledBlocks = kBlockCount / kFitSamples;
-[[nodiscard]] ColumnBlock samples_of_blocks(const RayTerms& terms, int first_column);
+[[nodiscard]] int first_sampled_column(const RayTerms& terms, int block);
+[[nodiscard]] ColumnBlock samples_of_blocks(const RayTerms& terms, int first_block);
 
 void look_along(const RayTerms& terms,
                 const PathSteps& steps,

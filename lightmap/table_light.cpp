@@ -67,7 +67,7 @@ void find_angles(const TableLight& light, const DirectionBlock& V, TableAnglesBl
 
 // Angles are smooth along a row, but where it passes close to a pole or the turn begins anew.
 void find_angles(const TableLight& light, const DirectionBlock& V, TableWork& work) {
-    constexpr double kFitError_rad = 1e-11;
+    constexpr double kFitError_rad = 1e-9;  // what the reference takes for an edge
     const bool has_turn = !light.horizontal.nodes.empty();
     take_samples(V, true, work.samples);
     find_angles(light, work.samples, work.of_samples);

@@ -5,6 +5,7 @@
 #include "lightmap/lightmap.h"
 
 #include "base/error.h"
+#include "lightmap/row_fit.h"
 #include "rig/geometry.h"
 #include "rig/rig_reader.h"
 #include "spectral/curve_loader.h"
@@ -230,6 +231,24 @@ TEST(Lightmap, IsThatOfTheTracerForOtherExponents) {
         strobe.beam.cones[2].exponent = 8.0;
     }
     expect_equal(rig, kWithoutPort, "emitters of exponent 8");
+}
+
+// Rows of several blocks, of which smooth ones are fitted (row_fit.h), and the last is shorter.
+TEST(Lightmap, IsThatOfTheTracerWhereRowsAreFitted) {
+    for (const BeamKind kind : kBeamKinds) {
+        std::mt19937 engine(7200);  // NOLINT(cert-msc51-cpp): the same rigs in each run
+        Dice dice(7200);
+        for (int i = 0; i < cases(12); ++i) {
+            Rig rig = random_rig(engine);
+            rig.camera.pixel_pitch_m *= 96.0 / 300.0;
+            rig.camera.width_px = 300;
+            rig.camera.height_px = 12;
+            for (Strobe& strobe : rig.strobes) strobe.beam = random_beam_of(kind, dice);
+            expect_equal(rig,
+                         kWithoutPort + kRowFitError,
+                         fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
+        }
+    }
 }
 
 TEST(Lightmap, IsThatOfTheTracerForEveryKindOfBeam) {

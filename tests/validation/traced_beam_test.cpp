@@ -6,6 +6,7 @@
 
 #include "rig/beam.h"
 #include "support/random_beam.h"
+#include "support/random_rig.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
