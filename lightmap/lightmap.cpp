@@ -256,7 +256,10 @@ MapPromise map_promise(const Rig& rig, const LightmapOptions& options) {
     constexpr double kRounding = 12.0 * 0x1p-24;
     constexpr double kOverTheIndex = 1e-4;
     const bool has_port = rig.camera.port.has_value();
-    return {.error = options.error + kRounding + kRowFitError + (has_port ? kOverTheIndex : 0.0),
+    const bool is_fitted = std::ranges::all_of(
+        rig.strobes, [](const Strobe& strobe) { return is_smooth_between(beam_edges(strobe)); });
+    return {.error = options.error + kRounding + (is_fitted ? kRowFitError : 0.0) +
+                     (has_port ? kOverTheIndex : 0.0),
             .is_bounded = !has_port,
             .is_of_lamp_grids = std::ranges::any_of(
                 rig.strobes, [](const Strobe& strobe) { return strobe.emitter.has_value(); })};

@@ -52,8 +52,8 @@ struct MapPromise {
     bool is_of_lamp_grids = false;
 };
 
-// The error that is asked for, that of fits along a row (row_fit.h) and the rounding of floats,
-// that of a sum of a dozen; behind a port besides 1e-4.
+// The error that is asked for, that of fits along a row where all beams are smooth and the rounding
+// of floats, that of a sum of a dozen; behind a port besides 1e-4.
 [[nodiscard]] MapPromise map_promise(const Rig& rig, const LightmapOptions& options);
 
 // R, G, B planar: all rows of R, then of G, then of B.

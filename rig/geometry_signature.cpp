@@ -67,10 +67,8 @@ void add_seafloor(const Seafloor& seafloor, Signature& all) {
 void add_strobe(const Strobe& strobe, Signature& all) {
     const auto& [name, position_m, axis, beam, spectrum, power, emitter, is_absolute] = strobe;
     const std::string key = fmt::format("strobe '{}'", name);
-    all[key] = fmt::format("at {} m, axis {}, {}",
-                           vector_text(position_m),
-                           vector_text(axis),
-                           beam_signature(beam));
+    all[key] = fmt::format(
+        "at {} m, axis {}, {}", vector_text(position_m), vector_text(axis), beam_signature(beam));
     if (!emitter) return;
     const auto& [across_m, along_m] = *emitter;
     all[key + " emitter"] = fmt::format("{} x {} m", across_m, along_m);
