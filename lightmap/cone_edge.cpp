@@ -57,6 +57,7 @@ void take_in(const std::uint8_t* bits, std::size_t count, std::uint8_t* mask) {
 
 ConeEdges::ConeEdges(const Rig& rig) : rig_(rig), ends_nm_{rig.camera.range.first_nm} {
     if (rig.camera.port) ends_nm_.push_back(rig.camera.range.last_nm);
+    for (const double nm : ends_nm_) ray_tables_.push_back(ray_table(rig, nm, 1));
     most_.push_back(static_cast<std::uint8_t>(ends_nm_.size()));
     for (const Strobe& strobe : rig.strobes) {
         const Lamp lamp{.places = places_of(strobe), .edges = beam_edges(strobe)};
@@ -97,7 +98,9 @@ std::vector<std::uint8_t> ConeEdges::mask(const Sled& sled, int within_px) const
     if (within_px == 0) return mask;
     const Plane floor = floor_plane(sled);
     std::vector<RayTerms> ends;
-    for (const double lambda_nm : ends_nm_) ends.push_back(ray_terms(rig_, floor, lambda_nm));
+    for (std::size_t e = 0; e < ends_nm_.size(); ++e) {
+        ends.push_back(ray_terms(rig_, floor, ends_nm_[e], ray_tables_[e]));
+    }
     const std::size_t blocks = (width + kRowBlock - 1) / kRowBlock;
     Counts counts(most_.size(), std::vector<std::uint8_t>(blocks * kRowBlock));
     Counts above(counts);

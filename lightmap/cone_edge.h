@@ -42,6 +42,7 @@ class ConeEdges {
 
     Rig rig_;
     std::vector<double> ends_nm_;  // of the range behind a port, else one wavelength
+    std::vector<std::shared_ptr<const RayTable>> ray_tables_;  // at each
     std::vector<Lamp> lamps_;
     std::vector<std::uint8_t> most_;  // that a count can be, by thing
 };

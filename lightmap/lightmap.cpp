@@ -275,6 +275,8 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     // The rig's own end where the floor does, or else where its light does.
     if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
     index_nodes_nm_ = index_nodes_nm(rig_);
+    for (const double nm : index_nodes_nm_)
+        ray_tables_.push_back(ray_table(rig_, nm, options_.threads));
     if (paths_.longest_m > 0.0) tabulate();
 }
 
@@ -336,7 +338,7 @@ LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
                 .blocks = {},
                 .samples = {}};
     for (const std::size_t j : scene.nodes) {
-        scene.rays.push_back(ray_terms(rig_, floor, index_nodes_nm_[j]));
+        scene.rays.push_back(ray_terms(rig_, floor, index_nodes_nm_[j], ray_tables_[j]));
     }
     const int width_px = rig_.camera.width_px;
     const bool is_sampled = width_px >= kRowBlock && std::ranges::all_of(edges_, is_smooth_between);

@@ -25,11 +25,13 @@
 
 #include "lightmap/beam_edges.h"
 #include "lightmap/path_table.h"
+#include "lightmap/ray_table.h"
 #include "rig/path_range.h"
 #include "rig/rig.h"
 #include "spectral/bands.h"
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -111,7 +113,8 @@ class LightmapMaker {
     PathSteps steps_;
     std::size_t grid_size_ = 0;
     std::vector<double> index_nodes_nm_;  // wavelengths whose rays are traced; one without a port
-    std::vector<LightTables> tables_;     // by lamp spectrum
+    std::vector<std::shared_ptr<const RayTable>> ray_tables_;  // at each; none has a formula
+    std::vector<LightTables> tables_;                          // by lamp spectrum
     std::vector<std::size_t> spectrum_of_strobe_;
     std::vector<BeamEdges> edges_;  // by strobe
 };

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace aphotic {
 
@@ -37,7 +39,8 @@ APHOTIC_WIDE void bend(const RayTerms& terms,
     }
 }
 
-APHOTIC_WIDE void meet_floor(const RayTerms& terms, const PathSteps& steps, RayBlock& rays) {
+template <bool kIsAhead>
+APHOTIC_IN_LOOP void meet(const RayTerms& terms, const PathSteps& steps, RayBlock& rays) {
     const double x = terms.down.x();
     const double y = terms.down.y();
     const double z = terms.down.z();
@@ -50,13 +53,22 @@ APHOTIC_WIDE void meet_floor(const RayTerms& terms, const PathSteps& steps, RayB
         const bool sees = (down > 0.0) & (H > 0.0);
         const double w = sees ? down : 1.0;
         const double per_w = 1.0 / w;
-        const double leg_m = H * std::sqrt(D_x * D_x + D_y * D_y + 1.0) * per_w;
+        double leg_m = H * std::sqrt(D_x * D_x + D_y * D_y + 1.0) * per_w;
+        if constexpr (kIsAhead) leg_m -= rays.ahead[i] * std::sqrt(D_x * D_x + D_y * D_y + 1.0);
         rays.H[i] = H;
         rays.w[i] = w;
         rays.per_w[i] = static_cast<float>(per_w);
         rays.w3[i] = static_cast<float>(sees ? w * w * w : 0.0);
         rays.leg_steps[i] = static_cast<float>((leg_m - steps.first_m) * steps.steps_per_m);
     }
+}
+
+APHOTIC_WIDE void meet_floor(const RayTerms& terms, const PathSteps& steps, RayBlock& rays) {
+    meet<false>(terms, steps, rays);
+}
+
+APHOTIC_WIDE void meet_floor_ahead(const RayTerms& terms, const PathSteps& steps, RayBlock& rays) {
+    meet<true>(terms, steps, rays);
 }
 
 // The steps that the block's pixels are in.
@@ -112,14 +124,18 @@ void add_pixels(const LampBlock& block,
 
 }  // namespace
 
-RayTerms ray_terms(const Rig& rig, const Plane& floor, double lambda_nm) {
+RayTerms ray_terms(const Rig& rig,
+                   const Plane& floor,
+                   double lambda_nm,
+                   std::shared_ptr<const RayTable> table) {
     RayTerms terms{.width_px = rig.camera.width_px,
                    .slope_per_px = rig.camera.pixel_pitch_m / rig.camera.focal_length_m,
                    .middle_column = 0.5 * rig.camera.width_px,
                    .middle_row = 0.5 * rig.camera.height_px,
                    .down = -floor.normal,
-                   .floor_m = height_above(floor, Eigen::Vector3d::Zero())};
-    if (!rig.camera.port) return terms;
+                   .floor_m = height_above(floor, Eigen::Vector3d::Zero()),
+                   .table = std::move(table)};
+    if (!rig.camera.port || terms.table) return terms;
     terms.distance_m = rig.camera.port->distance_m;
     terms.thickness_m = rig.camera.port->thickness_m;
     terms.glass_index = rig.camera.port->glass.index(lambda_nm);
@@ -137,8 +153,10 @@ double slope_of(const RayTerms& terms, int first_column, std::size_t pixel) {
 }  // namespace
 
 ColumnBlock neighbours(const RayTerms& terms, int first_column) {
-    ColumnBlock columns{.v = {}, .count = std::min(kRowBlock, terms.width_px - first_column)};
+    ColumnBlock columns{
+        .v = {}, .column = {}, .count = std::min(kRowBlock, terms.width_px - first_column)};
     for (std::size_t i = 0; i < kBlockCount; ++i) columns.v[i] = slope_of(terms, first_column, i);
+    std::iota(columns.column.begin(), columns.column.end(), first_column);
     return columns;
 }
 
@@ -147,25 +165,49 @@ int first_sampled_column(const RayTerms& terms, int block) {
 }
 
 ColumnBlock samples_of_blocks(const RayTerms& terms, int first_block) {
-    ColumnBlock columns;
+    ColumnBlock columns{.v = {}, .column = {}, .is_in_order = false};
     for (std::size_t i = 0; i < kBlockCount; ++i) {
         const int block = first_block + static_cast<int>(i / kFitSamples);
-        columns.v[i] =
-            slope_of(terms, first_sampled_column(terms, block), fit_pixels()[i % kFitSamples]);
+        const int first = first_sampled_column(terms, block);
+        const std::size_t pixel = fit_pixels()[i % kFitSamples];
+        columns.v[i] = slope_of(terms, first, pixel);
+        columns.column[i] = first + static_cast<int>(pixel);
     }
     return columns;
 }
+
+namespace {
+
+void look_by_table(const RayTable& table, int row, const ColumnBlock& columns, RayBlock& rays) {
+    rays.o_z = table.front_m();
+    if (!table.has_port()) {
+        rays.o_x.fill(0.0);
+        rays.o_y.fill(0.0);
+    }
+    if (columns.is_in_order) {
+        table.look_from(row, columns.column.front(), rays);
+    } else {
+        table.look_at(row, columns.column, rays);
+    }
+}
+
+}  // namespace
 
 void look_along(const RayTerms& terms,
                 const PathSteps& steps,
                 int row,
                 const ColumnBlock& columns,
                 RayBlock& rays) {
-    const double u = (terms.middle_row - (row + 0.5)) * terms.slope_per_px;
-    rays.o_z = terms.distance_m + terms.thickness_m;
-    const bool has_port = terms.water_index != 1.0;
-    has_port ? bend(terms, u, columns.v, rays) : go_straight(u, columns.v, rays);
-    meet_floor(terms, steps, rays);
+    if (terms.table) {
+        look_by_table(*terms.table, row, columns, rays);
+        (terms.table->has_port() ? meet_floor_ahead : meet_floor)(terms, steps, rays);
+    } else {
+        const double u = (terms.middle_row - (row + 0.5)) * terms.slope_per_px;
+        rays.o_z = terms.distance_m + terms.thickness_m;
+        const bool has_port = terms.water_index != 1.0;
+        has_port ? bend(terms, u, columns.v, rays) : go_straight(u, columns.v, rays);
+        meet_floor(terms, steps, rays);
+    }
     for (int i = columns.count; i < kRowBlock; ++i) rays.w3[static_cast<std::size_t>(i)] = 0.0F;
 }
 

@@ -26,9 +26,9 @@
 //
 //   a = 1/sqrt(n_w^2 + (n_w^2 - 1) q)     b = distance + thickness/sqrt(n_g^2 + (n_g^2 - 1) q)
 //
-// with q = u^2 + v^2. What is a small difference of large numbers, w towards the horizon, V.a at
-// the end of a cone of 90 degrees, and which side of a beam's edge a pixel is on, is done in double
-// precision, products in float.
+// with q = u^2 + v^2. Rays of other lenses and ports come from a table (ray_table.h). What is a
+// small difference of large numbers, w towards the horizon, V.a at the end of a cone of 90 degrees,
+// and which side of a beam's edge a pixel is on, is done in double precision, products in float.
 //
 // Over the few pixels of a block the path hardly changes. So nearly all of them are in one step of
 // the table or in two, whose cubics need no look-up pixel by pixel.
@@ -36,6 +36,7 @@
 
 #include "lightmap/beam_light.h"
 #include "lightmap/path_table.h"
+#include "lightmap/ray_table.h"
 #include "lightmap/row_block.h"
 #include "lightmap/row_fit.h"
 #include "rig/geometry.h"
@@ -62,10 +63,15 @@ struct RayTerms {
     double glass_index = 1.0;
     double water_index = 1.0;
     Eigen::Vector3d down;
-    double floor_m = 0.0;  // from the pupil along `down`
+    double floor_m = 0.0;                   // from the pupil along `down`
+    std::shared_ptr<const RayTable> table;  // of other cameras, in place of all but these two
 };
 
-[[nodiscard]] RayTerms ray_terms(const Rig& rig, const Plane& floor, double lambda_nm);
+// table: that of the rig at this wavelength.
+[[nodiscard]] RayTerms ray_terms(const Rig& rig,
+                                 const Plane& floor,
+                                 double lambda_nm,
+                                 std::shared_ptr<const RayTable> table);
 
 struct RayBlock {
     double o_z = 0.0;
@@ -73,6 +79,7 @@ struct RayBlock {
     RowBlock<double> D_y;
     RowBlock<double> o_x;
     RowBlock<double> o_y;
+    RowBlock<double> ahead;  // where the water begins on D from o, of a table's ports
     RowBlock<double> H;
     RowBlock<double> w;         // 1 where the ray sees nothing
     RowBlock<float> per_w;      // 1/w
@@ -83,8 +90,10 @@ struct RayBlock {
 // The pixels of a block: neighbours, or the samples of kSampledBlocks blocks (row_fit.h). A row's
 // last block ends with the row where samples are taken, for there may be no floor beyond.
 struct ColumnBlock {
-    RowBlock<double> v;     // the slope of each in air
-    int count = kRowBlock;  // in the image
+    RowBlock<double> v;       // the slope of each in air
+    RowBlock<int> column;     // and its number
+    int count = kRowBlock;    // in the image
+    bool is_in_order = true;  // neighbours
 };
 [[nodiscard]] ColumnBlock neighbours(const RayTerms& terms, int first_column);
 inline constexpr std::size_t kSampledBlocks = kBlockCount / kFitSamples;

@@ -35,12 +35,23 @@ WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm) 
                           port ? rig.water.refractive_index(lambda_nm) : 1.0);
 }
 
+std::vector<std::array<double, 2>> corners_to_ask(const Camera& camera) {
+    const double right = camera.width_px;
+    const double bottom = camera.height_px;
+    if (!camera.lens && (!camera.port || is_across_axis(*camera.port))) return {{0.0, 0.0}};
+    return {{0.0, 0.0}, {right, 0.0}, {0.0, bottom}, {right, bottom}};
+}
+
 double port_reach_m(const Rig& rig) {
     if (!rig.camera.port) return 0.0;
     // Rays run farthest out at the corners, and a bit farther in blue or red than in between.
     constexpr double kRoom = 1.05;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
-    return kRoom * pixel_ray(rig, 0.0, 0.0, middle_nm).origin_m.norm();
+    double reach_m = 0.0;
+    for (const auto& [column, row] : corners_to_ask(rig.camera)) {
+        reach_m = std::max(reach_m, pixel_ray(rig, column, row, middle_nm).origin_m.norm());
+    }
+    return kRoom * reach_m;
 }
 
 std::optional<double> distance_to(const Plane& plane, const WaterRay& ray) {

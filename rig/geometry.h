@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,6 +37,10 @@ struct Plane {
 
 // The ray in water of the point (column, row) of the image: rig/lens.h's, through rig/port.h.
 [[nodiscard]] WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm);
+
+// Corners of the image, as (column, row), of which one is as far from the axis as any: one of them
+// where they are all alike.
+[[nodiscard]] std::vector<std::array<double, 2>> corners_to_ask(const Camera& camera);
 
 // How far behind the pupil's place, along a ray of the image, the water may begin [m].
 [[nodiscard]] double port_reach_m(const Rig& rig);

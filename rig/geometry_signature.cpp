@@ -51,7 +51,7 @@ void add_sled(const Sled& sled, Signature& all) {
 }
 
 void add_camera(const Camera& camera, const Water& water, Signature& all) {
-    const auto& [width, height, pitch, focal_length, range, sensor, port] = camera;
+    const auto& [width, height, pitch, focal_length, range, sensor, port, lens] = camera;
     all.merge(lens_signature(camera));
     if (!port) return;
     all["camera.port"] = port_signature(*port);

@@ -1,15 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/lens.h"
 
+#include "base/error.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace aphotic {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+namespace {
+
+// Cameras' frame is X right, Y down, Z along the axis.
+Vector3d seen_by_lens(const LensModel& lens, const Vector2d& point_px) {
+    const std::optional<Vector3d> direction = direction_at(lens, point_px);
+    if (!direction) {
+        throw InputError(
+            "the lens's formula does not hold at column {}, row {}", point_px.x(), point_px.y());
+    }
+    return {-direction->y(), direction->x(), direction->z()};
+}
+
+double widest_rad(const Camera& camera) {
+    constexpr int kSteps = 32;
+    double least_z = 1.0;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double column = camera.width_px * (i / static_cast<double>(kSteps));
+        const double row = camera.height_px * (i / static_cast<double>(kSteps));
+        for (const Vector2d& rim : {Vector2d(column, 0.0),
+                                    Vector2d(column, camera.height_px),
+                                    Vector2d(0.0, row),
+                                    Vector2d(camera.width_px, row)}) {
+            least_z = std::min(least_z, seen_by_lens(*camera.lens, rim).z());
+        }
+    }
+    return std::acos(least_z);
+}
+
+bool shows(const Camera& camera, const Vector3d& point_m, double factor) {
+    const double off_axis_rad = std::atan2(point_m.head<2>().norm(), point_m.z());
+    if (off_axis_rad > factor * half_view_rad(camera)) return false;
+    const Vector2d image_px(camera.width_px, camera.height_px);
+    const Vector2d off_middle =
+        image_point(*camera.lens, {point_m.y(), -point_m.x(), point_m.z()}) - 0.5 * image_px;
+    return (off_middle.array().abs() <= factor * 0.5 * image_px.array()).all();
+}
+
+}  // namespace
+
 Vector3d direction_in_air(const Camera& camera, double column, double row) {
+    if (camera.lens) return seen_by_lens(*camera.lens, {column, row});
     return Vector3d((0.5 * camera.height_px - row) * camera.pixel_pitch_m,
                     (column - 0.5 * camera.width_px) * camera.pixel_pitch_m,
                     camera.focal_length_m)
@@ -17,20 +61,26 @@ Vector3d direction_in_air(const Camera& camera, double column, double row) {
 }
 
 double half_view_rad(const Camera& camera) {
+    if (camera.lens) return widest_rad(camera);
     return std::atan(0.5 * std::hypot(camera.width_px, camera.height_px) * camera.pixel_pitch_m /
                      camera.focal_length_m);
 }
 
 bool is_in_view(const Camera& camera, const Vector3d& point_m, double factor) {
+    if (point_m.z() <= 0.0) return false;
+    if (camera.lens) return shows(camera, point_m, factor);
     const double reach = factor * 0.5 * camera.pixel_pitch_m / camera.focal_length_m;
-    return point_m.z() > 0.0 && std::abs(point_m.x()) <= reach * camera.height_px * point_m.z() &&
+    return std::abs(point_m.x()) <= reach * camera.height_px * point_m.z() &&
            std::abs(point_m.y()) <= reach * camera.width_px * point_m.z();
 }
 
 std::map<std::string, std::string> lens_signature(const Camera& camera) {
-    return {{"camera.resolution", fmt::format("{} {}", camera.width_px, camera.height_px)},
-            {"camera.pixel_pitch_m", fmt::format("{}", camera.pixel_pitch_m)},
-            {"camera.focal_length_m", fmt::format("{}", camera.focal_length_m)}};
+    std::map<std::string, std::string> words{
+        {"camera.resolution", fmt::format("{} {}", camera.width_px, camera.height_px)},
+        {"camera.pixel_pitch_m", fmt::format("{}", camera.pixel_pitch_m)},
+        {"camera.focal_length_m", fmt::format("{}", camera.focal_length_m)}};
+    if (camera.lens) words["camera.lens"] = lens_model_signature(*camera.lens);
+    return words;
 }
 
 }  // namespace aphotic

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which way a pixel looks, in the air behind the port: a pinhole with square pixels.
+// Which way a pixel looks, in the air behind the port: a pinhole with square pixels,
 //
 //   (x, y, z) ~ (height/2 - row, column - width/2, focal length/pixel pitch)
 //
-// in the sled's frame: the top row forward, the right column starboard. Pixel (0, 0)'s centre is
-// (0.5, 0.5).
+// or what its calibration tells (lens_model.h). In the sled's frame: the top row forward, the right
+// column starboard. Pixel (0, 0)'s centre is (0.5, 0.5).
 //
-// Who needs a lens's rays asks here. Known besides: to the rig's reader, to scene_gen/rig_sdl.h,
-// which says it to POV-Ray, to lightmap/row_light.h and to the reference (validation/).
+// Who needs a lens's rays asks here. Pinholes are known besides: to scene_gen/rig_sdl.h, which says
+// them to POV-Ray, and to lightmap/row_light.h, whose inner loop has the formula. The reference has
+// lenses of its own (validation/).
 #pragma once
 
 #include "rig/rig.h"
@@ -18,7 +19,8 @@
 
 namespace aphotic {
 
-// Unit vector of the point (column, row) of the image.
+// Unit vector of the point (column, row) of the image. Beyond the image it may be none, which is an
+// InputError.
 [[nodiscard]] Eigen::Vector3d direction_in_air(const Camera& camera, double column, double row);
 
 // The largest angle of any pixel off the camera's axis [rad]: in water it is no larger.

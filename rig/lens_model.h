@@ -16,7 +16,7 @@
 // centre of the first pixel is (0.5, 0.5): OpenCV's centres are whole numbers, so that its cx and
 // cy are half a pixel less.
 //
-// It holds as far from the axis as s r grows with r, and to 90 degrees where it is rectilinear.
+// It holds as far from the axis as s r grows with r, and to less than 90 degrees.
 //
 // With all coefficients 0 it is a pinhole, or an equidistant fisheye. OpenCV's plumb bob is k1, k2,
 // p1, p2, k3; its rational model has q1 to q3 for k4 to k6; its fisheye is k1 to k4 of a fisheye.
@@ -26,6 +26,8 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <optional>
+#include <string>
 
 namespace aphotic {
 
@@ -37,6 +39,24 @@ struct LensModel {
     std::array<double, 4> radial{};        // k1 ... k4
     std::array<double, 3> radial_below{};  // q1 ... q3
     std::array<double, 2> tangential{};    // p1, p2
+
+    bool operator==(const LensModel&) const = default;
 };
+
+// Where light from along (X, Y, Z) arrives: (column, row). Z > 0.
+[[nodiscard]] Eigen::Vector2d image_point(const LensModel& lens, const Eigen::Vector3d& direction);
+
+// The unit direction that arrives at (column, row), to 1e-14; none where the formula does not hold.
+[[nodiscard]] std::optional<Eigen::Vector3d> direction_at(const LensModel& lens,
+                                                          const Eigen::Vector2d& point_px);
+
+// An InputError, which names the angle, unless the formula holds all over the image.
+void require_to_hold(const LensModel& lens, int width_px, int height_px);
+
+// No coefficient, no skew, square pixels, and the axis in the image's middle.
+[[nodiscard]] bool is_pinhole(const LensModel& lens, int width_px, int height_px);
+
+// Lenses of the same signature see alike.
+[[nodiscard]] std::string lens_model_signature(const LensModel& lens);
 
 }  // namespace aphotic

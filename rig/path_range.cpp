@@ -61,7 +61,9 @@ double darkest_path_m(const Rig& rig, double shortest_m) {
 }
 
 std::vector<std::array<double, 2>> rim_of(const Camera& camera) {
-    const int steps = steps_along_rim(camera.port);
+    // Where rays bend, the longest path may come from anywhere along the rim; else from a corner.
+    constexpr int kWhereRaysBend = 512;
+    const int steps = camera.port || camera.lens ? kWhereRaysBend : 1;
     std::vector<std::array<double, 2>> rim;
     for (int i = 0; i <= steps; ++i) {
         const double share = static_cast<double>(i) / steps;

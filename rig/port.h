@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The window that a camera looks through, and what it does to a ray.
+// The window that a camera looks through, and what it does to a ray: air inside, glass, water
+// outside. At both faces a ray obeys Snell, with the face's normal m where it passes and the ratio
+// e of the index before it to that behind,
 //
-// Flat: air inside, glass, water outside, both faces perpendicular to the camera's axis, z. A ray
-// obeys Snell at both,
-//
-//   sin(air) = n_glass sin(glass) = n_water sin(water)
+//   d' = e d + (sqrt(1 - e^2 (1 - c^2)) - e c) m,      c = d . m
 //
 // with both indices relative to air, at the ray's wavelength.
 //
-// Who needs a port's rays asks here. Four know its kind besides: the rig's reader; scene_gen/ for
-// POV-Ray, which traces the block of glass itself; lightmap/row_light.h, whose inner loop has the
-// formula; and the reference (validation/).
+// Flat: both faces are perpendicular to one normal, for most ports the camera's axis, z, where
+//
+//   sin(air) = n_glass sin(glass) = n_water sin(water)
+//
+// Dome: both faces are spheres about one centre. With the centre in the pupil no ray is bent.
+//
+// Who needs a port's rays asks here. Known besides: to the rig's reader; to scene_gen/ for POV-Ray,
+// which traces the glass itself; and a flat port across the axis to lightmap/row_light.h, whose
+// inner loop has the formula. The reference has ports of its own (validation/).
 #pragma once
 
 #include "spectral/refractive_index.h"
@@ -23,13 +28,22 @@
 
 namespace aphotic {
 
-struct FlatPort {
-    double distance_m = 0.0;  // pupil to the inner face
-    double thickness_m = 0.0;
-    Glass glass;
+struct Dome {
+    Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();  // the pupil is the origin
+    double radius_m = 0.0;                               // of the inner face
+
+    bool operator==(const Dome&) const = default;
 };
 
-using Port = std::optional<FlatPort>;  // none: the pupil is in the water
+struct PortWindow {
+    double distance_m = 0.0;  // of a flat port: pupil to inner face, along the normal
+    double thickness_m = 0.0;
+    Glass glass;
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // of a flat port: unit, into the water
+    std::optional<Dome> dome{};                         // none: it is flat
+};
+
+using Port = std::optional<PortWindow>;  // none: the pupil is in the water
 
 // Where light enters the water on its way to a pixel, reversed: origin and unit direction.
 struct WaterRay {
@@ -37,20 +51,20 @@ struct WaterRay {
     Eigen::Vector3d direction;
 };
 
-// What becomes of the ray that leaves the pupil along the unit vector in_air.
+// What becomes of the ray that leaves the pupil along the unit vector in_air. An InputError when it
+// misses the port.
 [[nodiscard]] WaterRay ray_into_water(const Port& port,
                                       const Eigen::Vector3d& in_air,
                                       double lambda_nm,
                                       double water_index);
 
+// Flat and across the camera's axis.
+[[nodiscard]] bool is_across_axis(const PortWindow& port);
+
 // From the pupil to the water, along the axis [m].
 [[nodiscard]] double front_m(const Port& port);
 
-// Steps in which the image's rim is followed for the longest of its rays: where rays bend, all
-// along it, else from corner to corner.
-[[nodiscard]] int steps_along_rim(const Port& port);
-
 // Ports of the same signature bend all rays alike.
-[[nodiscard]] std::string port_signature(const FlatPort& port);
+[[nodiscard]] std::string port_signature(const PortWindow& port);
 
 }  // namespace aphotic

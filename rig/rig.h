@@ -10,6 +10,7 @@
 #pragma once
 
 #include "rig/beam.h"
+#include "rig/lens_model.h"
 #include "rig/port.h"
 #include "spectral/sensor.h"
 #include "spectral/spectrum.h"
@@ -43,6 +44,8 @@ struct Camera {
     WavelengthRange range;
     Sensor sensor;
     Port port;
+    // None: a pinhole. Else the pitch is that of the columns, and the focal length fx of these.
+    std::optional<LensModel> lens{};
 };
 
 struct Seafloor {

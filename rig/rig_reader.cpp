@@ -336,7 +336,7 @@ class RigReader {
     static BeamWindow read_window(Section& section, const Water& water);
     static Eigen::Vector3d read_axis(Section& strobe, const Eigen::Vector3d& position_m);
     static Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m);
-    static FlatPort read_port(Section section);
+    static PortWindow read_port(Section section);
     static Glass read_glass(Section& port);
 
     Camera read_camera(Section section);
@@ -432,9 +432,9 @@ Glass RigReader::read_glass(Section& port) {
     return port.at_key("glass", [&] { return builtin_glass(name); });
 }
 
-FlatPort RigReader::read_port(Section section) {
+PortWindow RigReader::read_port(Section section) {
     (void)section.word("shape", {"flat"});
-    FlatPort port{
+    PortWindow port{
         .distance_m = section.number("distance_mm", kPortDistanceMm) * kMetresPerMillimetre,
         .thickness_m = section.number("thickness_mm", kPortThicknessMm) * kMetresPerMillimetre,
         .glass = read_glass(section)};

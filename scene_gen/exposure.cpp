@@ -87,7 +87,8 @@ RadianceBound::RadianceBound(const Rig& rig) : rig_(rig) {
                 neighbours_m.push_back(foot_m - next_m + samples[index]->point_m);
             }
         }
-        const double camera_leg_m = std::max(0.0, foot_m.norm() - 2.0 * front_m(rig.camera.port));
+        const double port_m = std::max(2.0 * front_m(rig.camera.port), port_reach_m(rig));
+        const double camera_leg_m = std::max(0.0, foot_m.norm() - port_m);
         add_point(foot_m, camera_leg_m, neighbours_m);
     }
     for (const Object& object : rig.objects) {

@@ -67,7 +67,7 @@ double fade_distance_m(const Rig& rig, const SceneOptions& options) {
 // its faces: in glass, rays run steeper than in air.
 Eigen::AlignedBox3d housing(const Camera& camera) {
     constexpr double kRoom = 1.25;
-    const FlatPort& port = *camera.port;
+    const PortWindow& port = *camera.port;
     const double front_m = port.distance_m + port.thickness_m;
     const double half_pixel_m =
         kRoom * front_m * 0.5 * camera.pixel_pitch_m / camera.focal_length_m;

@@ -165,7 +165,7 @@ class ExactLight {
     }
 
     // Snell at both faces: the sine off the axis, times the index, stays what it was.
-    void enter_water(const FlatPort& port,
+    void enter_water(const PortWindow& port,
                      double lambda_nm,
                      Vector& origin_m,
                      Vector& direction) const {

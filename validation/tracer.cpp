@@ -78,6 +78,8 @@ Vector3d place_on_emitter(const Strobe& strobe, double x, double y) {
 Tracer::Tracer(const Rig& rig, const TraceOptions& options)
     : rig_(rig),
       options_(options),
+      lens_(rig.camera.lens ? std::optional<TracedLens>(*rig.camera.lens) : std::nullopt),
+      pixel_rad_(widest_pixel_rad()),
       exact_down_(vertical(rig.sled)),
       down_(exact_down_.cast<double>()) {
     for (const Strobe& strobe : rig_.strobes) beams_.emplace_back(strobe.beam, strobe.axis);
@@ -311,29 +313,48 @@ double Tracer::height_m(const Vector3d& point_m) const {
     return static_cast<double>(exact_down_.dot(above_m));
 }
 
-// What the point (column, row) of the image looks at; false when it is nothing.
-bool Tracer::look(double column, double row, const Index& index, View& view) const {
+std::optional<WideVector> Tracer::sight(double column, double row) const {
+    if (lens_) return lens_->direction(column, row);
     const Camera& camera = rig_.camera;
     // Image plane at unit distance: tangents of the ray's slope, up the image and to its right.
     const long double scale =
         static_cast<long double>(camera.pixel_pitch_m) / camera.focal_length_m;
-    WideVector wide(
+    return WideVector(
         (0.5 * camera.height_px - row) * scale, (column - 0.5 * camera.width_px) * scale, 1.0L);
-    Vector3d origin_m = Vector3d::Zero();
-    Vector3d direction = wide.cast<double>();
-    if (camera.port) {
-        // Across the axis, n times the unit direction's components is the same in every medium.
-        const double cos_air = 1.0 / direction.norm();
-        const double u = direction.x() * cos_air;
-        const double v = direction.y() * cos_air;
-        const double glass_z = std::sqrt(index.glass * index.glass - u * u - v * v);
-        const double water_z = std::sqrt(index.water * index.water - u * u - v * v);
-        const double per_sine =
-            camera.port->distance_m / cos_air + camera.port->thickness_m / glass_z;
-        origin_m = {u * per_sine, v * per_sine, camera.port->distance_m + camera.port->thickness_m};
-        direction = {u, v, water_z};
-        wide = direction.cast<long double>();
+}
+
+double Tracer::widest_pixel_rad() const {
+    const Camera& camera = rig_.camera;
+    double widest_rad = camera.pixel_pitch_m / camera.focal_length_m;
+    if (!lens_) return widest_rad;
+    constexpr int kSteps = 8;
+    for (int i = 0; i <= kSteps; ++i) {
+        for (int j = 0; j <= kSteps; ++j) {
+            const double column = camera.width_px * i / static_cast<double>(kSteps);
+            const double row = camera.height_px * j / static_cast<double>(kSteps);
+            const auto from = sight(column, row);
+            for (const auto& to : {sight(column + 1.0, row), sight(column, row + 1.0)}) {
+                if (!from || !to) continue;
+                const long double turn = from->cross(*to).norm() / (from->norm() * to->norm());
+                widest_rad = std::max(widest_rad, static_cast<double>(std::asin(turn)));
+            }
+        }
     }
+    return widest_rad;
+}
+
+// What the point (column, row) of the image looks at; false when it is nothing.
+bool Tracer::look(double column, double row, const Index& index, View& view) const {
+    const std::optional<WideVector> in_air = sight(column, row);
+    return in_air && look_along(*in_air, index, view);
+}
+
+bool Tracer::look_along(const WideVector& sight, const Index& index, View& view) const {
+    TracedRay ray{.direction = sight};
+    if (rig_.camera.port) ray = through_port(*rig_.camera.port, sight, index.glass, index.water);
+    const WideVector& wide = ray.direction;
+    const Vector3d& origin_m = ray.origin_m;
+    Vector3d direction = wide.cast<double>();
     // Near the horizon the ray and the vertical are all but perpendicular: their product is what is
     // left of a difference, and of doubles few digits would be.
     const long double approach = wide.dot(exact_down_) / wide.norm();
@@ -407,8 +428,10 @@ WavelengthRange Tracer::traced_range() const {
 void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
     radiance.setZero();
     View view;
+    const std::optional<WideVector> in_air = sight(column + 0.5, row + 0.5);
+    if (!in_air) return;
     if (!rig_.camera.port) {
-        if (!look(column + 0.5, row + 0.5, {.glass = 1.0, .water = 1.0}, view)) return;
+        if (!look_along(*in_air, {.glass = 1.0, .water = 1.0}, view)) return;
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
             if (lit.diffuse == 0.0 && lit.specular == 0.0) continue;
@@ -427,7 +450,7 @@ void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
     // Told once, for every wavelength has its own ray.
     view.is_clear = is_clear_of_objects(column + 0.5, row + 0.5, traced_range(), 0.0);
     for (Eigen::Index j = 0; j < radiance.size(); ++j) {
-        if (!look(column + 0.5, row + 0.5, indices_[static_cast<std::size_t>(j)], view)) continue;
+        if (!look_along(*in_air, indices_[static_cast<std::size_t>(j)], view)) continue;
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
             radiance(j) += (lit.diffuse * diffuse_[lamp.strobe][view.surface](j) +
@@ -447,7 +470,6 @@ bool Tracer::is_on_beam_edge(double column,
     }
     // A pixel covers more of a floor that is seen aslant.
     constexpr double kAslant = 1.5;
-    const double pixel_rad = rig_.camera.pixel_pitch_m / rig_.camera.focal_length_m;
     return std::ranges::any_of(apexes_, [&](const Apex& apex) {
         std::array<Vector3d, 2> paths_m;
         // How far a strobe's lamps spread about the edge, at least.
@@ -456,7 +478,7 @@ bool Tracer::is_on_beam_edge(double column,
             paths_m.at(e) = views.at(e).point_m - apex.position_m;
             const double d_m = paths_m.at(e).norm();
             spread_rad = std::max({spread_rad,
-                                   kAslant * within_px * pixel_rad * views.at(e).distance_m / d_m,
+                                   kAslant * within_px * pixel_rad_ * views.at(e).distance_m / d_m,
                                    std::asin(std::min(1.0, apex.reach_m / d_m))});
         }
         return rig_.strobes[apex.strobe].power > 0.0 &&
@@ -554,11 +576,10 @@ bool Tracer::is_clear_of_objects(double column,
                                  WavelengthRange range,
                                  double within_px) const {
     constexpr double kRoom = 4.0;
-    const double pixel_rad = rig_.camera.pixel_pitch_m / rig_.camera.focal_length_m;
     View view;
     if (!look(column, row, index_at(0.5 * (range.first_nm + range.last_nm)), view)) return false;
     double reach_m =
-        kNoShadowWithin_m + kRoom * (kEdgePx + within_px) * pixel_rad * view.distance_m;
+        kNoShadowWithin_m + kRoom * (kEdgePx + within_px) * pixel_rad_ * view.distance_m;
     for (const double lambda_nm : {range.first_nm, range.last_nm}) {
         View shifted;
         if (!look(column, row, index_at(lambda_nm), shifted)) return false;
@@ -569,8 +590,7 @@ bool Tracer::is_clear_of_objects(double column,
 
 // A lamp's light is so near its end on a rounded thing that the rounding of POV-Ray's index tells.
 bool Tracer::turns_steeply(double column, double row, const View& view, double lambda_nm) const {
-    const double reach_px =
-        kEdgeBehindPortRad * rig_.camera.focal_length_m / rig_.camera.pixel_pitch_m;
+    const double reach_px = kEdgeBehindPortRad / pixel_rad_;
     const Index index = index_at(lambda_nm);
     for (const auto& [x, y] : std::array<std::array<double, 2>, 2>{{{1.0, 0.0}, {0.0, 1.0}}}) {
         View beside;

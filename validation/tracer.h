@@ -30,12 +30,15 @@
 #include "spectral/bands.h"
 #include "validation/shapes.h"
 #include "validation/traced_beam.h"
+#include "validation/traced_lens.h"
+#include "validation/traced_port.h"
 
 #include <Eigen/Core>
 
 #include <array>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -169,7 +172,12 @@ class Tracer {
     [[nodiscard]] std::vector<WeightedWavelength> spectrum_in_view() const;
     // Over the floor.
     [[nodiscard]] double height_m(const Eigen::Vector3d& point_m) const;
+    // Which way a point of the image looks in air, z = 1; none where the lens has no image.
+    [[nodiscard]] std::optional<WideVector> sight(double column, double row) const;
+    [[nodiscard]] bool look_along(const WideVector& sight, const Index& index, View& view) const;
     [[nodiscard]] bool look(double column, double row, const Index& index, View& view) const;
+    // The largest angle between neighbouring pixels [rad].
+    [[nodiscard]] double widest_pixel_rad() const;
     [[nodiscard]] Contribution light(const Lamp& lamp, const View& view) const;
     void trace_pixel(int column, int row, Eigen::ArrayXd& radiance) const;
     void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
@@ -208,6 +216,8 @@ class Tracer {
 
     Rig rig_;
     TraceOptions options_;
+    std::optional<TracedLens> lens_;
+    double pixel_rad_;
     WideVector exact_down_;
     Eigen::Vector3d down_;
     std::vector<TracedBeam> beams_;  // by strobe

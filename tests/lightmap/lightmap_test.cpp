@@ -11,6 +11,7 @@
 #include "spectral/curve_loader.h"
 #include "support/effort.h"
 #include "support/random_beam.h"
+#include "support/random_camera.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>
@@ -260,6 +261,32 @@ TEST(Lightmap, IsThatOfTheTracerForEveryKindOfBeam) {
             for (Strobe& strobe : rig.strobes) strobe.beam = random_beam_of(kind, dice);
             expect_equal(
                 rig, kWithoutPort, fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
+        }
+    }
+}
+
+TEST(Lightmap, IsThatOfTheTracerThroughEveryKindOfLens) {
+    for (const LensKind kind : kLensKinds) {
+        std::mt19937 engine(7300);  // NOLINT(cert-msc51-cpp): the same rigs in each run
+        Dice dice(7300);
+        for (int i = 0; i < cases(6); ++i) {
+            Rig rig = random_rig(engine);
+            give_lens(kind, dice, rig.camera);
+            expect_equal(
+                rig, kWithoutPort, fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
+        }
+    }
+}
+
+TEST(Lightmap, IsThatOfTheTracerThroughEveryKindOfPort) {
+    for (const PortKind kind : kPortKinds) {
+        std::mt19937 engine(7400);  // NOLINT(cert-msc51-cpp): the same rigs in each run
+        Dice dice(7400);
+        for (int i = 0; i < cases(3); ++i) {
+            Rig rig = random_rig(engine);
+            give_port(kind, dice, rig.camera);
+            if (i % 2 == 1) give_lens(LensKind::RadialTangential, dice, rig.camera);
+            expect_equal(rig, kPromise, fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
         }
     }
 }

@@ -235,7 +235,7 @@ TEST_F(SceneSurvey, RefusesASceneWithoutWater) {
 TEST_F(SceneSurvey, RefusesASceneWithoutTheRigsPort) {
     Rig rig = habcam();
     rig.camera.port =
-        FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+        PortWindow{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
     EXPECT_EQ(refusal(kScene, rig), "no error");
     expect_refusal(refusal("Aphotic_Camera (1, 1)\nAphotic_Water ()\nAphotic_Rig_Strobes ()\n"
                            "Aphotic_Rig_Seafloor ()\n",

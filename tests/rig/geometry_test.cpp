@@ -42,7 +42,7 @@ Rig camera_rig() {
 Rig port_rig() {
     Rig rig = camera_rig();
     rig.camera.port =
-        FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+        PortWindow{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
     return rig;
 }
 

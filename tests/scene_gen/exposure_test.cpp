@@ -46,7 +46,7 @@ class RandomRigs {
             .digest = ""};
         if (between(0.0, 1.0) < 0.3) rig.seafloor.phong = between(0.0, 1.0);
         if (has_port) {
-            rig.camera.port = FlatPort{.distance_m = between(0.01, 0.1),
+            rig.camera.port = PortWindow{.distance_m = between(0.01, 0.1),
                                        .thickness_m = between(0.002, 0.02),
                                        .glass = builtin_glass("bk7")};
         }

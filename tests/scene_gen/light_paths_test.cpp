@@ -53,7 +53,7 @@ Rig camera_rig() {
             .digest = ""};
 }
 
-FlatPort flat_port() {
+PortWindow flat_port() {
     return {.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
 }
 

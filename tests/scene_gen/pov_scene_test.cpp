@@ -69,7 +69,7 @@ Rig odd_rig() {
 
 Rig with_port(Rig rig) {
     rig.camera.port =
-        FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+        PortWindow{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
     return rig;
 }
 

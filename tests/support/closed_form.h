@@ -67,7 +67,7 @@ inline Ray camera_ray(const Rig& rig, int column, int row, double lambda_nm) {
     if (!rig.camera.port) return {{0, 0, 0}, unit({forward, starboard, rig.camera.focal_length_m})};
     const double azimuth = std::atan2(starboard, forward);
     const double air = std::atan2(std::hypot(forward, starboard), rig.camera.focal_length_m);
-    const FlatPort& port = *rig.camera.port;
+    const PortWindow& port = *rig.camera.port;
     const double glass = std::asin(std::sin(air) / port.glass.index(lambda_nm));
     const double water = std::asin(
         std::sin(air) / seawater_index(lambda_nm, rig.water.salinity_psu, rig.water.temperature_c));

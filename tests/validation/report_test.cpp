@@ -252,7 +252,7 @@ TEST(ReportPage, ShowsTheRigAsItWasReadAndItsFiles) {
     EXPECT_TRUE(contains(words_of(page), "lamp.csvSHA-256 12ab\nsand.csvSHA-256 34cd\n\n"))
         << "each once";
     EXPECT_FALSE(contains(words_of(page), "in the water"));
-    report.rig.camera.port = FlatPort{.glass = builtin_glass("bk7")};
+    report.rig.camera.port = PortWindow{.glass = builtin_glass("bk7")};
     EXPECT_TRUE(contains(words_of(page_of(report)),
                          "1.2° × 0.9° in air, 0.9° × 0.7° in the water (at 560 nm), or some "
                          "0.032 m × 0.024 m of a level floor"));

@@ -744,7 +744,7 @@ Rig port_rig(int width_px, int height_px, double pixel_um) {
     rig.camera.pixel_pitch_m = pixel_um * 1e-6;
     rig.camera.focal_length_m = 0.012;
     rig.camera.port =
-        FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+        PortWindow{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
     return rig;
 }
 
@@ -875,7 +875,7 @@ TEST(TracerSymmetry, AMirroredRigGivesTheMirroredImage) {
 TEST(TracerSymmetry, AMirroredRigGivesTheMirroredImageBehindAPort) {
     Rig rig = lopsided_rig();
     rig.camera.port =
-        FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+        PortWindow{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
     expect_mirrored_images(rig);
 }
 
@@ -913,7 +913,7 @@ TEST(TracerSymmetry, ScalesWithTheSquareOfTheSize) {
     for (const double s : {2.0, 3.7}) {
         Rig rig = with_loss(lopsided_rig(), 0.1);
         rig.camera.port =
-            FlatPort{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+            PortWindow{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
         const auto image = image_of(rig, {.signals = false, .planes_nm = {450.0, 650.0}});
         rig.sled.altitude_m *= s;
         rig.camera.port->distance_m *= s;
@@ -1258,7 +1258,7 @@ Rig random_rig(Dice& dice) {
                 .pitch_rad = dice.between(-0.6, 0.6),
                 .roll_rad = dice.between(-0.6, 0.6)};
     if (dice.chance()) {
-        rig.camera.port = FlatPort{.distance_m = dice.between(0.01, 0.1),
+        rig.camera.port = PortWindow{.distance_m = dice.between(0.01, 0.1),
                                    .thickness_m = dice.between(0.002, 0.03),
                                    .glass = builtin_glass(dice.chance() ? "bk7" : "sapphire")};
     }

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The reference's own lens: which way a point of the image looks, for a calibration's numbers
+// (rig/lens_model.h has the formula, and no line in common with this). The distance from the axis
+// is found by bracketing, the decentring by going round: what it takes off the point depends on the
+// answer before, and changes less each time.
+#pragma once
+
+#include "rig/lens_model.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace aphotic {
+
+class TracedLens {
+  public:
+    using Direction = Eigen::Matrix<long double, 3, 1>;
+
+    explicit TracedLens(const LensModel& lens);
+
+    // In the sled's frame (x forward, y starboard, z down), with z = 1; none beyond the lens's
+    // reach.
+    [[nodiscard]] std::optional<Direction> direction(double column, double row) const;
+
+  private:
+    [[nodiscard]] long double image_radius(long double r) const;  // s r
+
+    LensModel lens_;
+    long double most_r_;       // to which s r grows
+    long double most_image_r_;
+};
+
+}  // namespace aphotic
