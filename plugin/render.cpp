@@ -36,7 +36,7 @@ std::optional<Manifest> earlier_manifest(const fs::path& folder) {
 
 bool is_whole(const fs::path& image, const Manifest& wanted) {
     try {
-        check_frame(image, wanted.width_px, wanted.height_px);
+        check_frame(image, wanted.width_px, wanted.height_px + wanted.rows_above());
         return true;
     } catch (const RunError&) {
         return false;
@@ -138,7 +138,12 @@ RenderResult render(const PovRay& povray,
         }
         write_manifest(folder, result.manifest);
     };
-    run_frames(povray, folder, missing, set.manifest.width_px, set.manifest.height_px, run);
+    run_frames(povray,
+               folder,
+               missing,
+               set.manifest.width_px,
+               set.manifest.height_px + set.manifest.rows_above(),
+               run);
     return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace aphotic {
 
@@ -25,19 +26,26 @@ Vector3d seen_by_lens(const LensModel& lens, const Vector2d& point_px) {
     return {-direction->y(), direction->x(), direction->z()};
 }
 
-double widest_rad(const Camera& camera) {
-    constexpr int kSteps = 32;
-    double least_z = 1.0;
+std::vector<Vector3d> rim_seen_by_lens(const Camera& camera) {
+    constexpr int kSteps = 64;
+    std::vector<Vector3d> rim;
     for (int i = 0; i <= kSteps; ++i) {
         const double column = camera.width_px * (i / static_cast<double>(kSteps));
         const double row = camera.height_px * (i / static_cast<double>(kSteps));
-        for (const Vector2d& rim : {Vector2d(column, 0.0),
-                                    Vector2d(column, camera.height_px),
-                                    Vector2d(0.0, row),
-                                    Vector2d(camera.width_px, row)}) {
-            least_z = std::min(least_z, seen_by_lens(*camera.lens, rim).z());
+        for (const Vector2d& point_px : {Vector2d(column, 0.0),
+                                         Vector2d(column, camera.height_px),
+                                         Vector2d(0.0, row),
+                                         Vector2d(camera.width_px, row)}) {
+            rim.push_back(seen_by_lens(*camera.lens, point_px));
         }
     }
+    return rim;
+}
+
+double widest_rad(const Camera& camera) {
+    double least_z = 1.0;
+    for (const Vector3d& direction : rim_seen_by_lens(camera))
+        least_z = std::min(least_z, direction.z());
     return std::acos(least_z);
 }
 
@@ -72,6 +80,22 @@ bool is_in_view(const Camera& camera, const Vector3d& point_m, double factor) {
     const double reach = factor * 0.5 * camera.pixel_pitch_m / camera.focal_length_m;
     return std::abs(point_m.x()) <= reach * camera.height_px * point_m.z() &&
            std::abs(point_m.y()) <= reach * camera.width_px * point_m.z();
+}
+
+Pinhole pinhole_about(const Camera& camera) {
+    if (!camera.lens) {
+        return {.focal_length_m = camera.focal_length_m,
+                .sensor_width_m = camera.pixel_pitch_m * camera.width_px};
+    }
+    constexpr double kRoom = 1.001;  // the rim is looked at in steps
+    double half_width = 0.0;         // at unit distance
+    const double shape = static_cast<double>(camera.width_px) / camera.height_px;
+    for (const Vector3d& direction : rim_seen_by_lens(camera)) {
+        const Vector2d slope = direction.head<2>().cwiseAbs() / direction.z();
+        half_width = std::max({half_width, slope.y(), slope.x() * shape});
+    }
+    return {.focal_length_m = camera.focal_length_m,
+            .sensor_width_m = 2.0 * kRoom * half_width * camera.focal_length_m};
 }
 
 std::map<std::string, std::string> lens_signature(const Camera& camera) {

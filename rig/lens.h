@@ -26,6 +26,14 @@ namespace aphotic {
 // The largest angle of any pixel off the camera's axis [rad]: in water it is no larger.
 [[nodiscard]] double half_view_rad(const Camera& camera);
 
+// The pinhole with square pixels whose image of as many columns and rows, about the same axis,
+// shows all that the camera's does.
+struct Pinhole {
+    double focal_length_m = 0.0;
+    double sensor_width_m = 0.0;
+};
+[[nodiscard]] Pinhole pinhole_about(const Camera& camera);
+
 // Whether the image, made larger about its middle by a factor, shows a point in the water without a
 // port.
 [[nodiscard]] bool is_in_view(const Camera& camera, const Eigen::Vector3d& point_m, double factor);

@@ -66,6 +66,8 @@ constexpr Bounds kFocalLengthMm{0.01, 100000.0};
 constexpr Bounds kWavelengthNm{100.0, 10000.0};
 constexpr Bounds kPortDistanceMm{1.0, 10000.0};
 constexpr Bounds kPortThicknessMm{1.0, 1000.0};
+constexpr Bounds kDomeCentreMm{-10000.0, 10000.0};
+constexpr double kMostPortTiltDeg = 60.0;
 constexpr Bounds kMultiple{0.0, 1e6};
 constexpr Bounds kLossPerM{0.0, 1e6};
 constexpr Bounds kSalinityPsu{0.0, 40.0};
@@ -336,6 +338,8 @@ class RigReader {
     static BeamWindow read_window(Section& section, const Water& water);
     static Eigen::Vector3d read_axis(Section& strobe, const Eigen::Vector3d& position_m);
     static Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m);
+    static Dome read_dome(Section& section);
+    static Eigen::Vector3d read_port_normal(Section& section);
     static PortWindow read_port(Section section);
     static Glass read_glass(Section& port);
 
@@ -432,12 +436,41 @@ Glass RigReader::read_glass(Section& port) {
     return port.at_key("glass", [&] { return builtin_glass(name); });
 }
 
+// A dome's own keys, beside those of all ports.
+Dome RigReader::read_dome(Section& section) {
+    Dome dome{.radius_m = section.number("radius_mm", kPortDistanceMm) * kMetresPerMillimetre};
+    if (section.has("centre_mm")) {
+        const auto centre_mm = section.numbers<3>("centre_mm", kDomeCentreMm);
+        dome.centre_m = Eigen::Vector3d(centre_mm.data()) * kMetresPerMillimetre;
+        if (dome.centre_m.norm() >= dome.radius_m)
+            section.found_but("centre_mm", "the pupil, [0, 0, 0], within radius_mm of the centre");
+    }
+    return dome;
+}
+
+Eigen::Vector3d RigReader::read_port_normal(Section& section) {
+    if (!section.has("normal")) return Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d normal(section.numbers<3>("normal", kDirection).data());
+    if (normal.z() < std::cos(kMostPortTiltDeg * kRadiansPerDegree) * normal.norm() ||
+        normal.norm() == 0.0) {
+        section.found_but("normal",
+                          fmt::format("a direction within {} degrees of the camera's axis, "
+                                      "[0, 0, 1]",
+                                      kMostPortTiltDeg));
+    }
+    return normal.normalized();
+}
+
 PortWindow RigReader::read_port(Section section) {
-    (void)section.word("shape", {"flat"});
-    PortWindow port{
-        .distance_m = section.number("distance_mm", kPortDistanceMm) * kMetresPerMillimetre,
-        .thickness_m = section.number("thickness_mm", kPortThicknessMm) * kMetresPerMillimetre,
-        .glass = read_glass(section)};
+    const bool is_dome = section.word("shape", {"flat", "dome"}) == "dome";
+    PortWindow port{.glass = read_glass(section)};
+    if (is_dome) {
+        port.dome = read_dome(section);
+    } else {
+        port.distance_m = section.number("distance_mm", kPortDistanceMm) * kMetresPerMillimetre;
+        port.normal = read_port_normal(section);
+    }
+    port.thickness_m = section.number("thickness_mm", kPortThicknessMm) * kMetresPerMillimetre;
     section.refuse_unknown_keys();
     return port;
 }

@@ -2,9 +2,11 @@
 #include "scene_gen/pov_scene.h"
 
 #include "base/error.h"
+#include "rig/lens.h"
 #include "rig/solid.h"
 #include "scene_gen/band_sdl.h"
 #include "scene_gen/beam_sdl.h"
+#include "scene_gen/camera_rays.h"
 #include "scene_gen/light_culling.h"
 #include "scene_gen/rig_sdl.h"
 
@@ -63,14 +65,27 @@ double fade_distance_m(const Rig& rig, const SceneOptions& options) {
     return std::exp2(std::floor(std::log2(kFadeShare * least_throw_m(rig))));
 }
 
-// The glass block around camera and pupil, in the sled's frame. It is wider than any ray can be at
-// its faces: in glass, rays run steeper than in air.
+// What holds the glass around camera and pupil, in the sled's frame, as aphotic.inc has it. It is
+// wider than any ray can be at its faces: in glass, rays run steeper than in air.
 Eigen::AlignedBox3d housing(const Camera& camera) {
     constexpr double kRoom = 1.25;
     const PortWindow& port = *camera.port;
+    if (port.dome) {
+        const Vector3d reach_m = Vector3d::Constant(port.dome->radius_m + port.thickness_m);
+        return {port.dome->centre_m - reach_m, port.dome->centre_m + reach_m};
+    }
     const double front_m = port.distance_m + port.thickness_m;
-    const double half_pixel_m =
-        kRoom * front_m * 0.5 * camera.pixel_pitch_m / camera.focal_length_m;
+    const Pinhole pinhole = pinhole_about(camera);
+    const double half_pixel =
+        0.5 * pinhole.sensor_width_m / camera.width_px / pinhole.focal_length_m;
+    if (!is_across_axis(port)) {
+        const double half_view = half_pixel * std::hypot(camera.width_px, camera.height_px);
+        const double widest_rad = std::atan(half_view) + std::acos(std::min(1.0, port.normal.z()));
+        const double aside_m = kRoom * std::tan(widest_rad) * front_m + 2.0 * port.thickness_m;
+        const Vector3d reach_m = Vector3d::Constant(std::hypot(aside_m, aside_m, front_m));
+        return {-reach_m, reach_m};
+    }
+    const double half_pixel_m = kRoom * front_m * half_pixel;
     const Vector3d half_m(half_pixel_m * camera.height_px + 2.0 * port.thickness_m,
                           half_pixel_m * camera.width_px + 2.0 * port.thickness_m,
                           front_m);
@@ -239,6 +254,7 @@ struct Parts {
     std::string rig{};
     double fade_m;
     double unit_m;  // of the scene; in a user's own, that scene's word
+    bool has_rays;  // of the camera, in a file of their own
 };
 
 // The wavelengths of one frame.
@@ -312,6 +328,7 @@ std::string body_sdl(const Band& band,
         sdl += fmt::format("#declare Aphotic_Bailout = {};\n", sdl_number(options.bailout));
     }
     if (!options.omit) sdl += "#declare Aphotic_Everything = true;\n";
+    if (parts.has_rays) sdl += fmt::format("#include \"{}\"\n", kCameraRaysFile);
     sdl += "#include \"aphotic.inc\"\n\n" + parts.rig + "\n";
     sdl += own_scene.empty() ? "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\nAphotic_Rig_Objects ()\n"
                              : fmt::format("#include {}\n", sdl_text(own_scene));
@@ -333,7 +350,8 @@ Parts parts_of(const Rig& rig, std::span<const LampGrid> lamps, const SceneOptio
     Parts parts{.lamps = named_lamps_of(rig),
                 .reflectances = reflectances_of(rig, options),
                 .fade_m = fade_distance_m(rig, options),
-                .unit_m = options.user_scene ? 1.0 : unit_with_shells_m(rig, lamps)};
+                .unit_m = options.user_scene ? 1.0 : unit_with_shells_m(rig, lamps),
+                .has_rays = rig.camera.lens.has_value()};
     parts.rig = rig_sdl(rig,
                         strobes_in_scene(rig, lamps, options),
                         parts.lamps,
@@ -408,7 +426,8 @@ std::string survey_sdl(const Rig& rig, const std::string& scene_name, const Surv
     // Of paths that are told to a hundredth.
     options.bailout = kRayShare * 1e-1;
     const double middle_nm = 0.5 * (rig.camera.range.first_nm + rig.camera.range.last_nm);
-    const Parts parts = parts_of(rig, std::vector<LampGrid>(rig.strobes.size()), options);
+    Parts parts = parts_of(rig, std::vector<LampGrid>(rig.strobes.size()), options);
+    parts.has_rays = false;  // the pinhole that shows as much tells all that is asked
     const PlannedWavelength middle{.lambda_nm = middle_nm, .index_nm = middle_nm};
     Band band = band_of(rig, parts, {&middle, 1});
     for (std::size_t c = 0; c < band.exposure.size(); ++c) {
@@ -442,6 +461,7 @@ std::string antialias_ini(int rays) {
 }  // namespace
 
 std::string render_ini(const Rig& rig, const SceneOptions& options) {
+    const int above = rows_above(rig.camera);
     return fmt::format(
         "; POV-Ray's settings for the scenes of this folder: povray render.ini +I<scene>.pov\n"
         "; Every option that changes pixels is set here, none is left to the user's own ini.\n"
@@ -455,7 +475,7 @@ std::string render_ini(const Rig& rig, const SceneOptions& options) {
         "{}"
         "; Media need full quality.\n"
         "Quality=9\n"
-        "Start_Row=0\n"
+        "Start_Row={}\n"
         "Start_Column=0\n"
         "Display=off\n"
         "Pause_When_Done=off\n"
@@ -465,8 +485,9 @@ std::string render_ini(const Rig& rig, const SceneOptions& options) {
         "Statistic_Console=off\n"
         "{}",
         rig.camera.width_px,
-        rig.camera.height_px,
+        rig.camera.height_px + above,
         antialias_ini(options.antialias),
+        above > 0 ? above + 1 : 0,
         fmt::join(options.ini_lines, ""));
 }
 

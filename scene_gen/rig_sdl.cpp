@@ -2,6 +2,7 @@
 #include "scene_gen/rig_sdl.h"
 
 #include "base/degrees.h"
+#include "rig/lens.h"
 #include "scene_gen/beam_sdl.h"
 #include "scene_gen/pov_objects.h"
 
@@ -14,16 +15,36 @@ namespace aphotic {
 
 namespace {
 
-std::string camera_sdl(const Camera& camera) {
-    std::string sdl = fmt::format("#macro Aphotic_Rig_Camera ()\n   Aphotic_Camera ({}, {})\n",
-                                  sdl_number(camera.focal_length_m),
-                                  sdl_number(camera.pixel_pitch_m * camera.width_px));
-    if (camera.port) {
-        sdl += fmt::format("   Aphotic_Port ({} / Aphotic_Unit, {} / Aphotic_Unit, {})\n",
-                           sdl_number(camera.port->distance_m),
-                           sdl_number(camera.port->thickness_m),
-                           sdl_text(camera.port->glass.name()));
+std::string port_sdl(const PortWindow& port) {
+    const std::string thickness = sdl_number(port.thickness_m);
+    const std::string glass = sdl_text(port.glass.name());
+    if (port.dome) {
+        return fmt::format(
+            "Aphotic_Dome_Port ({} / Aphotic_Unit, {} / Aphotic_Unit, {} / Aphotic_Unit, {})",
+            sdl_point(port.dome->centre_m),
+            sdl_number(port.dome->radius_m),
+            thickness,
+            glass);
     }
+    const std::string flat = fmt::format(
+        "({} / Aphotic_Unit, {} / Aphotic_Unit, {}", sdl_number(port.distance_m), thickness, glass);
+    return is_across_axis(port)
+               ? fmt::format("Aphotic_Port {})", flat)
+               : fmt::format("Aphotic_Tilted_Port {}, {})", flat, sdl_point(port.normal));
+}
+
+std::string camera_sdl(const Camera& camera) {
+    std::string sdl;
+    Pinhole pinhole{.focal_length_m = camera.focal_length_m,
+                    .sensor_width_m = camera.pixel_pitch_m * camera.width_px};
+    if (camera.lens) {
+        pinhole = pinhole_about(camera);
+        sdl += fmt::format("// Lens: {}\n", lens_model_signature(*camera.lens));
+    }
+    sdl += fmt::format("#macro Aphotic_Rig_Camera ()\n   Aphotic_Camera ({}, {})\n",
+                       sdl_number(pinhole.focal_length_m),
+                       sdl_number(pinhole.sensor_width_m));
+    if (camera.port) sdl += "   " + port_sdl(*camera.port) + "\n";
     return sdl + "#end\n";
 }
 

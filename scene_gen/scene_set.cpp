@@ -6,6 +6,7 @@
 #include "base/sha256.h"
 #include "image/frame_check.h"
 #include "rig/geometry_signature.h"
+#include "scene_gen/camera_rays.h"
 #include "scene_gen/include_library.h"
 
 #include <fmt/format.h>
@@ -96,6 +97,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     const std::vector<LampGrid> lamps = scene_lamps(rig, plan.wavelengths, plan.scene);
     set.scenes = make_scenes(rig, lamps, plan.scene, manifest.wavelengths);
     set.ini = render_ini(rig, plan.scene);
+    if (rig.camera.lens) set.camera = rig.camera;
     const UserScene* own = plan.scene.user_scene.get();
     if (own != nullptr) {
         set.scene_file = own->file;
@@ -108,6 +110,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.rig_sha256 = rig.digest;
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
+    if (rig.camera.lens) manifest.camera = ManifestCamera{.rows_above = rows_above(rig.camera)};
     manifest.geometry = geometry_signature(own != nullptr ? rig_of_scene(rig, *own) : rig);
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         manifest.strobes.push_back({.name = rig.strobes[s].name,
@@ -185,6 +188,7 @@ void write_scenes(const std::filesystem::path& folder, const SceneSet& set) {
     for (const IncludeFile& file : include_library()) {
         write_text_file(povray / file.name, std::string(file.text));
     }
+    if (set.camera) write_text_file(povray / kCameraRaysFile, camera_rays_sdl(*set.camera));
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         write_text_file(scene_path(folder, set.manifest.frames[f]), set.scenes[f].sdl);
     }

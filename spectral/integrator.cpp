@@ -46,9 +46,13 @@ void read_radiance(const fs::path& folder, const Manifest& manifest, Block& bloc
     for (std::size_t f = 0; f < manifest.frames.size(); ++f) {
         const fs::path file = image_path(folder, manifest.frames[f]);
         ExrReader reader(file);
-        check_size(
-            file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
-        reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
+        const int above = manifest.rows_above();
+        check_size(file,
+                   reader.width_px(),
+                   reader.height_px(),
+                   manifest.width_px,
+                   manifest.height_px + above);
+        reader.read_rows(block.first_row + above, block.rows, kFrameChannels, samples);
         for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
             const PlannedWavelength& w = manifest.wavelengths[j];
             if (w.frame != f) continue;

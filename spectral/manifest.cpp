@@ -253,6 +253,12 @@ void fields(const Visit& visit, Wavelength& w, Before& before) {
     visit.require("radiance_bound", "0 or more", w.radiance_bound >= 0.0);
 }
 
+template <typename Visit, Is<ManifestCamera> Camera>
+void fields(const Visit& visit, Camera& camera) {
+    constexpr int kMostRows = 1;
+    visit("rows_above", camera.rows_above, 0, kMostRows);
+}
+
 template <typename Visit, Is<Manifest> Whole>
 void fields(const Visit& visit, Whole& manifest) {
     visit("aphotic_version", manifest.aphotic_version);
@@ -261,6 +267,7 @@ void fields(const Visit& visit, Whole& manifest) {
     visit("rig_sha256", manifest.rig_sha256);
     visit("width_px", manifest.width_px, 1, kLargestImagePx);
     visit("height_px", manifest.height_px, 1, kLargestImagePx);
+    visit.optional("camera", manifest.camera);
     visit("lamp_signal", manifest.lamp_signal);
     visit("method", manifest.method);
     visit("tolerance", manifest.tolerance);

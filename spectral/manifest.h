@@ -55,6 +55,11 @@ struct ManifestScene {
     double longest_path_m = 0.0;
 };
 
+// How frames differ from the image.
+struct ManifestCamera {
+    int rows_above = 0;  // at a frame's top, which are none of the image
+};
+
 struct Manifest {
     std::string aphotic_version;
     std::string povray_version;  // empty: not rendered by us
@@ -62,6 +67,7 @@ struct Manifest {
     std::string rig_sha256;
     int width_px = 0;
     int height_px = 0;
+    std::optional<ManifestCamera> camera{};  // none: frames are as the image is
     // What the lamps themselves would signal: the sum over strobes of int Phi Q_c dlambda. The
     // preview's white.
     std::array<double, kChannels> lamp_signal{};
@@ -83,6 +89,7 @@ struct Manifest {
     std::vector<ManifestFrame> frames;
     std::vector<PlannedWavelength> wavelengths;  // increasing
 
+    [[nodiscard]] int rows_above() const { return camera ? camera->rows_above : 0; }
     [[nodiscard]] bool has_promise() const { return no_promise.empty(); }
     [[nodiscard]] double promise(std::size_t channel) const {
         return quality[channel].promise(frame_error);
