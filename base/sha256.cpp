@@ -7,6 +7,8 @@
 #include <openssl/evp.h>
 
 #include <array>
+#include <cstddef>
+#include <cstring>
 #include <fstream>
 #include <memory>
 
@@ -46,6 +48,13 @@ std::string sha256_of_text(std::string_view text) {
     Sha256 digest;
     digest.add(text);
     return digest.hex();
+}
+
+std::string sha256_of_floats(std::span<const float> samples) {
+    const std::span<const std::byte> bytes = std::as_bytes(samples);
+    std::string text(bytes.size(), '\0');
+    std::memcpy(text.data(), bytes.data(), bytes.size());
+    return sha256_of_text(text);
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {

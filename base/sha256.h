@@ -5,12 +5,16 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace aphotic {
 
 [[nodiscard]] std::string sha256_of_text(std::string_view text);
+
+// Of the samples' bytes as the machine has them.
+[[nodiscard]] std::string sha256_of_floats(std::span<const float> samples);
 
 // Throws RunError when the file cannot be read.
 [[nodiscard]] std::string sha256_of_file(const std::filesystem::path& file);

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "rig/geometry.h"
+#include "rig/lens.h"
 
 #include <algorithm>
 #include <array>
@@ -15,15 +16,20 @@ namespace aphotic {
 namespace {
 
 // A twentieth of HabCam's image, or so: the light is as smooth there, for it knows no pixels. Its
-// outermost pixels lie where the image's own do, or as little further out as makes them whole.
+// outermost pixels lie where the image's own do, or as little further out as makes them whole. Of a
+// calibrated lens, which need not show more than the image, they lie half of their size within.
 Rig probe_of(const Rig& rig) {
     Rig probe = rig;
     if (rig.camera.width_px <= kProbe_px) return probe;
+    if (rig.camera.lens) {
+        const double coarser = static_cast<double>(rig.camera.width_px) / kProbe_px;
+        const double height_px = std::floor(rig.camera.height_px / coarser);
+        enlarge_pixels(probe.camera, coarser, kProbe_px, std::max(1, static_cast<int>(height_px)));
+        return probe;
+    }
     const double coarser = (rig.camera.width_px - 1.0) / (kProbe_px - 1.0);
-    probe.camera.width_px = kProbe_px;
-    probe.camera.height_px =
-        1 + static_cast<int>(std::ceil((rig.camera.height_px - 1.0) / coarser));
-    probe.camera.pixel_pitch_m *= coarser;
+    const double height_px = 1.0 + std::ceil((rig.camera.height_px - 1.0) / coarser);
+    enlarge_pixels(probe.camera, coarser, kProbe_px, static_cast<int>(height_px));
     return probe;
 }
 

@@ -274,6 +274,7 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     paths_ = paths ? *paths : path_range(rig);
     // The rig's own end where the floor does, or else where its light does.
     if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
+    if (rig.camera.vignetting) vignetting_ = vignetting_plane(rig.camera);
     index_nodes_nm_ = index_nodes_nm(rig_);
     for (const double nm : index_nodes_nm_)
         ray_tables_.push_back(ray_table(rig_, nm, options_.threads));
@@ -459,11 +460,22 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
             store(work.sums, row, static_cast<int>(block) * kRowBlock, map);
         }
     };
+    const auto take_off = [&](int row) {
+        const auto width = static_cast<std::size_t>(map.width_px);
+        const float* const V = &vignetting_[static_cast<std::size_t>(first_row + row) * width];
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            float* const samples =
+                &map.samples[(c * static_cast<std::size_t>(count) + static_cast<std::size_t>(row)) *
+                             width];
+            for (std::size_t i = 0; i < width; ++i) samples[i] *= V[i];
+        }
+    };
     std::vector<Workspace> workspaces(static_cast<std::size_t>(options_.threads));
     parallel_for(static_cast<std::size_t>(count),
                  workspaces.size(),
                  [&](std::size_t row, std::size_t thread) {
                      make_row(static_cast<int>(row), workspaces[thread]);
+                     if (!vignetting_.empty()) take_off(static_cast<int>(row));
                  });
     const auto sum_of = [&](int Outside::*kind) {
         long long sum = 0;

@@ -114,6 +114,7 @@ class LightmapMaker {
     std::size_t grid_size_ = 0;
     std::vector<double> index_nodes_nm_;  // wavelengths whose rays are traced; one without a port
     std::vector<std::shared_ptr<const RayTable>> ray_tables_;  // at each; none has a formula
+    std::vector<float> vignetting_;                            // by pixel; empty: none
     std::vector<LightTables> tables_;                          // by lamp spectrum
     std::vector<std::size_t> spectrum_of_strobe_;
     std::vector<BeamEdges> edges_;  // by strobe

@@ -82,6 +82,19 @@ bool is_in_view(const Camera& camera, const Vector3d& point_m, double factor) {
            std::abs(point_m.y()) <= reach * camera.width_px * point_m.z();
 }
 
+void enlarge_pixels(Camera& camera, double factor, int width_px, int height_px) {
+    if (camera.lens) {
+        const Vector2d off_middle_px =
+            camera.lens->centre_px - 0.5 * Vector2d(camera.width_px, camera.height_px);
+        camera.lens->focal_px /= factor;
+        camera.lens->skew_px /= factor;
+        camera.lens->centre_px = off_middle_px / factor + 0.5 * Vector2d(width_px, height_px);
+    }
+    camera.width_px = width_px;
+    camera.height_px = height_px;
+    camera.pixel_pitch_m *= factor;
+}
+
 Pinhole pinhole_about(const Camera& camera) {
     if (!camera.lens) {
         return {.focal_length_m = camera.focal_length_m,

@@ -26,6 +26,10 @@ namespace aphotic {
 // The largest angle of any pixel off the camera's axis [rad]: in water it is no larger.
 [[nodiscard]] double half_view_rad(const Camera& camera);
 
+// An image of other pixels, so many times as large, about the same middle: the same view where as
+// many times fewer are asked for.
+void enlarge_pixels(Camera& camera, double factor, int width_px, int height_px);
+
 // The pinhole with square pixels whose image of as many columns and rows, about the same axis,
 // shows all that the camera's does.
 struct Pinhole {

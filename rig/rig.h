@@ -12,6 +12,7 @@
 #include "rig/beam.h"
 #include "rig/lens_model.h"
 #include "rig/port.h"
+#include "rig/vignetting.h"
 #include "spectral/sensor.h"
 #include "spectral/spectrum.h"
 #include "spectral/water.h"
@@ -46,6 +47,7 @@ struct Camera {
     Port port;
     // None: a pinhole. Else the pitch is that of the columns, and the focal length fx of these.
     std::optional<LensModel> lens{};
+    std::optional<Vignetting> vignetting{};
 };
 
 struct Seafloor {

@@ -63,6 +63,8 @@ constexpr Bounds kTiltDeg{-89.9, 89.9};
 constexpr Bounds kResolutionPx{1.0, kLargestImagePx};
 constexpr Bounds kPixelPitchUm{0.01, 10000.0};
 constexpr Bounds kFocalLengthMm{0.01, 100000.0};
+constexpr Bounds kFovDeg{0.01, 175.0};
+constexpr Bounds kVignettingTerm{-1e3, 1e3};
 constexpr Bounds kWavelengthNm{100.0, 10000.0};
 constexpr Bounds kPortDistanceMm{1.0, 10000.0};
 constexpr Bounds kPortThicknessMm{1.0, 1000.0};
@@ -262,6 +264,17 @@ class Section {
         refuse_unknown_keys();
     }
 
+    // Ways to say one thing.
+    void refuse_both(std::initializer_list<std::string_view> keys) {
+        std::string_view first;
+        for (const std::string_view key : keys) {
+            if (!has(key)) continue;
+            if (!first.empty())
+                fail_at(key, fmt::format("found beside '{}'; allowed: one of them", first));
+            first = key;
+        }
+    }
+
     // Runs read(), and puts file, line and key before whatever InputError comes out of it.
     template <typename Read>
     [[nodiscard]] auto at_key(std::string_view key, Read read) const {
@@ -343,6 +356,9 @@ class RigReader {
     static PortWindow read_port(Section section);
     static Glass read_glass(Section& port);
 
+    static void read_lens(Section& section, Camera& camera);
+    TabulatedVignetting read_vignetting_table(Section& section);
+    void read_vignetting(Section& camera_section, Camera& camera);
     Camera read_camera(Section section);
     Sensor read_response(Section& camera);
     Sensor read_response_table(Section response);
@@ -503,6 +519,55 @@ Sensor RigReader::read_response(Section& camera) {
     return camera.at_key("response", [&] { return builtin_sensor(name); });
 }
 
+// One of: pitch and focal length, a field of view, a calibration.
+void RigReader::read_lens(Section& section, Camera& camera) {
+    section.refuse_both({"focal_length_mm", "fov_deg"});
+    if (!section.has("fov_deg")) {
+        camera.pixel_pitch_m =
+            section.number("pixel_pitch_um", kPixelPitchUm) * kMetresPerMicrometre;
+        camera.focal_length_m =
+            section.number("focal_length_mm", kFocalLengthMm) * kMetresPerMillimetre;
+        return;
+    }
+    // Only their ratio counts.
+    constexpr double kAnyPitchUm = 1.0;
+    const double fov_rad = section.number("fov_deg", kFovDeg) * kRadiansPerDegree;
+    camera.pixel_pitch_m =
+        section.number_or("pixel_pitch_um", kPixelPitchUm, kAnyPitchUm) * kMetresPerMicrometre;
+    camera.focal_length_m = 0.5 * camera.width_px * camera.pixel_pitch_m / std::tan(0.5 * fov_rad);
+}
+
+TabulatedVignetting RigReader::read_vignetting_table(Section& section) {
+    const std::string name = section.text("table", "the name of a .csv file beside the rig");
+    return section.at_key("table", [&] {
+        const std::string text = read_beside(name, file_beside(folder_, name), kMostTableBytes);
+        return parse_vignetting_csv(name, text);
+    });
+}
+
+void RigReader::read_vignetting(Section& camera_section, Camera& camera) {
+    const std::string allowed =
+        "\"natural\" (cos^4), { radial = [a1, a2, a3] } or { table = \"vignetting.csv\" }";
+    if (!camera_section.required("vignetting", allowed).is_table()) {
+        if (camera_section.text("vignetting", allowed) != "natural")
+            camera_section.found_but("vignetting", allowed);
+        camera.vignetting = NaturalVignetting{};
+        return;
+    }
+    Section section = camera_section.section("vignetting", allowed);
+    section.refuse_both({"radial", "table"});
+    if (section.has("radial")) {
+        camera.vignetting = RadialVignetting{section.numbers<3>("radial", kVignettingTerm)};
+    } else {
+        camera.vignetting = read_vignetting_table(section);
+    }
+    section.refuse_unknown_keys();
+    (void)camera_section.at_key("vignetting", [&] {
+        require_bright(camera);
+        return true;
+    });
+}
+
 Camera RigReader::read_camera(Section section) {
     const auto resolution = section.numbers<2>("resolution", kResolutionPx);
     for (const double size : resolution) {
@@ -517,14 +582,13 @@ Camera RigReader::read_camera(Section section) {
             section.found_but("range_nm", "two wavelengths, the shorter one first");
         range = {first_nm, last_nm};
     }
-    Camera camera{
-        .width_px = static_cast<int>(resolution[0]),
-        .height_px = static_cast<int>(resolution[1]),
-        .pixel_pitch_m = section.number("pixel_pitch_um", kPixelPitchUm) * kMetresPerMicrometre,
-        .focal_length_m = section.number("focal_length_mm", kFocalLengthMm) * kMetresPerMillimetre,
-        .range = range,
-        .sensor = std::move(sensor),
-        .port = std::nullopt};
+    Camera camera{.width_px = static_cast<int>(resolution[0]),
+                  .height_px = static_cast<int>(resolution[1]),
+                  .range = range,
+                  .sensor = std::move(sensor),
+                  .port = std::nullopt};
+    read_lens(section, camera);
+    if (section.has("vignetting")) read_vignetting(section, camera);
     if (section.has("port")) camera.port = read_port(section.section("port", "a table"));
     section.refuse_unknown_keys();
     return camera;

@@ -202,6 +202,13 @@ void take_weights(const FittedRule& rule, std::span<PlannedWavelength> wavelengt
 }
 
 RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
+    if (rig.camera.lens && request.scene.antialias > 0) {
+        throw InputError(
+            "--antialias: found {} with a calibrated lens; allowed: none, since POV-Ray has one "
+            "ray "
+            "a pixel for it",
+            request.scene.antialias);
+    }
     const WavelengthRange range = rig.camera.range;
     RenderPlan plan{.method = PlanMethod::Fitted,
                     .tolerance = 0.0,

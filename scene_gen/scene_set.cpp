@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "image/exr.h"
 #include "image/frame_check.h"
 #include "rig/geometry_signature.h"
 #include "scene_gen/camera_rays.h"
@@ -110,7 +111,13 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.rig_sha256 = rig.digest;
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
-    if (rig.camera.lens) manifest.camera = ManifestCamera{.rows_above = rows_above(rig.camera)};
+    if (rig.camera.lens || rig.camera.vignetting) {
+        manifest.camera = ManifestCamera{.rows_above = rows_above(rig.camera)};
+    }
+    if (rig.camera.vignetting) {
+        set.vignetting = vignetting_plane(rig.camera);
+        manifest.camera->vignetting_sha256 = sha256_of_floats(set.vignetting);
+    }
     manifest.geometry = geometry_signature(own != nullptr ? rig_of_scene(rig, *own) : rig);
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         manifest.strobes.push_back({.name = rig.strobes[s].name,
@@ -189,6 +196,12 @@ void write_scenes(const std::filesystem::path& folder, const SceneSet& set) {
         write_text_file(povray / file.name, std::string(file.text));
     }
     if (set.camera) write_text_file(povray / kCameraRaysFile, camera_rays_sdl(*set.camera));
+    if (!set.vignetting.empty()) {
+        ExrWriter writer(
+            vignetting_path(folder), set.manifest.width_px, set.manifest.height_px, {"Y"}, {});
+        writer.write_rows(set.manifest.height_px, set.vignetting);
+        writer.finish();
+    }
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         write_text_file(scene_path(folder, set.manifest.frames[f]), set.scenes[f].sdl);
     }

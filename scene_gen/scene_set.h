@@ -25,6 +25,7 @@ struct SceneSet {
     Manifest manifest;                   // nothing rendered yet
     std::string ini;                     // less the paths, which change no pixel
     std::optional<Camera> camera{};      // with a lens, whose rays are written; none: a pinhole
+    std::vector<float> vignetting{};     // by pixel; empty: none
     std::filesystem::path scene_file{};  // of the user's own, absolute; none: the rig's floor
     std::string scene_files_digest{};    // of the user's own, as it was planned for
     bool scene_writes_files = false;     // the user's own

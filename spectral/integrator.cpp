@@ -138,6 +138,28 @@ ExrAttributes attributes_of(const Manifest& manifest) {
             {"aphotic:promise", promise_in_words(manifest)}};
 }
 
+// What the lens takes off, by pixel; empty: nothing.
+std::vector<float> vignetting_of(const fs::path& folder, const Manifest& manifest) {
+    if (!manifest.camera || manifest.camera->vignetting_sha256.empty()) return {};
+    static const std::vector<std::string> kFactor{"Y"};
+    const fs::path file = vignetting_path(folder);
+    ExrReader reader(file);
+    check_size(file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
+    std::vector<float> factors = reader.planes(kFactor);
+    if (sha256_of_floats(factors) != manifest.camera->vignetting_sha256)
+        throw RunError("{}: is not the vignetting that the manifest notes", file.string());
+    return factors;
+}
+
+void take_off(const std::vector<float>& vignetting, const Manifest& manifest, Block& block) {
+    const auto first =
+        static_cast<std::size_t>(block.first_row) * static_cast<std::size_t>(manifest.width_px);
+    for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
+        const std::span<float> radiance = block.radiance(j);
+        for (std::size_t i = 0; i < block.plane; ++i) radiance[i] *= vignetting[first + i];
+    }
+}
+
 CameraImage integrate_into(const fs::path& images_folder,
                            const std::vector<double>& planes_nm,
                            const fs::path& folder,
@@ -146,6 +168,7 @@ CameraImage integrate_into(const fs::path& images_folder,
     require_noted_frames(folder, manifest);
     OutputImages images(
         images_folder, manifest.width_px, manifest.height_px, planes_nm, attributes_of(manifest));
+    const std::vector<float> vignetting = vignetting_of(folder, manifest);
     const int height_px = manifest.height_px;
     const int block_rows = rows_per_block(manifest.width_px, manifest.wavelengths.size());
     for (int row = 0; row < height_px; row += block_rows) {
@@ -156,6 +179,7 @@ CameraImage integrate_into(const fs::path& images_folder,
             static_cast<std::size_t>(block.rows) * static_cast<std::size_t>(manifest.width_px);
         block.samples.resize(block.plane * (kChannels + manifest.wavelengths.size()));
         read_radiance(folder, manifest, block);
+        if (!vignetting.empty()) take_off(vignetting, manifest, block);
         sum_signals(manifest, block);
         require_finite(folder, manifest, block);
         images.write_rows(block.rows, std::move(block.samples));

@@ -257,6 +257,7 @@ template <typename Visit, Is<ManifestCamera> Camera>
 void fields(const Visit& visit, Camera& camera) {
     constexpr int kMostRows = 1;
     visit("rows_above", camera.rows_above, 0, kMostRows);
+    visit("vignetting_sha256", camera.vignetting_sha256);
 }
 
 template <typename Visit, Is<Manifest> Whole>
@@ -309,6 +310,10 @@ fs::path log_path(const fs::path& folder, const ManifestFrame& frame) {
 
 fs::path image_path(const fs::path& folder, const ManifestFrame& frame) {
     return folder / "povray" / "frames" / (frame.name + ".exr");
+}
+
+fs::path vignetting_path(const fs::path& folder) {
+    return folder / "povray" / "vignetting.exr";
 }
 
 void write_manifest(const fs::path& folder, const Manifest& manifest) {

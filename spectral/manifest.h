@@ -58,6 +58,8 @@ struct ManifestScene {
 // How frames differ from the image.
 struct ManifestCamera {
     int rows_above = 0;  // at a frame's top, which are none of the image
+    // Of the factors that pixels take, as floats (vignetting_path); empty: none.
+    std::string vignetting_sha256{};
 };
 
 struct Manifest {
@@ -108,6 +110,9 @@ struct Manifest {
                                              const ManifestFrame& frame);
 [[nodiscard]] std::filesystem::path image_path(const std::filesystem::path& folder,
                                                const ManifestFrame& frame);
+
+// What the lens takes off, a factor a pixel: an EXR of one channel, Y.
+[[nodiscard]] std::filesystem::path vignetting_path(const std::filesystem::path& folder);
 
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 

@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "rig/lens.h"
 #include "spectral/sensor.h"
 #include "validation/saved_measure.h"
 #include "validation/validation.h"
@@ -267,9 +268,10 @@ Rig quick_rig(Rig rig) {
     for (int d = 2 * least; d >= least; --d) {
         if (camera.width_px % d == 0 && camera.height_px % d == 0) divisor = d;
     }
-    camera.width_px = std::max(1, camera.width_px / divisor);
-    camera.height_px = std::max(1, camera.height_px / divisor);
-    camera.pixel_pitch_m *= divisor;
+    enlarge_pixels(camera,
+                   divisor,
+                   std::max(1, camera.width_px / divisor),
+                   std::max(1, camera.height_px / divisor));
     return rig;
 }
 

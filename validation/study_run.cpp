@@ -6,6 +6,7 @@
 #include "base/sha256.h"
 #include "image/any_image.h"
 #include "image/exr.h"
+#include "rig/lens.h"
 #include "spectral/integrator.h"
 #include "validation/saved_measure.h"
 #include "validation/traced_images.h"
@@ -100,9 +101,7 @@ StudyReference study_reference(const Rig& rig,
 }
 
 Rig shrunk(Rig rig, int shrink) {
-    rig.camera.width_px /= shrink;
-    rig.camera.height_px /= shrink;
-    rig.camera.pixel_pitch_m *= shrink;
+    enlarge_pixels(rig.camera, shrink, rig.camera.width_px / shrink, rig.camera.height_px / shrink);
     return rig;
 }
 

@@ -6,6 +6,7 @@
 #include "spectral/light_family.h"
 #include "spectral/refractive_index.h"
 #include "validation/full_spectrum.h"
+#include "validation/traced_vignetting.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -424,14 +425,11 @@ WavelengthRange Tracer::traced_range() const {
     return {.first_nm = *first, .last_nm = *last};
 }
 
-// The radiance of one pixel at every wavelength.
-void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
-    radiance.setZero();
+// What its sight shows, at every wavelength.
+void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd& radiance) const {
     View view;
-    const std::optional<WideVector> in_air = sight(column + 0.5, row + 0.5);
-    if (!in_air) return;
     if (!rig_.camera.port) {
-        if (!look_along(*in_air, {.glass = 1.0, .water = 1.0}, view)) return;
+        if (!look_along(in_air, {.glass = 1.0, .water = 1.0}, view)) return;
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
             if (lit.diffuse == 0.0 && lit.specular == 0.0) continue;
@@ -450,7 +448,7 @@ void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
     // Told once, for every wavelength has its own ray.
     view.is_clear = is_clear_of_objects(column + 0.5, row + 0.5, traced_range(), 0.0);
     for (Eigen::Index j = 0; j < radiance.size(); ++j) {
-        if (!look_along(*in_air, indices_[static_cast<std::size_t>(j)], view)) continue;
+        if (!look_along(in_air, indices_[static_cast<std::size_t>(j)], view)) continue;
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
             radiance(j) += (lit.diffuse * diffuse_[lamp.strobe][view.surface](j) +
@@ -458,6 +456,16 @@ void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
                            light_left(lit.path_m * attenuation_per_m_(j));
         }
     }
+}
+
+// The radiance of one pixel at every wavelength, less what the lens takes off.
+void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
+    radiance.setZero();
+    const std::optional<WideVector> in_air = sight(column + 0.5, row + 0.5);
+    if (!in_air) return;
+    trace_sight(column, row, *in_air, radiance);
+    if (rig_.camera.vignetting)
+        radiance *= traced_vignetting(rig_.camera, column + 0.5, row + 0.5, *in_air);
 }
 
 bool Tracer::is_on_beam_edge(double column,

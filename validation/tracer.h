@@ -180,6 +180,7 @@ class Tracer {
     [[nodiscard]] double widest_pixel_rad() const;
     [[nodiscard]] Contribution light(const Lamp& lamp, const View& view) const;
     void trace_pixel(int column, int row, Eigen::ArrayXd& radiance) const;
+    void trace_sight(int column, int row, const WideVector& in_air, Eigen::ArrayXd& radiance) const;
     void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
     // Of every plane, `stride` apart.
     void write_planes(const Eigen::ArrayXd& radiance, double* sample, std::size_t stride) const;

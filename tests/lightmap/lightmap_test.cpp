@@ -272,6 +272,7 @@ TEST(Lightmap, IsThatOfTheTracerThroughEveryKindOfLens) {
         for (int i = 0; i < cases(6); ++i) {
             Rig rig = random_rig(engine);
             give_lens(kind, dice, rig.camera);
+            give_vignetting(static_cast<std::size_t>(i), dice, rig.camera);
             expect_equal(
                 rig, kWithoutPort, fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
         }

@@ -81,12 +81,13 @@ TEST(Cameras, PortsOfEveryKindAreTheReferences) {
     }
 }
 
-TEST(Cameras, LensesBehindPortsAreTheReferences) {
+TEST(Cameras, VignettingLensesBehindPortsAreTheReferences) {
     for (const PortKind kind : kPortKinds) {
         SCOPED_TRACE(static_cast<int>(kind));
         expect_agreement(1, [kind](Dice& dice, Camera& camera) {
             give_port(kind, dice, camera);
             give_lens(LensKind::RadialTangential, dice, camera);
+            give_vignetting(static_cast<std::size_t>(kind), dice, camera);
         });
     }
 }

@@ -53,6 +53,23 @@ inline void give_lens(LensKind kind, Dice& dice, Camera& camera) {
     camera.focal_length_m = camera.lens->focal_px.x() * camera.pixel_pitch_m;
 }
 
+// One that leaves light all over any image within 80 degrees of the axis.
+inline void give_vignetting(std::size_t kind, Dice& dice, Camera& camera) {
+    if (kind % 3 == 0) {
+        camera.vignetting = NaturalVignetting{};
+    } else if (kind % 3 == 1) {
+        camera.vignetting = RadialVignetting{
+            {dice.between(-0.5, 0.0), dice.between(-0.2, 0.2), dice.between(-0.1, 0.1)}};
+    } else {
+        TabulatedVignetting table;
+        for (double angle_deg = 0.0; angle_deg <= 80.0; angle_deg += 5.0) {
+            table.angles_rad.push_back(angle_deg * std::numbers::pi / 180.0);
+            table.factors.push_back(dice.between(0.2, 1.0));
+        }
+        camera.vignetting = table;
+    }
+}
+
 enum class PortKind { Flat, Tilted, Dome };
 inline constexpr std::array kPortKinds{PortKind::Flat, PortKind::Tilted, PortKind::Dome};
 

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a lens takes off the light towards the image's corners: the factor V of every pixel's
+// signal, one for all wavelengths.
+//
+//   Natural     V = cos^4 theta                       theta: the pixel's angle off the axis in air
+//   Radial      V = 1 + a1 p^2 + a2 p^4 + a3 p^6      p: distance from the principal point, of half
+//                                                     the image's diagonal 1
+//   Tabulated   V over theta, straight lines between rows
+//
+// On the axis V is 1, but for a table that says otherwise. Radial is the form of panorama tools.
+// The reference has a V of its own (validation/).
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace aphotic {
+
+struct Camera;
+
+struct NaturalVignetting {
+    bool operator==(const NaturalVignetting&) const = default;
+};
+
+struct RadialVignetting {
+    std::array<double, 3> a{};
+
+    bool operator==(const RadialVignetting&) const = default;
+};
+
+struct TabulatedVignetting {
+    std::vector<double> angles_rad;  // increasing, from 0
+    std::vector<double> factors;
+
+    bool operator==(const TabulatedVignetting&) const = default;
+};
+
+using Vignetting = std::variant<NaturalVignetting, RadialVignetting, TabulatedVignetting>;
+
+// V of the point (column, row) of the image; 1 without vignetting.
+[[nodiscard]] double vignetting_at(const Camera& camera, double column, double row);
+
+// Of every pixel's centre, row by row.
+[[nodiscard]] std::vector<float> vignetting_plane(const Camera& camera);
+
+// An InputError, which names the pixel, unless V is over 0 all over the image and a table reaches
+// as far as it.
+void require_bright(const Camera& camera);
+
+// A table from CSV, of the header angle_deg,factor: angles increase from 0, factors are over 0.
+[[nodiscard]] TabulatedVignetting parse_vignetting_csv(const std::string& file_name,
+                                                       std::string_view text);
+
+// Of the same signature: the same of the same camera.
+[[nodiscard]] std::string vignetting_signature(const Vignetting& vignetting);
+
+}  // namespace aphotic
