@@ -254,11 +254,13 @@ void require_over_floor(const Rig& rig, const Sled& sled) {
 
 MapPromise map_promise(const Rig& rig, const LightmapOptions& options) {
     constexpr double kRounding = 12.0 * 0x1p-24;
+    constexpr double kVignettingRounding = 2.0 * 0x1p-24;  // of the factor and of the product
     constexpr double kOverTheIndex = 1e-4;
     const bool has_port = rig.camera.port.has_value();
     const bool is_fitted = std::ranges::all_of(
         rig.strobes, [](const Strobe& strobe) { return is_smooth_between(beam_edges(strobe)); });
-    return {.error = options.error + kRounding + (is_fitted ? kRowFitError : 0.0) +
+    const double off_the_lens = rig.camera.vignetting ? kVignettingRounding : 0.0;
+    return {.error = options.error + kRounding + off_the_lens + (is_fitted ? kRowFitError : 0.0) +
                      (has_port ? kOverTheIndex : 0.0),
             .is_bounded = !has_port,
             .is_of_lamp_grids = std::ranges::any_of(

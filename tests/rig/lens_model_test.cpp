@@ -85,16 +85,16 @@ TEST(LensModel, ItsInverseIsItsInverse) {
 
 // s r = r - r^3 / 3 ends where r = 1, at 45 degrees: 2/3 of a focal length from the axis.
 TEST(LensModel, EndsWhereTheImageNoLongerGrows) {
-    LensModel lens{.focal_px = {300.0, 300.0}, .centre_px = {200.0, 150.0}};
+    LensModel lens{.focal_px = {300.0, 300.0}, .centre_px = {150.0, 100.0}};
     lens.radial = {-1.0 / 3.0, 0.0, 0.0, 0.0};
-    EXPECT_TRUE(direction_at(lens, {200.0 + 199.0, 150.0}));
-    EXPECT_FALSE(direction_at(lens, {200.0 + 201.0, 150.0}));
-    EXPECT_NO_THROW(require_to_hold(lens, 300, 250));
+    EXPECT_TRUE(direction_at(lens, {150.0 + 199.0, 100.0}));
+    EXPECT_FALSE(direction_at(lens, {150.0 + 201.0, 100.0}));
+    EXPECT_NO_THROW(require_to_hold(lens, 300, 200));
     try {
         require_to_hold(lens, 400, 300);
         FAIL() << "no refusal";
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("holds to 44.9"), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("holds to 45.00 degrees"), std::string::npos)
             << error.what();
     }
 }
