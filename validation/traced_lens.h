@@ -28,7 +28,7 @@ class TracedLens {
     [[nodiscard]] long double image_radius(long double r) const;  // s r
 
     LensModel lens_;
-    long double most_r_;       // to which s r grows
+    long double most_r_;  // to which s r grows
     long double most_image_r_;
 };
 

@@ -47,8 +47,8 @@ class RandomRigs {
         if (between(0.0, 1.0) < 0.3) rig.seafloor.phong = between(0.0, 1.0);
         if (has_port) {
             rig.camera.port = PortWindow{.distance_m = between(0.01, 0.1),
-                                       .thickness_m = between(0.002, 0.02),
-                                       .glass = builtin_glass("bk7")};
+                                         .thickness_m = between(0.002, 0.02),
+                                         .glass = builtin_glass("bk7")};
         }
         const int strobes = 1 + static_cast<int>(between(0.0, 4.0));
         for (int s = 0; s < strobes; ++s) add_strobe(rig);

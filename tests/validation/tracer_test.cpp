@@ -1259,8 +1259,8 @@ Rig random_rig(Dice& dice) {
                 .roll_rad = dice.between(-0.6, 0.6)};
     if (dice.chance()) {
         rig.camera.port = PortWindow{.distance_m = dice.between(0.01, 0.1),
-                                   .thickness_m = dice.between(0.002, 0.03),
-                                   .glass = builtin_glass(dice.chance() ? "bk7" : "sapphire")};
+                                     .thickness_m = dice.between(0.002, 0.03),
+                                     .glass = builtin_glass(dice.chance() ? "bk7" : "sapphire")};
     }
     rig.water = {.absorption_per_m = dice.curve(0.0, 0.6),
                  .multiple = dice.chance() ? dice.between(0.0, 2.0) : 0.0,
