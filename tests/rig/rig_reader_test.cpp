@@ -783,7 +783,7 @@ TEST(RigReader, ChecksThePort) {
     EXPECT_EQ(port("shape = \"flat\"", "shape = \"round\""),
               "rig.toml:10: camera.port.shape: found 'round'; allowed: \"flat\" or \"dome\"");
     EXPECT_EQ(port("distance_mm", "normal = [2, 0, 1]\ndistance_mm"),
-              "rig.toml:11: camera.port.normal: found [ 2, 0, 1 ]; allowed: a direction within 60 "
+              "rig.toml:11: camera.port.normal: found [2, 0, 1]; allowed: a direction within 60 "
               "degrees of the camera's axis, [0, 0, 1]");
     const auto dome = [&](const std::string& centre) {
         return port("shape = \"flat\"\ndistance_mm = 50.0",
@@ -792,7 +792,7 @@ TEST(RigReader, ChecksThePort) {
     EXPECT_EQ(dome(""), "no error");
     EXPECT_EQ(dome("centre_mm = [0, 0, 49]"), "no error");
     EXPECT_EQ(dome("centre_mm = [0, 40, 30]"),
-              "rig.toml:12: camera.port.centre_mm: found [ 0, 40, 30 ]; allowed: the pupil, [0, 0, "
+              "rig.toml:12: camera.port.centre_mm: found [0, 40, 30]; allowed: the pupil, [0, 0, "
               "0], within radius_mm of the centre");
     EXPECT_EQ(port("50.0", "0"),
               "rig.toml:11: camera.port.distance_mm: found 0; allowed: a number from 1 to 10000");
