@@ -38,6 +38,11 @@ ArrayXd light_left(const ArrayXd& depth) {
     return (depth < kBlackDepth).select((-depth).exp(), 0.0);
 }
 
+double sight_error_rad(const Camera& camera) {
+    if (camera.lens) return kEdgeThroughLensRad;
+    return camera.port ? kEdgeBehindPortRad : kEdgeRad;
+}
+
 double light_left(double depth) {
     return depth < kBlackDepth ? std::exp(-depth) : 0.0;
 }
@@ -81,6 +86,7 @@ Tracer::Tracer(const Rig& rig, const TraceOptions& options)
       options_(options),
       lens_(rig.camera.lens ? std::optional<TracedLens>(*rig.camera.lens) : std::nullopt),
       pixel_rad_(widest_pixel_rad()),
+      sight_error_rad_(sight_error_rad(rig.camera)),
       exact_down_(vertical(rig.sled)),
       down_(exact_down_.cast<double>()) {
     for (const Strobe& strobe : rig_.strobes) beams_.emplace_back(strobe.beam, strobe.axis);
@@ -481,7 +487,7 @@ bool Tracer::is_on_beam_edge(double column,
     return std::ranges::any_of(apexes_, [&](const Apex& apex) {
         std::array<Vector3d, 2> paths_m;
         // How far a strobe's lamps spread about the edge, at least.
-        double spread_rad = rig_.camera.port ? kEdgeBehindPortRad : kEdgeRad;
+        double spread_rad = sight_error_rad_;
         for (std::size_t e = 0; e < ends.size(); ++e) {
             paths_m.at(e) = views.at(e).point_m - apex.position_m;
             const double d_m = paths_m.at(e).norm();
@@ -596,9 +602,9 @@ bool Tracer::is_clear_of_objects(double column,
     return !is_near_an_object(view, reach_m);
 }
 
-// A lamp's light is so near its end on a rounded thing that the rounding of POV-Ray's index tells.
+// A lamp's light is so near its end on a rounded thing that the rounding of POV-Ray's rays tells.
 bool Tracer::turns_steeply(double column, double row, const View& view, double lambda_nm) const {
-    const double reach_px = kEdgeBehindPortRad / pixel_rad_;
+    const double reach_px = sight_error_rad_ / pixel_rad_;
     const Index index = index_at(lambda_nm);
     for (const auto& [x, y] : std::array<std::array<double, 2>, 2>{{{1.0, 0.0}, {0.0, 1.0}}}) {
         View beside;
@@ -633,7 +639,8 @@ bool Tracer::is_on_object_edge(double column,
             if (sees_beside != sees || (sees && !shows_the_same(view, beside))) return true;
         }
     }
-    if (view.surface > 0 && rig_.camera.port && turns_steeply(column, row, view, middle_nm)) {
+    if (view.surface > 0 && sight_error_rad_ > kEdgeRad &&
+        turns_steeply(column, row, view, middle_nm)) {
         return true;
     }
     for (int j = 0; j <= kSpectralSteps && range.first_nm < range.last_nm && rig_.camera.port;

@@ -51,6 +51,8 @@ inline constexpr double kBlackDepth = 700.0;
 
 inline constexpr double kEdgeRad = 1e-9;
 inline constexpr double kEdgeBehindPortRad = 1e-7;
+// Of a calibrated lens, whose rays POV-Ray takes from a mesh in single precision.
+inline constexpr double kEdgeThroughLensRad = 2e-7;
 // Of an object's outline, its faces and its shadows: where the image shifted by so much shows
 // another face or other lamps. POV-Ray keeps meshes in single precision, 0.1 um at 2 m.
 inline constexpr double kEdgePx = 2e-3;
@@ -60,8 +62,8 @@ inline constexpr double kEdgePx = 2e-3;
 inline constexpr double kNoShadowWithin_m = 1.01e-3;
 // A mesh's face that a lamp grazes: below this cosine POV-Ray's single-precision normals tell.
 inline constexpr double kGrazing = 1e-3;
-// Behind a port, where kEdgeBehindPortRad changes the light on an object by more than this, a half
-// of what the half floats leave of validation.h's bound.
+// Where the rounding of a port's index or of a lens's rays changes the light on an object by more
+// than this, a half of what the half floats leave of validation.h's bound.
 inline constexpr double kRoundingChange = 5e-5;
 // On an object behind a port, dispersion may change the light by this much (its logarithm) and
 // no more, which is what a plan allows for (kObjectTilt of scene_gen/light_paths.h).
@@ -106,12 +108,14 @@ class Tracer {
     // 1 for every pixel, row by row, whose value is a matter of rounding, or steps, somewhere in
     // the range:
     //   beams    its centre is within kEdgeRad of a beam's edge (kEdgeBehindPortRad behind a port,
-    //            whose index POV-Ray keeps in single precision), an emitter of a size has lamps on
-    //            both sides of it, or dispersion takes it across; a smooth beam has none
+    //            whose index POV-Ray keeps in single precision, kEdgeThroughLensRad with a lens),
+    //            an emitter of a size has lamps on both sides of it, or dispersion takes it across;
+    //            a smooth beam has none
     //   objects  within kEdgePx, or by dispersion, the image shows another face or other lamps
     //            shine on it; an emitter is hidden in part; a blocker is nearer than
     //            kNoShadowWithin_m; a lamp grazes a mesh; light changes by kSteepest through
-    //            dispersion, or by kRoundingChange through the rounding of a port's index
+    //            dispersion, or by kRoundingChange through the rounding of a port's index or a
+    //            lens's rays
     // within_px: also pixels about so many from an edge, for images that blur it.
     [[nodiscard]] std::vector<unsigned char> on_edges(WavelengthRange range,
                                                       double within_px = 0.0) const;
@@ -219,6 +223,7 @@ class Tracer {
     TraceOptions options_;
     std::optional<TracedLens> lens_;
     double pixel_rad_;
+    double sight_error_rad_;  // of POV-Ray's rays, by its single precision
     WideVector exact_down_;
     Eigen::Vector3d down_;
     std::vector<TracedBeam> beams_;  // by strobe

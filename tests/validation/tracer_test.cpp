@@ -1396,6 +1396,17 @@ TEST(TracerConeEdges, AreAsWideAsRoundingMakesThem) {
     }
 }
 
+TEST(TracerConeEdges, ThroughALensAreAsWideAsPovRaysMeshIsRound) {
+    Rig rig = plain_rig(21, 17, 0.1);
+    rig.camera.lens = LensModel{.focal_px = {10.0, 10.0}, .centre_px = {10.5, 8.5}};
+    for (const double side : {-1.0, 1.0}) {
+        rig.strobes[0].beam = cone_of(std::atan(0.5) + side * 0.9 * kEdgeThroughLensRad, 1.0);
+        EXPECT_EQ(count_edges(rig), 12U);
+        rig.strobes[0].beam = cone_of(std::atan(0.5) + side * 1.1 * kEdgeThroughLensRad, 1.0);
+        EXPECT_EQ(count_edges(rig), 0U);
+    }
+}
+
 TEST(TracerConeEdges, OfEveryConeAndEveryStrobeCount) {
     Rig rig = plain_rig(21, 17, 0.1);
     rig.strobes.clear();
