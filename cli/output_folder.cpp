@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/disk_space.h"
 #include "base/error.h"
+#include "scene_gen/camera_rays.h"
 #include "scene_gen/include_library.h"
 
 #include <algorithm>
@@ -25,6 +26,7 @@ std::uint64_t scenes_bytes(const SceneSet& scenes) {
                           kWavelength_bytes * scenes.manifest.wavelengths.size();
     for (const FrameScene& scene : scenes.scenes) bytes += scene.sdl.size() + kDiskBlock_bytes;
     for (const IncludeFile& file : include_library()) bytes += file.text.size() + kDiskBlock_bytes;
+    if (scenes.camera) bytes += bytes_of_rays(*scenes.camera) + kDiskBlock_bytes;
     return bytes;
 }
 

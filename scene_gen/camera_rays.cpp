@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/camera_rays.h"
 
+#include "image/image_size.h"
 #include "rig/geometry.h"
 #include "rig/lens.h"
 
@@ -12,6 +13,11 @@ namespace aphotic {
 
 int rows_above(const Camera& camera) {
     return camera.lens ? kRowsAbove : 0;
+}
+
+std::uint64_t bytes_of_rays(const Camera& camera) {
+    constexpr std::uint64_t kBytesPerRay = 112;  // three numbers of 15 letters, three of 9
+    return kBytesPerRay * size_of(camera.width_px) * size_of(camera.height_px);
 }
 
 std::string camera_rays_sdl(const Camera& camera) {

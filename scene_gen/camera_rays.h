@@ -12,6 +12,7 @@
 
 #include "rig/rig.h"
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,9 @@ inline constexpr int kRowsAbove = 1;
 
 // Of a frame; 0 for a pinhole.
 [[nodiscard]] int rows_above(const Camera& camera);
+
+// Of the file, at most.
+[[nodiscard]] std::uint64_t bytes_of_rays(const Camera& camera);
 
 // #declare Aphotic_Camera_Rays = mesh2 { ... }. The camera has a lens.
 [[nodiscard]] std::string camera_rays_sdl(const Camera& camera);

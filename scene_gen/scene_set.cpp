@@ -7,6 +7,7 @@
 #include "image/exr.h"
 #include "image/frame_check.h"
 #include "rig/geometry_signature.h"
+#include "rig/lens_model.h"
 #include "scene_gen/camera_rays.h"
 #include "scene_gen/include_library.h"
 
@@ -105,7 +106,8 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
         set.scene_files_digest = own->files_digest;
         set.scene_writes_files = own->writes_files;
     }
-    const std::string around = set.ini + include_text() + (own != nullptr ? own->digest : "");
+    const std::string around = set.ini + include_text() + (own != nullptr ? own->digest : "") +
+                               (rig.camera.lens ? lens_model_signature(*rig.camera.lens) : "");
     manifest.aphotic_version = APHOTIC_VERSION;
     manifest.rig_title = rig.title;
     manifest.rig_sha256 = rig.digest;

@@ -123,5 +123,23 @@ TEST(LostLight, IsABlackImageWhereNothingIsHeld) {
     EXPECT_EQ(refusal_of(wavelengths), "none");
 }
 
+// Frames are kept while their scene is the same, and a lens's rays are in a file of their own.
+TEST(SceneSet, OfAnotherLensHasOtherScenes) {
+    PlanRequest request;
+    request.wavelengths_nm = {550.0};
+    Rig rig = habcam_in(1.0);
+    const double focal_px = rig.camera.focal_length_m / rig.camera.pixel_pitch_m;
+    rig.camera.lens =
+        LensModel{.focal_px = {focal_px, focal_px},
+                  .centre_px = {0.5 * rig.camera.width_px, 0.5 * rig.camera.height_px}};
+    const auto digest = [&] {
+        return make_scene_set(rig, plan_render(rig, request)).manifest.frames[0].scene_sha256;
+    };
+    const std::string first = digest();
+    EXPECT_EQ(digest(), first);
+    rig.camera.lens->tangential[1] = 1e-6;
+    EXPECT_NE(digest(), first);
+}
+
 }  // namespace
 }  // namespace aphotic::scene_set_test
