@@ -134,6 +134,52 @@ BENCHMARK_CAPTURE(lightmap_of, table, make_table)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap_of, optics, make_optics)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap_of, optics_in_air, make_optics_in_air)->Apply(least_of_many);
 
+// HabCam through lenses and ports whose rays have no formula: over habcam_one_thread, and over the
+// flat port beside them.
+
+PortWindow bk7_port() {
+    return {.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
+}
+
+void give_lens(Camera& camera) {
+    const double focal_px = camera.focal_length_m / camera.pixel_pitch_m;
+    camera.lens =
+        LensModel{.focal_px = {focal_px, focal_px},
+                  .centre_px = {0.5 * camera.width_px + 11.0, 0.5 * camera.height_px - 7.0},
+                  .radial = {-0.2, 0.1, 0.0, 0.0},
+                  .tangential = {1e-3, -5e-4}};
+}
+
+void give_flat_port(Camera& camera) {
+    camera.port = bk7_port();
+}
+
+void give_tilted_port(Camera& camera) {
+    camera.port = bk7_port();
+    camera.port->normal = Eigen::Vector3d(0.05, -0.03, 1.0).normalized();
+}
+
+void give_dome(Camera& camera) {
+    camera.port = bk7_port();
+    camera.port->distance_m = 0.0;
+    camera.port->dome = Dome{.centre_m = {0.002, -0.001, 0.003}, .radius_m = 0.05};
+}
+
+void lightmap_seen_through(benchmark::State& state, void (*change)(Camera&)) {
+    Rig rig = scene();
+    change(rig.camera);
+    const LightmapMaker maker(rig, std::nullopt, {.error = 1e-5, .threads = 1});
+    Lightmap map;
+    for (auto _ : state) {
+        maker.map_into(rig.sled, map);
+        benchmark::DoNotOptimize(map.samples.data());
+    }
+}
+BENCHMARK_CAPTURE(lightmap_seen_through, lens, give_lens)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_seen_through, flat_port, give_flat_port)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_seen_through, tilted_port, give_tilted_port)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_seen_through, dome, give_dome)->Apply(least_of_many);
+
 void table(benchmark::State& state) {
     const Rig rig = scene();
     for (auto _ : state) {
