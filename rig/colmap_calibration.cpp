@@ -165,7 +165,8 @@ CameraCalibration parse_cameras_txt(const std::string& file_name, std::string_vi
         fail_at_line(
             file_name, cameras[1].line, "found a second camera; allowed: one, that of the rig");
     }
-    const auto& [line, words] = cameras.front();
+    const std::size_t line = cameras.front().line;
+    const std::vector<std::string_view>& words = cameras.front().words;
     if (words.size() < 4) {
         fail_at_line(file_name,
                      line,
