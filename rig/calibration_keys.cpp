@@ -126,14 +126,14 @@ CalibrationValue parse_calibration_yaml(const std::string& file_name, std::strin
     } catch (const YAML::Exception& error) {
         fail_at_line(file_name, line_of(error.mark), "is not YAML: {}", printable(error.msg));
     }
-    if (documents.size() > 1)
-        throw InputError("{}: found {} documents; allowed: one", file_name, documents.size());
     if (documents.empty() || !documents.front().IsMap()) {
         throw InputError(
             "{}: found no keys; allowed: a camera calibration in YAML, JSON or XML, or "
             "COLMAP's cameras.txt",
             file_name);
     }
+    if (documents.size() > 1)
+        throw InputError("{}: found {} documents; allowed: one", file_name, documents.size());
     ValueCount count(file_name);
     return value_of(documents.front(), count, 1);
 }

@@ -636,6 +636,15 @@ void RigReader::read_vignetting(Section& camera_section, Camera& camera) {
 }
 
 Camera RigReader::read_camera(Section section) {
+    section.refuse_keys_but({"resolution",
+                             "pixel_pitch_um",
+                             "focal_length_mm",
+                             "fov_deg",
+                             "calibration",
+                             "vignetting",
+                             "range_nm",
+                             "response",
+                             "port"});
     const std::optional<CameraCalibration> calibration = read_calibration(section);
     const auto [width_px, height_px] = read_size(section, calibration);
     Sensor sensor = read_response(section);
@@ -660,7 +669,6 @@ Camera RigReader::read_camera(Section section) {
     } else if (section.has("port")) {
         camera.port = read_port(section.section("port", "a table"));
     }
-    section.refuse_unknown_keys();
     return camera;
 }
 
