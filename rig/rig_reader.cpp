@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/rig_reader.h"
-#include "rig/photometric_file.h"
 
 #include "base/atomic_file.h"
 #include "base/degrees.h"
@@ -10,6 +9,7 @@
 #include "base/printable.h"
 #include "base/sha256.h"
 #include "image/image_size.h"
+#include "rig/calibration_file.h"
 #include "rig/geometry.h"
 #include "rig/key_depth.h"
 #include "rig/mesh_reader.h"
@@ -354,9 +354,15 @@ class RigReader {
     static Dome read_dome(Section& section);
     static Eigen::Vector3d read_port_normal(Section& section);
     static PortWindow read_port(Section section);
+    static PortWindow read_calibrated_port(Section section, const CalibratedPort& calibrated);
     static Glass read_glass(Section& port);
 
-    static void read_lens(Section& section, Camera& camera);
+    std::optional<CameraCalibration> read_calibration(Section& section);
+    static std::array<int, 2> read_size(Section& section,
+                                        const std::optional<CameraCalibration>& calibration);
+    static void read_lens(Section& section,
+                          const std::optional<CameraCalibration>& calibration,
+                          Camera& camera);
     TabulatedVignetting read_vignetting_table(Section& section);
     void read_vignetting(Section& camera_section, Camera& camera);
     Camera read_camera(Section section);
@@ -491,6 +497,24 @@ PortWindow RigReader::read_port(Section section) {
     return port;
 }
 
+// All but the glass is the calibration's.
+PortWindow RigReader::read_calibrated_port(Section section, const CalibratedPort& calibrated) {
+    for (const std::string_view key :
+         {"shape", "distance_mm", "thickness_mm", "normal", "radius_mm", "centre_mm"}) {
+        if (section.has(key))
+            section.fail_at(key,
+                            "found beside a calibration that tells the port; allowed: glass alone");
+    }
+    const auto& [distance_m, thickness_m, normal, dome] = calibrated;
+    PortWindow port{.distance_m = distance_m,
+                    .thickness_m = thickness_m,
+                    .glass = read_glass(section),
+                    .normal = normal,
+                    .dome = dome};
+    section.refuse_unknown_keys();
+    return port;
+}
+
 Sensor RigReader::read_response_table(Section response) {
     if (response.has("table")) {
         std::vector<Spectrum> channels = curves(response, "table", CurveRole::SensorResponse);
@@ -519,22 +543,65 @@ Sensor RigReader::read_response(Section& camera) {
     return camera.at_key("response", [&] { return builtin_sensor(name); });
 }
 
-// One of: pitch and focal length, a field of view, a calibration.
-void RigReader::read_lens(Section& section, Camera& camera) {
-    section.refuse_both({"focal_length_mm", "fov_deg"});
-    if (!section.has("fov_deg")) {
+std::optional<CameraCalibration> RigReader::read_calibration(Section& section) {
+    section.refuse_both({"focal_length_mm", "fov_deg", "calibration"});
+    if (!section.has("calibration")) return std::nullopt;
+    const std::string name =
+        section.text("calibration", "the name of a camera calibration beside the rig");
+    return section.at_key("calibration", [&] {
+        const std::string text =
+            read_beside(name, file_beside(folder_, name), kMostCalibrationBytes);
+        CameraCalibration calibration = parse_calibration(name, text);
+        naming(name, [&] {
+            require_to_hold(calibration.lens, calibration.width_px, calibration.height_px);
+        });
+        return std::optional(std::move(calibration));
+    });
+}
+
+std::array<int, 2> RigReader::read_size(Section& section,
+                                        const std::optional<CameraCalibration>& calibration) {
+    if (calibration && !section.has("resolution"))
+        return {calibration->width_px, calibration->height_px};
+    const auto resolution = section.numbers<2>("resolution", kResolutionPx);
+    for (const double size : resolution) {
+        if (size != std::floor(size))
+            section.found_but("resolution", "two whole numbers, width and height");
+    }
+    const std::array size{static_cast<int>(resolution[0]), static_cast<int>(resolution[1])};
+    if (calibration && size != std::array{calibration->width_px, calibration->height_px}) {
+        section.found_but("resolution",
+                          fmt::format("[{}, {}], that of the calibration",
+                                      calibration->width_px,
+                                      calibration->height_px));
+    }
+    return size;
+}
+
+// One of: pitch and focal length, a field of view, a calibration. Of the latter two, only the ratio
+// of focal length and pitch counts.
+void RigReader::read_lens(Section& section,
+                          const std::optional<CameraCalibration>& calibration,
+                          Camera& camera) {
+    if (!calibration && !section.has("fov_deg")) {
         camera.pixel_pitch_m =
             section.number("pixel_pitch_um", kPixelPitchUm) * kMetresPerMicrometre;
         camera.focal_length_m =
             section.number("focal_length_mm", kFocalLengthMm) * kMetresPerMillimetre;
         return;
     }
-    // Only their ratio counts.
     constexpr double kAnyPitchUm = 1.0;
-    const double fov_rad = section.number("fov_deg", kFovDeg) * kRadiansPerDegree;
     camera.pixel_pitch_m =
         section.number_or("pixel_pitch_um", kPixelPitchUm, kAnyPitchUm) * kMetresPerMicrometre;
-    camera.focal_length_m = 0.5 * camera.width_px * camera.pixel_pitch_m / std::tan(0.5 * fov_rad);
+    if (!calibration) {
+        const double fov_rad = section.number("fov_deg", kFovDeg) * kRadiansPerDegree;
+        camera.focal_length_m =
+            0.5 * camera.width_px * camera.pixel_pitch_m / std::tan(0.5 * fov_rad);
+        return;
+    }
+    camera.focal_length_m = calibration->lens.focal_px.x() * camera.pixel_pitch_m;
+    if (!is_pinhole(calibration->lens, camera.width_px, camera.height_px))
+        camera.lens = calibration->lens;
 }
 
 TabulatedVignetting RigReader::read_vignetting_table(Section& section) {
@@ -569,11 +636,17 @@ void RigReader::read_vignetting(Section& camera_section, Camera& camera) {
 }
 
 Camera RigReader::read_camera(Section section) {
-    const auto resolution = section.numbers<2>("resolution", kResolutionPx);
-    for (const double size : resolution) {
-        if (size != std::floor(size))
-            section.found_but("resolution", "two whole numbers, width and height");
-    }
+    section.refuse_keys_but({"resolution",
+                             "pixel_pitch_um",
+                             "focal_length_mm",
+                             "fov_deg",
+                             "calibration",
+                             "vignetting",
+                             "range_nm",
+                             "response",
+                             "port"});
+    const std::optional<CameraCalibration> calibration = read_calibration(section);
+    const auto [width_px, height_px] = read_size(section, calibration);
     Sensor sensor = read_response(section);
     WavelengthRange range = sensor.range();
     if (section.has("range_nm")) {
@@ -582,15 +655,20 @@ Camera RigReader::read_camera(Section section) {
             section.found_but("range_nm", "two wavelengths, the shorter one first");
         range = {first_nm, last_nm};
     }
-    Camera camera{.width_px = static_cast<int>(resolution[0]),
-                  .height_px = static_cast<int>(resolution[1]),
+    Camera camera{.width_px = width_px,
+                  .height_px = height_px,
                   .range = range,
                   .sensor = std::move(sensor),
                   .port = std::nullopt};
-    read_lens(section, camera);
+    read_lens(section, calibration, camera);
     if (section.has("vignetting")) read_vignetting(section, camera);
-    if (section.has("port")) camera.port = read_port(section.section("port", "a table"));
-    section.refuse_unknown_keys();
+    if (calibration && calibration->port) {
+        camera.port = read_calibrated_port(
+            section.section("port", "a table with the glass of the calibration's port"),
+            *calibration->port);
+    } else if (section.has("port")) {
+        camera.port = read_port(section.section("port", "a table"));
+    }
     return camera;
 }
 

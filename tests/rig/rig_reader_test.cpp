@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "rig/calibration_file.h"
+#include "rig/geometry_signature.h"
 #include "tests/support/temp_folder.h"
 
 #include <fmt/format.h>
@@ -1184,6 +1186,138 @@ TEST(RigReader, CountsAMeshInTheDigest) {
     EXPECT_EQ(a, digest_with("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n"));
 }
 
+// --- Calibrations ------------------------------------------------------------------------------
+
+constexpr std::string_view kCamchain =
+    "cam0:\n"
+    "  camera_model: pinhole\n"
+    "  intrinsics: [2000, 1990, 682.25, 508.5]\n"
+    "  distortion_model: radtan\n"
+    "  distortion_coeffs: [-0.1, 0.02, 0.001, -0.002]\n"
+    "  resolution: [1360, 1024]\n";
+
+constexpr std::string_view kPinhole = "1 SIMPLE_PINHOLE 1360 1024 2000 680 512\n";
+
+constexpr std::string_view kBehindGlass =
+    "model: PINHOLE\n"
+    "parameters: [2000, 2000, 680, 512]\n"
+    "non_svp_model: FLATPORT\n"
+    "non_svp_parameters: [0.6, 0, 0.8, 0.02, 0.008, 1, 1.52, 1.34]\n"
+    "width: 1360\n"
+    "height: 1024\n";
+
+const std::string kByCalibration = with(6, "calibration = \"cam\"");
+
+class CalibratedRig : public testing::Test {
+  protected:
+    void calibrate(std::string_view text) const {
+        write_file(folder_.path() / "cam", std::string(text));
+    }
+    [[nodiscard]] Rig read(const std::string& toml) const {
+        return parse_rig(toml, "rig.toml", folder_.path());
+    }
+    [[nodiscard]] std::string error(const std::string& toml) const {
+        return error_of(toml, folder_.path());
+    }
+
+  private:
+    TempFolder folder_;
+};
+
+TEST_F(CalibratedRig, HasTheLensOfTheFile) {
+    calibrate(kCamchain);
+    const Rig rig = read(kByCalibration);
+    ASSERT_TRUE(rig.camera.lens);
+    EXPECT_EQ(*rig.camera.lens, parse_calibration("cam", kCamchain).lens);
+    EXPECT_NEAR(rig.camera.pixel_pitch_m, 6.45e-6, kRounding * 6.45e-6);
+    EXPECT_NEAR(rig.camera.focal_length_m, 0.0129, kRounding);
+    // What it holds counts.
+    ASSERT_EQ(rig.files.size(), 1U);
+    EXPECT_EQ(rig.files[0].name, "cam");
+    std::string other(kCamchain);
+    other.replace(other.find("0.001"), 5, "0.002");
+    calibrate(other);
+    const Rig changed = read(kByCalibration);
+    EXPECT_NE(changed.digest, rig.digest);
+    EXPECT_NE(geometry_signature(changed), geometry_signature(rig));
+}
+
+TEST_F(CalibratedRig, NeedsNeitherResolutionNorPitch) {
+    calibrate(kCamchain);
+    std::string text = kByCalibration;
+    text.erase(text.find("resolution"), std::string_view("resolution = [1360, 1024]").size());
+    text.erase(text.find("pixel_pitch_um"), std::string_view("pixel_pitch_um = 6.45").size());
+    const Rig rig = read(text);
+    EXPECT_EQ(rig.camera.width_px, 1360);
+    EXPECT_EQ(rig.camera.height_px, 1024);
+    EXPECT_EQ(rig.camera.lens, read(kByCalibration).camera.lens);
+    EXPECT_NEAR(rig.camera.focal_length_m / rig.camera.pixel_pitch_m, 2000.0, 1e-9);
+}
+
+// So that its images are what they always were, to the bit.
+TEST_F(CalibratedRig, OfACentredPinholeHasNoLens) {
+    calibrate(kPinhole);
+    const Rig rig = read(kByCalibration);
+    const Rig plain = read(with(6, "focal_length_mm = 12.9"));
+    EXPECT_FALSE(rig.camera.lens);
+    EXPECT_EQ(rig.camera.focal_length_m, plain.camera.focal_length_m);
+    EXPECT_EQ(geometry_signature(rig), geometry_signature(plain));
+}
+
+TEST_F(CalibratedRig, HasThePortOfTheFile) {
+    calibrate(kBehindGlass);
+    const std::string glass = "[camera.port]\nglass = \"bk7\"\n[water]";
+    std::string text = kByCalibration;
+    text.replace(text.find("[water]"), 7, glass);
+    const Rig rig = read(text);
+    ASSERT_TRUE(rig.camera.port);
+    // Tilted to the right: to starboard.
+    expect_vector(rig.camera.port->normal, {0.0, 0.6, 0.8});
+    EXPECT_EQ(rig.camera.port->distance_m, 0.02);
+    EXPECT_EQ(rig.camera.port->thickness_m, 0.008);
+    EXPECT_EQ(rig.camera.port->glass.name(), "bk7");
+    EXPECT_EQ(error(kByCalibration),
+              "rig.toml:3: camera.port: is missing; allowed: a table with the glass of the "
+              "calibration's port");
+    text.replace(text.find("glass"), 5, "distance_mm = 30\nglass");
+    EXPECT_EQ(error(text),
+              "rig.toml:10: camera.port.distance_mm: found beside a calibration that tells the "
+              "port; allowed: glass alone");
+    // One that tells of none leaves the port to the rig.
+    calibrate(kPinhole);
+    text = kByCalibration;
+    text.replace(text.find("[water]"), 7, std::string(kPort) + "[water]");
+    EXPECT_EQ(read(text).camera.port->distance_m, 0.05);
+}
+
+TEST_F(CalibratedRig, TellsWhatIsWrong) {
+    calibrate(kCamchain);
+    EXPECT_EQ(error(with(6, "focal_length_mm = 12\ncalibration = \"cam\"")),
+              "rig.toml:7: camera.calibration: found beside 'focal_length_mm'; allowed: one of "
+              "them");
+    EXPECT_EQ(error(with(6, "fov_deg = 40\ncalibration = \"cam\"")),
+              "rig.toml:7: camera.calibration: found beside 'fov_deg'; allowed: one of them");
+    EXPECT_EQ(error(with(6, "calibration = 3")),
+              "rig.toml:6: camera.calibration: found 3; allowed: the name of a camera calibration "
+              "beside the rig");
+    EXPECT_TRUE(error(with(6, "calibration = \"none.yaml\""))
+                    .starts_with("rig.toml:6: camera.calibration: "));
+    std::string text = kByCalibration;
+    text.replace(text.find("1360, 1024"), 10, "680, 512");
+    EXPECT_EQ(error(text),
+              "rig.toml:4: camera.resolution: found [680, 512]; allowed: [1360, 1024], that of the "
+              "calibration");
+    calibrate("cam0: [");
+    EXPECT_EQ(error(kByCalibration),
+              "rig.toml:6: camera.calibration: cam:1: is not YAML: end of sequence flow not found");
+    // r - r^3 ends at r = 1/sqrt(3), 30 degrees off the axis; a corner is at 0.77 focal lengths.
+    calibrate("1 SIMPLE_RADIAL 1360 1024 1100 680 512 -1\n");
+    EXPECT_TRUE(error(kByCalibration)
+                    .starts_with("rig.toml:6: camera.calibration: cam: the lens's formula holds to "
+                                 "29.9"))
+        << error(kByCalibration);
+}
+
 // --- Hostile rigs ----------------------------------------------------------------------------
 
 // Each key of a number, with what is no number that a rig may hold.
@@ -1295,6 +1429,7 @@ TEST(RigReader, RefusesEveryFileOutsideItsFolder) {
     const std::vector<std::pair<std::string, std::string>> rigs{
         {"materials = [" + csv + "]\n" + std::string(kMinimal), "rig.toml:1: materials: "},
         {"scene = \"../t.pov\"\n" + std::string(kMinimal), "rig.toml:1: scene: "},
+        {with(6, "calibration = \"../t.yaml\""), "rig.toml:6: camera.calibration: "},
         {with(8, "response = { table = " + csv + ", kind = \"energy\" }"),
          "rig.toml:8: camera.response.table: "},
         {with(8, "response = { filters = " + csv + ", quantum_efficiency = \"q.csv\" }"),

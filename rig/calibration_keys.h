@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Keys and values of a calibration in YAML, JSON (which is YAML) or XML, and what its readers ask
+// of them. All else that a file holds is left alone. Names are told apart without case: OpenCV
+// wrote Camera_Matrix before it wrote camera_matrix.
+//
+// Texts of megabytes, values within values and aliases of aliases end in an InputError, soon.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+struct CalibrationValue {
+    enum class Kind { Text, List, Map };
+    Kind kind = Kind::Text;
+    std::string name;  // of the key; of an element in XML; none in a list
+    std::string text;
+    std::vector<CalibrationValue> values;  // of a list or map
+    std::size_t line = 0;
+};
+
+// A map. %YAML:1.0 of OpenCV and its tags pass.
+[[nodiscard]] CalibrationValue parse_calibration_yaml(const std::string& file_name,
+                                                      std::string_view text);
+
+// The root element: a map of its elements.
+[[nodiscard]] CalibrationValue parse_calibration_xml(const std::string& file_name,
+                                                     std::string_view text);
+
+// Between blanks and line ends.
+[[nodiscard]] std::vector<std::string_view> calibration_words(std::string_view text);
+
+// A map, whose errors name file, line and key.
+class CalibrationKeys {
+  public:
+    // Both are kept by reference.
+    CalibrationKeys(const std::string& file_name,
+                    const CalibrationValue& map,
+                    std::string path = "");
+
+    [[nodiscard]] bool has(std::string_view key) const;
+    [[nodiscard]] std::vector<std::string> names() const;
+
+    [[nodiscard]] double number(std::string_view key) const;
+    [[nodiscard]] double number_or(std::string_view key, double absent) const;
+    // Pixels across or along an image.
+    [[nodiscard]] int size(std::string_view key) const;
+    // Of a list, or of blank-separated words, as in XML.
+    [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
+    [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
+    [[nodiscard]] std::string word(std::string_view key,
+                                   const std::vector<std::string>& allowed) const;
+    [[nodiscard]] CalibrationKeys map(std::string_view key) const;
+
+    [[noreturn]] void fail(std::string_view key, const std::string& what) const;
+
+  private:
+    [[nodiscard]] const CalibrationValue* find(std::string_view key) const;
+    [[nodiscard]] const CalibrationValue& required(std::string_view key,
+                                                   std::string_view allowed) const;
+    [[nodiscard]] double finite(std::string_view key, std::string_view text) const;
+    [[nodiscard]] std::string path_of(std::string_view key) const;
+
+    const std::string& file_name_;
+    const CalibrationValue& map_;
+    std::string path_;
+};
+
+}  // namespace aphotic
