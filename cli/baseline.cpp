@@ -35,8 +35,8 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
     const auto name = std::ranges::find(kBaselineNames, options.name);
     options.baseline.baseline = static_cast<Baseline>(name - kBaselineNames.begin());
     const std::filesystem::path& folder = options.baseline.run.folder;
-    Survey survey{.files = image_files(options.images, folder)};
-    survey.camera = camera_of(options.camera, survey.files, options.rig);
+    Survey survey{.files = image_files(options.images, folder), .camera = options.camera};
+    survey.camera = camera_of(survey.camera, survey.files, options.rig);
     if (needs_altitude(options.baseline.baseline) && !options.navigation.empty()) {
         survey.navigation = read_navigation_csv(options.navigation, Sled{});
     }

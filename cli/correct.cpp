@@ -96,14 +96,15 @@ Survey survey_of(const CorrectCommandOptions& options) {
         throw InputError(
             "--altitude: found {},{}; allowed: the lower first", altitudes_m[0], altitudes_m[1]);
     }
-    Survey survey{.files = image_files(options.images, options.correction.run.folder)};
+    Survey survey{.files = image_files(options.images, options.correction.run.folder),
+                  .camera = options.camera};
     if (!options.map.empty()) {
-        survey.camera = camera_of(options.camera, survey.files, nullptr);
+        survey.camera = camera_of(survey.camera, survey.files, nullptr);
         survey.light = light_of_map(options.map);
         return survey;
     }
     Rig rig = read_rig(options.rig);
-    survey.camera = camera_of(options.camera, survey.files, &rig.camera);
+    survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
     const std::optional<PlaneSize> images = usual_size(survey.files, survey.camera);
     const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
     survey.navigation = read_navigation_csv(options.nav, rig.sled);

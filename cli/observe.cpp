@@ -55,8 +55,9 @@ void print_observation(const Observation& observation, const std::string& map_fi
 
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
     Survey survey{.files = image_files(options.images, options.output),
-                  .navigation = read_navigation_csv(options.navigation, Sled{})};
-    survey.camera = camera_of(options.camera, survey.files, options.rig);
+                  .navigation = read_navigation_csv(options.navigation, Sled{}),
+                  .camera = options.camera};
+    survey.camera = camera_of(survey.camera, survey.files, options.rig);
     const Observation observation =
         observe(survey, options.observation, terminal_watch(options.strict));
     write_observation(options.output, observation);

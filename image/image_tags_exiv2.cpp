@@ -6,14 +6,18 @@
 
 #include <exiv2/exiv2.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace aphotic {
 
@@ -23,7 +27,14 @@ struct ImageTags {
     Exiv2::XmpData xmp;
     ShotExposure exposure;
 
-    [[nodiscard]] bool is_empty() const { return exif.empty() && iptc.empty() && xmp.empty(); }
+    // But for the words and the time that any image has (any_image.h).
+    [[nodiscard]] bool is_empty() const {
+        const auto is_of_any = [](const Exiv2::Exifdatum& datum) {
+            return datum.key() == "Exif.Image.ImageDescription" ||
+                   datum.key() == "Exif.Image.DateTime";
+        };
+        return std::all_of(exif.begin(), exif.end(), is_of_any) && iptc.empty() && xmp.empty();
+    }
 };
 
 namespace {

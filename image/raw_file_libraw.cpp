@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "image/raw_file.h"
 
+#include <fmt/format.h>
 #include <libraw/libraw.h>
 
 #include <algorithm>
@@ -135,6 +136,7 @@ std::vector<float> colours_of(LibRaw& raw, double black) {
 
 extern "C" void aphotic_open_raw_file(const std::filesystem::path& file, aphotic::RawFile& opened) {
     const auto raw = std::make_shared<LibRaw>();
+    raw->set_dataerror_handler(nullptr, nullptr);  // it would print what is thrown as well
     require_success(raw->open_file(file.c_str()), file);
     const auto& sizes = raw->imgdata.sizes;
     opened.width_px = sizes.width;

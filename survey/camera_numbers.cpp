@@ -8,6 +8,9 @@
 
 #include <array>
 #include <charconv>
+#include <string_view>
+#include <system_error>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -99,11 +102,12 @@ nlohmann::ordered_json to_json(const CameraNumbers& camera) {
     nlohmann::ordered_json json{{"bayer", mosaic_name(camera.mosaic.value_or(Mosaic::None))},
                                 {"half", nullptr},
                                 {"crop", nullptr},
-                                {"black_level", camera.black_level.value_or(0.0F)},
+                                {"black_level", nullptr},
                                 {"white_level", nullptr},
                                 {"exposure", nullptr}};
     if (camera.half) json["half"] = *camera.half == Half::Left ? "left" : "right";
     if (camera.crop) json["crop"] = text_of(*camera.crop);
+    if (camera.black_level) json["black_level"] = *camera.black_level;
     if (camera.white_level) json["white_level"] = *camera.white_level;
     if (camera.exposure_by == ExposureBy::Nothing) return json;
     const auto number = [](std::optional<double> told) {

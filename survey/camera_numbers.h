@@ -64,7 +64,7 @@ struct CameraNumbers {
 // "X,Y,WIDTH,HEIGHT"; nothing where the text is none.
 [[nodiscard]] std::optional<Crop> crop_named(const std::string& text);
 
-// As settings, under the options' names.
+// As settings, under the options' names; null: not told.
 [[nodiscard]] nlohmann::ordered_json to_json(const CameraNumbers& camera);
 
 }  // namespace aphotic

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "image/any_image.h"
+#include "support/dng.h"
 #include "support/exiftool.h"
 #include "support/tiff.h"
 
@@ -40,7 +41,7 @@ void tag(const std::filesystem::path& file) {
     tag_by_exiftool(file,
                     {"-GPSLatitude=41.5123456",
                      "-GPSLatitudeRef=N",
-                     "-GPSLongitude=70.6",
+                     "-GPSLongitude=70.5",
                      "-GPSLongitudeRef=W",
                      "-GPSAltitude=55.5",
                      "-GPSAltitudeRef#=1",
@@ -94,7 +95,7 @@ void expect_tags(const nlohmann::json& found, const std::string& of) {
         EXPECT_EQ(found.at(name), value) << of << ": " << name;
     }
     EXPECT_NEAR(found.at("GPS:GPSLatitude").get<double>(), 41.5123456, kArc_deg) << of;
-    EXPECT_NEAR(found.at("GPS:GPSLongitude").get<double>(), 70.6, kArc_deg) << of;
+    EXPECT_NEAR(found.at("GPS:GPSLongitude").get<double>(), 70.5, kArc_deg) << of;
     EXPECT_EQ(found.at("GPS:GPSAltitude"), 55.5) << of;
     EXPECT_FALSE(found.contains("ExifIFD:ExifImageWidth")) << of << ": another image's size";
     EXPECT_FALSE(found.contains("ExifIFD:ColorSpace")) << of << ": another image's colours";
@@ -134,7 +135,7 @@ TEST(ImageTags, AsWordsForFormatsOfNoTags) {
     std::map<std::string, std::string> words;
     for (const auto& [name, value] : words_of(*read_image_tags(file))) words[name] = value;
     EXPECT_EQ(words["Exif.Photo.SubSecTimeOriginal"], "678");
-    EXPECT_EQ(words["Exif.GPSInfo.GPSLongitude"], "70/1 36/1 0/1");
+    EXPECT_EQ(words["Exif.GPSInfo.GPSLongitude"], "70/1 30/1 0/1");
     EXPECT_EQ(words["Xmp.dc.creator"], "Jane Doe");
 }
 
@@ -162,15 +163,20 @@ TEST(ImageTags, ThereAreNoneWhereThereAreNoneOrNoneCanBeRead) {
     };
     none_in("words.tif", "this is no image");
     none_in("empty.jpg", "");
+    none_in("described.tif", tiff_of({1, 2, 3, 4}, 2, 2, "its words go another way"));
     none_in("cut.tif", tiff_of({1, 2, 3, 4}, 2, 2, "", true).substr(0, 40));
     EXPECT_EQ(read_image_tags(folder.path() / "none.png"), nullptr);
 }
 
 TEST(ImageTags, WhatIsNoImageTakesNone) {
     const TempFolder folder;
-    write_file(folder.path() / "a.tif", tiff_of({1, 2, 3, 4}, 2, 2, "words"));
-    const SharedTags tags = read_image_tags(folder.path() / "a.tif");
+    write_file(
+        folder.path() / "a.dng",
+        DngWriter::bytes({.width = 2, .height = 2, .samples = {1, 2, 3, 4}, .exposure_ms = 4}));
+    const SharedTags tags = read_image_tags(folder.path() / "a.dng");
     ASSERT_TRUE(tags);
+    EXPECT_EQ(exposure_of(*tags).time_s, 0.004);
+    EXPECT_EQ(exposure_of(*tags).iso, std::nullopt);
     write_file(folder.path() / "b.tif", "this is no image");
     EXPECT_THROW(add_image_tags(folder.path() / "b.tif", *tags), RunError);
 }
