@@ -115,7 +115,7 @@ SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) 
 Mosaic mosaic_of(const RawFile& file, const CameraNumbers& camera) {
     const Mosaic mosaic = mosaic_named(file.pattern).value_or(Mosaic::None);
     if (!camera.mosaic || *camera.mosaic == mosaic) return mosaic;
-    throw InputError("--bayer: found {}; allowed: {}, as the raw file says",
+    throw InputError("--bayer, or the rig's: found {}; allowed: {}, as the raw file says",
                      mosaic_name(*camera.mosaic),
                      mosaic == Mosaic::None ? "none, for R, G and B" : mosaic_name(mosaic));
 }
