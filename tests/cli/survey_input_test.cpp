@@ -276,8 +276,9 @@ TEST_F(SurveyInput, ARawFileSaysItsPatternAndLevelsItself) {
     EXPECT_EQ(samples("dng/a.exr", {"R", "G", "B"}), samples("tiff/a.exr", {"R", "G", "B"}));
     const CommandResult other = correct("other", {"--bayer", "GRBG"});
     EXPECT_EQ(other.status, kBadInput);
-    EXPECT_NE(other.err.find("--bayer, or the rig's: found GRBG; allowed: RGGB, as the raw file says"),
-              std::string::npos)
+    EXPECT_NE(
+        other.err.find("--bayer, or the rig's: found GRBG; allowed: RGGB, as the raw file says"),
+        std::string::npos)
         << other.err;
     const std::string bytes = read_text_file(path("raw/a.dng"));
     write_file(path("raw/cut.dng"), bytes.substr(0, bytes.size() / 2));
