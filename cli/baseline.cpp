@@ -24,6 +24,7 @@ struct BaselineCommandOptions {
     std::string name;
     std::vector<std::string> images;
     std::string navigation;
+    std::string rig;
     CameraNumbers camera;
     BaselineRunOptions baseline;
     bool strict = false;
@@ -35,6 +36,7 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
     options.baseline.baseline = static_cast<Baseline>(name - kBaselineNames.begin());
     const std::filesystem::path& folder = options.baseline.run.folder;
     Survey survey{.files = image_files(options.images, folder), .camera = options.camera};
+    survey.camera = camera_of(survey.camera, survey.files, options.rig);
     if (needs_altitude(options.baseline.baseline) && !options.navigation.empty()) {
         survey.navigation = read_navigation_csv(options.navigation, Sled{});
     }
@@ -51,6 +53,7 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
                    options.name,
                    run.kept > 0 ? fmt::format("{} kept as they were, ", run.kept) : "",
                    run.skipped.size());
+        print_camera(survey.camera);
     }
     return run.skipped.empty() ? kDone : kAnswerIsNo;
 }
@@ -97,6 +100,7 @@ Action configure_baseline(CLI::App& app) {
                    "Altitude of each image, for binned-polynomial; as for observe")
         ->type_name("FILE");
     add_baseline_options(app, options->baseline.settings);
+    add_rig_of_camera(app, options->rig);
     add_camera_options(app, options->camera);
     add_white_level_option(app, options->camera);
     add_format_options(app, options->baseline.run.format);

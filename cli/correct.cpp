@@ -10,6 +10,7 @@
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
+#include "survey/camera_of_files.h"
 #include "survey/correction_run.h"
 #include "survey/navigation_csv.h"
 
@@ -36,18 +37,34 @@ struct CorrectCommandOptions {
     bool json = false;
 };
 
-void print_report(const CorrectionReport& report, const std::filesystem::path& folder) {
+void print_scale(const LightAt& light) {
+    if (!light.rig_size) return;
+    fmt::print("  rig of {} x {} pixels scaled to {} x {}\n",
+               light.rig_size->width_px,
+               light.rig_size->height_px,
+               light.size.width_px,
+               light.size.height_px);
+}
+
+// One number where all channels have it, as of a mono camera.
+std::string gain_words(const PerChannel& gain) {
+    if (gain[0] == gain[1] && gain[1] == gain[2]) return fmt::format("{:.6g}", gain[0]);
+    return fmt::format("{:.6g} (R), {:.6g} (G), {:.6g} (B)", gain[0], gain[1], gain[2]);
+}
+
+void print_report(const CorrectionReport& report,
+                  const Survey& survey,
+                  const std::filesystem::path& folder) {
     fmt::print("{} corrected in {:.1f} s, {} kept as they were, {} skipped\n",
                counted(report.run->corrected, "image"),
                report.seconds,
                report.run->kept,
                report.run->skipped.size());
-    const PerChannel& gain = report.gain.gain;
+    print_camera(survey.camera);
+    print_scale(survey.light);
     const std::size_t from = report.gain.images.size();
-    fmt::print("  gain {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
-               gain[0],
-               gain[1],
-               gain[2],
+    fmt::print("  gain {}{}\n",
+               gain_words(report.gain.gain),
                from > 0 ? ", taken from " + counted(from, "image") : "");
     print_doubts(*report.run);
     if (!report.not_checked.empty()) fmt::print("  not checked: {}\n", report.not_checked);
@@ -82,26 +99,32 @@ Survey survey_of(const CorrectCommandOptions& options) {
     Survey survey{.files = image_files(options.images, options.correction.run.folder),
                   .camera = options.camera};
     if (!options.map.empty()) {
+        survey.camera = camera_of(survey.camera, survey.files, nullptr);
         survey.light = light_of_map(options.map);
         return survey;
     }
-    const Rig rig = read_rig(options.rig);
+    Rig rig = read_rig(options.rig);
+    survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
+    const std::optional<PlaneSize> images = usual_size(survey.files, survey.camera);
+    const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
     survey.navigation = read_navigation_csv(options.nav, rig.sled);
     if (!altitudes_m.empty()) survey.navigation->limit_altitude(altitudes_m[0], altitudes_m[1]);
     survey.light =
         naming(options.rig, [&] { return light_of_rig(rig, *survey.navigation, survey.files); });
+    survey.light.rig_size = own;
     return survey;
 }
 
 ExitStatus correct(const CorrectCommandOptions& options) {
     keep_memory();
     set_exr_threads(0);  // the images themselves are spread over the threads
+    const Survey survey = survey_of(options);
     const CorrectionReport report =
-        correct_survey(survey_of(options), options.correction, terminal_watch(options.strict));
+        correct_survey(survey, options.correction, terminal_watch(options.strict));
     if (options.json) {
         fmt::print("{}", json_text(to_json(report)));
     } else {
-        print_report(report, options.correction.run.folder);
+        print_report(report, survey, options.correction.run.folder);
     }
     return report.run->skipped.empty() ? kDone : kAnswerIsNo;
 }

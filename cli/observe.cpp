@@ -23,6 +23,7 @@ namespace {
 struct ObserveCommandOptions {
     std::vector<std::string> images;
     std::string navigation;
+    std::string rig;
     std::string output;
     CameraNumbers camera;
     ObservationOptions observation;
@@ -53,16 +54,20 @@ void print_observation(const Observation& observation, const std::string& map_fi
 }
 
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
-    const Survey survey{.files = image_files(options.images, options.output),
-                        .navigation = read_navigation_csv(options.navigation, Sled{}),
-                        .camera = options.camera};
+    Survey survey{.files = image_files(options.images, options.output),
+                  .navigation = read_navigation_csv(options.navigation, Sled{}),
+                  .camera = options.camera};
+    survey.camera = camera_of(survey.camera, survey.files, options.rig);
     const Observation observation =
         observe(survey, options.observation, terminal_watch(options.strict));
     write_observation(options.output, observation);
     if (options.json) {
-        fmt::print("{}", json_text(to_json(observation, options.output)));
+        auto json = to_json(observation, options.output);
+        json["camera"] = to_json(survey.camera);
+        fmt::print("{}", json_text(json));
     } else {
         print_observation(observation, options.output);
+        print_camera(survey.camera);
     }
     return observation.skipped.empty() ? kDone : kAnswerIsNo;
 }
@@ -107,6 +112,7 @@ Action configure_observe(CLI::App& app) {
         ->check(not_negative())
         ->capture_default_str();
     add_average_options(app, options->observation);
+    add_rig_of_camera(app, options->rig);
     add_camera_options(app, options->camera);
     app.add_option("--memory",
                    options->observation.memory_mb,

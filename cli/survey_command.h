@@ -3,6 +3,7 @@
 // What the commands on surveys have in common: options, and what the terminal is told meanwhile.
 #pragma once
 
+#include "survey/camera_numbers.h"
 #include "survey/image_run.h"
 #include "survey/run_watch.h"
 #include "survey/survey_image.h"
@@ -15,9 +16,25 @@
 namespace aphotic::cli {
 
 void add_images(CLI::App& app, std::vector<std::string>& images);
-void add_camera_options(CLI::App& app, CameraNumbers& camera);  // --bayer and --black-level
+// --bayer, --half, --crop, --black-level, --exposure
+void add_camera_options(CLI::App& app, CameraNumbers& camera);
 void add_white_level_option(CLI::App& app, CameraNumbers& camera);
 void add_format_options(CLI::App& app, ResultFormat& format);  // --mask, --format, --compression
+// --rig, where the rig tells of its camera alone.
+void add_rig_of_camera(CLI::App& app, std::string& rig);
+
+// What the options say, then what the rig's camera says, if there is one, then the files. An
+// InputError where these contradict each other, or have no such crop.
+[[nodiscard]] CameraNumbers camera_of(const CameraNumbers& said,
+                                      const std::vector<ImageFile>& files,
+                                      const Camera* rig);
+[[nodiscard]] CameraNumbers camera_of(const CameraNumbers& said,
+                                      const std::vector<ImageFile>& files,
+                                      const std::string& rig);  // empty: none
+
+// "camera: RGGB, black level 64, white level 4095"; nothing where there is nothing to say.
+void print_camera(const CameraNumbers& camera);
+
 void add_strict_option(CLI::App& app, bool& strict);
 
 // A line of progress, a warning of what looks wrong, or when strict an InputError, and each image

@@ -4,30 +4,9 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 
-#include <dlfcn.h>
+#include "image/any_image_part.h"
 
 namespace aphotic {
-namespace {
-
-template <typename Function>
-Function from_part(const char* name) {
-    // Through the program's own run path, else where it was installed; stays loaded, for the images
-    // hold on to it.
-    static void* const kPart = [] {
-        void* part = ::dlopen("aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
-        return part != nullptr
-                   ? part
-                   : ::dlopen(APHOTIC_PARTS "/aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
-    }();
-    if (kPart == nullptr) {
-        throw RunError("the image reader cannot be loaded: {}", ::dlerror());
-    }
-    const auto function = reinterpret_cast<Function>(::dlsym(kPart, name));
-    if (function == nullptr) throw RunError("aphotic_any_image.so is not of this version");
-    return function;
-}
-
-}  // namespace
 
 AnyImage open_any_image(const std::filesystem::path& file) {
     using Open = void (*)(const std::filesystem::path&, AnyImage&);
@@ -40,6 +19,7 @@ void write_any_image(const std::filesystem::path& file, const WrittenImage& imag
     using Write = void (*)(const std::filesystem::path&, const WrittenImage&);
     AtomicFile destination(file);
     from_part<Write>("aphotic_write_any_image")(destination.temporary(), image);
+    if (image.tags) add_image_tags(destination.temporary(), *image.tags);
     destination.commit();
 }
 

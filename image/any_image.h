@@ -7,6 +7,8 @@
 // part of the command by itself, aphotic_any_image.so, loads it when such an image is asked for.
 #pragma once
 
+#include "image/image_tags.h"
+
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -37,7 +39,8 @@ struct AnyImage {
 // Planes as an image, in the format that the file's extension names, whole or not there. Integers
 // are 0 to 1 over their range, rounded and clipped. What cannot be written is a RunError.
 enum class SampleType { Bits8, Bits16 };
-// All of them lossless: deflate at its fastest level and at the level that most programs take.
+// All of them lossless, but for JPEG: deflate at its fastest level and at the level that most
+// programs take.
 enum class Compression { None, Fast, Small };
 struct WrittenImage {
     int width_px = 0;
@@ -48,6 +51,8 @@ struct WrittenImage {
     Compression compression = Compression::Fast;
     std::string description{};
     std::string date_time{};  // empty: not known. Never now: the same image is the same file
+    SharedTags tags{};        // of the file that it was made of; of TIFF, PNG and JPEG
+    int jpeg_quality = 95;    // 1 to 100; colours are kept at every pixel
 };
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image);
 

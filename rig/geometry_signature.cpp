@@ -51,8 +51,16 @@ void add_sled(const Sled& sled, Signature& all) {
 }
 
 void add_camera(const Camera& camera, const Water& water, Signature& all) {
-    const auto& [width, height, pitch, focal_length, range, sensor, port, lens, vignetting] =
-        camera;
+    const auto& [width,
+                 height,
+                 pitch,
+                 focal_length,
+                 range,
+                 sensor,
+                 port,
+                 lens,
+                 vignetting,
+                 readout] = camera;
     all.merge(lens_signature(camera));
     if (vignetting) all["camera.vignetting"] = vignetting_signature(*vignetting);
     if (!port) return;

@@ -37,6 +37,16 @@ struct Sled {
     double roll_rad = 0.0;
 };
 
+// What the camera's files hold, as it was set for the survey; none: not told.
+struct Readout {
+    std::string bayer{};  // "RGGB", "BGGR", "GRBG", "GBRG" or "mono"
+    std::optional<double> black_level_dn{};
+    std::optional<double> white_level_dn{};
+    std::optional<double> exposure_ms{};
+    std::optional<double> iso{};
+    std::optional<double> f_number{};
+};
+
 struct Camera {
     int width_px = 0;
     int height_px = 0;
@@ -48,6 +58,7 @@ struct Camera {
     // None: a pinhole. Else the pitch is that of the columns, and the focal length fx of these.
     std::optional<LensModel> lens{};
     std::optional<Vignetting> vignetting{};
+    Readout readout{};
 };
 
 struct Seafloor {

@@ -65,6 +65,10 @@ constexpr Bounds kPixelPitchUm{0.01, 10000.0};
 constexpr Bounds kFocalLengthMm{0.01, 100000.0};
 constexpr Bounds kFovDeg{0.01, 175.0};
 constexpr Bounds kVignettingTerm{-1e3, 1e3};
+constexpr Bounds kLevelDn{0.0, 1e9};
+constexpr Bounds kExposureMs{1e-4, 1e6};
+constexpr Bounds kIso{0.1, 1e7};
+constexpr Bounds kFNumber{0.1, 1000.0};
 constexpr Bounds kWavelengthNm{100.0, 10000.0};
 constexpr Bounds kPortDistanceMm{1.0, 10000.0};
 constexpr Bounds kPortThicknessMm{1.0, 1000.0};
@@ -365,6 +369,7 @@ class RigReader {
                           Camera& camera);
     TabulatedVignetting read_vignetting_table(Section& section);
     void read_vignetting(Section& camera_section, Camera& camera);
+    static Readout read_readout(Section& camera, bool is_mono);
     Camera read_camera(Section section);
     Sensor read_response(Section& camera);
     Sensor read_response_table(Section response);
@@ -522,10 +527,13 @@ Sensor RigReader::read_response_table(Section response) {
         response.refuse_unknown_keys();
         return {std::move(channels), energy ? ResponseKind::Energy : ResponseKind::Quantum};
     }
-    std::vector<Spectrum> filters = curves(response, "filters", CurveRole::FilterTransmittance);
+    const bool is_mono = response.has("quantum_efficiency") && !response.has("filters");
+    std::vector<Spectrum> filters;
+    if (!is_mono) filters = curves(response, "filters", CurveRole::FilterTransmittance);
     std::vector<Spectrum> efficiency =
         curves(response, "quantum_efficiency", CurveRole::QuantumEfficiency);
     response.refuse_unknown_keys();
+    if (is_mono) return Sensor::mono(efficiency.front());
     return Sensor::filtered(std::move(filters), std::move(efficiency.front()));
 }
 
@@ -533,7 +541,8 @@ Sensor RigReader::read_response(Section& camera) {
     const std::string allowed =
         "a built-in response's name, { table = \"rgb.csv\", kind = \"energy\" } (or \"quantum\"), "
         "or "
-        "{ filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }";
+        "{ filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }, of a mono camera without "
+        "filters";
     if (camera.required("response", allowed).is_table()) {
         return read_response_table(camera.section("response", allowed));
     }
@@ -635,6 +644,29 @@ void RigReader::read_vignetting(Section& camera_section, Camera& camera) {
     });
 }
 
+// What no render needs, and surveys do.
+Readout RigReader::read_readout(Section& camera, bool is_mono) {
+    const auto optional = [&](std::string_view key, Bounds bounds) {
+        return camera.has(key) ? std::optional(camera.number(key, bounds)) : std::nullopt;
+    };
+    Readout readout{.black_level_dn = optional("black_level_dn", kLevelDn),
+                    .white_level_dn = optional("white_level_dn", kLevelDn),
+                    .exposure_ms = optional("exposure_ms", kExposureMs),
+                    .iso = optional("iso", kIso),
+                    .f_number = optional("f_number", kFNumber)};
+    if (readout.white_level_dn && *readout.white_level_dn <= readout.black_level_dn.value_or(0.0))
+        camera.found_but("white_level_dn", "a number over black_level_dn");
+    if (is_mono) readout.bayer = "mono";
+    if (!camera.has("bayer")) return readout;
+    readout.bayer = camera.word("bayer", {"RGGB", "BGGR", "GRBG", "GBRG", "mono"});
+    if ((readout.bayer == "mono") != is_mono) {
+        camera.found_but("bayer",
+                         is_mono ? "\"mono\", as the response is of one channel"
+                                 : "a pattern of colours, as the response is of three channels");
+    }
+    return readout;
+}
+
 Camera RigReader::read_camera(Section section) {
     section.refuse_keys_but({"resolution",
                              "pixel_pitch_um",
@@ -644,7 +676,13 @@ Camera RigReader::read_camera(Section section) {
                              "vignetting",
                              "range_nm",
                              "response",
-                             "port"});
+                             "port",
+                             "black_level_dn",
+                             "white_level_dn",
+                             "bayer",
+                             "exposure_ms",
+                             "iso",
+                             "f_number"});
     const std::optional<CameraCalibration> calibration = read_calibration(section);
     const auto [width_px, height_px] = read_size(section, calibration);
     Sensor sensor = read_response(section);
@@ -662,6 +700,7 @@ Camera RigReader::read_camera(Section section) {
                   .port = std::nullopt};
     read_lens(section, calibration, camera);
     if (section.has("vignetting")) read_vignetting(section, camera);
+    camera.readout = read_readout(section, camera.sensor.is_mono());
     if (calibration && calibration->port) {
         camera.port = read_calibrated_port(
             section.section("port", "a table with the glass of the calibration's port"),

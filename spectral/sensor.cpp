@@ -35,6 +35,12 @@ Sensor Sensor::filtered(std::vector<Spectrum> filters, Spectrum quantum_efficien
     return sensor;
 }
 
+Sensor Sensor::mono(const Spectrum& quantum_efficiency) {
+    Sensor sensor(std::vector(kChannels, quantum_efficiency), ResponseKind::Quantum);
+    sensor.is_mono_ = true;
+    return sensor;
+}
+
 double Sensor::response(int channel, double lambda_nm) const {
     double response = responses_.at(static_cast<std::size_t>(channel)).at(lambda_nm);
     if (quantum_efficiency_) response *= quantum_efficiency_->at(lambda_nm);

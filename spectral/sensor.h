@@ -7,6 +7,7 @@
 //   energy response    Q_c = q_c
 //   quantum response   Q_c = q_c lambda / (h c)            photons per joule
 //   filter and sensor  Q_c = f_c eta lambda / (h c)        electrons per joule
+//   mono               Q_c = eta lambda / (h c)            the same of all three channels
 //
 // S_c     signal of channel c
 // L       spectral radiance
@@ -40,6 +41,10 @@ class Sensor {
     [[nodiscard]] static Sensor filtered(std::vector<Spectrum> filters,
                                          Spectrum quantum_efficiency);
 
+    // Without filters: red, green and blue are one.
+    [[nodiscard]] static Sensor mono(const Spectrum& quantum_efficiency);
+    [[nodiscard]] bool is_mono() const { return is_mono_; }
+
     // Q_c. Throws InputError outside range().
     [[nodiscard]] double response(int channel, double lambda_nm) const;
 
@@ -53,6 +58,7 @@ class Sensor {
     std::vector<Spectrum> responses_;
     std::optional<Spectrum> quantum_efficiency_;
     ResponseKind kind_;
+    bool is_mono_ = false;
 };
 
 // A built-in camera; its table says which kind it is.

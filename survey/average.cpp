@@ -94,6 +94,13 @@ Estimate estimate_of(std::span<float> samples, Average average, double trim) {
     return trimmed_mean_of(samples, average == Average::Trimmed ? trim : 0.0);
 }
 
+std::vector<float> in_all_channels(const std::vector<float>& plane) {
+    std::vector<float> planes;
+    planes.reserve(plane.size() * kChannels);
+    for (int c = 0; c < kChannels; ++c) planes.insert(planes.end(), plane.begin(), plane.end());
+    return planes;
+}
+
 // A few places at a time, so that each image is read by whole cache lines.
 constexpr std::size_t kPlaces = 64;
 
@@ -162,6 +169,7 @@ std::vector<float> by_channel(const std::vector<float>& samples,
                               float elsewhere) {
     if (like.mosaic == Mosaic::None) return samples;
     const std::size_t pixels = like.pixels();
+    if (like.mosaic == Mosaic::Mono) return in_all_channels(samples);
     std::vector<float> planes(pixels * kChannels, elsewhere);
     for (std::size_t i = 0; i < pixels; ++i) {
         const auto width = static_cast<std::size_t>(like.width_px);

@@ -63,7 +63,8 @@ class RunningMean {
                                   int threads);
 
 // Planes R, G and B of what was averaged of images like this one: of a mosaic each sample in the
-// plane of its site's channel, and `elsewhere` at the sites of the others.
+// plane of its site's channel, and `elsewhere` at the sites of the others; of a mono camera all
+// three alike.
 [[nodiscard]] std::vector<float> by_channel(const std::vector<float>& samples,
                                             const RawImage& like,
                                             float elsewhere);

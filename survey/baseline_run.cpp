@@ -31,9 +31,6 @@ Json settings_of(const Survey& survey, const BaselineRunOptions& options) {
     const BaselineOptions& baseline = options.settings;
     const ResultFormat& format = options.run.format;
     Json json{{"aphotic", APHOTIC_VERSION},
-              {"bayer", mosaic_name(survey.camera.mosaic)},
-              {"black_level", survey.camera.black_level},
-              {"white_level", nullptr},
               {"sigma", baseline.sigma},
               {"low", baseline.low},
               {"high", baseline.high},
@@ -44,7 +41,7 @@ Json settings_of(const Survey& survey, const BaselineRunOptions& options) {
               {"mask", format.mask},
               {"format", format.format},
               {"compression", name_of(format.compression)}};
-    if (survey.camera.white_level) json["white_level"] = *survey.camera.white_level;
+    json.update(to_json(survey.camera));
     return json;
 }
 
@@ -106,7 +103,7 @@ class BaselineWork {
             [&](std::size_t i) { return read_light(survey_.files[i]).raw; },
             [&](std::size_t i, const RawImage& image) {
                 if (first.width_px == 0) first = image;
-                require_size(image, first.width_px, first.height_px, "as the first image");
+                require_like(image, first, "as the first image");
                 corrector_.learn(image, altitude_m(survey_.files[i]));
                 watch_.progress("learning",
                                 static_cast<double>(i + 1) / static_cast<double>(count));
@@ -123,7 +120,7 @@ class BaselineWork {
         const RawImage& light = taken.raw;
         CorrectedImage result{.image = corrector_.corrected(light, altitude_m(file)),
                               .doubts = doubts_of(taken)};
-        if (light.mosaic != Mosaic::None) result = demosaiced(result);
+        if (is_bayer(light.mosaic)) result = demosaiced(result);
         if (options_.run.format.clips()) {
             const float white = white_of(taken);
             for (float& sample : result.image.samples) sample /= white;
@@ -135,16 +132,19 @@ class BaselineWork {
                           taken,
                           options_.run.format,
                           {{"aphotic:baseline", std::string(name_of(options_.baseline))}});
+        if (survey_.camera.exposure_by != ExposureBy::Nothing) counts[kExposure] = taken.exposure;
         counts[kPixels] = static_cast<double>(light.pixels());
         return counts;
     }
 
-    // Over the black level.
+    // Over the black level, at the reference exposure: what is saturated at longer ones is not
+    // white.
     [[nodiscard]] static float white_of(const SurveyImage& taken) {
-        const float white = taken.levels.white - taken.levels.black;
+        const float white = taken.levels.white * static_cast<float>(taken.exposure);
         if (std::isfinite(white) && white > 0.0F) return white;
-        throw InputError("--white-level: found {}; allowed: over the black level, or --format exr",
-                         taken.levels.white);
+        throw InputError(
+            "--white-level: found {} over the black level; allowed: over 0, or --format exr",
+            white);
     }
 
     [[nodiscard]] static std::vector<std::uint8_t> doubts_of(const SurveyImage& taken) {
@@ -152,7 +152,7 @@ class BaselineWork {
         std::vector<std::uint8_t> doubts(pixels);
         for (std::size_t i = 0; i < taken.raw.samples.size(); ++i) {
             const float sample = taken.raw.samples[i];
-            const bool is_saturated = sample >= taken.levels.white - taken.levels.black;
+            const bool is_saturated = sample >= taken.levels.white;
             doubts[i % pixels] |= static_cast<std::uint8_t>((is_saturated ? kSaturated : 0) |
                                                             (sample <= 0.0F ? kBlack : 0));
         }

@@ -175,6 +175,7 @@ PerChannel middle_quotient(const RawImage& raw,
         std::ranges::nth_element(quotients[c], middle);
         medians[c] = *middle;
     }
+    if (raw.mosaic == Mosaic::Mono) medians.fill(medians[0]);
     return medians;
 }
 

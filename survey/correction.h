@@ -87,7 +87,8 @@ struct CorrectedImage {
 [[nodiscard]] CorrectedImage demosaiced(const CorrectedImage& corrected);
 
 // The median of (raw - black) / map_c over the pixels that are neither saturated nor black, nor
-// under the share of the map's brightest. NaN where a channel has none.
+// under the share of the map's brightest. NaN where a channel has none. Of a mono camera, whose map
+// has R, G and B alike, all three are one.
 [[nodiscard]] PerChannel middle_quotient(const RawImage& raw,
                                          const Lightmap& map,
                                          const SensorLevels& levels,

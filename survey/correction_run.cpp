@@ -32,10 +32,7 @@ Json settings_of(const Survey& survey, const CorrectionOptions& options) {
     const ResultFormat& format = options.run.format;
     Json json{{"aphotic", APHOTIC_VERSION},
               {survey.navigation ? "rig_sha256" : "map_sha256", survey.light.digest},
-              {"bayer", mosaic_name(survey.camera.mosaic)},
               {"keep_mosaic", options.keep_mosaic},
-              {"black_level", survey.camera.black_level},
-              {"white_level", nullptr},
               {"gain", options.gain},
               {"gain_images", nullptr},
               {"middle", wanted_middle(survey, options)},
@@ -49,7 +46,10 @@ Json settings_of(const Survey& survey, const CorrectionOptions& options) {
               {"compression", name_of(format.compression)}};
     if (options.gain.empty()) json["gain_images"] = options.gain_images;
     if (options.read_noise) json["read_noise"] = *options.read_noise;
-    if (survey.camera.white_level) json["white_level"] = *survey.camera.white_level;
+    json.update(to_json(survey.camera));
+    json["rig_scale"] = nullptr;
+    if (const auto& own = survey.light.rig_size)
+        json["rig_scale"] = static_cast<double>(survey.light.size.width_px) / own->width_px;
     return json;
 }
 
@@ -77,7 +77,7 @@ void look_first(const Survey& survey,
                                      .least_light = options.limit.share,
                                      .jobs = options.run.jobs},
                                     watch);
-    report.looks_wrong = suspicions(look.images, survey.camera.mosaic);
+    report.looks_wrong = suspicions(look.images, mosaic_of(look.images));
     report.not_checked = not_checked(look.images);
     watch.looks_wrong(report.looks_wrong);
     report.gain = known ? *known : measured_gain(look, wanted_middle(survey, options));
@@ -89,19 +89,25 @@ Counts correct_image(const Survey& survey,
                      const ImageFile& file) {
     const Sled sled = survey.sled_of(file);
     SurveyImage taken = read_survey_image(file.source, survey.camera);
+    require_light_for(taken.raw, survey.light);
     NoiseLimit limit = options.limit;
     limit.read_noise = options.read_noise.value_or(taken.rounding);
     // Of a gain by itself nobody knows how much light the survey's middle has.
     if (!options.gain.empty() && !options.middle) limit = {.share = options.limit.share};
+    PerChannel at_exposure = gain.gain;
+    for (double& channel : at_exposure) channel /= taken.exposure;
     const Correction correction{
-        .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = limit};
+        .gain = at_exposure, .middle = gain.middle, .levels = taken.levels, .limit = limit};
     CorrectedImage result = corrected(std::move(taken.raw), survey.light.map(sled), correction);
-    if (result.image.mosaic != Mosaic::None && !options.keep_mosaic) result = demosaiced(result);
+    if (is_bayer(result.image.mosaic) && !options.keep_mosaic) result = demosaiced(result);
     const std::vector<std::uint8_t> edges = survey.light.edges(sled, options.edge_px);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         result.doubts[i] |= edges[i] != 0 ? kEdge : std::uint8_t{0};
     }
-    return write_results(options.run.folder, file, std::move(result), taken, options.run.format);
+    Counts counts =
+        write_results(options.run.folder, file, std::move(result), taken, options.run.format);
+    if (survey.camera.exposure_by != ExposureBy::Nothing) counts[kExposure] = taken.exposure;
+    return counts;
 }
 
 ImageWork work_of(const Survey& survey,
@@ -144,6 +150,10 @@ CorrectionReport correct_survey(const Survey& survey,
     const auto start = std::chrono::steady_clock::now();
     if (options.gain.size() == 2) {
         throw InputError("--gain: found 2 numbers; allowed: 1, or 3 for R, G and B");
+    }
+    if (options.gain.size() > 1 && survey.camera.mosaic == Mosaic::Mono) {
+        throw InputError("--gain: found {} numbers; allowed: 1, of a mono camera",
+                         options.gain.size());
     }
     const ResultFolder folder(options.run, survey.files);
     const fs::path notes = options.run.folder / kCorrectionNotes;

@@ -3,10 +3,12 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "image/image_size.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -14,6 +16,18 @@
 
 namespace aphotic {
 namespace {
+
+// Named by the pattern of the whole file, as --bayer names it.
+std::array<double, 4> sites_of_file(const SurveyImage& taken) {
+    const std::array<double, 4> medians = site_medians(taken.raw, taken.levels.black);
+    std::array<double, 4> of_file{};
+    for (int site = 0; site < 4; ++site) {
+        const int row = (site / 2 + taken.crop.top_px) % 2;
+        const int column = (site % 2 + taken.crop.left_px) % 2;
+        of_file[size_of(2 * row + column)] = medians[size_of(site)];
+    }
+    return of_file;
+}
 
 ImageLook look_at_image(const ImageFile& file, const Survey& survey, double least_light) {
     ImageLook look;
@@ -23,13 +37,14 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     const SurveyImage taken = read_survey_image(file.source, survey.camera);
     look.top = top_of(taken.raw, taken.rounding > 0.0);
     look.white = taken.levels.white;
-    if (taken.raw.mosaic != Mosaic::None) look.sites = site_medians(taken.raw, taken.levels.black);
+    look.mosaic = shifted(taken.raw.mosaic, taken.crop.left_px, taken.crop.top_px);
+    if (is_bayer(look.mosaic)) look.sites = sites_of_file(taken);
     if (!has_light) return look;
-    require_size(
-        taken.raw, survey.light.size.width_px, survey.light.size.height_px, "as the map has");
+    require_light_for(taken.raw, survey.light);
     const Lightmap map = survey.light.map(sled);
     if (survey.navigation) look.altitude_m = sled.altitude_m;
     look.quotient = middle_quotient(taken.raw, map, taken.levels, least_light);
+    for (double& quotient : look.quotient) quotient /= taken.exposure;
     look.map_mean = means_of(map);
     if (const auto other =
             survey.light.map_as_radians ? survey.light.map_as_radians(sled) : std::nullopt) {
@@ -95,7 +110,7 @@ std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
     constexpr std::size_t kImages = 8;
     const SurveyLook look =
         look_at({.files = files, .camera = camera}, {.most_images = kImages, .jobs = jobs}, watch);
-    std::vector<Suspicion> found = suspicions(look.images, camera.mosaic);
+    std::vector<Suspicion> found = suspicions(look.images, mosaic_of(look.images));
     watch.looks_wrong(found);
     return found;
 }

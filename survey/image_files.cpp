@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/words.h"
+#include "image/raw_file.h"
 
 #include <algorithm>
 #include <array>
@@ -107,8 +108,9 @@ void require_file(const fs::path& image) {
 bool is_image_name(const fs::path& file) {
     static constexpr std::array<std::string_view, 6> kExtensions{
         ".tif", ".tiff", ".png", ".exr", ".jpg", ".jpeg"};
-    return std::ranges::find(kExtensions, lower_case(file.extension().string())) !=
-           kExtensions.end();
+    return is_raw_name(file) ||
+           std::ranges::find(kExtensions, lower_case(file.extension().string())) !=
+               kExtensions.end();
 }
 
 fs::path without_extension(const fs::path& file) {

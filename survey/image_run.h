@@ -72,6 +72,9 @@ struct RunOutcome {
 };
 [[nodiscard]] nlohmann::ordered_json to_json(const RunOutcome& outcome);
 
+// Of one image, noted with what was counted in it: times that of the reference.
+inline constexpr const char* kExposure = "relative_exposure";
+
 // pixels: the sum of what was counted under kPixels.
 inline constexpr const char* kPixels = "pixels";
 [[nodiscard]] RunOutcome run_images(const std::vector<ImageFile>& files,

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <span>
 
 namespace aphotic {
 namespace {
@@ -94,11 +95,20 @@ LightAt light_of_rig(const Rig& rig,
         .edges = ConeEdges(rig), .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), {})});
     return {.digest = rig.digest,
             .size = {rig.camera.width_px, rig.camera.height_px},
+            .is_grey = rig.camera.sensor.is_mono(),
             .map = [light](const Sled& sled) { return light->maker.map(sled); },
             .edges = [light](const Sled& sled,
                              int within_px) { return light->edges.mask(sled, within_px); },
             .map_as_radians = map_as_radians(rig, navigation, sleds),
             .floor_colour = floor_colour(rig)};
+}
+
+void require_light_for(const RawImage& raw, const LightAt& light) {
+    require_size(raw, light.size.width_px, light.size.height_px, "as the map has");
+    if (raw.mosaic != Mosaic::Mono || light.is_grey) return;
+    throw InputError(
+        "found the image of a mono camera, and a map whose R, G and B differ; allowed: the map of "
+        "a mono camera");
 }
 
 LightAt light_of_map(const std::filesystem::path& map_file) {
@@ -119,8 +129,11 @@ LightAt light_of_map(const std::filesystem::path& map_file) {
         if (!std::isfinite(sample) || sample < 0.0F) sample = 0.0F;
     }
     const auto pixels = map.samples.size() / kNames.size();
+    const std::span<const float> all(map.samples);
+    const bool is_grey = std::ranges::equal(all.first(2 * pixels), all.last(2 * pixels));
     return {.digest = sha256_of_file(map_file),
             .size = {map.width_px, map.height_px},
+            .is_grey = is_grey,
             .map = [map](const Sled&) { return map; },
             .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); }};
 }

@@ -23,6 +23,8 @@ namespace aphotic {
 struct LightAt {
     std::string digest;  // of all that the maps depend on, the pose aside
     PlaneSize size;
+    std::optional<PlaneSize> rig_size{};  // where the rig has another than its images, scaled
+    bool is_grey = false;                 // the maps have R, G and B alike: of a mono camera
     // These are called from several threads.
     std::function<Lightmap(const Sled& sled)> map;
     std::function<std::vector<std::uint8_t>(const Sled& sled, int within_px)> edges;
@@ -36,6 +38,9 @@ struct LightAt {
 [[nodiscard]] LightAt light_of_rig(const Rig& rig,
                                    const Navigation& navigation,
                                    const std::vector<ImageFile>& files);
+
+// An InputError unless its maps are for such an image: of its size, and grey for a mono camera.
+void require_light_for(const RawImage& raw, const LightAt& light);
 
 // One map, whatever the pose: channels R, G and B of an EXR. What is not finite in it, as where
 // nothing was observed, is dark.

@@ -79,7 +79,7 @@ struct Pass {
                             .height_px = image.height_px,
                             .mosaic = image.mosaic};
                 }
-                require_size(image, like.width_px, like.height_px, "as the first image");
+                require_like(image, like, "as the first image");
                 use(image);
                 const auto done = static_cast<double>(i + 1) / static_cast<double>(images.size());
                 watch.progress("averaging", from + (to - from) * done);
@@ -202,7 +202,7 @@ double degrees(double radians) {
 std::vector<float> planes_of(const Observed& observed, const RawImage& like, bool is_demosaiced) {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     std::vector<float> planes =
-        is_demosaiced && like.mosaic != Mosaic::None
+        is_demosaiced && is_bayer(like.mosaic)
             ? demosaiced(observed.average, like.width_px, like.height_px, like.mosaic)
             : by_channel(observed.average, like, kNone);
     append(planes, by_channel(observed.count, like, 0.0F));

@@ -16,11 +16,14 @@ struct MosaicSites {
     std::array<int, 4> channels;  // top left, top right, bottom left, bottom right
 };
 // In the order of Mosaic.
-constexpr std::array<MosaicSites, 5> kSitesOfMosaics{{{"none", {}},
+constexpr std::array<MosaicSites, 6> kSitesOfMosaics{{{"none", {}},
+                                                      {"mono", {}},
                                                       {"RGGB", {0, 1, 1, 2}},
                                                       {"BGGR", {2, 1, 1, 0}},
                                                       {"GRBG", {1, 0, 2, 1}},
                                                       {"GBRG", {1, 2, 0, 1}}}};
+
+constexpr std::array kMosaics{Mosaic::Mono, Mosaic::Rggb, Mosaic::Bggr, Mosaic::Grbg, Mosaic::Gbrg};
 
 const MosaicSites& sites_of(Mosaic mosaic) {
     return kSitesOfMosaics[static_cast<std::size_t>(mosaic)];
@@ -60,11 +63,19 @@ Neighbours neighbours_of(Mosaic mosaic, int column, int row, int channel, std::p
 }  // namespace
 
 std::optional<Mosaic> mosaic_named(std::string_view name) {
-    const auto is_same = [](char a, char b) { return (a & ~0x20) == b; };  // ASCII's upper case
-    for (const Mosaic mosaic : {Mosaic::Rggb, Mosaic::Bggr, Mosaic::Grbg, Mosaic::Gbrg}) {
+    const auto is_same = [](char a, char b) { return (a & ~0x20) == (b & ~0x20); };  // ASCII's case
+    for (const Mosaic mosaic : kMosaics) {
         if (std::ranges::equal(name, mosaic_name(mosaic), is_same)) return mosaic;
     }
     return std::nullopt;
+}
+
+Mosaic shifted(Mosaic mosaic, int columns, int rows) {
+    const auto begins_alike = [&](Mosaic other) {
+        return is_bayer(other) && channel_at(other, 0, 0) == channel_at(mosaic, columns, rows) &&
+               channel_at(other, 1, 0) == channel_at(mosaic, columns + 1, rows);
+    };
+    return is_bayer(mosaic) ? *std::ranges::find_if(kMosaics, begins_alike) : mosaic;
 }
 
 std::string_view mosaic_name(Mosaic mosaic) {
@@ -85,11 +96,20 @@ void require_size(const RawImage& image, int width_px, int height_px, std::strin
                      as);
 }
 
+void require_like(const RawImage& image, const RawImage& other, std::string_view as) {
+    require_size(image, other.width_px, other.height_px, as);
+    if (image.mosaic == other.mosaic) return;
+    throw InputError("found the pattern {}; allowed: {}, {}",
+                     mosaic_name(image.mosaic),
+                     mosaic_name(other.mosaic),
+                     as);
+}
+
 std::vector<float> demosaiced(std::span<const float> plane,
                               int width_px,
                               int height_px,
                               Mosaic mosaic) {
-    assert(width_px >= 2 && height_px >= 2 && mosaic != Mosaic::None);
+    assert(width_px >= 2 && height_px >= 2 && is_bayer(mosaic));
     constexpr float kQuarter = 0.25F;
     const std::vector<float> padded = with_mirrored_rim(plane, width_px, height_px);
     const std::ptrdiff_t stride = width_px + 2;

@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace aphotic {
 
@@ -59,6 +60,7 @@ void write_exr(const fs::path& file,
     attributes.emplace_back("aphotic:version", APHOTIC_VERSION);
     if (!source.description.empty()) attributes.emplace_back("comments", source.description);
     if (!source.date_time.empty()) attributes.emplace_back("capDate", source.date_time);
+    if (source.tags) std::ranges::copy(words_of(*source.tags), std::back_inserter(attributes));
     ExrWriter writer(file,
                      image.width_px,
                      image.height_px,
@@ -118,7 +120,8 @@ Counts write_results(const fs::path& folder,
                          .type = SampleType::Bits16,
                          .compression = format.compression,
                          .description = source.description,
-                         .date_time = source.date_time});
+                         .date_time = source.date_time,
+                         .tags = source.tags});
     }
     return doubts_in(result.doubts);
 }

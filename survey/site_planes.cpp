@@ -28,14 +28,14 @@ struct Sites {
 };
 
 Sites sites_of_plane(const RawImage& image, std::size_t plane) {
-    if (image.mosaic == Mosaic::None) return {.origin = plane * image.pixels()};
+    if (!is_bayer(image.mosaic)) return {.origin = plane * image.pixels()};
     return {.step = 2, .first_column = plane % 2, .first_row = plane / 2};
 }
 
 }  // namespace
 
 std::vector<SitePlane> site_planes(const RawImage& image) {
-    std::vector<SitePlane> planes(image.mosaic == Mosaic::None ? kChannels : 4);
+    std::vector<SitePlane> planes(is_bayer(image.mosaic) ? 4 : size_of(image.planes()));
     for (std::size_t p = 0; p < planes.size(); ++p) {
         const Sites sites = sites_of_plane(image, p);
         const auto count = [&](int pixels, std::size_t first) {

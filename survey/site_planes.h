@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A raw image as planes of one kind of site each, so that what works on planes works on mosaics
-// too: R, G and B of an image of colours; of a mosaic the four sites of its pattern, row by row,
+// too: R, G and B of an image of colours; the one plane of a mono
+// camera; of a mosaic the four sites of its pattern, row by row,
 // each every other pixel across and down. A mosaic of odd width or height has one more site of the
 // first.
 #pragma once

@@ -265,6 +265,10 @@ void check_attitude(std::span<const ImageLook> looks, std::vector<Suspicion>& fo
 
 }  // namespace
 
+Mosaic mosaic_of(std::span<const ImageLook> looks) {
+    return looks.empty() ? Mosaic::None : looks.front().mosaic;
+}
+
 TopNumber top_of(const RawImage& raw, bool is_whole_numbers) {
     TopNumber top{.samples = static_cast<double>(raw.samples.size())};
     for (const float sample : raw.samples) {
@@ -320,13 +324,13 @@ Likeness likeness(const RawImage& raw,
     };
     std::vector<Block> blocks(size_of(kAcross) * size_of(kDown));
     const std::size_t green = kGreenChannel * raw.pixels();
-    const bool is_mosaic = raw.mosaic != Mosaic::None;
+    const bool is_mosaic = is_bayer(raw.mosaic);
     for (int row = 0; row < raw.height_px; ++row) {
         for (int column = 0; column < raw.width_px; ++column) {
             const bool is_green = !is_mosaic || channel_at(raw.mosaic, column, row) ==
                                                     static_cast<int>(kGreenChannel);
             const std::size_t pixel = size_of(row) * size_of(raw.width_px) + size_of(column);
-            const float sample = raw.samples[is_mosaic ? pixel : green + pixel];
+            const float sample = raw.samples[raw.planes() == 1 ? pixel : green + pixel];
             if (!is_green || !(sample > levels.black && sample < levels.white)) continue;
             Block& block = blocks[size_of(row * kDown / raw.height_px) * size_of(kAcross) +
                                   size_of(column * kAcross / raw.width_px)];
@@ -350,7 +354,7 @@ Likeness likeness(const RawImage& raw,
 std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic) {
     std::vector<Suspicion> found;
     check_white(looks, found);
-    if (mosaic != Mosaic::None) check_greens(looks, mosaic, found);
+    if (is_bayer(mosaic)) check_greens(looks, mosaic, found);
     const std::vector<ImageLook> lit_looks = lit(looks);
     const std::size_t before = found.size();
     const bool has_line = has_altitudes(lit_looks) && !is_one_altitude(lit_looks);

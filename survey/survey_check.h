@@ -70,7 +70,8 @@ struct ImageLook {
     bool is_for_gain = false;  // the survey's gain is taken from it (gain.h)
     TopNumber top;
     float white = 0.0F;
-    std::optional<std::array<double, 4>> sites;
+    Mosaic mosaic = Mosaic::None;                // of the whole file, from its top left
+    std::optional<std::array<double, 4>> sites;  // of a Bayer mosaic, as its pattern names them
     // Of images with a map.
     std::optional<double> altitude_m;  // none: one map for all
     PerChannel quotient{};             // middle_quotient()
@@ -78,6 +79,9 @@ struct ImageLook {
     Likeness as_radians;  // of its map to that of the tilts as radians; 0: surely degrees, or alike
 };
 [[nodiscard]] PerChannel means_of(const Lightmap& map);
+
+// That of the first; None of no image.
+[[nodiscard]] Mosaic mosaic_of(std::span<const ImageLook> looks);
 
 // Whether tilts [degrees] are such as radians would be.
 inline constexpr double kSmall_deg = 0.6;

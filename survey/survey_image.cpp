@@ -3,13 +3,15 @@
 
 #include "base/error.h"
 #include "image/any_image.h"
+#include "image/image_size.h"
+#include "image/raw_file.h"
 #include "survey/image_files.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
+#include <span>
 #include <utility>
 
 namespace aphotic {
@@ -26,7 +28,9 @@ namespace {
 // Where those that are wanted stand among the file's.
 std::vector<std::size_t> places_of(const AnyImage& image, Mosaic mosaic) {
     if (mosaic != Mosaic::None) {
-        if (image.channels.size() != 1) refuse_channels(image, "one, with --bayer");
+        if (image.channels.size() != 1) {
+            refuse_channels(image, fmt::format("one, with --bayer {}", mosaic_name(mosaic)));
+        }
         return {0};
     }
     if (image.channels.size() == 1) {
@@ -45,49 +49,95 @@ std::vector<std::size_t> places_of(const AnyImage& image, Mosaic mosaic) {
     return places;
 }
 
-void keep_planes(std::vector<float>& planes,
-                 std::size_t pixels,
-                 const std::vector<std::size_t>& places) {
-    std::vector<float> kept;
-    kept.reserve(places.size() * pixels);
-    for (const std::size_t place : places) {
-        const auto first = planes.begin() + static_cast<std::ptrdiff_t>(place * pixels);
-        kept.insert(kept.end(), first, first + static_cast<std::ptrdiff_t>(pixels));
+// The places' planes, and of each what is in the crop.
+std::vector<float> kept_of(std::vector<float> planes,
+                           PlaneSize size,
+                           const std::vector<std::size_t>& places,
+                           const Crop& crop) {
+    const Crop whole{.width_px = size.width_px, .height_px = size.height_px};
+    const std::size_t width = size_of(size.width_px);
+    const std::size_t pixels = width * size_of(size.height_px);
+    if (crop == whole && planes.size() == places.size() * pixels &&
+        std::ranges::is_sorted(places)) {
+        return planes;
     }
-    planes = std::move(kept);
+    std::vector<float> kept;
+    kept.reserve(places.size() * size_of(crop.width_px) * size_of(crop.height_px));
+    for (const std::size_t place : places) {
+        for (int row = 0; row < crop.height_px; ++row) {
+            const auto first = std::span(planes).subspan(
+                place * pixels + size_of(crop.top_px + row) * width + size_of(crop.left_px),
+                size_of(crop.width_px));
+            kept.insert(kept.end(), first.begin(), first.end());
+        }
+    }
+    return kept;
 }
 
-SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) {
-    const std::vector<std::size_t> places = places_of(image, camera.mosaic);
-    if (camera.mosaic != Mosaic::None && std::min(image.width_px, image.height_px) < 2) {
+// Without its samples; the mosaic is that of the whole file.
+SurveyImage cropped_image(const CameraNumbers& camera, PlaneSize file, Mosaic mosaic) {
+    const Crop crop = crop_of(camera, file);
+    if (is_bayer(mosaic) && std::min(crop.width_px, crop.height_px) < 2) {
         throw InputError("found {} x {} pixels; allowed: 2 or more each way, of a mosaic",
-                         image.width_px,
-                         image.height_px);
+                         crop.width_px,
+                         crop.height_px);
     }
-    const bool is_whole_numbers = image.full_scale > 0.0;
-    const double scale = is_whole_numbers ? image.full_scale : 1.0;
-    SurveyImage taken{
-        .raw = {.width_px = image.width_px, .height_px = image.height_px, .mosaic = camera.mosaic},
-        .levels = {.black = camera.black_level},
-        .description = image.description,
-        .date_time = image.date_time};
-    taken.raw.samples = image.planes();
-    if (image.channels.size() > 1) keep_planes(taken.raw.samples, taken.raw.pixels(), places);
-    for (float& sample : taken.raw.samples) sample = static_cast<float>(sample * scale);
-    if (is_whole_numbers) {
+    return {.raw = {.width_px = crop.width_px,
+                    .height_px = crop.height_px,
+                    .mosaic = shifted(mosaic, crop.left_px, crop.top_px)},
+            .crop = crop,
+            .levels = {.black = camera.black_level.value_or(0.0F)},
+            .rounding = 0.0,
+            .description = {},
+            .date_time = {}};
+}
+
+constexpr double kRounding = 0.28867513459481287;  // 1 / sqrt(12): of whole numbers
+
+SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) {
+    const Mosaic mosaic = camera.mosaic.value_or(Mosaic::None);
+    const std::vector<std::size_t> places = places_of(image, mosaic);
+    const PlaneSize size{image.width_px, image.height_px};
+    SurveyImage taken = cropped_image(camera, size, mosaic);
+    taken.description = image.description;
+    taken.date_time = image.date_time;
+    taken.raw.samples = kept_of(image.planes(), size, places, taken.crop);
+    if (image.full_scale > 0.0) {
+        const double scale = image.full_scale;
+        for (float& sample : taken.raw.samples) sample = static_cast<float>(sample * scale);
         taken.levels.white = static_cast<float>(scale);
-        taken.rounding = 1.0 / std::sqrt(12.0);
+        taken.rounding = kRounding;
     }
     if (camera.white_level) taken.levels.white = *camera.white_level;
     return taken;
 }
 
-}  // namespace
+Mosaic mosaic_of(const RawFile& file, const CameraNumbers& camera) {
+    const Mosaic mosaic = mosaic_named(file.pattern).value_or(Mosaic::None);
+    if (!camera.mosaic || *camera.mosaic == mosaic) return mosaic;
+    throw InputError("--bayer, or the rig's: found {}; allowed: {}, as the raw file says",
+                     mosaic_name(*camera.mosaic),
+                     mosaic == Mosaic::None ? "none, for R, G and B" : mosaic_name(mosaic));
+}
 
-SurveyImage read_survey_image(const fs::path& file, const CameraNumbers& camera) {
+SurveyImage survey_image_of(const RawFile& file, const CameraNumbers& camera) {
+    const PlaneSize size{file.width_px, file.height_px};
+    SurveyImage taken = cropped_image(camera, size, mosaic_of(file, camera));
+    const std::vector<std::size_t> all{0, 1, 2};
+    taken.raw.samples =
+        kept_of(file.samples(), size, {all.begin(), all.begin() + taken.raw.planes()}, taken.crop);
+    taken.rounding = kRounding;
+    taken.levels.black = camera.black_level.value_or(static_cast<float>(file.black));
+    taken.levels.white = camera.white_level.value_or(static_cast<float>(file.white));
+    return taken;
+}
+
+// What read() gives, and its messages without the file's name.
+template <typename Read>
+auto without_name(const fs::path& file, const Read& read) {
     require_file(file);
     try {
-        return survey_image_of(open_any_image(file), camera);
+        return read();
     } catch (const InputError& error) {
         const std::string_view words = error.what();
         const std::string name = file.string() + ": ";
@@ -95,8 +145,34 @@ SurveyImage read_survey_image(const fs::path& file, const CameraNumbers& camera)
     }
 }
 
+}  // namespace
+
+SurveyImage read_survey_image(const fs::path& file, const CameraNumbers& camera) {
+    return without_name(file, [&] {
+        SurveyImage taken = is_raw_name(file) ? survey_image_of(open_raw_file(file), camera)
+                                              : survey_image_of(open_any_image(file), camera);
+        taken.tags = read_image_tags(file);
+        if (camera.exposure_by != ExposureBy::Nothing) {
+            const ShotExposure shot = taken.tags ? exposure_of(*taken.tags) : ShotExposure{};
+            taken.exposure = relative_exposure(shot, camera);
+        }
+        return taken;
+    });
+}
+
+PlaneSize size_in(const fs::path& file) {
+    return without_name(file, [&] {
+        const auto size = [](const auto& image) {
+            return PlaneSize{image.width_px, image.height_px};
+        };
+        return is_raw_name(file) ? size(open_raw_file(file)) : size(open_any_image(file));
+    });
+}
+
 void take_off_black(SurveyImage& taken) {
-    for (float& sample : taken.raw.samples) sample -= taken.levels.black;
+    const auto share = static_cast<float>(1.0 / taken.exposure);
+    for (float& sample : taken.raw.samples) sample = share * (sample - taken.levels.black);
+    taken.levels = {.black = 0.0F, .white = share * (taken.levels.white - taken.levels.black)};
 }
 
 }  // namespace aphotic

@@ -913,12 +913,63 @@ TEST(RigReader, AQuantumResponseCountsPhotons) {
         filtered.camera.sensor.response(1, 550.0) / (0.125 * per_joule), 1.0, kFewRoundings);
 }
 
+TEST(RigReader, AMonoCameraHasOneResponse) {
+    const TempFolder folder;
+    write_file(folder.path() / "ccd.csv", "wavelength_nm,quantum_efficiency\n400,0.5\n700,0.5\n");
+    const std::string mono = "response = { quantum_efficiency = \"ccd.csv\" }";
+    const Camera camera = parse_rig(with(8, mono), "r", folder.path()).camera;
+    EXPECT_TRUE(camera.sensor.is_mono());
+    EXPECT_EQ(camera.readout.bayer, "mono");
+    for (const int channel : {1, 2})
+        EXPECT_EQ(camera.sensor.response(channel, 550.0), camera.sensor.response(0, 550.0));
+    EXPECT_FALSE(parse(kMinimal).camera.sensor.is_mono());
+    EXPECT_EQ(
+        error_of(with(8, mono + "\nbayer = \"RGGB\""), folder.path()),
+        "rig.toml:9: camera.bayer: found 'RGGB'; allowed: \"mono\", as the response is of one "
+        "channel");
+    EXPECT_EQ(error_of(with(8, "response = \"nikon-d5100\"\nbayer = \"mono\"")),
+              "rig.toml:9: camera.bayer: found 'mono'; allowed: a pattern of colours, as the "
+              "response is of three channels");
+}
+
+TEST(RigReader, TellsWhatTheCamerasFilesHold) {
+    const auto readout = [](const std::string& more) {
+        return parse(with(7, "range_nm = [400, 700]\n" + more)).camera.readout;
+    };
+    EXPECT_EQ(readout("").bayer, "");
+    EXPECT_EQ(readout("").black_level_dn, std::nullopt);
+    const Readout all = readout(
+        "bayer = \"GRBG\"\nblack_level_dn = 64\nwhite_level_dn = 4095\nexposure_ms = 2.5\n"
+        "iso = 400\nf_number = 5.6");
+    EXPECT_EQ(all.bayer, "GRBG");
+    EXPECT_EQ(all.black_level_dn, 64.0);
+    EXPECT_EQ(all.white_level_dn, 4095.0);
+    EXPECT_EQ(all.exposure_ms, 2.5);
+    EXPECT_EQ(all.iso, 400.0);
+    EXPECT_EQ(all.f_number, 5.6);
+    const auto refused = [](const std::string& line, const std::string& words) {
+        EXPECT_EQ(error_of(with(7, "range_nm = [400, 700]\n" + line)),
+                  "rig.toml:8: camera." + words);
+    };
+    refused("black_level_dn = -1",
+            "black_level_dn: found -1; allowed: a number from 0 to 1000000000");
+    refused("white_level_dn = 60\nblack_level_dn = 64",
+            "white_level_dn: found 60; allowed: a number over black_level_dn");
+    refused("exposure_ms = 0", "exposure_ms: found 0; allowed: a number from 0.0001 to 1000000");
+    refused("iso = 0", "iso: found 0; allowed: a number from 0.1 to 10000000");
+    refused("f_number = \"2.8\"", "f_number: found '2.8'; allowed: a number from 0.1 to 1000");
+    refused("bayer = \"RGB\"",
+            "bayer: found 'RGB'; allowed: \"RGGB\" or \"BGGR\" or \"GRBG\" or \"GBRG\" or "
+            "\"mono\"");
+}
+
 TEST(RigReader, AResponseFileMustSayItsKind) {
     const TempFolder folder;
     write_file(folder.path() / "rgb.csv", kRgb);
     const std::string allowed =
         "; allowed: a built-in response's name, { table = \"rgb.csv\", kind = \"energy\" } (or "
-        "\"quantum\"), or { filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }";
+        "\"quantum\"), or { filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }, of a mono "
+        "camera without filters";
     EXPECT_EQ(error_of(with(8, "response = \"rgb.csv\""), folder.path()),
               "rig.toml:8: camera.response: found 'rgb.csv'" + allowed);
     EXPECT_EQ(error_of(with(8, "response = 7"), folder.path()),

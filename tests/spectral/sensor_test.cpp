@@ -50,6 +50,16 @@ TEST(Sensor, FilteredIsTheProductOfFilterAndQuantumEfficiency) {
     EXPECT_EQ(sensor.range().last_nm, 700.0);
 }
 
+TEST(Sensor, AMonoCamerasChannelsAreOne) {
+    const Sensor sensor = Sensor::mono({"ccd", {380.0, 780.0}, {0.5, 0.5}});
+    EXPECT_TRUE(sensor.is_mono());
+    for (int channel = 0; channel < kChannels; ++channel) {
+        EXPECT_NEAR(
+            sensor.response(channel, 555.0), 0.5 * kPhotonsPerJouleAt555nm, kPhotonRounding);
+    }
+    EXPECT_FALSE(Sensor(channels(0.5, 0.5, 0.5), ResponseKind::Energy).is_mono());
+}
+
 TEST(Sensor, KeepsItsCurvesWhenCopied) {
     const Sensor copy = Sensor(channels(1.0, 1.0, 1.0), ResponseKind::Energy);
     ASSERT_EQ(copy.curves().size(), 3U);

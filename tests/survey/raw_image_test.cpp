@@ -32,6 +32,32 @@ TEST(RawImage, SitesStandAsTheNameSpellsThem) {
     EXPECT_EQ(mosaic_named("RGG"), std::nullopt);
 }
 
+TEST(RawImage, WhatIsCutOffShiftsThePattern) {
+    for (const Mosaic mosaic : kMosaics) {
+        for (int cut = 0; cut < 16; ++cut) {
+            const int left = cut % 4;
+            const int top = cut / 4;
+            const Mosaic rest = shifted(mosaic, left, top);
+            for (int site = 0; site < 4; ++site) {
+                EXPECT_EQ(channel_at(rest, site % 2, site / 2),
+                          channel_at(mosaic, left + site % 2, top + site / 2))
+                    << mosaic_name(mosaic) << " " << left << " " << top;
+            }
+        }
+    }
+    EXPECT_EQ(shifted(Mosaic::Mono, 1, 1), Mosaic::Mono);
+    EXPECT_EQ(shifted(Mosaic::None, 1, 0), Mosaic::None);
+}
+
+TEST(RawImage, AMonoCameraHasOnePlaneAndNoPattern) {
+    EXPECT_EQ(mosaic_named("mono"), Mosaic::Mono);
+    EXPECT_EQ(mosaic_named("MONO"), Mosaic::Mono);
+    EXPECT_EQ(mosaic_named("none"), std::nullopt);
+    EXPECT_FALSE(is_bayer(Mosaic::Mono));
+    EXPECT_EQ((RawImage{.mosaic = Mosaic::Mono}.planes()), 1);
+    for (int site = 0; site < 4; ++site) EXPECT_EQ(channel_at(Mosaic::Mono, site % 2, site / 2), 0);
+}
+
 // Planes that are linear in column and row are what bilinear interpolation is exact for.
 TEST(RawImage, LinearPlanesComeBackInside) {
     constexpr int kWidth = 9;

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/any_image_part.h"
+
+#include "base/error.h"
+
+#include <dlfcn.h>
+
+namespace aphotic {
+
+void* function_of_part(const char* name) {
+    // Through the program's own run path, else where it was installed; stays loaded, for the images
+    // hold on to it.
+    static void* const kPart = [] {
+        void* part = ::dlopen("aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
+        return part != nullptr
+                   ? part
+                   : ::dlopen(APHOTIC_PARTS "/aphotic_any_image.so", RTLD_NOW | RTLD_LOCAL);
+    }();
+    if (kPart == nullptr) {
+        throw RunError("the image reader cannot be loaded: {}", ::dlerror());
+    }
+    void* const function = ::dlsym(kPart, name);
+    if (function == nullptr) throw RunError("aphotic_any_image.so is not of this version");
+    return function;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image/image_tags.h"
+
+#include "image/any_image_part.h"
+
+namespace aphotic {
+
+SharedTags read_image_tags(const std::filesystem::path& file) {
+    using Read = void (*)(const std::filesystem::path&, SharedTags&);
+    SharedTags tags;
+    from_part<Read>("aphotic_read_image_tags")(file, tags);
+    return tags;
+}
+
+void add_image_tags(const std::filesystem::path& file, const ImageTags& tags) {
+    using Add = void (*)(const std::filesystem::path&, const ImageTags&);
+    from_part<Add>("aphotic_add_image_tags")(file, tags);
+}
+
+std::vector<std::pair<std::string, std::string>> words_of(const ImageTags& tags) {
+    using Words = void (*)(const ImageTags&, std::vector<std::pair<std::string, std::string>>&);
+    std::vector<std::pair<std::string, std::string>> words;
+    from_part<Words>("aphotic_words_of_tags")(tags, words);
+    return words;
+}
+
+ShotExposure exposure_of(const ImageTags& tags) {
+    using Exposure = void (*)(const ImageTags&, ShotExposure&);
+    ShotExposure exposure;
+    from_part<Exposure>("aphotic_exposure_of_tags")(tags, exposure);
+    return exposure;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The part of the command that links Exiv2; see image_tags.h.
+#include "base/error.h"
+#include "image/image_tags.h"
+
+#include <exiv2/exiv2.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace aphotic {
+
+struct ImageTags {
+    Exiv2::ExifData exif;
+    Exiv2::IptcData iptc;
+    Exiv2::XmpData xmp;
+    ShotExposure exposure;
+
+    // But for the words and the time that any image has (any_image.h).
+    [[nodiscard]] bool is_empty() const {
+        const auto is_of_any = [](const Exiv2::Exifdatum& datum) {
+            return datum.key() == "Exif.Image.ImageDescription" ||
+                   datum.key() == "Exif.Image.DateTime";
+        };
+        return std::all_of(exif.begin(), exif.end(), is_of_any) && iptc.empty() && xmp.empty();
+    }
+};
+
+namespace {
+
+// Adobe's part of the library is not for several threads.
+void lock_or_unlock(void* mutex, bool lock) {
+    auto& known = *static_cast<std::recursive_mutex*>(mutex);
+    if (lock) {
+        known.lock();
+    } else {
+        known.unlock();
+    }
+}
+
+void make_ready() {
+    static std::recursive_mutex mutex;
+    static const bool kIsReady = [] {
+        Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
+        return Exiv2::XmpParser::initialize(lock_or_unlock, &mutex);
+    }();
+    static_cast<void>(kIsReady);
+}
+
+// Of a file's first directory, what tells of the camera and of the picture; all else tells of the
+// pixels.
+const std::set<std::uint16_t> kOfThePicture{
+    0x010e,  // ImageDescription
+    0x010f,  // Make
+    0x0110,  // Model
+    0x0112,  // Orientation
+    0x0131,  // Software
+    0x0132,  // DateTime
+    0x013b,  // Artist
+    0x013c,  // HostComputer
+    0x4746,  // Rating
+    0x8298,  // Copyright
+    0x829a,  // ExposureTime, in raw files of TIFF/EP
+    0x829d,  // FNumber
+    0x8827,  // ISOSpeedRatings
+    0x9003,  // DateTimeOriginal
+    0x920a,  // FocalLength
+    0xc614,  // UniqueCameraModel
+    0xc62f,  // CameraSerialNumber
+};
+
+const std::set<std::uint16_t> kOfThePixels{
+    0x9101,  // ComponentsConfiguration
+    0x9102,  // CompressedBitsPerPixel
+    0x927c,  // MakerNote
+    0xa001,  // ColorSpace
+    0xa002,  // PixelXDimension
+    0xa003,  // PixelYDimension
+    0xa005,  // InteroperabilityTag
+    0xa302,  // CFAPattern
+    0xa500,  // Gamma
+};
+
+bool stays_true(const Exiv2::Exifdatum& datum) {
+    const std::string group = datum.groupName();
+    if (group == "Image") return kOfThePicture.contains(datum.tag());
+    return group == "GPSInfo" || (group == "Photo" && !kOfThePixels.contains(datum.tag()));
+}
+
+bool stays_true(const Exiv2::Xmpdatum& datum) {
+    static constexpr std::array<std::string_view, 12> kOfPixels{"Xmp.tiff.ImageWidth",
+                                                                "Xmp.tiff.ImageLength",
+                                                                "Xmp.tiff.BitsPerSample",
+                                                                "Xmp.tiff.Compression",
+                                                                "Xmp.tiff.Photometric",
+                                                                "Xmp.tiff.SamplesPerPixel",
+                                                                "Xmp.tiff.PlanarConfiguration",
+                                                                "Xmp.tiff.YCbCr",
+                                                                "Xmp.exif.PixelXDimension",
+                                                                "Xmp.exif.PixelYDimension",
+                                                                "Xmp.exif.ColorSpace",
+                                                                "Xmp.xmp.Thumbnails"};
+    const std::string key = datum.key();
+    return std::none_of(kOfPixels.begin(), kOfPixels.end(), [&](std::string_view name) {
+        return key.starts_with(name);
+    });
+}
+
+using FindExif = Exiv2::ExifData::const_iterator (*)(const Exiv2::ExifData&);
+
+std::optional<double> number_of(const Exiv2::ExifData& exif, FindExif find) {
+    const auto found = find(exif);
+    if (found == exif.end() || found->count() == 0) return std::nullopt;
+    const auto [above, below] = found->toRational();
+    const double number = static_cast<double>(above) / below;
+    if (!(std::isfinite(number) && number > 0.0)) return std::nullopt;
+    return number;
+}
+
+// Larger numbers do not fit into Exif's own, which then says this.
+constexpr double kTooLargeIso = 65535.0;
+
+ShotExposure exposure_in(const Exiv2::ExifData& exif) {
+    ShotExposure exposure{.time_s = number_of(exif, Exiv2::exposureTime),
+                          .iso = number_of(exif, Exiv2::isoSpeed),
+                          .f_number = number_of(exif, Exiv2::fNumber)};
+    if (exposure.iso == kTooLargeIso) exposure.iso.reset();
+    return exposure;
+}
+
+std::unique_ptr<Exiv2::Image> tagged(const std::filesystem::path& file) {
+    make_ready();
+    std::unique_ptr<Exiv2::Image> image(Exiv2::ImageFactory::open(file.string()).release());
+    image->readMetadata();
+    return image;
+}
+
+}  // namespace
+}  // namespace aphotic
+
+extern "C" void aphotic_read_image_tags(const std::filesystem::path& file,
+                                        aphotic::SharedTags& tags) {
+    using namespace aphotic;
+    try {
+        const std::unique_ptr<Exiv2::Image> image = tagged(file);
+        auto read = std::make_shared<ImageTags>();
+        for (const Exiv2::Exifdatum& datum : image->exifData()) {
+            if (stays_true(datum)) read->exif.add(datum);
+        }
+        for (const Exiv2::Xmpdatum& datum : image->xmpData()) {
+            if (stays_true(datum)) read->xmp.add(datum);
+        }
+        read->iptc = image->iptcData();
+        read->exposure = exposure_in(image->exifData());
+        if (!read->is_empty()) tags = std::move(read);
+    } catch (const Exiv2::AnyError&) {
+        // No format that it knows, or damaged tags: the pixels are as good without.
+    }
+}
+
+extern "C" void aphotic_add_image_tags(const std::filesystem::path& file,
+                                       const aphotic::ImageTags& tags) {
+    using namespace aphotic;
+    try {
+        const std::unique_ptr<Exiv2::Image> image = tagged(file);
+        for (const Exiv2::Exifdatum& datum : tags.exif) {
+            image->exifData()[datum.key()].setValue(&datum.value());
+        }
+        for (const Exiv2::Xmpdatum& datum : tags.xmp) {
+            image->xmpData()[datum.key()].setValue(&datum.value());
+        }
+        image->setIptcData(tags.iptc);
+        image->writeMetadata();
+    } catch (const Exiv2::AnyError& error) {
+        throw RunError("{}: its tags cannot be written: {}", file.string(), error.what());
+    }
+}
+
+extern "C" void aphotic_words_of_tags(const aphotic::ImageTags& tags,
+                                      std::vector<std::pair<std::string, std::string>>& words) {
+    const auto add = [&](const auto& data) {
+        for (const auto& datum : data) words.emplace_back(datum.key(), datum.toString());
+    };
+    add(tags.exif);
+    add(tags.iptc);
+    add(tags.xmp);
+}
+
+extern "C" void aphotic_exposure_of_tags(const aphotic::ImageTags& tags,
+                                         aphotic::ShotExposure& exposure) {
+    exposure = tags.exposure;
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the user says of the camera that took a survey: which part of a file is its image, what its
+// pixels see, and the numbers for no light and for saturation. What he does not say, the rig's
+// [camera] may (Readout in rig/rig.h), and else the file.
+//
+// Columns and rows of a crop count from 0 at the file's top left. A mosaic's pattern is that of the
+// file; an odd crop begins it elsewhere (shifted() in raw_image.h).
+#pragma once
+
+#include "image/any_image.h"
+#include "image/image_tags.h"
+#include "rig/rig.h"
+#include "survey/raw_image.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+#include <string>
+
+namespace aphotic {
+
+struct Crop {
+    int left_px = 0;
+    int top_px = 0;
+    int width_px = 0;
+    int height_px = 0;
+
+    bool operator==(const Crop&) const = default;
+};
+
+// By what images are brought to one exposure: by the numbers that each file tells in its Exif. The
+// light of a flash does not grow with the time that the shutter is open.
+enum class ExposureBy { Nothing, Exif, Flash };
+
+// Of a file that holds the images of two cameras side by side.
+enum class Half { Left, Right };
+
+struct CameraNumbers {
+    std::optional<Mosaic> mosaic{};      // none: the file's own, or R, G and B
+    std::optional<float> black_level{};  // none: the file's own, or 0
+    std::optional<float> white_level{};  // none: the file's own, or the largest of its integers
+    std::optional<Half> half{};          // of half and crop, one at most
+    std::optional<Crop> crop{};
+    ExposureBy exposure_by = ExposureBy::Nothing;
+    ShotExposure reference{};  // what images are brought to: what it tells counts, nothing else
+};
+
+// Which part of a file of this size is the image. An InputError, with that size, when it has no
+// such part.
+[[nodiscard]] Crop crop_of(const CameraNumbers& camera, PlaneSize file);
+
+// The same with what the rig's camera says where the user says nothing. An InputError when he says
+// mono of a camera of colours, or colours of a mono camera.
+[[nodiscard]] CameraNumbers with_rig(CameraNumbers camera, const Camera& rig);
+
+// How many times as much light as at the reference, of the same scene:
+//
+//   e = (t / t_0) (S / S_0) (N_0 / N)^2      t: time, S: ISO number, N: f-number
+//
+// with the factors that the reference has. An InputError when the shot lacks one of them.
+[[nodiscard]] double relative_exposure(const ShotExposure& shot, const CameraNumbers& camera);
+
+// "X,Y,WIDTH,HEIGHT"; nothing where the text is none.
+[[nodiscard]] std::optional<Crop> crop_named(const std::string& text);
+
+// As settings, under the options' names; null: not told.
+[[nodiscard]] nlohmann::ordered_json to_json(const CameraNumbers& camera);
+
+}  // namespace aphotic

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/camera_of_files.h"
+
+#include "base/error.h"
+#include "rig/lens.h"
+#include "survey/survey_image.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+namespace aphotic {
+
+std::optional<PlaneSize> usual_size(const std::vector<ImageFile>& files,
+                                    const CameraNumbers& camera) {
+    constexpr std::size_t kFew = 9;
+    const std::size_t count = std::min(kFew, files.size());
+    std::map<std::pair<int, int>, int> images;  // by size
+    for (std::size_t i = 0; i < count; ++i) {
+        try {
+            const PlaneSize size = size_in(files[i * files.size() / count].source);
+            ++images[{size.width_px, size.height_px}];
+        } catch (const InputError&) {
+            // It is said of the image when its turn comes.
+        }
+    }
+    if (images.empty()) return std::nullopt;
+    const auto [width_px, height_px] =
+        std::ranges::max_element(images, {}, [](const auto& size) { return size.second; })->first;
+    const Crop crop = crop_of(camera, {width_px, height_px});
+    return PlaneSize{crop.width_px, crop.height_px};
+}
+
+CameraNumbers with_reference(CameraNumbers camera, const std::vector<ImageFile>& files) {
+    const auto is_told = [](const ShotExposure& shot) {
+        return shot.time_s || shot.iso || shot.f_number;
+    };
+    if (camera.exposure_by == ExposureBy::Nothing || is_told(camera.reference)) return camera;
+    for (const ImageFile& file : files) {
+        const SharedTags tags = read_image_tags(file.source);
+        if (!tags) continue;
+        camera.reference = exposure_of(*tags);
+        if (camera.exposure_by == ExposureBy::Flash) camera.reference.time_s.reset();
+        if (is_told(camera.reference)) return camera;
+    }
+    throw InputError("--exposure: no image's Exif has {}ISO number or FNumber",
+                     camera.exposure_by == ExposureBy::Exif ? "ExposureTime, " : "");
+}
+
+std::optional<PlaneSize> fit_to(Camera& camera, PlaneSize images) {
+    const PlaneSize rig{camera.width_px, camera.height_px};
+    const auto is_same_shape = std::int64_t{rig.width_px} * images.height_px ==
+                               std::int64_t{rig.height_px} * images.width_px;
+    if (!is_same_shape || rig.width_px == images.width_px) return std::nullopt;
+    enlarge_pixels(camera,
+                   static_cast<double>(rig.width_px) / images.width_px,
+                   images.width_px,
+                   images.height_px);
+    return rig;
+}
+
+}  // namespace aphotic

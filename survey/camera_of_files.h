@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the files of a survey tell of its camera before any is corrected: the size of their images,
+// and the exposure that the others are brought to. A rig is fitted to that size.
+#pragma once
+
+#include "image/any_image.h"
+#include "rig/rig.h"
+#include "survey/camera_numbers.h"
+#include "survey/image_files.h"
+
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+
+// The size that most of a few images have, spread evenly over the survey, as cropped. None when
+// none of these can be read. An InputError when the crop does not fit them.
+[[nodiscard]] std::optional<PlaneSize> usual_size(const std::vector<ImageFile>& files,
+                                                  const CameraNumbers& camera);
+
+// With the exposure of the first image that tells one in place of a reference that nobody gave. An
+// InputError when no image does.
+[[nodiscard]] CameraNumbers with_reference(CameraNumbers camera,
+                                           const std::vector<ImageFile>& files);
+
+// A camera of the same view with as many pixels, where these have the shape of its own: the size
+// that it had. None, and the camera as it was, where they are as many, or have another shape.
+[[nodiscard]] std::optional<PlaneSize> fit_to(Camera& camera, PlaneSize images);
+
+}  // namespace aphotic

@@ -1,0 +1,519 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What cameras and their owners hand in, at the door of correct, observe and baseline: parts of
+// files, mono cameras, raw files, exposures, tags, and rigs of another scale.
+#include "base/atomic_file.h"
+#include "image/exr.h"
+#include "support/dng.h"
+#include "support/exiftool.h"
+#include "support/run_command.h"
+#include "support/tiff.h"
+#include "survey/raw_image.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace aphotic::survey_input_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr int kSkipped = 1;
+constexpr int kBadInput = 2;
+
+constexpr int kWidth = 64;  // LibRaw reads no smaller raw files
+constexpr int kHeight = 48;
+constexpr std::size_t kPixels = kWidth * kHeight;
+constexpr int kBlack = 64;
+constexpr int kWhite = 4095;
+
+using Numbers = std::vector<std::uint16_t>;
+
+class SurveyInput : public testing::Test {
+  protected:
+    void SetUp() override { fs::create_directories(path("raw")); }
+
+    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+
+    // Falls off to the right, in each channel from another height.
+    static float light(std::size_t channel, int column, int row) {
+        return 1.0F + 0.3F * static_cast<float>(channel) - 0.01F * static_cast<float>(column) -
+               0.002F * static_cast<float>(row);
+    }
+
+    void write_map(bool is_grey) const {
+        std::vector<float> planes;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            for (int i = 0; i < static_cast<int>(kPixels); ++i)
+                planes.push_back(light(is_grey ? 0 : c, i % kWidth, i / kWidth));
+        }
+        ExrWriter exr(path("map.exr"), kWidth, kHeight, {"R", "G", "B"}, {});
+        exr.write_rows(kHeight, planes);
+        exr.finish();
+    }
+
+    // What the camera makes of that light: numbers over black of this many times it.
+    static Numbers mosaic(Mosaic mosaic, double times) {
+        Numbers numbers;
+        for (int row = 0; row < kHeight; ++row) {
+            for (int column = 0; column < kWidth; ++column) {
+                const auto c = static_cast<std::size_t>(channel_at(mosaic, column, row));
+                numbers.push_back(static_cast<std::uint16_t>(
+                    std::lround(kBlack + times * light(c, column, row))));
+            }
+        }
+        return numbers;
+    }
+
+    // The image within a larger file of other numbers.
+    static Numbers placed(const Numbers& image, int left, int top, int width, int height) {
+        Numbers file;
+        for (int row = 0; row < height; ++row) {
+            for (int column = 0; column < width; ++column) {
+                const bool is_inside =
+                    column >= left && column < left + kWidth && row >= top && row < top + kHeight;
+                const int at = (row - top) * kWidth + column - left;
+                file.push_back(is_inside ? image[static_cast<std::size_t>(at)]
+                                         : static_cast<std::uint16_t>(column * 31 + row));
+            }
+        }
+        return file;
+    }
+
+    void write_tiff(const std::string& name, const Numbers& numbers, int width, int height) const {
+        write_file(path("raw/" + name),
+                   tiff_of(numbers,
+                           static_cast<std::uint32_t>(width),
+                           static_cast<std::uint32_t>(height),
+                           ""));
+    }
+
+    static Dng dng(double times) {
+        return {.width = kWidth,
+                .height = kHeight,
+                .samples = mosaic(Mosaic::Rggb, times),
+                .black = {kBlack},
+                .white = kWhite};
+    }
+    void write_dng(const std::string& name, const Dng& dng) const {
+        write_file(path("raw/" + name), DngWriter::bytes(dng));
+    }
+
+    [[nodiscard]] CommandResult run(std::vector<std::string> arguments,
+                                    const std::vector<std::string>& more) const {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_aphotic(folder_.path(), arguments);
+    }
+    // By the map, into floats.
+    [[nodiscard]] CommandResult correct(const std::string& output,
+                                        const std::vector<std::string>& more) const {
+        return run({"correct", "raw", "--map", "map.exr", "-o", output, "--format", "exr"}, more);
+    }
+    static std::vector<std::string> levels(std::vector<std::string> more) {
+        more.insert(more.end(), {"--black-level", "64", "--white-level", "4095"});
+        return more;
+    }
+
+    [[nodiscard]] std::vector<float> samples(const std::string& file,
+                                             const std::vector<std::string>& channels) const {
+        return ExrReader(path(file)).planes(channels);
+    }
+
+    TempFolder folder_;
+};
+
+// Bytes of a result: the same image gives the same.
+TEST_F(SurveyInput, AHalfOrACropIsTreatedAsAFileOfItsOwn) {
+    write_map(false);
+    write_file(path("nav.csv"), "image,altitude_m\na,2\n");
+    const Numbers image = mosaic(Mosaic::Rggb, 1000.0);
+    const auto results = [&](const std::string& output, std::vector<std::string> more) {
+        more.insert(more.end(), {"--black-level", "64"});
+        EXPECT_EQ(correct(output, more).status, 0);
+        const CommandResult baseline =
+            run({"baseline", "illumination-reflectance", "raw", "-o", output + "-baseline"}, more);
+        EXPECT_EQ(baseline.status, 0) << baseline.err;
+        const CommandResult observed = run(
+            {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", output + ".exr"}, more);
+        EXPECT_EQ(observed.status, 0) << observed.err;
+        return read_text_file(path(output + "/a.exr")) +
+               read_text_file(path(output + "-baseline/a.exr")) +
+               read_text_file(path(output + ".exr"));
+    };
+    write_tiff("a.tif", image, kWidth, kHeight);
+    const std::string whole = results("whole", {"--bayer", "RGGB"});
+    write_tiff("a.tif", placed(image, kWidth, 0, 2 * kWidth, kHeight), 2 * kWidth, kHeight);
+    EXPECT_EQ(results("right", {"--bayer", "RGGB", "--half", "right"}), whole);
+    EXPECT_NE(results("left", {"--bayer", "RGGB", "--half", "left"}), whole);
+    // At an odd column and row the pattern begins with another site.
+    write_tiff("a.tif", placed(image, 3, 1, kWidth + 5, kHeight + 2), kWidth + 5, kHeight + 2);
+    EXPECT_EQ(results("odd", {"--bayer", "BGGR", "--crop", "3,1,64,48"}), whole);
+    EXPECT_NE(results("wrong", {"--bayer", "RGGB", "--crop", "3,1,64,48"}), whole);
+    const Json notes = Json::parse(read_text_file(path("odd/correction.json")));
+    EXPECT_EQ(notes["settings"]["crop"], "3,1,64,48");
+    EXPECT_EQ(notes["settings"]["bayer"], "BGGR");
+}
+
+// Another crop is another result.
+TEST_F(SurveyInput, ACropIsPartOfWhatIsKept) {
+    write_map(false);
+    write_tiff("a.tif",
+               placed(mosaic(Mosaic::Rggb, 1000.0), 0, 0, kWidth + 2, kHeight),
+               kWidth + 2,
+               kHeight);
+    const auto kept = [&](const std::string& crop) {
+        const CommandResult result =
+            correct("out", {"--bayer", "RGGB", "--crop", crop, "--gain", "1", "--json"});
+        EXPECT_EQ(result.status, 0) << result.err;
+        return Json::parse(result.out)["kept"].get<int>();
+    };
+    EXPECT_EQ(kept("0,0,64,48"), 0);
+    EXPECT_EQ(kept("0,0,64,48"), 1);
+    EXPECT_EQ(kept("2,0,64,48"), 0);
+}
+
+TEST_F(SurveyInput, PartsThatAreNotThereAreOneMistake) {
+    write_map(false);
+    write_file(path("nav.csv"), "image,altitude_m\na,2\nb,2\n");
+    for (const char* name : {"a.tif", "b.tif"})
+        write_tiff(name, Numbers((kWidth + 1) * kHeight, 100), kWidth + 1, kHeight);
+    const auto refused = [&](const std::vector<std::string>& options, const std::string& words) {
+        for (const std::vector<std::string>& command :
+             {std::vector<std::string>{"correct", "raw", "--map", "map.exr", "-o", "out"},
+              {"baseline", "homomorphic", "raw", "-o", "out"},
+              {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "out"}}) {
+            const CommandResult result = run(command, options);
+            EXPECT_EQ(result.status, kBadInput) << command[0] << " " << words;
+            EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
+            EXPECT_EQ(result.err.find("raw/b.tif"), std::string::npos) << result.err;
+            EXPECT_FALSE(fs::exists(path("out")));
+        }
+    };
+    refused({"--bayer", "RGGB", "--crop", "2,0,64,48"},
+            "--crop 2,0,64,48: reaches beyond the image; allowed: within 65 x 48 pixels");
+    refused({"--bayer", "RGGB", "--crop", "0,1,64,48"}, "within 65 x 48 pixels");
+    refused({"--bayer", "RGGB", "--crop", "0,0,2147483647,48"}, "within 65 x 48 pixels");
+    refused({"--bayer", "RGGB", "--half", "left"},
+            "--half: found an image of 65 x 48 pixels; allowed: an even width");
+    for (const char* wrong :
+         {"1,2,3", "1,2,3,4,5", "-1,0,5,5", "0,0,0,5", "a,0,5,5", "0;0;5;5", ""})
+        refused({"--crop", wrong}, fmt::format("--crop: found '{}'; allowed: X,Y,WIDTH", wrong));
+    refused({"--half", "upper"}, "--half");
+    refused({"--half", "left", "--crop", "0,0,5,5"}, "--crop excludes --half");
+    refused({"--bayer", "gray"}, "found 'gray'; allowed: RGGB, BGGR, GRBG, GBRG, mono");
+    refused({"--exposure", "auto"}, "--exposure");
+    refused({"--bayer", "RGGB", "--exposure", "exif"}, "no image's Exif has ExposureTime");
+}
+
+TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
+    write_map(true);
+    Numbers numbers;
+    for (int i = 0; i < static_cast<int>(kPixels); ++i) {
+        numbers.push_back(static_cast<std::uint16_t>(
+            std::lround(kBlack + 2000.0 * light(0, i % kWidth, i / kWidth))));
+    }
+    write_tiff("a.tif", numbers, kWidth, kHeight);
+    const CommandResult result = correct("out", levels({"--bayer", "mono", "--middle", "0.25"}));
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_TRUE(std::regex_search(result.out, std::regex("gain 0\\.000125[0-9]*, taken")))
+        << result.out;
+    EXPECT_EQ(ExrReader(path("out/a.exr")).channels(), std::vector<std::string>{"Y"});
+    constexpr double kStep = 0.5 / 700.0;  // of whole numbers, where there is least light
+    for (const float sample : samples("out/a.exr", {"Y"}))
+        EXPECT_NEAR(sample / 0.25, 1.0, 2.0 * kStep);
+
+    const CommandResult three = correct("three", levels({"--bayer", "mono", "--gain", "1,2,3"}));
+    EXPECT_EQ(three.status, kBadInput);
+    EXPECT_NE(three.err.find("--gain: found 3 numbers; allowed: 1, of a mono camera"),
+              std::string::npos)
+        << three.err;
+
+    write_file(path("nav.csv"), "image,altitude_m\na,2\n");
+    const CommandResult observed =
+        run({"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "seen.exr"},
+            {"--bayer", "mono", "--black-level", "64"});
+    ASSERT_EQ(observed.status, 0) << observed.err;
+    const std::vector<float> green = samples("seen.exr", {"G"});
+    for (std::size_t i = 0; i < kPixels; ++i) EXPECT_EQ(green[i], numbers[i] - kBlack) << i;
+    EXPECT_EQ(samples("seen.exr", {"R", "count.B"}), [&] {
+        std::vector<float> all = green;
+        all.resize(2 * kPixels, 1.0F);
+        return all;
+    }());
+
+    const CommandResult baseline =
+        run({"baseline", "homomorphic", "raw", "-o", "even"}, {"--bayer", "mono"});
+    ASSERT_EQ(baseline.status, 0) << baseline.err;
+    EXPECT_EQ(ExrReader(path("even/a.exr")).channels(), std::vector<std::string>{"Y"});
+
+    write_map(false);
+    const CommandResult colours = correct("colours", levels({"--bayer", "mono"}));
+    EXPECT_EQ(colours.status, kBadInput);
+    EXPECT_NE(colours.err.find("found the image of a mono camera, and a map whose R, G and B "
+                               "differ"),
+              std::string::npos)
+        << colours.err;
+}
+
+TEST_F(SurveyInput, ARawFileSaysItsPatternAndLevelsItself) {
+    write_map(false);
+    write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
+    ASSERT_EQ(correct("tiff", levels({"--bayer", "RGGB"})).status, 0);
+    fs::remove(path("raw/a.tif"));
+    write_dng("a.dng", dng(1000.0));
+    const CommandResult result = correct("dng", {});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(samples("dng/a.exr", {"R", "G", "B"}), samples("tiff/a.exr", {"R", "G", "B"}));
+    const CommandResult other = correct("other", {"--bayer", "GRBG"});
+    EXPECT_EQ(other.status, kBadInput);
+    EXPECT_NE(
+        other.err.find("--bayer, or the rig's: found GRBG; allowed: RGGB, as the raw file says"),
+        std::string::npos)
+        << other.err;
+    const std::string bytes = read_text_file(path("raw/a.dng"));
+    write_file(path("raw/cut.dng"), bytes.substr(0, bytes.size() / 2));
+    const CommandResult cut = correct("cut", {"--gain", "1"});
+    EXPECT_EQ(cut.status, kSkipped);
+    EXPECT_NE(cut.err.find("raw/cut.dng: cannot be read: "), std::string::npos) << cut.err;
+}
+
+// One floor in twice the light of exposure: one image, up to the camera's rounding.
+TEST_F(SurveyInput, ImagesAreBroughtToOneExposureByTheirExif) {
+    write_map(false);
+    Dng once = dng(700.0);
+    once.exposure_ms = 4;
+    once.iso = 100;
+    Dng twice = dng(1400.0);
+    twice.exposure_ms = 8;
+    twice.iso = 100;
+    Dng loud = dng(1400.0);
+    loud.exposure_ms = 4;
+    loud.iso = 200;
+    write_dng("a.dng", once);
+    write_dng("b.dng", twice);
+    write_dng("c.dng", loud);
+    const auto ratio = [&](const std::string& folder, const std::string& name) {
+        const std::vector<float> image = samples(folder + "/" + name, {"G"});
+        const std::vector<float> first = samples(folder + "/a.exr", {"G"});
+        return image[kPixels / 2] / first[kPixels / 2];
+    };
+    constexpr double kRounding = 2e-3;  // half a step of some 500
+    ASSERT_EQ(correct("raw-out", {}).status, 0);
+    EXPECT_NEAR(ratio("raw-out", "b.exr"), 2.0, 2.0 * kRounding);
+    const CommandResult result = correct("exif", {"--exposure", "exif"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("brought to 4 ms, ISO 100"), std::string::npos) << result.out;
+    EXPECT_NEAR(ratio("exif", "b.exr"), 1.0, kRounding);
+    EXPECT_NEAR(ratio("exif", "c.exr"), 1.0, kRounding);
+    // A flash is as bright however long the shutter is open.
+    ASSERT_EQ(correct("flash", {"--exposure", "flash"}).status, 0);
+    EXPECT_NEAR(ratio("flash", "b.exr"), 2.0, 2.0 * kRounding);
+    EXPECT_NEAR(ratio("flash", "c.exr"), 1.0, kRounding);
+    const std::string journal = read_text_file(path("exif/corrected.jsonl"));
+    EXPECT_NE(journal.find("\"relative_exposure\":2.0"), std::string::npos) << journal;
+    const Json notes = Json::parse(read_text_file(path("exif/correction.json")));
+    EXPECT_EQ(notes["settings"]["exposure"]["time_s"], 0.004);
+
+    const CommandResult baseline =
+        run({"baseline", "local-equalisation", "raw", "-o", "even", "--clip", "1"},
+            {"--exposure", "exif"});
+    ASSERT_EQ(baseline.status, 0) << baseline.err;
+    EXPECT_NEAR(ratio("even", "b.exr"), 1.0, kRounding);
+
+    write_dng("d.dng", dng(700.0));
+    const CommandResult untold = correct("untold", {"--exposure", "exif"});
+    EXPECT_EQ(untold.status, kSkipped);
+    EXPECT_NE(untold.err.find("raw/d.dng: --exposure: its Exif has no ExposureTime; skipped"),
+              std::string::npos)
+        << untold.err;
+}
+
+TEST_F(SurveyInput, ResultsKeepTheTagsOfTheirSource) {
+    if (!has_exiftool()) GTEST_SKIP() << "needs exiftool";
+    write_map(false);
+    write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
+    tag_by_exiftool(path("raw/a.tif"),
+                    {"-GPSLatitude=41.5",
+                     "-GPSLatitudeRef=N",
+                     "-DateTimeOriginal=2012:07:01 12:13:14",
+                     "-SubSecTimeOriginal=678",
+                     "-SerialNumber=AB123",
+                     "-XMP-dc:Creator=Jane Doe"});
+    for (const std::string format : {"tiff", "png"}) {
+        ASSERT_EQ(run({"correct", "raw", "--map", "map.exr", "-o", format, "--format", format},
+                      levels({"--bayer", "RGGB", "--mask"}))
+                      .status,
+                  0);
+        const Json found =
+            tags_by_exiftool(path(format + (format == "tiff" ? "/a.tif" : "/a.png")));
+        EXPECT_NEAR(found["GPS:GPSLatitude"].get<double>(), 41.5, 1e-6) << format;
+        EXPECT_EQ(found["ExifIFD:DateTimeOriginal"], "2012:07:01 12:13:14") << format;
+        EXPECT_EQ(found["ExifIFD:SubSecTimeOriginal"], 678) << format;
+        EXPECT_EQ(found["ExifIFD:SerialNumber"], "AB123") << format;
+        EXPECT_EQ(found["XMP-dc:Creator"], "Jane Doe") << format;
+    }
+    // Compared to what is written without them, pixel by pixel.
+    ASSERT_EQ(correct("exr", levels({"--bayer", "RGGB"})).status, 0);
+    const CommandResult same =
+        run_aphotic(folder_.path(), {"compare", "tiff/a.tif", "exr/a.exr", "--bound", "1e-4"});
+    EXPECT_EQ(same.status, 0) << same.out << same.err;
+    const ExrReader exr(path("exr/a.exr"));
+    EXPECT_EQ(exr.attribute("Exif.GPSInfo.GPSLatitude"), "41/1 30/1 0/1");
+    EXPECT_EQ(exr.attribute("Xmp.dc.creator"), "Jane Doe");
+}
+
+class RigOfSurvey : public SurveyInput {
+  protected:
+    // HabCam's in few pixels, with other lines of [camera].
+    void write_rig(const std::string& resolution,
+                   const std::string& pitch_um,
+                   const std::string& more = "",
+                   const std::string& response = "\"nikon-d5100\"") const {
+        std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+        const auto put = [&](const std::string& key, const std::string& value) {
+            text = std::regex_replace(
+                text, std::regex("\n\\s*" + key + "\\s*=[^\n]*"), "\n" + key + " = " + value);
+        };
+        put("resolution", resolution);
+        put("pixel_pitch_um", pitch_um);
+        put("response", response + "\n" + more);
+        write_file(path("rig.toml"), text);
+    }
+
+    [[nodiscard]] CommandResult correct_by_rig(const std::string& output,
+                                               const std::vector<std::string>& more) const {
+        return run({"correct",
+                    "raw",
+                    "--rig",
+                    "rig.toml",
+                    "--nav",
+                    "nav.csv",
+                    "-o",
+                    output,
+                    "--format",
+                    "exr"},
+                   more);
+    }
+};
+
+constexpr const char* kPitch_um = "137.0625";
+
+TEST_F(RigOfSurvey, TellsItsCamerasNumbersAndOptionsWin) {
+    write_rig("[64, 48]",
+              kPitch_um,
+              "bayer = \"RGGB\"\nblack_level_dn = 64\nwhite_level_dn = 4095\n"
+              "exposure_ms = 2\niso = 100");
+    write_file(path("nav.csv"), "image,altitude_m\na,2\n");
+    write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
+    const CommandResult by_rig = correct_by_rig("rig", {});
+    ASSERT_EQ(by_rig.status, 0) << by_rig.err;
+    EXPECT_NE(by_rig.out.find("camera: RGGB, black level 64, white level 4095\n"),
+              std::string::npos)
+        << by_rig.out;
+    ASSERT_EQ(correct_by_rig("options", levels({"--bayer", "RGGB"})).status, 0);
+    EXPECT_EQ(read_text_file(path("rig/a.exr")), read_text_file(path("options/a.exr")));
+    const CommandResult other = correct_by_rig("other", {"--black-level", "60", "--json"});
+    ASSERT_EQ(other.status, 0) << other.err;
+    EXPECT_EQ(Json::parse(other.out)["settings"]["black_level"], 60.0);
+    EXPECT_EQ(Json::parse(other.out)["settings"]["white_level"], 4095.0);
+    const CommandResult baseline =
+        run({"baseline", "homomorphic", "raw", "-o", "even", "--json"}, {"--rig", "rig.toml"});
+    ASSERT_EQ(baseline.status, 0) << baseline.err;
+    EXPECT_EQ(Json::parse(baseline.out)["settings"]["bayer"], "RGGB");
+    const CommandResult observed =
+        run({"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "seen.exr", "--json"},
+            {"--rig", "rig.toml"});
+    ASSERT_EQ(observed.status, 0) << observed.err;
+    EXPECT_EQ(Json::parse(observed.out)["camera"]["black_level"], 64.0);
+}
+
+// The rig's exposure is what images are brought to.
+TEST_F(RigOfSurvey, TellsTheExposureThatImagesAreBroughtTo) {
+    write_rig("[64, 48]", kPitch_um, "exposure_ms = 2\niso = 100");
+    write_file(path("nav.csv"), "image,altitude_m\na,2\n");
+    Dng image = dng(700.0);
+    image.exposure_ms = 8;
+    image.iso = 100;
+    write_dng("a.dng", image);
+    ASSERT_EQ(correct_by_rig("plain", {"--gain", "1"}).status, 0);
+    ASSERT_EQ(correct_by_rig("exif", {"--gain", "1", "--exposure", "exif"}).status, 0);
+    const std::vector<float> plain = samples("plain/a.exr", {"R", "G", "B"});
+    const std::vector<float> exif = samples("exif/a.exr", {"R", "G", "B"});
+    for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_FLOAT_EQ(exif[i], plain[i] / 4.0F) << i;
+}
+
+// The same view by half the pitch: the same correction.
+TEST_F(RigOfSurvey, OfAnotherScaleIsScaledToTheImages) {
+    write_file(path("nav.csv"), "image,altitude_m,pitch_deg\na,2,5\n");
+    write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
+    write_rig("[64, 48]", kPitch_um);
+    ASSERT_EQ(correct_by_rig("own", levels({"--bayer", "RGGB"})).status, 0);
+    write_rig("[128, 96]", "68.53125");
+    const CommandResult scaled = correct_by_rig("scaled", levels({"--bayer", "RGGB"}));
+    ASSERT_EQ(scaled.status, 0) << scaled.err;
+    EXPECT_NE(scaled.out.find("rig of 128 x 96 pixels scaled to 64 x 48\n"), std::string::npos)
+        << scaled.out;
+    EXPECT_EQ(read_text_file(path("own/a.exr")), read_text_file(path("scaled/a.exr")));
+    const Json notes = Json::parse(read_text_file(path("scaled/correction.json")));
+    EXPECT_EQ(notes["settings"]["rig_scale"], 0.5);
+    write_rig("[128, 95]", "68.53125");
+    const CommandResult other = correct_by_rig("other", levels({"--bayer", "RGGB"}));
+    EXPECT_EQ(other.status, kBadInput);
+    EXPECT_NE(other.err.find("found 64 x 48 pixels; allowed: 128 x 95, as the map has"),
+              std::string::npos)
+        << other.err;
+}
+
+TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
+    write_file(path("qe.csv"), "wavelength_nm,quantum_efficiency\n400,0.3\n550,0.6\n720,0.2\n");
+    write_rig("[64, 48]", kPitch_um, "", "{ quantum_efficiency = \"qe.csv\" }");
+    write_file(path("nav.csv"), "image,altitude_m\na,2\n");
+    const CommandResult made =
+        run_aphotic(folder_.path(), {"lightmap", "rig.toml", "-o", "light.exr", "--altitude", "2"});
+    ASSERT_EQ(made.status, 0) << made.err;
+    const std::vector<float> red = samples("light.exr", {"R"});
+    EXPECT_EQ(samples("light.exr", {"G"}), red);
+    EXPECT_EQ(samples("light.exr", {"B"}), red);
+    const double times = 3000.0 / *std::max_element(red.begin(), red.end());
+    Numbers numbers;
+    for (const float light : red) {
+        numbers.push_back(static_cast<std::uint16_t>(std::lround(kBlack + times * light)));
+    }
+    write_tiff("a.tif", numbers, kWidth, kHeight);
+    const CommandResult result =
+        correct_by_rig("out", {"--black-level", "64", "--white-level", "4095", "--middle", "0.5"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("camera: mono, "), std::string::npos) << result.out;
+    const std::vector<float> image = samples("out/a.exr", {"Y"});
+    for (std::size_t i = 0; i < kPixels; ++i) {
+        const double number = numbers[i] - kBlack;
+        constexpr double kMapError = 1e-3;  // the middle image's own rounding among it
+        if (number < 100.0) continue;       // held where it is dark
+        EXPECT_NEAR(image[i], 0.5, 0.5 * (0.5 / number + kMapError)) << i;
+    }
+    const CommandResult colours = correct_by_rig("colours", {"--bayer", "RGGB"});
+    EXPECT_EQ(colours.status, kBadInput);
+    EXPECT_NE(colours.err.find(
+                  "--bayer: found RGGB, and the rig's camera has one response; allowed: mono"),
+              std::string::npos)
+        << colours.err;
+    write_rig("[64, 48]", kPitch_um);
+    const CommandResult mono = correct_by_rig("mono", {"--bayer", "mono"});
+    EXPECT_EQ(mono.status, kBadInput);
+    EXPECT_NE(mono.err.find("the rig's camera has responses of red, green and blue"),
+              std::string::npos)
+        << mono.err;
+}
+
+}  // namespace
+}  // namespace aphotic::survey_input_test
