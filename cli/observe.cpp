@@ -5,9 +5,9 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/navigation_options.h"
 #include "cli/options.h"
 #include "cli/survey_command.h"
-#include "survey/navigation_csv.h"
 #include "survey/observation.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,8 @@ namespace {
 
 struct ObserveCommandOptions {
     std::vector<std::string> images;
-    std::string navigation;
+    NavigationOptions navigation;
+    std::string rig;
     std::string output;
     CameraNumbers camera;
     ObservationOptions observation;
@@ -53,16 +54,18 @@ void print_observation(const Observation& observation, const std::string& map_fi
 }
 
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
-    const Survey survey{.files = image_files(options.images, options.output),
-                        .navigation = read_navigation_csv(options.navigation, Sled{}),
-                        .camera = options.camera};
+    Survey survey{.files = image_files(options.images, options.output), .camera = options.camera};
+    survey.navigation = read_navigation_with(options.rig, options.navigation, survey.files);
     const Observation observation =
         observe(survey, options.observation, terminal_watch(options.strict));
     write_observation(options.output, observation);
     if (options.json) {
-        fmt::print("{}", json_text(to_json(observation, options.output)));
+        nlohmann::ordered_json json = to_json(observation, options.output);
+        json["navigation"] = to_json(*survey.navigation->notes());
+        fmt::print("{}", json_text(json));
     } else {
         print_observation(observation, options.output);
+        print_navigation(survey.navigation);
     }
     return observation.skipped.empty() ? kDone : kAnswerIsNo;
 }
@@ -87,12 +90,8 @@ void add_average_options(CLI::App& app, ObservationOptions& options) {
 Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
     add_images(app, options->images);
-    app.add_option("--nav",
-                   options->navigation,
-                   "Where the sled was: CSV with the columns image and altitude_m, or HabCam's "
-                   "lines of name, altitude, pitch and roll")
-        ->type_name("FILE")
-        ->required();
+    add_navigation_options(app, options->navigation)->required();
+    add_navigation_rig(app, options->rig);
     app.add_option("-o,--output", options->output, "Write the map to this file")
         ->type_name("MAP.exr")
         ->required();

@@ -344,7 +344,7 @@ class RigReader {
     Rig read(Section top);
 
   private:
-    static Sled read_sled(Section section);
+    static Sled read_sled(Section section, Mounting& mounting);
     static Emitter read_emitter(Section& strobe);
     static Cone read_cone(Section& section);
     static BeamOptics read_optics(Section& section);
@@ -359,7 +359,7 @@ class RigReader {
     static void read_lens(Section& section, Camera& camera);
     TabulatedVignetting read_vignetting_table(Section& section);
     void read_vignetting(Section& camera_section, Camera& camera);
-    Camera read_camera(Section section);
+    Camera read_camera(Section section, Mounting& mounting);
     Sensor read_response(Section& camera);
     Sensor read_response_table(Section response);
     Water read_water(Section section);
@@ -439,7 +439,19 @@ Spectrum RigReader::curve(Section& section,
     return load_curve(absent, role, folder_);
 }
 
-Sled RigReader::read_sled(Section section) {
+// What navigation means by an altitude.
+void read_altitude_meaning(Section& sled, Mounting& mounting) {
+    mounting.altitude_offset_m = sled.number_or("altitude_offset_m", kPositionM, 0.0);
+    if (!sled.has("altitude_is")) return;
+    const std::string word =
+        sled.word("altitude_is", {kAltitudeWords.begin(), kAltitudeWords.end()});
+    mounting.altitude_is =
+        static_cast<AltitudeIs>(std::ranges::find(kAltitudeWords, word) - kAltitudeWords.begin());
+}
+
+Sled RigReader::read_sled(Section section, Mounting& mounting) {
+    // Before altitude_m, which they would else be taken for, misspelt.
+    read_altitude_meaning(section, mounting);
     const Sled sled{.altitude_m = section.number("altitude_m", kAltitudeM),
                     .pitch_rad = section.number_or("pitch_deg", kTiltDeg, 0.0) * kRadiansPerDegree,
                     .roll_rad = section.number_or("roll_deg", kTiltDeg, 0.0) * kRadiansPerDegree};
@@ -568,7 +580,18 @@ void RigReader::read_vignetting(Section& camera_section, Camera& camera) {
     });
 }
 
-Camera RigReader::read_camera(Section section) {
+// Where the camera is on the vehicle.
+void read_place(Section& camera, Mounting& mounting) {
+    if (camera.has("position_m"))
+        mounting.position_m = Eigen::Vector3d(camera.numbers<3>("position_m", kPositionM).data());
+    if (camera.has("orientation_deg")) {
+        mounting.roll_pitch_yaw_rad =
+            Eigen::Vector3d(camera.numbers<3>("orientation_deg", kTurnDeg).data()) *
+            kRadiansPerDegree;
+    }
+}
+
+Camera RigReader::read_camera(Section section, Mounting& mounting) {
     const auto resolution = section.numbers<2>("resolution", kResolutionPx);
     for (const double size : resolution) {
         if (size != std::floor(size))
@@ -590,6 +613,7 @@ Camera RigReader::read_camera(Section section) {
     read_lens(section, camera);
     if (section.has("vignetting")) read_vignetting(section, camera);
     if (section.has("port")) camera.port = read_port(section.section("port", "a table"));
+    read_place(section, mounting);
     section.refuse_unknown_keys();
     return camera;
 }
@@ -977,8 +1001,9 @@ std::vector<Strobe> RigReader::read_strobes(Section& top,
 
 Rig RigReader::read(Section top) {
     std::string title = top.text_or("title", "a text in quotes", "");
-    const Sled sled = read_sled(top.section("sled", "a table [sled]"));
-    Camera camera = read_camera(top.section("camera", "a table [camera]"));
+    Mounting mounting;
+    const Sled sled = read_sled(top.section("sled", "a table [sled]"), mounting);
+    Camera camera = read_camera(top.section("camera", "a table [camera]"), mounting);
     Water water = read_water(top.section("water", "a table [water]"));
     Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"));
 
@@ -995,6 +1020,7 @@ Rig RigReader::read(Section top) {
 
     Rig rig{.title = std::move(title),
             .sled = sled,
+            .mounting = mounting,
             .camera = std::move(camera),
             .water = std::move(water),
             .seafloor = std::move(seafloor),

@@ -45,6 +45,8 @@ Json settings_of(const Survey& survey, const BaselineRunOptions& options) {
               {"format", format.format},
               {"compression", name_of(format.compression)}};
     if (survey.camera.white_level) json["white_level"] = *survey.camera.white_level;
+    if (survey.navigation && survey.navigation->notes())
+        json["navigation"] = to_json(*survey.navigation->notes());
     return json;
 }
 
