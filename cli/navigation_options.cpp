@@ -123,6 +123,14 @@ CLI::Option* add_navigation_options(CLI::App& app, NavigationOptions& options) {
     add_columns(app, options);
     add_times(app, options);
     add_altitude_meaning(app, options);
+    for (const char* name : {"--columns",
+                             "--angles-in",
+                             "--image-time",
+                             "--clock-offset-s",
+                             "--longest-gap-s",
+                             "--altitude-is",
+                             "--altitude-offset-m"})
+        app.get_option(name)->needs(nav);
     return nav;
 }
 

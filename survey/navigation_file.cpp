@@ -63,8 +63,19 @@ std::vector<std::pair<std::string, std::string>> in_our_order(const ColumnNames&
     return ordered;
 }
 
+// What is said of times in vain would be thought to count.
+void require_no_times(const NavigationOptions& options) {
+    if (options.time_mask.empty() && options.clock_offset_s == 0.0) return;
+    throw InputError(
+        "{}: {} found, but its poses are of images and not of times; allowed with poses over time, "
+        "for which --columns time=COLUMN asks",
+        options.source,
+        options.time_mask.empty() ? "--clock-offset-s" : "--image-time");
+}
+
 Navigation navigation_in_tags(const NavigationOptions& options,
                               const std::vector<ImageFile>& files) {
+    require_no_times(options);
     const ColumnNames names = tag_names(options.columns);
     const auto read = [&](const std::filesystem::path& image, ImagePose& pose) {
         require_file(image);
@@ -137,6 +148,7 @@ Navigation navigation_of_table(std::string_view text,
                           .roll = columns.place(NavigationField::Roll).has_value()};
     if (columns.is_track())
         return navigation_by_time(table, options, files, mounting, told, std::move(notes));
+    require_no_times(options);
     std::vector<ImagePose> poses;
     for (const NavigationRow& row : table.rows) poses.push_back(row.pose);
     Navigation navigation(options.source, poses, told);

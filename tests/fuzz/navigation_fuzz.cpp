@@ -28,9 +28,10 @@ void read(const std::string& text, const aphotic::NavigationOptions& options) {
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    aphotic::NavigationOptions options{.source = "survey.csv",
-                                       .time_mask = "xxxxxxxxxxxxYYYYMMDDxhhmmss"};
     const std::string text = aphotic::text_of(data, size);
+    aphotic::NavigationOptions options{.source = "survey.csv"};
+    read(text, options);
+    options.time_mask = "xxxxxxxxxxxxYYYYMMDDxhhmmss";
     read(text, options);
     options.columns = {{"altitude_m", "alt2"}, {"time", "t"}};
     options.angles_in = aphotic::AngleUnit::Radians;

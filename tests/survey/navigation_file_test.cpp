@@ -247,6 +247,14 @@ TEST(NavigationFile, ColumnsMayAskForTimesInsteadOfNames) {
     EXPECT_TRUE(nav.notes()->times.has_value());
 }
 
+TEST(NavigationFile, TimesThatAreSaidInVainAreRefused) {
+    EXPECT_EQ(refusal("a.tif 2 0 0\n", {.clock_offset_s = 1.0}),
+              "nav: --clock-offset-s found, but its poses are of images and not of times; allowed "
+              "with poses over time, for which --columns time=COLUMN asks");
+    EXPECT_TRUE(
+        refusal(kOplab, {.time_mask = std::string(kMask)}).starts_with("nav: --image-time"));
+}
+
 // --- In the images' tags ---------------------------------------------------------------------
 
 class TagsOfImages : public testing::Test {
