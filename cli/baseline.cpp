@@ -4,11 +4,11 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/navigation_options.h"
 #include "cli/options.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "survey/baseline_run.h"
-#include "survey/navigation_csv.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,7 +23,7 @@ namespace {
 struct BaselineCommandOptions {
     std::string name;
     std::vector<std::string> images;
-    std::string navigation;
+    NavigationOptions navigation;
     std::string rig;
     CameraNumbers camera;
     BaselineRunOptions baseline;
@@ -37,8 +37,8 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
     const std::filesystem::path& folder = options.baseline.run.folder;
     Survey survey{.files = image_files(options.images, folder), .camera = options.camera};
     survey.camera = camera_of(survey.camera, survey.files, options.rig);
-    if (needs_altitude(options.baseline.baseline) && !options.navigation.empty()) {
-        survey.navigation = read_navigation_csv(options.navigation, Sled{});
+    if (needs_altitude(options.baseline.baseline) && !options.navigation.source.empty()) {
+        survey.navigation = read_navigation_with(options.rig, options.navigation, survey.files);
     }
     set_exr_threads(0);  // the images themselves are spread over the threads
     const BaselineReport report =
@@ -54,6 +54,7 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
                    run.kept > 0 ? fmt::format("{} kept as they were, ", run.kept) : "",
                    run.skipped.size());
         print_camera(survey.camera);
+        print_navigation(survey.navigation);
     }
     return run.skipped.empty() ? kDone : kAnswerIsNo;
 }
@@ -95,12 +96,9 @@ Action configure_baseline(CLI::App& app) {
         ->required();
     add_images(app, options->images);
     add_output_folder(app, options->baseline.run.folder)->required();
-    app.add_option("--nav",
-                   options->navigation,
-                   "Altitude of each image, for binned-polynomial; as for observe")
-        ->type_name("FILE");
+    add_navigation_options(app, options->navigation);
     add_baseline_options(app, options->baseline.settings);
-    add_rig_of_camera(app, options->rig);
+    add_survey_rig(app, options->rig);
     add_camera_options(app, options->camera);
     add_white_level_option(app, options->camera);
     add_format_options(app, options->baseline.run.format);

@@ -6,13 +6,13 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/navigation_options.h"
 #include "cli/options.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
 #include "survey/camera_of_files.h"
 #include "survey/correction_run.h"
-#include "survey/navigation_csv.h"
 
 #include <fmt/format.h>
 #ifdef __GLIBC__
@@ -28,7 +28,7 @@ namespace {
 struct CorrectCommandOptions {
     std::vector<std::string> images;
     std::string rig;
-    std::string nav;
+    NavigationOptions navigation;
     std::string map;
     CameraNumbers camera;
     std::vector<double> altitudes_m;
@@ -88,7 +88,7 @@ Survey survey_of(const CorrectCommandOptions& options) {
     if (options.rig.empty() == options.map.empty()) {
         throw InputError("--rig with --nav, or --map: one of them is needed");
     }
-    if (options.rig.empty() != options.nav.empty()) {
+    if (options.rig.empty() != options.navigation.source.empty()) {
         throw InputError("--rig and --nav go together: the map depends on where the sled was");
     }
     const std::vector<double>& altitudes_m = options.altitudes_m;
@@ -107,8 +107,12 @@ Survey survey_of(const CorrectCommandOptions& options) {
     survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
     const std::optional<PlaneSize> images = usual_size(survey.files, survey.camera);
     const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
-    survey.navigation = read_navigation_csv(options.nav, rig.sled);
-    if (!altitudes_m.empty()) survey.navigation->limit_altitude(altitudes_m[0], altitudes_m[1]);
+    NavigationOptions navigation = options.navigation;
+    if (!altitudes_m.empty()) {
+        navigation.least_altitude_m = altitudes_m[0];
+        navigation.most_altitude_m = altitudes_m[1];
+    }
+    survey.navigation = read_navigation(navigation, survey.files, &rig);
     survey.light =
         naming(options.rig, [&] { return light_of_rig(rig, *survey.navigation, survey.files); });
     survey.light.rig_size = own;
@@ -125,17 +129,14 @@ ExitStatus correct(const CorrectCommandOptions& options) {
         fmt::print("{}", json_text(to_json(report)));
     } else {
         print_report(report, survey, options.correction.run.folder);
+        print_navigation(survey.navigation);
     }
     return report.run->skipped.empty() ? kDone : kAnswerIsNo;
 }
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
     app.add_option("--rig", options.rig, "The rig that took the images")->type_name("RIG");
-    app.add_option("--nav",
-                   options.nav,
-                   "Altitude, pitch and roll of each image: CSV with the columns image, "
-                   "altitude_m, pitch_deg, roll_deg, or lines of these four without a header")
-        ->type_name("FILE");
+    add_navigation_options(app, options.navigation);
     app.add_option(
            "--map", options.map, "Use one lightmap (EXR) for all images instead of --rig and --nav")
         ->type_name("FILE");

@@ -5,9 +5,9 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/navigation_options.h"
 #include "cli/options.h"
 #include "cli/survey_command.h"
-#include "survey/navigation_csv.h"
 #include "survey/observation.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ namespace {
 
 struct ObserveCommandOptions {
     std::vector<std::string> images;
-    std::string navigation;
+    NavigationOptions navigation;
     std::string rig;
     std::string output;
     CameraNumbers camera;
@@ -54,20 +54,21 @@ void print_observation(const Observation& observation, const std::string& map_fi
 }
 
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
-    Survey survey{.files = image_files(options.images, options.output),
-                  .navigation = read_navigation_csv(options.navigation, Sled{}),
-                  .camera = options.camera};
+    Survey survey{.files = image_files(options.images, options.output), .camera = options.camera};
     survey.camera = camera_of(survey.camera, survey.files, options.rig);
+    survey.navigation = read_navigation_with(options.rig, options.navigation, survey.files);
     const Observation observation =
         observe(survey, options.observation, terminal_watch(options.strict));
     write_observation(options.output, observation);
     if (options.json) {
-        auto json = to_json(observation, options.output);
+        nlohmann::ordered_json json = to_json(observation, options.output);
         json["camera"] = to_json(survey.camera);
+        json["navigation"] = to_json(*survey.navigation->notes());
         fmt::print("{}", json_text(json));
     } else {
         print_observation(observation, options.output);
         print_camera(survey.camera);
+        print_navigation(survey.navigation);
     }
     return observation.skipped.empty() ? kDone : kAnswerIsNo;
 }
@@ -92,12 +93,7 @@ void add_average_options(CLI::App& app, ObservationOptions& options) {
 Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
     add_images(app, options->images);
-    app.add_option("--nav",
-                   options->navigation,
-                   "Where the sled was: CSV with the columns image and altitude_m, or HabCam's "
-                   "lines of name, altitude, pitch and roll")
-        ->type_name("FILE")
-        ->required();
+    add_navigation_options(app, options->navigation)->required();
     app.add_option("-o,--output", options->output, "Write the map to this file")
         ->type_name("MAP.exr")
         ->required();
@@ -112,7 +108,7 @@ Action configure_observe(CLI::App& app) {
         ->check(not_negative())
         ->capture_default_str();
     add_average_options(app, options->observation);
-    add_rig_of_camera(app, options->rig);
+    add_survey_rig(app, options->rig);
     add_camera_options(app, options->camera);
     app.add_option("--memory",
                    options->observation.memory_mb,

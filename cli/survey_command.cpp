@@ -128,11 +128,12 @@ void add_format_options(CLI::App& app, ResultFormat& format) {
         ->default_str("fast");
 }
 
-void add_rig_of_camera(CLI::App& app, std::string& rig) {
+void add_survey_rig(CLI::App& app, std::string& rig) {
     app.add_option(
            "--rig",
            rig,
-           "Take what is not given of --bayer, levels and exposure from this rig's [camera]")
+           "Take from this rig what is not given of the camera: its pattern, levels, exposure, and "
+           "its place on the vehicle")
         ->type_name("RIG");
 }
 

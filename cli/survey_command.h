@@ -21,7 +21,7 @@ void add_camera_options(CLI::App& app, CameraNumbers& camera);
 void add_white_level_option(CLI::App& app, CameraNumbers& camera);
 void add_format_options(CLI::App& app, ResultFormat& format);  // --mask, --format, --compression
 // --rig, where the rig tells of its camera alone.
-void add_rig_of_camera(CLI::App& app, std::string& rig);
+void add_survey_rig(CLI::App& app, std::string& rig);
 
 // What the options say, then what the rig's camera says, if there is one, then the files. An
 // InputError where these contradict each other, or have no such crop.

@@ -15,6 +15,13 @@ AnyImage open_any_image(const std::filesystem::path& file) {
     return image;
 }
 
+std::map<std::string, std::string> image_tags(const std::filesystem::path& file) {
+    using Read = void (*)(const std::filesystem::path&, std::map<std::string, std::string>&);
+    std::map<std::string, std::string> tags;
+    from_part<Read>("aphotic_image_tags")(file, tags);
+    return tags;
+}
+
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image) {
     using Write = void (*)(const std::filesystem::path&, const WrittenImage&);
     AtomicFile destination(file);

@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,10 @@ struct AnyImage {
 // InputError, also when its samples are asked for; a program installed without the part, a
 // RunError.
 [[nodiscard]] AnyImage open_any_image(const std::filesystem::path& file);
+
+// What the file says of itself, by the names that OpenImageIO has for it, such as
+// "Exif:DateTimeOriginal". Of the file its header alone is read. An InputError when it has none.
+[[nodiscard]] std::map<std::string, std::string> image_tags(const std::filesystem::path& file);
 
 // Planes as an image, in the format that the file's extension names, whole or not there. Integers
 // are 0 to 1 over their range, rounded and clipped. What cannot be written is a RunError.

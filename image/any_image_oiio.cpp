@@ -15,6 +15,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -152,6 +153,15 @@ extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
     image.full_scale = full_scale_of(spec);
     image.description = spec.get_string_attribute("ImageDescription");
     image.date_time = spec.get_string_attribute("DateTime");
+}
+
+extern "C" void aphotic_image_tags(const std::filesystem::path& file,
+                                   std::map<std::string, std::string>& tags) {
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
+    if (!input) refuse(file, OIIO::geterror());
+    for (const OIIO::ParamValue& tag : input->spec().extra_attribs) {
+        tags[tag.name().string()] = tag.get_string();
+    }
 }
 
 extern "C" void aphotic_write_any_image(const std::filesystem::path& file,

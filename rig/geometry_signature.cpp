@@ -102,9 +102,11 @@ void add_object(const Object& object, Signature& all) {
 }  // namespace
 
 Signature geometry_signature(const Rig& rig) {
-    // A user's own scene is told by its files (spectral/manifest.h).
+    // A user's own scene is told by its files (spectral/manifest.h). The mounting is of the
+    // navigation: frames are of the camera's own pose.
     const auto& [title,
                  sled,
+                 mounting,
                  camera,
                  water,
                  floor,

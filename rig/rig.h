@@ -23,6 +23,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -45,6 +46,20 @@ struct Readout {
     std::optional<double> exposure_ms{};
     std::optional<double> iso{};
     std::optional<double> f_number{};
+};
+
+// What an altitude of the navigation is: along the axis of the frame that pitch and roll tilt, the
+// vertical height, or the distance to the nearest point of the floor.
+enum class AltitudeIs { Axis, Plumb, Nearest };
+inline constexpr std::array<std::string_view, 3> kAltitudeWords{"axis", "plumb", "nearest"};
+
+// How the pose that the navigation tells is the camera's (survey/vehicle_pose.h). The vehicle's
+// frame: x forward, y starboard, z down. All else in a rig is relative to the camera.
+struct Mounting {
+    AltitudeIs altitude_is = AltitudeIs::Axis;
+    double altitude_offset_m = 0.0;                                // added to altitudes
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();          // of the pupil
+    Eigen::Vector3d roll_pitch_yaw_rad = Eigen::Vector3d::Zero();  // of the camera
 };
 
 struct Camera {
@@ -121,6 +136,7 @@ struct RigFile {
 struct Rig {
     std::string title;
     Sled sled;
+    Mounting mounting{};
     Camera camera;
     Water water;
     Seafloor seafloor;

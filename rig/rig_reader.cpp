@@ -348,7 +348,7 @@ class RigReader {
     Rig read(Section top);
 
   private:
-    static Sled read_sled(Section section);
+    static Sled read_sled(Section section, Mounting& mounting);
     static Emitter read_emitter(Section& strobe);
     static Cone read_cone(Section& section);
     static BeamOptics read_optics(Section& section);
@@ -370,7 +370,7 @@ class RigReader {
     TabulatedVignetting read_vignetting_table(Section& section);
     void read_vignetting(Section& camera_section, Camera& camera);
     static Readout read_readout(Section& camera, bool is_mono);
-    Camera read_camera(Section section);
+    Camera read_camera(Section section, Mounting& mounting);
     Sensor read_response(Section& camera);
     Sensor read_response_table(Section response);
     Water read_water(Section section);
@@ -450,7 +450,19 @@ Spectrum RigReader::curve(Section& section,
     return load_curve(absent, role, folder_);
 }
 
-Sled RigReader::read_sled(Section section) {
+// What navigation means by an altitude.
+void read_altitude_meaning(Section& sled, Mounting& mounting) {
+    mounting.altitude_offset_m = sled.number_or("altitude_offset_m", kPositionM, 0.0);
+    if (!sled.has("altitude_is")) return;
+    const std::string word =
+        sled.word("altitude_is", {kAltitudeWords.begin(), kAltitudeWords.end()});
+    mounting.altitude_is =
+        static_cast<AltitudeIs>(std::ranges::find(kAltitudeWords, word) - kAltitudeWords.begin());
+}
+
+Sled RigReader::read_sled(Section section, Mounting& mounting) {
+    // Before altitude_m, which they would else be taken for, misspelt.
+    read_altitude_meaning(section, mounting);
     const Sled sled{.altitude_m = section.number("altitude_m", kAltitudeM),
                     .pitch_rad = section.number_or("pitch_deg", kTiltDeg, 0.0) * kRadiansPerDegree,
                     .roll_rad = section.number_or("roll_deg", kTiltDeg, 0.0) * kRadiansPerDegree};
@@ -644,6 +656,17 @@ void RigReader::read_vignetting(Section& camera_section, Camera& camera) {
     });
 }
 
+// Where the camera is on the vehicle.
+void read_place(Section& camera, Mounting& mounting) {
+    if (camera.has("position_m"))
+        mounting.position_m = Eigen::Vector3d(camera.numbers<3>("position_m", kPositionM).data());
+    if (camera.has("orientation_deg")) {
+        mounting.roll_pitch_yaw_rad =
+            Eigen::Vector3d(camera.numbers<3>("orientation_deg", kTurnDeg).data()) *
+            kRadiansPerDegree;
+    }
+}
+
 // What no render needs, and surveys do.
 Readout RigReader::read_readout(Section& camera, bool is_mono) {
     const auto optional = [&](std::string_view key, Bounds bounds) {
@@ -667,7 +690,7 @@ Readout RigReader::read_readout(Section& camera, bool is_mono) {
     return readout;
 }
 
-Camera RigReader::read_camera(Section section) {
+Camera RigReader::read_camera(Section section, Mounting& mounting) {
     section.refuse_keys_but({"resolution",
                              "pixel_pitch_um",
                              "focal_length_mm",
@@ -682,7 +705,9 @@ Camera RigReader::read_camera(Section section) {
                              "bayer",
                              "exposure_ms",
                              "iso",
-                             "f_number"});
+                             "f_number",
+                             "position_m",
+                             "orientation_deg"});
     const std::optional<CameraCalibration> calibration = read_calibration(section);
     const auto [width_px, height_px] = read_size(section, calibration);
     Sensor sensor = read_response(section);
@@ -708,6 +733,7 @@ Camera RigReader::read_camera(Section section) {
     } else if (section.has("port")) {
         camera.port = read_port(section.section("port", "a table"));
     }
+    read_place(section, mounting);
     return camera;
 }
 
@@ -1094,8 +1120,9 @@ std::vector<Strobe> RigReader::read_strobes(Section& top,
 
 Rig RigReader::read(Section top) {
     std::string title = top.text_or("title", "a text in quotes", "");
-    const Sled sled = read_sled(top.section("sled", "a table [sled]"));
-    Camera camera = read_camera(top.section("camera", "a table [camera]"));
+    Mounting mounting;
+    const Sled sled = read_sled(top.section("sled", "a table [sled]"), mounting);
+    Camera camera = read_camera(top.section("camera", "a table [camera]"), mounting);
     Water water = read_water(top.section("water", "a table [water]"));
     Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"));
 
@@ -1112,6 +1139,7 @@ Rig RigReader::read(Section top) {
 
     Rig rig{.title = std::move(title),
             .sled = sled,
+            .mounting = mounting,
             .camera = std::move(camera),
             .water = std::move(water),
             .seafloor = std::move(seafloor),

@@ -42,6 +42,8 @@ Json settings_of(const Survey& survey, const BaselineRunOptions& options) {
               {"format", format.format},
               {"compression", name_of(format.compression)}};
     json.update(to_json(survey.camera));
+    if (survey.navigation && survey.navigation->notes())
+        json["navigation"] = to_json(*survey.navigation->notes());
     return json;
 }
 

@@ -44,6 +44,8 @@ Json settings_of(const Survey& survey, const CorrectionOptions& options) {
               {"mask", format.mask},
               {"format", format.format},
               {"compression", name_of(format.compression)}};
+    if (survey.navigation && survey.navigation->notes())
+        json["navigation"] = to_json(*survey.navigation->notes());
     if (options.gain.empty()) json["gain_images"] = options.gain_images;
     if (options.read_noise) json["read_noise"] = *options.read_noise;
     json.update(to_json(survey.camera));

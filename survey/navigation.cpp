@@ -4,6 +4,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "survey/image_files.h"
+#include "survey/vehicle_pose.h"
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ constexpr Bounds kAltitude_m{0.001, 10000.0};
 constexpr Bounds kTilt_deg{-89.9, 89.9};
 
 // The file's name without its folder, of either kind of slash, and without an image's extension.
-std::string key_of(std::string_view image) {
+std::string name_in(std::string_view image) {
     const std::size_t slash = image.find_last_of("/\\");
     if (slash != std::string_view::npos) image.remove_prefix(slash + 1);
     return without_extension(image).string();
@@ -35,25 +36,32 @@ std::string key_of(std::string_view image) {
     throw InputError("{}: {}", source, what);
 }
 
-void require(const std::string& source,
-             const ImagePose& pose,
-             std::string_view what,
-             double value,
-             const Bounds& bounds) {
-    if (value >= bounds.least && value <= bounds.most) return;
-    fail_at_pose(source,
-                 pose,
-                 fmt::format("{}: found {}; allowed: {} to {}",
-                             what,
-                             std::isnan(value) ? "no number" : fmt::format("{:.6g}", value),
-                             bounds.least,
-                             bounds.most));
+std::string fault_in(std::string_view what, double value, const Bounds& bounds) {
+    if (value >= bounds.least && value <= bounds.most) return "";
+    return fmt::format("{}: found {}; allowed: {} to {}",
+                       what,
+                       std::isnan(value) ? "no number" : fmt::format("{:.6g}", value),
+                       bounds.least,
+                       bounds.most);
 }
 
 }  // namespace
 
-Navigation::Navigation(std::string source, const std::vector<ImagePose>& poses, ToldAngles told)
-    : source_(std::move(source)), told_(told) {
+std::string fault_of(const Sled& sled) {
+    for (const std::string& fault :
+         {fault_in("altitude_m", sled.altitude_m, kAltitude_m),
+          fault_in("pitch_deg", sled.pitch_rad / kRadiansPerDegree, kTilt_deg),
+          fault_in("roll_deg", sled.roll_rad / kRadiansPerDegree, kTilt_deg)}) {
+        if (!fault.empty()) return fault;
+    }
+    return "";
+}
+
+Navigation::Navigation(std::string source,
+                       const std::vector<ImagePose>& poses,
+                       ToldAngles told,
+                       ImagesKnownBy known_by)
+    : source_(std::move(source)), told_(told), known_by_(known_by) {
     for (const ImagePose& pose : poses) {
         if (pose.image.empty()) {
             if (nameless_line_ == 0) nameless_line_ = pose.line;
@@ -69,6 +77,10 @@ Navigation::Navigation(std::string source, const std::vector<ImagePose>& poses, 
     }
 }
 
+std::string Navigation::key_of(const std::string& image) const {
+    return known_by_ == ImagesKnownBy::Path ? image : name_in(image);
+}
+
 const ImagePose& Navigation::pose_of(const std::filesystem::path& image) const {
     const auto found = poses_.find(key_of(image.string()));
     if (found == poses_.end()) {
@@ -80,9 +92,8 @@ const ImagePose& Navigation::pose_of(const std::filesystem::path& image) const {
     const ImagePose& pose = found->second;
     const Sled& sled = pose.sled;
     if (!pose.fault.empty()) fail_at_pose(source_, pose, pose.fault);
-    require(source_, pose, "altitude_m", sled.altitude_m, kAltitude_m);
-    require(source_, pose, "pitch_deg", sled.pitch_rad / kRadiansPerDegree, kTilt_deg);
-    require(source_, pose, "roll_deg", sled.roll_rad / kRadiansPerDegree, kTilt_deg);
+    const std::string fault = fault_of(sled);
+    if (!fault.empty()) fail_at_pose(source_, pose, fault);
     if (sled.altitude_m < least_m_ || sled.altitude_m > most_m_) {
         throw InputError("altitude_m: found {}; allowed by --altitude: {} to {}",
                          sled.altitude_m,
@@ -90,6 +101,18 @@ const ImagePose& Navigation::pose_of(const std::filesystem::path& image) const {
                          most_m_);
     }
     return pose;
+}
+
+void Navigation::mount(const Mounting& mounting) {
+    for (auto& [key, pose] : poses_) {
+        // Of the vehicle: what no vehicle can have is said in its own numbers.
+        if (!pose.fault.empty() || !fault_of(pose.sled).empty()) continue;
+        try {
+            pose.sled = camera_pose(pose.sled, mounting);
+        } catch (const InputError& error) {
+            pose.fault = error.what();
+        }
+    }
 }
 
 void Navigation::limit_altitude(double least_m, double most_m) {

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where the sled was when each image was taken. It is made of poses, by the reader of a file format
-// (navigation_csv.h) or by any program that knows them.
+// Where the sled was when each image was taken. It is made of poses, by the reader of navigation
+// (navigation_file.h) or by any program that knows them.
 //
 //   altitude  along the camera's axis      pitch  positive bow up      roll  positive starboard
 //   down
 //
 // An image is known by its file name without folder and without an image's extension, so that a
-// pose still holds when raw images were converted. An image that stands twice has no pose.
+// pose still holds when raw images were converted; or, where poses are of the files themselves, by
+// its path. An image that stands twice has no pose.
 #pragma once
 
 #include "rig/rig.h"
+#include "survey/navigation_notes.h"
 
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -35,15 +39,26 @@ struct ToldAngles {
     bool roll = true;
 };
 
+// Why no sled has this pose, as with the zeros and NaN of an altimeter that lost the floor; or
+// empty.
+[[nodiscard]] std::string fault_of(const Sled& sled);
+
+enum class ImagesKnownBy { Name, Path };
+
 class Navigation {
   public:
     // source stands in messages, such as the file's name.
-    Navigation(std::string source, const std::vector<ImagePose>& poses, ToldAngles told = {});
+    Navigation(std::string source,
+               const std::vector<ImagePose>& poses,
+               ToldAngles told = {},
+               ImagesKnownBy known_by = ImagesKnownBy::Name);
 
     // The pose of an image file. An InputError when there is none, it has a fault, or its numbers
-    // are none that a sled can have, such as the zeros and NaN of an altimeter that lost the floor:
-    // that is of one image, and the others can do without it.
+    // are none that a sled can have: that is of one image, and the others can do without it.
     [[nodiscard]] const ImagePose& pose_of(const std::filesystem::path& image) const;
+
+    // From now on poses, which were the vehicle's, are the camera's.
+    void mount(const Mounting& mounting);
 
     // From now on an image from beyond has no pose.
     void limit_altitude(double least_m, double most_m);
@@ -51,9 +66,17 @@ class Navigation {
     [[nodiscard]] std::size_t size() const { return poses_.size(); }
     [[nodiscard]] const ToldAngles& told() const { return told_; }
 
+    // None when no reader told.
+    [[nodiscard]] const std::optional<NavigationNotes>& notes() const { return notes_; }
+    void note(NavigationNotes notes) { notes_ = std::move(notes); }
+
   private:
+    [[nodiscard]] std::string key_of(const std::string& image) const;
+
     std::string source_;
     ToldAngles told_;
+    ImagesKnownBy known_by_;
+    std::optional<NavigationNotes> notes_{};
     std::size_t nameless_line_ = 0;  // the first; 0: none
     double least_m_ = 0.0;
     double most_m_ = std::numeric_limits<double>::infinity();

@@ -161,6 +161,26 @@ TEST(RigReader, ConvertsDegreesToRadians) {
     EXPECT_NEAR(narrow.strobes[0].beam.cones[0].half_angle_rad, kPi / 3.0, kRounding);
 }
 
+TEST(RigReader, ReadsWhatNavigationIsTakenFor) {
+    const Mounting none = parse(kMinimal).mounting;
+    EXPECT_EQ(none.altitude_is, AltitudeIs::Axis);
+    EXPECT_EQ(none.altitude_offset_m, 0.0);
+    EXPECT_EQ(none.position_m, Eigen::Vector3d::Zero());
+    EXPECT_EQ(none.roll_pitch_yaw_rad, Eigen::Vector3d::Zero());
+    std::string text =
+        with(2, "altitude_m = 2\naltitude_is = \"plumb\"\naltitude_offset_m = -0.35");
+    text.replace(text.find("[camera]\n"),
+                 9,
+                 "[camera]\nposition_m = [0.5, -0.25, 0.125]\norientation_deg = [0, 30, -90]\n");
+    const Mounting told = parse(text).mounting;
+    EXPECT_EQ(told.altitude_is, AltitudeIs::Plumb);
+    EXPECT_EQ(told.altitude_offset_m, -0.35);
+    expect_vector(told.position_m, {0.5, -0.25, 0.125});
+    expect_vector(told.roll_pitch_yaw_rad, {0.0, kPi / 6.0, -kPi / 2.0});
+    EXPECT_EQ(parse(with(2, "altitude_m = 2\naltitude_is = \"nearest\"")).mounting.altitude_is,
+              AltitudeIs::Nearest);
+}
+
 TEST(RigReader, ReadsAConesExponent) {
     EXPECT_EQ(parse(kMinimal).strobes[0].beam.cones[0].exponent, 1.0);
     const Rig steep = parse(
@@ -373,6 +393,20 @@ TEST(RigReader, ChecksTheNumbersThatMayBeLeftOut) {
              {"[sled]",
               "roll_deg = -90",
               "sled.roll_deg: found -90; allowed: a number from -89.9 to 89.9"},
+             {"[sled]",
+              "altitude_is = \"echo\"",
+              "sled.altitude_is: found 'echo'; allowed: \"axis\" or \"plumb\" or \"nearest\""},
+             {"[sled]",
+              "altitude_offset_m = 1001",
+              "sled.altitude_offset_m: found 1001; allowed: a number from -1000 to 1000"},
+             {"[camera]",
+              "position_m = [0, 0]",
+              "camera.position_m: found [0, 0]; allowed: an array of 3 numbers, each from -1000 to "
+              "1000"},
+             {"[camera]",
+              "orientation_deg = [0, 361, 0]",
+              "camera.orientation_deg: found [0, 361, 0]; allowed: an array of 3 numbers, each "
+              "from -360 to 360"},
              {"[water]",
               "multiple = -1",
               "water.multiple: found -1; allowed: a number from 0 to 1000000"},
@@ -624,7 +658,7 @@ TEST(RigReader, UnknownKeyNamesTheNearest) {
         "camera, water, seafloor, beam, strobe, materials, object, scene");
     EXPECT_EQ(error_of(with(2, "altitude_m = 2\nrol_deg = 1")),
               "rig.toml:3: sled.rol_deg: is not a known key; did you mean 'roll_deg'? Known here: "
-              "altitude_m, pitch_deg, roll_deg");
+              "altitude_offset_m, altitude_is, altitude_m, pitch_deg, roll_deg");
     EXPECT_EQ(
         error_of(with(9, "[water]\nsalinity_ppt = 35")),
         "rig.toml:10: water.salinity_ppt: is not a known key; did you mean 'salinity_psu'? Known "
@@ -672,8 +706,8 @@ TEST(RigReader, UnknownKeysAreFoundInEveryTable) {
 
 TEST(RigReader, UnknownKeyFarFromAllListsTheKnown) {
     EXPECT_EQ(error_of(with(2, "altitude_m = 2\nxyzzy = 1")),
-              "rig.toml:3: sled.xyzzy: is not a known key. Known here: altitude_m, pitch_deg, "
-              "roll_deg");
+              "rig.toml:3: sled.xyzzy: is not a known key. Known here: altitude_offset_m, "
+              "altitude_is, altitude_m, pitch_deg, roll_deg");
 }
 
 // The slip of the pen that is made most: a key that must be there, misspelt.

@@ -4,7 +4,9 @@
 #include "survey/navigation_csv.h"
 
 #include "base/error.h"
+#include "rig/rig_reader.h"
 #include "support/temp_folder.h"
+#include "survey/navigation_file.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +18,17 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 const Sled kRigSled{.altitude_m = 2.0, .pitch_rad = 5.0 * kDegree, .roll_rad = 1.0 * kDegree};
 
+const Rig& rig() {
+    static const Rig kRig = [] {
+        Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+        rig.sled = kRigSled;
+        return rig;
+    }();
+    return kRig;
+}
+
 Navigation parsed(std::string_view text) {
-    return parse_navigation_csv("nav.csv", text, kRigSled);
+    return parse_navigation(text, {.source = "nav.csv"}, {}, &rig());
 }
 
 template <typename Function>
@@ -52,9 +63,11 @@ TEST(NavigationCsv, ColumnsStandInAnyOrderAmongOthers) {
 // Of a misspelt column the rig's own attitude would be taken, and nobody be told.
 TEST(NavigationCsv, AnAttitudeUnderAnotherNameIsRefused) {
     EXPECT_EQ(fault_in("image,altitude_m,pitch,roll_deg\na.tif,2,1,0\n"),
-              "nav.csv:1: found the column 'pitch'; allowed: 'pitch_deg'");
+              "nav.csv:1: found the column 'pitch'; allowed: 'pitch_deg', or --columns "
+              "pitch_deg='pitch'");
     EXPECT_EQ(fault_in("image,altitude_m,roll_rad\na.tif,2,1\n"),
-              "nav.csv:1: found the column 'roll_rad'; allowed: 'roll_deg'");
+              "nav.csv:1: found the column 'roll_rad'; allowed: 'roll_deg', or --columns "
+              "roll_deg='roll_rad'");
 }
 
 TEST(NavigationCsv, HabCamLinesHaveNoHeader) {
@@ -80,6 +93,18 @@ TEST(NavigationCsv, AnImageIsKnownByItsNameWithoutFolderAndExtension) {
     EXPECT_EQ(nav.pose_of("20120623.171552346.1220.tif").sled.altitude_m, 2.5);
     EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("20120623.171552346.tif")); }),
               "nav.csv has no line for it");
+}
+
+// A comma within quotes parts no fields.
+TEST(NavigationCsv, FieldsMayStandInQuotes) {
+    const Navigation nav = parsed(
+        "image,\"altitude_m\",place\n"
+        "\"a.tif\", \"1.5\" ,\"Georges Bank, north\"\n"
+        "b.tif,2.5,\"an end that is open\n"
+        "c.tif,3.5,\"\"\n");
+    EXPECT_EQ(nav.pose_of("a.tif").sled.altitude_m, 1.5);
+    EXPECT_EQ(nav.pose_of("b.tif").sled.altitude_m, 2.5);
+    EXPECT_EQ(nav.pose_of("c.tif").sled.altitude_m, 3.5);
 }
 
 TEST(NavigationCsv, ByteOrderMarkAndWindowsLinesAreNoMatter) {
@@ -155,7 +180,7 @@ TEST(NavigationCsv, ALineThatCannotBeUnderstoodCostsItsOwnImageAlone) {
 TEST(NavigationCsv, FaultsOfTheHeaderNameFileAndLine) {
     EXPECT_EQ(fault_in("image,altitude\na.tif,2\n"),
               "nav.csv:1: found the columns image,altitude; needed: 'altitude_m' (is it "
-              "'altitude'?); allowed besides: pitch_deg, roll_deg");
+              "'altitude'?), or --columns altitude_m=NAME");
     EXPECT_EQ(fault_in("image,altitude_m,altitude_m\n"),
               "nav.csv:1: the column 'altitude_m' stands twice");
     EXPECT_EQ(fault_in("# nothing\n"), "nav.csv:2: the file ends without a line of an image");
@@ -168,10 +193,10 @@ TEST(NavigationCsv, FilesAreReadAndNamed) {
     const auto file = folder.path() / "nav.csv";
     write_file(file, "image,altitude\n");
     EXPECT_TRUE(fault_of([&] {
-                    static_cast<void>(read_navigation_csv(file, kRigSled));
+                    static_cast<void>(read_navigation({.source = file.string()}, {}, &rig()));
                 }).starts_with(file.string() + ":1: found the columns"));
     write_file(file, "a.tif 2 0 0\n");
-    EXPECT_EQ(read_navigation_csv(file, kRigSled).size(), 1U);
+    EXPECT_EQ(read_navigation({.source = file.string()}, {}, &rig()).size(), 1U);
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// When an image was taken, in seconds since 1970-01-01 00:00 UTC: from its file's name or its EXIF.
+//
+// A mask says where a name has its time, character by character from the name's beginning:
+//
+//   PR_20240309_123456_789_LC16.tif
+//   xxxYYYYMMDDxhhmmssxfff
+//
+// YYYY, MM, DD, hh, mm, ss stand for the digits of year to second; fff, if there, for milliseconds
+// and uuu for microseconds; any other character for any one character. It may end before the name
+// does. The letters are those of oplab's filename_to_date.
+//
+// Without a mask: EXIF's DateTimeOriginal with SubSecTimeOriginal, in the zone of
+// OffsetTimeOriginal, without one in UTC; else a time as in HabCam's names,
+// 20120623.171552346.1219.tif, to the millisecond. Times in names are UTC.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace aphotic {
+
+// An InputError unless the mask has each of YYYY, MM, DD, hh, mm and ss once, and fff and uuu at
+// most once, uuu with fff.
+void require_time_mask(const std::string& mask);
+
+// None where a digit is missing or there is no such time.
+[[nodiscard]] std::optional<double> time_by_mask(std::string_view name, const std::string& mask);
+[[nodiscard]] std::optional<double> time_in_habcam_name(const std::string& name);
+// Tags: image_tags() of image/any_image.h.
+[[nodiscard]] std::optional<double> time_in_exif(const std::map<std::string, std::string>& tags);
+
+// An empty mask is none. An InputError when the image tells no time.
+[[nodiscard]] double image_time_s(const std::filesystem::path& image, const std::string& mask);
+
+}  // namespace aphotic

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/navigation_cell.h"
+
+#include "base/printable.h"
+#include "base/words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+
+namespace aphotic {
+namespace {
+
+// What loggers, databases and spreadsheets write when they know no number, besides NaN itself.
+bool is_unknown(std::string_view field) {
+    static constexpr std::array<std::string_view, 8> kUnknown{
+        "", "-", "na", "n/a", "#n/a", "null", "none", "1.#qnan"};
+    return std::ranges::find(kUnknown, lower_case(std::string(field))) != kUnknown.end();
+}
+
+}  // namespace
+
+double number_in(ImagePose& pose, std::string_view column, std::string_view field) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    if (is_unknown(field)) return kNone;
+    const std::string_view digits = field.starts_with('+') ? field.substr(1) : field;
+    double number = 0.0;
+    const char* end = digits.data() + digits.size();
+    const auto [stop, error] = std::from_chars(digits.data(), end, number);
+    if (error == std::errc() && stop == end) return number;
+    if (pose.fault.empty()) {
+        pose.fault = fmt::format("{}: found '{}'; allowed: a number", column, printable(field));
+    }
+    return kNone;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/navigation_file.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "image/any_image.h"
+#include "survey/habcam_tags.h"
+#include "survey/image_time.h"
+#include "survey/navigation_csv.h"
+#include "survey/vehicle_pose.h"
+
+#include <fmt/format.h>
+
+#include <thread>
+#include <utility>
+
+namespace aphotic {
+namespace {
+
+Mounting mounting_of(const NavigationOptions& options, const Rig* rig) {
+    Mounting mounting = rig != nullptr ? rig->mounting : Mounting{};
+    if (options.altitude_is) mounting.altitude_is = *options.altitude_is;
+    if (options.altitude_offset_m) mounting.altitude_offset_m = *options.altitude_offset_m;
+    return mounting;
+}
+
+// Of the camera, from the vehicle's.
+bool is_of_use(const Sled& sled, const Mounting& mounting, const NavigationOptions& options) {
+    if (!fault_of(sled).empty()) return false;
+    try {
+        const double altitude_m = camera_pose(sled, mounting).altitude_m;
+        return altitude_m >= options.least_altitude_m && altitude_m <= options.most_altitude_m;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+// A pose for each image, by read(pose), from several threads: files are opened, be it over a
+// network. What it finds wrong is the pose's fault.
+template <typename Read>
+std::vector<ImagePose> poses_of(const std::vector<ImageFile>& files, const Read& read) {
+    std::vector<ImagePose> poses(files.size());
+    parallel_for(
+        files.size(), std::max(1U, std::thread::hardware_concurrency()), [&](auto i, auto) {
+            ImagePose& pose = poses[i];
+            pose.image = files[i].source.string();
+            try {
+                read(files[i].source, pose);
+            } catch (const InputError& error) {
+                pose.fault = error.what();
+            }
+        });
+    return poses;
+}
+
+std::vector<std::pair<std::string, std::string>> in_our_order(const ColumnNames& names) {
+    std::vector<std::pair<std::string, std::string>> ordered;
+    for (const std::string_view field : kNavigationFields) {
+        const auto name = names.find(std::string(field));
+        if (name != names.end()) ordered.emplace_back(name->first, name->second);
+    }
+    return ordered;
+}
+
+// What is said of times in vain would be thought to count.
+void require_no_times(const NavigationOptions& options) {
+    if (options.time_mask.empty() && options.clock_offset_s == 0.0) return;
+    throw InputError(
+        "{}: {} found, but its poses are of images and not of times; allowed with poses over time, "
+        "for which --columns time=COLUMN asks",
+        options.source,
+        options.time_mask.empty() ? "--clock-offset-s" : "--image-time");
+}
+
+Navigation navigation_in_tags(const NavigationOptions& options,
+                              const std::vector<ImageFile>& files) {
+    require_no_times(options);
+    const ColumnNames names = tag_names(options.columns);
+    const auto read = [&](const std::filesystem::path& image, ImagePose& pose) {
+        require_file(image);
+        const auto tags = image_tags(image);
+        const auto description = tags.find("ImageDescription");
+        if (description == tags.end()) throw InputError("it has no ImageDescription");
+        read_tags(pose, description->second, names, options.angles_in);
+    };
+    Navigation navigation(std::string(kNavigationInTags),
+                          poses_of(files, read),
+                          {.pitch = true, .roll = true},
+                          ImagesKnownBy::Path);
+    navigation.note({.format = "HabCam's tags",
+                     .columns = in_our_order(names),
+                     .angles_in = options.angles_in});
+    return navigation;
+}
+
+Navigation navigation_by_time(const NavigationTable& table,
+                              const NavigationOptions& options,
+                              const std::vector<ImageFile>& files,
+                              const Mounting& mounting,
+                              ToldAngles told,
+                              NavigationNotes notes) {
+    if (!options.time_mask.empty())
+        naming("--image-time", [&] { require_time_mask(options.time_mask); });
+    std::vector<TrackPoint> points;
+    for (const auto& [pose, time_s] : table.rows) {
+        if (pose.fault.empty() && is_of_use(pose.sled, mounting, options))
+            points.push_back({.time_s = time_s, .sled = pose.sled, .line = pose.line});
+    }
+    const ImagePose& first = table.rows.front().pose;
+    if (points.empty()) {
+        const std::string fault = first.fault.empty() ? fault_of(first.sled) : first.fault;
+        fail_at_line(options.source,
+                     first.line,
+                     "the first of {} lines, none of which can be used: {}",
+                     table.rows.size(),
+                     fault.empty() ? "altitude_m: found one that --altitude or the camera's place "
+                                     "leaves out"
+                                   : fault);
+    }
+    notes.times = TimesOfImages{.mask = options.time_mask,
+                                .clock_offset_s = options.clock_offset_s,
+                                .longest_gap_s = options.longest_gap_s,
+                                .lines_left_out = table.rows.size() - points.size()};
+    const Track track(std::move(points), options.longest_gap_s);
+    const auto read = [&](const std::filesystem::path& image, ImagePose& pose) {
+        pose.sled = track.at(image_time_s(image, options.time_mask) + options.clock_offset_s);
+    };
+    Navigation navigation(options.source, poses_of(files, read), told, ImagesKnownBy::Path);
+    navigation.note(std::move(notes));
+    return navigation;
+}
+
+Navigation navigation_of_table(std::string_view text,
+                               const NavigationOptions& options,
+                               const std::vector<ImageFile>& files,
+                               const Mounting& mounting,
+                               const Sled& rig_sled) {
+    const NavigationTable table =
+        parse_navigation_csv(options.source, text, rig_sled, options.columns, options.angles_in);
+    const NavigationColumns& columns = table.columns;
+    NavigationNotes notes{.format = columns.format, .angles_in = options.angles_in};
+    for (std::size_t field = 0; field < kNavigationFields.size(); ++field) {
+        if (columns.places.at(field))
+            notes.columns.emplace_back(kNavigationFields.at(field), columns.names.at(field));
+    }
+    const ToldAngles told{.pitch = columns.place(NavigationField::Pitch).has_value(),
+                          .roll = columns.place(NavigationField::Roll).has_value()};
+    if (columns.is_track())
+        return navigation_by_time(table, options, files, mounting, told, std::move(notes));
+    require_no_times(options);
+    std::vector<ImagePose> poses;
+    for (const NavigationRow& row : table.rows) poses.push_back(row.pose);
+    Navigation navigation(options.source, poses, told);
+    navigation.note(std::move(notes));
+    return navigation;
+}
+
+// Of angles that the navigation does not tell, the rig's count; they are the camera's.
+void require_angles(const Navigation& navigation,
+                    const NavigationOptions& options,
+                    const Mounting& mounting,
+                    bool has_rig) {
+    const ToldAngles told = navigation.told();
+    if (told.pitch && told.roll) return;
+    const std::string_view lacking = told.pitch ? "roll" : told.roll ? "pitch" : "pitch and roll";
+    if (is_mounted_apart(mounting)) {
+        throw InputError(
+            "{}: has no {}; needed, for the rig's position_m and orientation_deg place the camera "
+            "on the vehicle",
+            options.source,
+            lacking);
+    }
+    if (!has_rig && mounting.altitude_is != AltitudeIs::Axis) {
+        throw InputError("{}: has no {}; needed by --altitude-is {}, or a --rig that has them",
+                         options.source,
+                         lacking,
+                         kAltitudeWords.at(static_cast<std::size_t>(mounting.altitude_is)));
+    }
+}
+
+Navigation mounted(Navigation navigation,
+                   const NavigationOptions& options,
+                   const Mounting& mounting,
+                   bool has_rig) {
+    require_angles(navigation, options, mounting, has_rig);
+    navigation.mount(mounting);
+    navigation.limit_altitude(options.least_altitude_m, options.most_altitude_m);
+    if (navigation.notes()) {
+        NavigationNotes notes = *navigation.notes();
+        notes.mounting = mounting;
+        navigation.note(std::move(notes));
+    }
+    return navigation;
+}
+
+}  // namespace
+
+Navigation parse_navigation(std::string_view text,
+                            const NavigationOptions& options,
+                            const std::vector<ImageFile>& files,
+                            const Rig* rig) {
+    const Mounting mounting = mounting_of(options, rig);
+    const Sled sled = rig != nullptr ? rig->sled : Sled{};
+    // Formats that are no tables come before, each known by its text.
+    return mounted(navigation_of_table(text, options, files, mounting, sled),
+                   options,
+                   mounting,
+                   rig != nullptr);
+}
+
+Navigation read_navigation(const NavigationOptions& options,
+                           const std::vector<ImageFile>& files,
+                           const Rig* rig) {
+    if (options.source == kNavigationInTags) {
+        return mounted(
+            navigation_in_tags(options, files), options, mounting_of(options, rig), rig != nullptr);
+    }
+    return parse_navigation(read_text_file(options.source), options, files, rig);
+}
+
+}  // namespace aphotic

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Navigation from wherever a survey keeps it, known by its content:
+//
+//   a table          of poses by image, or of poses over time (navigation_csv.h, track.h)
+//   the images' tags HabCam's, with "tags" for a file's name (habcam_tags.h)
+//
+// What poses over time are of: an image's time (image_time.h) plus clock_offset_s. Lines of the
+// track without a time, or with a pose that no sled can have or from outside the altitudes, are
+// left out: an altimeter that loses the floor makes a gap, and no altitude between 2 m and 0.
+//
+// The poses are those of the vehicle; from them follow the camera's (vehicle_pose.h).
+#pragma once
+
+#include "survey/image_files.h"
+#include "survey/navigation.h"
+#include "survey/navigation_columns.h"
+#include "survey/track.h"
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr std::string_view kNavigationInTags = "tags";
+
+struct NavigationOptions {
+    std::string source{};  // a file, or kNavigationInTags
+    ColumnNames columns{};
+    AngleUnit angles_in = AngleUnit::Degrees;
+    std::string time_mask{};  // of the images' names
+    double clock_offset_s = 0.0;
+    double longest_gap_s = kLongestGap_s;
+    std::optional<AltitudeIs> altitude_is{};    // none: as the rig has it
+    std::optional<double> altitude_offset_m{};  // none: as the rig has it
+    double least_altitude_m = 0.0;              // of the camera
+    double most_altitude_m = std::numeric_limits<double>::infinity();
+};
+
+// What else is known of the sled: a rig, or null. An InputError when the source as a whole cannot
+// be understood, or does not tell the angles that the camera's pose needs.
+[[nodiscard]] Navigation read_navigation(const NavigationOptions& options,
+                                         const std::vector<ImageFile>& files,
+                                         const Rig* rig);
+
+// The same of a text, whose name options.source is.
+[[nodiscard]] Navigation parse_navigation(std::string_view text,
+                                          const NavigationOptions& options,
+                                          const std::vector<ImageFile>& files,
+                                          const Rig* rig);
+
+}  // namespace aphotic
