@@ -77,7 +77,7 @@ void require_sound(const std::string& file_name, const LensModel& lens) {
 }  // namespace
 
 CameraCalibration parse_calibration(const std::string& file_name, std::string_view text) {
-    const CameraCalibration calibration = read_any(file_name, utf8_of(text));
+    CameraCalibration calibration = read_any(file_name, utf8_of(text));
     require_sound(file_name, calibration.lens);
     return calibration;
 }

@@ -9,11 +9,15 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <yaml-cpp/yaml.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
 #include <pugixml.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <sstream>
 
 namespace aphotic {
 
@@ -21,53 +25,96 @@ namespace {
 
 using Kind = CalibrationValue::Kind;
 
-// A calibration has four levels, and up to some ten thousand numbers.
+// A calibration has four levels.
 constexpr std::size_t kMostLevels = 16;
-constexpr std::size_t kMostValues = 1'000'000;
 
-// Aliases of YAML can make many values of few bytes.
-class ValueCount {
-  public:
-    explicit ValueCount(const std::string& file_name) : file_name_(file_name) {}
-
-    void add(std::size_t level, std::size_t line) {
-        if (level > kMostLevels)
-            fail_at_line(
-                file_name_, line, "found values in more than {} levels; allowed: fewer", level - 1);
-        if (++count_ > kMostValues)
-            fail_at_line(
-                file_name_, line, "found more than {} values; allowed: fewer", kMostValues);
-    }
-
-  private:
-    const std::string& file_name_;
-    std::size_t count_ = 0;
-};
+void require_shallow(const std::string& file_name, std::size_t line, std::size_t level) {
+    if (level <= kMostLevels) return;
+    fail_at_line(
+        file_name, line, "found values in more than {} levels; allowed: fewer", kMostLevels);
+}
 
 std::size_t line_of(const YAML::Mark& mark) {
     return mark.is_null() ? 1 : static_cast<std::size_t>(mark.line) + 1;
 }
 
-CalibrationValue value_of(const YAML::Node& node, ValueCount& count, std::size_t level) {
-    CalibrationValue value;
-    value.line = line_of(node.Mark());
-    count.add(level, value.line);
-    if (node.IsScalar()) value.text = node.Scalar();
-    if (node.IsSequence()) {
-        value.kind = Kind::List;
-        for (const YAML::Node& item : node)
-            value.values.push_back(value_of(item, count, level + 1));
+// The one document of a file. Aliases, which no calibration has, would let few bytes stand for any
+// number of values.
+class YamlReader : public YAML::EventHandler {
+  public:
+    explicit YamlReader(const std::string& file_name) : file_name_(file_name) {}
+
+    [[nodiscard]] const CalibrationValue& root() const { return root_; }
+
+    void OnDocumentStart(const YAML::Mark& mark) override {
+        if (has_document_)
+            fail_at_line(file_name_, line_of(mark), "found a second document; allowed: one");
+        has_document_ = true;
     }
-    if (node.IsMap()) {
-        value.kind = Kind::Map;
-        for (const auto& pair : node) {
-            if (!pair.first.IsScalar()) continue;
-            value.values.push_back(value_of(pair.second, count, level + 1));
-            value.values.back().name = pair.first.Scalar();
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add_text(mark, ""); }
+    void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+        fail_at_line(file_name_, line_of(mark), "found an alias; allowed: values themselves");
+    }
+    void OnScalar(const YAML::Mark& mark,
+                  const std::string&,
+                  YAML::anchor_t,
+                  const std::string& text) override {
+        add_text(mark, text);
+    }
+    void OnSequenceStart(const YAML::Mark& mark,
+                         const std::string&,
+                         YAML::anchor_t,
+                         YAML::EmitterStyle::value) override {
+        open(mark, Kind::List);
+    }
+    void OnSequenceEnd() override { close(); }
+    void OnMapStart(const YAML::Mark& mark,
+                    const std::string&,
+                    YAML::anchor_t,
+                    YAML::EmitterStyle::value) override {
+        open(mark, Kind::Map);
+    }
+    void OnMapEnd() override { close(); }
+
+  private:
+    struct Open {
+        CalibrationValue value;
+        std::optional<std::string> key{};  // of a map: that of the value to come
+    };
+
+    void open(const YAML::Mark& mark, Kind kind) {
+        open_.push_back({.value = {.kind = kind, .line = line_of(mark)}});
+        require_shallow(file_name_, line_of(mark), open_.size());
+    }
+    void close() {
+        CalibrationValue value = std::move(open_.back().value);
+        open_.pop_back();
+        add(std::move(value));
+    }
+    void add_text(const YAML::Mark& mark, const std::string& text) {
+        add({.text = text, .line = line_of(mark)});
+    }
+    void add(CalibrationValue value) {
+        if (open_.empty()) {
+            root_ = std::move(value);
+            return;
         }
+        auto& [parent, key] = open_.back();
+        if (parent.kind == Kind::Map && !key) {
+            key = std::move(value.text);
+            return;
+        }
+        value.name = key.value_or("");
+        key.reset();
+        parent.values.push_back(std::move(value));
     }
-    return value;
-}
+
+    const std::string& file_name_;
+    bool has_document_ = false;
+    std::vector<Open> open_;
+    CalibrationValue root_;
+};
 
 // Lines of places that are asked for from first to last.
 class LineCount {
@@ -90,17 +137,17 @@ class LineCount {
 
 CalibrationValue value_of(const pugi::xml_node& element,
                           LineCount& lines,
-                          ValueCount& count,
+                          const std::string& file_name,
                           std::size_t level) {
     CalibrationValue value;
     value.name = element.name();
     value.line = lines.at(element.offset_debug());
-    count.add(level, value.line);
+    require_shallow(file_name, value.line, level);
     value.text = element.text().get();
     for (const pugi::xml_node& child : element.children()) {
         if (child.type() != pugi::node_element) continue;
         value.kind = Kind::Map;
-        value.values.push_back(value_of(child, lines, count, level + 1));
+        value.values.push_back(value_of(child, lines, file_name, level + 1));
     }
     return value;
 }
@@ -120,22 +167,22 @@ std::vector<std::string_view> calibration_words(std::string_view text) {
 }
 
 CalibrationValue parse_calibration_yaml(const std::string& file_name, std::string_view text) {
-    std::vector<YAML::Node> documents;
+    YamlReader reader(file_name);
     try {
-        documents = YAML::LoadAll(std::string(text));
+        std::istringstream stream{std::string(text)};
+        YAML::Parser parser(stream);
+        while (parser.HandleNextDocument(reader)) {
+        }
     } catch (const YAML::Exception& error) {
         fail_at_line(file_name, line_of(error.mark), "is not YAML: {}", printable(error.msg));
     }
-    if (documents.empty() || !documents.front().IsMap()) {
+    if (reader.root().kind != Kind::Map) {
         throw InputError(
-            "{}: found no keys; allowed: a camera calibration in YAML, JSON or XML, or "
-            "COLMAP's cameras.txt",
+            "{}: found no keys; allowed: a camera calibration in YAML, JSON or XML, or COLMAP's "
+            "cameras.txt",
             file_name);
     }
-    if (documents.size() > 1)
-        throw InputError("{}: found {} documents; allowed: one", file_name, documents.size());
-    ValueCount count(file_name);
-    return value_of(documents.front(), count, 1);
+    return reader.root();
 }
 
 CalibrationValue parse_calibration_xml(const std::string& file_name, std::string_view text) {
@@ -148,8 +195,7 @@ CalibrationValue parse_calibration_xml(const std::string& file_name, std::string
     LineCount lines(text);
     if (!result)
         fail_at_line(file_name, lines.at(result.offset), "is not XML: {}", result.description());
-    ValueCount count(file_name);
-    return value_of(document.document_element(), lines, count, 1);
+    return value_of(document.document_element(), lines, file_name, 1);
 }
 
 CalibrationKeys::CalibrationKeys(const std::string& file_name,

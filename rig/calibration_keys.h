@@ -4,7 +4,7 @@
 // of them. All else that a file holds is left alone. Names are told apart without case: OpenCV
 // wrote Camera_Matrix before it wrote camera_matrix.
 //
-// Texts of megabytes, values within values and aliases of aliases end in an InputError, soon.
+// Values within values without end, aliases and further documents end in an InputError.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,9 @@ namespace aphotic {
 struct CalibrationValue {
     enum class Kind { Text, List, Map };
     Kind kind = Kind::Text;
-    std::string name;  // of the key; of an element in XML; none in a list
-    std::string text;
-    std::vector<CalibrationValue> values;  // of a list or map
+    std::string name{};  // of the key; of an element in XML; none in a list
+    std::string text{};
+    std::vector<CalibrationValue> values{};  // of a list or map
     std::size_t line = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "image/preview.h"
 #include "report/html.h"
+#include "rig/lens.h"
 #include "spectral/refractive_index.h"
 #include "validation/error_view.h"
 #include "validation/report.h"
@@ -249,18 +250,29 @@ std::string field_of_view(const Rig& rig) {
     const double index =
         camera.port ? seawater_index(middle_nm, rig.water.salinity_psu, rig.water.temperature_c)
                     : 1.0;
-    const auto half_rad = [&](int pixels, double in_index) {
-        const double air = std::atan(pixels * camera.pixel_pitch_m / 2.0 / camera.focal_length_m);
-        return std::asin(std::sin(air) / in_index);
+    const double width = camera.width_px;
+    const double height = camera.height_px;
+    // Between opposite edges' middles.
+    const auto half_rad =
+        [&](const Eigen::Vector2d& from_px, const Eigen::Vector2d& to_px, double in_index) {
+            const double cosine = direction_in_air(camera, from_px.x(), from_px.y())
+                                      .dot(direction_in_air(camera, to_px.x(), to_px.y()));
+            return std::asin(std::sin(std::acos(std::min(1.0, cosine)) / 2.0) / in_index);
+        };
+    const auto across_rad = [&](double in_index) {
+        return half_rad({0.0, height / 2.0}, {width, height / 2.0}, in_index);
+    };
+    const auto along_rad = [&](double in_index) {
+        return half_rad({width / 2.0, 0.0}, {width / 2.0, height}, in_index);
     };
     const auto field = [&](double in_index) {
         constexpr double kFullDegrees = 360.0 / std::numbers::pi;
         return fmt::format("{:.1f}° × {:.1f}°",
-                           kFullDegrees * half_rad(camera.width_px, in_index),
-                           kFullDegrees * half_rad(camera.height_px, in_index));
+                           kFullDegrees * across_rad(in_index),
+                           kFullDegrees * along_rad(in_index));
     };
-    const auto floor_m = [&](int pixels) {
-        return 2.0 * rig.sled.altitude_m * std::tan(half_rad(pixels, index));
+    const auto floor_m = [&](double half_view_rad) {
+        return 2.0 * rig.sled.altitude_m * std::tan(half_view_rad);
     };
     return (camera.port ? fmt::format("{} in air, {} in the water (at {} nm)",
                                       field(1.0),
@@ -268,8 +280,8 @@ std::string field_of_view(const Rig& rig) {
                                       plain(middle_nm))
                         : field(1.0)) +
            fmt::format(", or some {:.2g} m × {:.2g} m of a level floor",
-                       floor_m(camera.width_px),
-                       floor_m(camera.height_px));
+                       floor_m(across_rad(index)),
+                       floor_m(along_rad(index)));
 }
 
 std::string rig_as_read(const ValidationReport& report) {
