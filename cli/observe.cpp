@@ -61,7 +61,7 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
     write_observation(options.output, observation);
     if (options.json) {
         nlohmann::ordered_json json = to_json(observation, options.output);
-        json["navigation"] = to_json(*survey.navigation->notes());
+        if (survey.navigation->notes()) json["navigation"] = to_json(*survey.navigation->notes());
         fmt::print("{}", json_text(json));
     } else {
         print_observation(observation, options.output);
