@@ -63,7 +63,7 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
     if (options.json) {
         nlohmann::ordered_json json = to_json(observation, options.output);
         json["camera"] = to_json(survey.camera);
-        json["navigation"] = to_json(*survey.navigation->notes());
+        if (survey.navigation->notes()) json["navigation"] = to_json(*survey.navigation->notes());
         fmt::print("{}", json_text(json));
     } else {
         print_observation(observation, options.output);

@@ -15,10 +15,10 @@ AnyImage open_any_image(const std::filesystem::path& file) {
     return image;
 }
 
-std::map<std::string, std::string> image_tags(const std::filesystem::path& file) {
+std::map<std::string, std::string> header_of_image(const std::filesystem::path& file) {
     using Read = void (*)(const std::filesystem::path&, std::map<std::string, std::string>&);
     std::map<std::string, std::string> tags;
-    from_part<Read>("aphotic_image_tags")(file, tags);
+    from_part<Read>("aphotic_header_of_image")(file, tags);
     return tags;
 }
 

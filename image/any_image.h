@@ -39,7 +39,7 @@ struct AnyImage {
 
 // What the file says of itself, by the names that OpenImageIO has for it, such as
 // "Exif:DateTimeOriginal". Of the file its header alone is read. An InputError when it has none.
-[[nodiscard]] std::map<std::string, std::string> image_tags(const std::filesystem::path& file);
+[[nodiscard]] std::map<std::string, std::string> header_of_image(const std::filesystem::path& file);
 
 // Planes as an image, in the format that the file's extension names, whole or not there. Integers
 // are 0 to 1 over their range, rounded and clipped. What cannot be written is a RunError.

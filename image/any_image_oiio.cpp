@@ -155,8 +155,8 @@ extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
     image.date_time = spec.get_string_attribute("DateTime");
 }
 
-extern "C" void aphotic_image_tags(const std::filesystem::path& file,
-                                   std::map<std::string, std::string>& tags) {
+extern "C" void aphotic_header_of_image(const std::filesystem::path& file,
+                                        std::map<std::string, std::string>& tags) {
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
     if (!input) refuse(file, OIIO::geterror());
     for (const OIIO::ParamValue& tag : input->spec().extra_attribs) {

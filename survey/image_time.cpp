@@ -110,7 +110,7 @@ double image_time_s(const std::filesystem::path& image, const std::string& mask)
         throw InputError("its name has no time where --image-time {} has it", mask);
     }
     require_file(image);
-    if (const auto time_s = time_in_exif(image_tags(image))) return *time_s;
+    if (const auto time_s = time_in_exif(header_of_image(image))) return *time_s;
     if (const auto time_s = time_in_habcam_name(name)) return *time_s;
     throw InputError(
         "it tells no time: no DateTimeOriginal in its EXIF, and its name is not HabCam's; "

@@ -31,7 +31,7 @@ void require_time_mask(const std::string& mask);
 // None where a digit is missing or there is no such time.
 [[nodiscard]] std::optional<double> time_by_mask(std::string_view name, const std::string& mask);
 [[nodiscard]] std::optional<double> time_in_habcam_name(const std::string& name);
-// Tags: image_tags() of image/any_image.h.
+// Tags: header_of_image() of image/any_image.h.
 [[nodiscard]] std::optional<double> time_in_exif(const std::map<std::string, std::string>& tags);
 
 // An empty mask is none. An InputError when the image tells no time.

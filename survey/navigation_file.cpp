@@ -79,7 +79,7 @@ Navigation navigation_in_tags(const NavigationOptions& options,
     const ColumnNames names = tag_names(options.columns);
     const auto read = [&](const std::filesystem::path& image, ImagePose& pose) {
         require_file(image);
-        const auto tags = image_tags(image);
+        const auto tags = header_of_image(image);
         const auto description = tags.find("ImageDescription");
         if (description == tags.end()) throw InputError("it has no ImageDescription");
         read_tags(pose, description->second, names, options.angles_in);
@@ -185,12 +185,14 @@ Navigation mounted(Navigation navigation,
                    bool has_rig) {
     require_angles(navigation, options, mounting, has_rig);
     navigation.mount(mounting);
+    NavigationNotes notes = navigation.notes().value_or(NavigationNotes{});
+    notes.mounting = mounting;
+    navigation.note(std::move(notes));
+    return navigation;
+}
+
+Navigation limited(Navigation navigation, const NavigationOptions& options) {
     navigation.limit_altitude(options.least_altitude_m, options.most_altitude_m);
-    if (navigation.notes()) {
-        NavigationNotes notes = *navigation.notes();
-        notes.mounting = mounting;
-        navigation.note(std::move(notes));
-    }
     return navigation;
 }
 
@@ -202,21 +204,20 @@ Navigation parse_navigation(std::string_view text,
                             const Rig* rig) {
     const Mounting mounting = mounting_of(options, rig);
     const Sled sled = rig != nullptr ? rig->sled : Sled{};
-    // Formats that are no tables come before, each known by its text.
-    return mounted(navigation_of_table(text, options, files, mounting, sled),
-                   options,
-                   mounting,
-                   rig != nullptr);
+    // What is no table is known by its text and read before. Poses that are the camera's own are
+    // limited, but not mounted.
+    Navigation vehicle = navigation_of_table(text, options, files, mounting, sled);
+    return limited(mounted(std::move(vehicle), options, mounting, rig != nullptr), options);
 }
 
 Navigation read_navigation(const NavigationOptions& options,
                            const std::vector<ImageFile>& files,
                            const Rig* rig) {
-    if (options.source == kNavigationInTags) {
-        return mounted(
-            navigation_in_tags(options, files), options, mounting_of(options, rig), rig != nullptr);
-    }
-    return parse_navigation(read_text_file(options.source), options, files, rig);
+    if (options.source != kNavigationInTags)
+        return parse_navigation(read_text_file(options.source), options, files, rig);
+    Navigation vehicle = navigation_in_tags(options, files);
+    return limited(mounted(std::move(vehicle), options, mounting_of(options, rig), rig != nullptr),
+                   options);
 }
 
 }  // namespace aphotic

@@ -72,7 +72,7 @@ std::string words_of(const NavigationNotes& notes) {
         columns.push_back(ours == theirs ? ours : fmt::format("{} '{}'", ours, theirs));
     }
     std::string words = fmt::format("{}: {}", notes.format, fmt::join(columns, ", "));
-    if (notes.angles_in == AngleUnit::Radians) words += "; angles in radians";
+    words += notes.angles_in == AngleUnit::Degrees ? "; metres, degrees" : "; metres, radians";
     words += "; altitude: " + altitude_words(notes.mounting);
     if (notes.times) words += "; images' times: " + image_time_words(*notes.times);
     if (is_mounted_apart(notes.mounting)) {

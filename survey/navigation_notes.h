@@ -37,7 +37,7 @@ struct NavigationNotes {
 // All that poses depend on, lines left out aside: a file may grow.
 [[nodiscard]] nlohmann::ordered_json to_json(const NavigationNotes& notes);
 
-// "oplab's CSV: image 'relative_path', altitude_m 'altitude [m]', ...; altitude along the axis"
+// "oplab's CSV: image 'relative_path', ...; metres, degrees; altitude: along the axis"
 [[nodiscard]] std::string words_of(const NavigationNotes& notes);
 
 }  // namespace aphotic

@@ -13,8 +13,10 @@ namespace aphotic {
 Track::Track(std::vector<TrackPoint> points, double longest_gap_s)
     : points_(std::move(points)), longest_gap_s_(longest_gap_s) {
     std::ranges::stable_sort(points_, {}, &TrackPoint::time_s);
-    const auto again = std::ranges::unique(points_, {}, &TrackPoint::time_s);
-    points_.erase(again.begin(), again.end());
+    const auto is_again = [](const TrackPoint& a, const TrackPoint& b) {
+        return a.time_s == b.time_s;
+    };
+    points_.erase(std::unique(points_.begin(), points_.end(), is_again), points_.end());
 }
 
 Sled Track::at(double time_s) const {

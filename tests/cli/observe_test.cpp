@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace aphotic::observe_test {
 namespace {
@@ -79,8 +80,9 @@ class Survey : public testing::Test {
         return run_aphotic(folder_.path(), arguments);
     }
     CommandResult observe(const std::vector<std::string>& options) {
-        std::vector<std::string> arguments{
-            "observe", "raw", "--nav", "nav.csv", "-o", "map.exr", "--altitude", "2"};
+        std::vector<std::string> arguments{"observe", "raw", "--nav", "nav.csv", "-o", "map.exr"};
+        if (std::ranges::find(options, "--altitude") == options.end())
+            arguments.insert(arguments.end(), {"--altitude", "2"});
         arguments.insert(arguments.end(), options.begin(), options.end());
         return run(arguments);
     }
@@ -100,6 +102,34 @@ TEST_F(CommandObserve, AnAttitudeThatNobodyToldIsUnknown) {
     const nlohmann::json json = nlohmann::json::parse(observe({"--json"}).out);
     EXPECT_TRUE(json["pitch_deg"].is_null());
     EXPECT_NEAR(json["roll_deg"].get<double>(), 2.0, kFloat);
+}
+
+// 2 m over the floor at 60 degrees are 4 m along the axis.
+TEST_F(CommandObserve, TakesWhatAltitudesAreAndTheMountingFromARig) {
+    write_survey();
+    write_file(path("nav.csv"),
+               "image,altitude_m,pitch_deg,roll_deg\n"
+               "a.exr,2,60,0\nb.exr,2,60,0\nc.exr,2,60,0\nhigh.exr,9,0,0\n");
+    std::string rig = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    rig.replace(rig.find("[sled]\n"), 7, "[sled]\naltitude_is = \"plumb\"\n");
+    write_file(path("plumb.toml"), rig);
+    rig.replace(rig.find("[camera]\n"),
+                9,
+                "[camera]\nposition_m = [0, 0, 1]\norientation_deg = [0, -30, 0]\n");
+    write_file(path("mounted.toml"), rig);
+    const auto observed = [&](const std::vector<std::string>& options) {
+        const CommandResult result = observe(options);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return nlohmann::json::parse(result.out);
+    };
+    const auto plumb = observed({"--rig", "plumb.toml", "--altitude", "4", "--json"});
+    EXPECT_NEAR(plumb["altitude_m"].get<double>(), 4.0, kFloat);
+    EXPECT_EQ(plumb["navigation"]["altitude_is"], "plumb");
+    // A metre along the vehicle's z is half a metre down; 1.5 m at the 30 degrees that are left.
+    const auto mounted = observed({"--rig", "mounted.toml", "--altitude", "1.73", "--json"});
+    EXPECT_NEAR(mounted["altitude_m"].get<double>(), 1.5 / std::cos(std::numbers::pi / 6), kFloat);
+    EXPECT_NEAR(mounted["pitch_deg"].get<double>(), 30.0, 100.0 * kFloat);
+    EXPECT_EQ(mounted["navigation"]["orientation_deg"].size(), 3U);
 }
 
 TEST_F(CommandObserve, AveragesTheImagesOfOneAltitude) {

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic::image_time_test {
@@ -63,9 +64,9 @@ TEST(ImageTime, AMaskHasEachPartOnce) {
         {"YYxYYMMDDhhmmss", "which has not YYYY in one place"},
         {"YYYYMMDDhhmmssf", "which has not fff in one place"},
         {"YYYYMMDDhhmmssuuu", "which has uuu without fff"}};
-    for (const auto& [mask, why] : wrong) {
-        EXPECT_EQ(fault_of([&] { require_time_mask(mask); }),
-                  "found '" + mask + "', " + why + allowed);
+    for (const auto& one : wrong) {
+        EXPECT_EQ(fault_of([&] { require_time_mask(one.first); }),
+                  "found '" + one.first + "', " + one.second + allowed);
     }
 }
 
@@ -118,7 +119,7 @@ TEST_F(TimeOfFiles, ExiftoolsTimeIsRead) {
             file.string() + "'";
         ASSERT_EQ(std::system(command.c_str()), 0);
         EXPECT_NEAR(image_time_s(file, ""), kTime_s - 7200.0, kDouble_s) << name;
-        EXPECT_EQ(image_tags(file)["ImageDescription"], "lat=41.5") << name;
+        EXPECT_EQ(header_of_image(file)["ImageDescription"], "lat=41.5") << name;
     }
 }
 

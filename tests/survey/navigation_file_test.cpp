@@ -77,7 +77,7 @@ TEST(NavigationFile, OplabsCsv) {
               "nav:3: altitude_m: found no number; allowed: 0.001 to 10000");
     EXPECT_EQ(words_of(*nav.notes()),
               "oplab's CSV: image 'relative_path', altitude_m 'altitude [m]', pitch_deg 'pitch "
-              "[deg]', roll_deg 'roll [deg]'; altitude: along the axis");
+              "[deg]', roll_deg 'roll [deg]'; metres, degrees; altitude: along the axis");
 }
 
 TEST(NavigationFile, BiiglesCsvInAnyLetterCaseAndByOtherNames) {
@@ -203,7 +203,8 @@ TEST(NavigationFile, ATrackIsJoinedByTheImagesTimes) {
         parsed("time,altitude_m\n1709985600,2\n1709985601,3\n1709985605,4\n", late, files);
     EXPECT_EQ(nav.pose_of("c20240309_110000_000.tif").sled.altitude_m, 2.0);
     EXPECT_EQ(words_of(*nav.notes()),
-              "Aphotic's CSV: time, altitude_m; altitude: along the axis; images' times: names' by "
+              "Aphotic's CSV: time, altitude_m; metres, degrees; altitude: along the axis; images' "
+              "times: names' by "
               "xYYYYMMDDxhhmmssxfff, +3600 s, gaps up to 4 s");
 }
 
@@ -293,10 +294,10 @@ TEST_F(TagsOfImages, HabCamsAreReadFromTiffPngAndJpeg) {
     const Navigation nav = read();
     for (const char* name : {"a.tif", "a.png", "a.jpg"})
         expect_sled(nav.pose_of(path(name)).sled, 2.05, -4.8, 0.3);
-    EXPECT_EQ(
-        words_of(*nav.notes()),
-        "HabCam's tags: altitude_m 'alt0', pitch_deg 'pitch', roll_deg 'roll'; altitude: along "
-        "the axis");
+    EXPECT_EQ(words_of(*nav.notes()),
+              "HabCam's tags: altitude_m 'alt0', pitch_deg 'pitch', roll_deg 'roll'; metres, "
+              "degrees; altitude: along "
+              "the axis");
     const Navigation other = read({.columns = {{"altitude_m", "alt1"}}});
     expect_sled(other.pose_of(path("a.tif")).sled, 2.11, -4.8, 0.3);
     EXPECT_EQ(fault_of([&] {
@@ -335,10 +336,10 @@ TEST(NavigationFile, HeightsBecomeAltitudesAlongTheAxis) {
     expect_sled(nav.pose_of("a").sled, 3.0 / std::cos(30.0 * kDegree), 30.0, 0.0);
     // An altimeter's 0 is no altitude, whatever is added.
     EXPECT_EQ(fault_of_image(nav, "b"), "nav:3: altitude_m: found 0; allowed: 0.001 to 10000");
-    EXPECT_EQ(
-        words_of(*nav.notes()),
-        "Aphotic's CSV: image, altitude_m, pitch_deg, roll_deg; altitude: the vertical height, "
-        "+1 m");
+    EXPECT_EQ(words_of(*nav.notes()),
+              "Aphotic's CSV: image, altitude_m, pitch_deg, roll_deg; metres, degrees; altitude: "
+              "the vertical height, "
+              "+1 m");
 }
 
 TEST(NavigationFile, TheRigsMountingCountsAndOptionsComeBeforeIt) {
@@ -353,10 +354,10 @@ TEST(NavigationFile, TheRigsMountingCountsAndOptionsComeBeforeIt) {
     EXPECT_EQ(fault_of_image(nav, "b"),
               "nav:3: the camera looks 10 degrees above the horizon; allowed: below it, to see the "
               "floor");
-    EXPECT_EQ(
-        words_of(*nav.notes()),
-        "Aphotic's CSV: image, altitude_m, pitch_deg, roll_deg; altitude: the vertical height, "
-        "+0.5 m; camera at [0, 0, 0.5] m, turned by [0, 60, 0] degrees");
+    EXPECT_EQ(words_of(*nav.notes()),
+              "Aphotic's CSV: image, altitude_m, pitch_deg, roll_deg; metres, degrees; altitude: "
+              "the vertical height, "
+              "+0.5 m; camera at [0, 0, 0.5] m, turned by [0, 60, 0] degrees");
     const NavigationOptions options{.source = "nav", .altitude_offset_m = 0.0};
     expect_sled(parse_navigation(text, options, {}, &rig).pose_of("a").sled, 3.0, 60.0, 0.0);
     EXPECT_EQ(fault_of([&] {
