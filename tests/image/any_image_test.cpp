@@ -298,6 +298,32 @@ TEST(AnyImage, BytesThatADamagedJpegLeavesAreAFault) {
     EXPECT_GT(refused, 0U);
 }
 
+// Stripes of a pixel each, red and blue by turns: chroma of half the resolution would mix them.
+TEST(AnyImage, AJpegHasItsColoursAtEveryPixelAndItsQuality) {
+    constexpr float kDark = 0.3F;
+    constexpr float kBright = 0.7F;
+    constexpr double kQuality95 = 0.04;  // what its coarsest steps leave of such stripes
+    const TempFolder folder;
+    const std::size_t pixels = std::size_t{kWidth} * kHeight;
+    std::vector<float> planes(3 * pixels, kDark);
+    for (std::size_t i = 0; i < pixels; ++i) planes[i % 2 * 2 * pixels + i] = kBright;
+    const auto written = [&](int quality) {
+        const std::filesystem::path file = folder.path() / fmt::format("{}.jpg", quality);
+        write_any_image(file,
+                        {.width_px = kWidth,
+                         .height_px = kHeight,
+                         .channels = {"R", "G", "B"},
+                         .planes = planes,
+                         .type = SampleType::Bits8,
+                         .jpeg_quality = quality});
+        return file;
+    };
+    const std::vector<float> found = planes_in(written(95));
+    ASSERT_EQ(found.size(), planes.size());
+    for (std::size_t i = 0; i < planes.size(); ++i) EXPECT_NEAR(found[i], planes[i], kQuality95);
+    EXPECT_LT(std::filesystem::file_size(written(20)), std::filesystem::file_size(written(95)));
+}
+
 // Whether a file of these is whole, nobody can tell.
 TEST(AnyImage, OtherFormatsAreRefusedByName) {
     const TempFolder folder;
