@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
+#include "cli/allowed_skips.h"
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/survey_command.h"
@@ -33,6 +34,7 @@ struct CorrectCommandOptions {
     std::vector<double> altitudes_m;
     CorrectionOptions correction;
     bool strict = false;
+    AllowedSkips allowed_skips;
     bool json = false;
 };
 
@@ -43,12 +45,12 @@ void print_report(const CorrectionReport& report, const std::filesystem::path& f
                report.run->kept,
                report.run->skipped.size());
     const PerChannel& gain = report.gain.gain;
-    const std::size_t from = report.gain.images.size();
-    fmt::print("  gain {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
-               gain[0],
-               gain[1],
-               gain[2],
-               from > 0 ? ", taken from " + counted(from, "image") : "");
+    std::string from;
+    if (!report.gain.images.empty()) {
+        from = ", taken from " + counted(report.gain.images.size(), "image");
+    }
+    if (!report.gain.folder.empty()) from = ", that of " + report.gain.folder;
+    fmt::print("  gain {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n", gain[0], gain[1], gain[2], from);
     print_doubts(*report.run);
     if (!report.not_checked.empty()) fmt::print("  not checked: {}\n", report.not_checked);
     fmt::print("  {}\n", (folder / kCorrectionNotes).string());
@@ -96,14 +98,15 @@ Survey survey_of(const CorrectCommandOptions& options) {
 ExitStatus correct(const CorrectCommandOptions& options) {
     keep_memory();
     set_exr_threads(0);  // the images themselves are spread over the threads
+    const Survey survey = survey_of(options);
     const CorrectionReport report =
-        correct_survey(survey_of(options), options.correction, terminal_watch(options.strict));
+        correct_survey(survey, options.correction, terminal_watch(options.strict));
     if (options.json) {
         fmt::print("{}", json_text(to_json(report)));
     } else {
         print_report(report, options.correction.run.folder);
     }
-    return report.run->skipped.empty() ? kDone : kAnswerIsNo;
+    return status_of_skips(report.run->skipped.size(), survey.files.size(), options.allowed_skips);
 }
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
@@ -149,18 +152,26 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
     constexpr double kMostNoise = 10.0;
     constexpr int kMostEdge_px = 100;
     constexpr std::size_t kMostImages = 10000;
-    app.add_option("--gain",
-                   options.correction.gain,
-                   "Multiply (raw - black) / map by this: one number, or R,G,B; by default taken "
-                   "from the survey")
-        ->delimiter(',')
-        ->expected(1, kChannels)
-        ->check(positive());
+    auto* gain = app.add_option("--gain",
+                                options.correction.gain,
+                                "Multiply (raw - black) / map by this: one number, or R,G,B; by "
+                                "default taken from the survey")
+                     ->delimiter(',')
+                     ->expected(1, kChannels)
+                     ->check(positive());
+    auto* gain_from =
+        app.add_option("--gain-from",
+                       options.correction.gain_from,
+                       "Take the gain from the results of another survey by the same camera, so "
+                       "that both are on one scale")
+            ->type_name("DIR")
+            ->excludes(gain);
     app.add_option("--middle",
                    options.correction.middle,
                    "Make the survey's median pixel this value, such as 0.2 for grey; by default "
                    "the colour of the rig's floor, with --map 0.2")
-        ->check(positive());
+        ->check(positive())
+        ->excludes(gain_from);
     app.add_option("--gain-images", options.correction.gain_images, "Take the gain from N images")
         ->check(in_range(1, kMostImages))
         ->capture_default_str();
@@ -192,10 +203,12 @@ Action configure_correct(CLI::App& app) {
     add_result_options(app, *options);
     add_jobs(app, options->correction.run.jobs, "Correct N images at a time");
     add_strict_option(app, options->strict);
+    add_allow_skipped(app, options->allowed_skips);
     add_json(app, options->json, "Print DIR/correction.json");
     app.footer(
         "Interrupted, it continues where it stopped when run again. Exit status 0 when every image "
-        "is corrected, 1 when some are skipped: correction.json lists them. A mask's pixel is a "
+        "is corrected, 1 when more are skipped than --allow-skipped: correction.json lists them. A "
+        "mask's pixel is a "
         "sum of 1 dark, 2 saturated, 4 black, 8 on a beam's edge, 16 clipped by the format; 0 is "
         "good.");
     return [options] { return correct(*options); };

@@ -4,6 +4,7 @@
 // pattern of light that they share.
 #include "base/json_text.h"
 #include "base/words.h"
+#include "cli/allowed_skips.h"
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/survey_command.h"
@@ -27,6 +28,7 @@ struct ObserveCommandOptions {
     CameraNumbers camera;
     ObservationOptions observation;
     bool strict = false;
+    AllowedSkips allowed_skips;
     bool json = false;
 };
 
@@ -64,7 +66,7 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
     } else {
         print_observation(observation, options.output);
     }
-    return observation.skipped.empty() ? kDone : kAnswerIsNo;
+    return status_of_skips(observation.skipped.size(), survey.files.size(), options.allowed_skips);
 }
 
 void add_average_options(CLI::App& app, ObservationOptions& options) {
@@ -115,11 +117,12 @@ Action configure_observe(CLI::App& app) {
         ->capture_default_str();
     add_jobs(app, options->observation.jobs, "Read N images at a time");
     add_strict_option(app, options->strict);
+    add_allow_skipped(app, options->allowed_skips);
     add_json(app, options->json);
     app.footer(
         "MAP.exr holds the average in R, G, B, the number of images in count.R ..., the standard "
         "error in stderr.R ...; what was never observed is NaN. Images that cannot be used are "
-        "reported and skipped; the exit status is then 1.");
+        "reported and skipped; the exit status is 1 when these are more than --allow-skipped.");
     return [options] { return observe_survey(*options); };
 }
 

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <utility>
 
 namespace aphotic {
@@ -28,17 +30,20 @@ PerChannel wanted_middle(const Survey& survey, const CorrectionOptions& options)
 
 // Their text stands for all that results depend on, images, poses and gain aside: changed, it does
 // every image of every folder anew.
-Json settings_of(const Survey& survey, const CorrectionOptions& options) {
+Json settings_of(const Survey& survey,
+                 const CorrectionOptions& options,
+                 const std::optional<SurveyGain>& given) {
     const ResultFormat& format = options.run.format;
     Json json{{"aphotic", APHOTIC_VERSION},
               {survey.navigation ? "rig_sha256" : "map_sha256", survey.light.digest},
+              {"camera_sha256", survey.light.camera_digest},
               {"bayer", mosaic_name(survey.camera.mosaic)},
               {"keep_mosaic", options.keep_mosaic},
               {"black_level", survey.camera.black_level},
               {"white_level", nullptr},
-              {"gain", options.gain},
+              {"gain", nullptr},
               {"gain_images", nullptr},
-              {"middle", wanted_middle(survey, options)},
+              {"middle", given ? given->middle : wanted_middle(survey, options)},
               {"least_light", options.limit.share},
               {"most_noise", options.limit.relative},
               {"read_noise", nullptr},
@@ -47,20 +52,29 @@ Json settings_of(const Survey& survey, const CorrectionOptions& options) {
               {"mask", format.mask},
               {"format", format.format},
               {"compression", name_of(format.compression)}};
-    if (options.gain.empty()) json["gain_images"] = options.gain_images;
+    if (given) {
+        json["gain"] = given->gain;
+    } else {
+        json["gain_images"] = options.gain_images;
+    }
     if (options.read_noise) json["read_noise"] = *options.read_noise;
     if (survey.camera.white_level) json["white_level"] = *survey.camera.white_level;
     return json;
 }
 
-std::optional<SurveyGain> known_gain(const Survey& survey,
+// By the user, as numbers or as the folder that has them.
+std::optional<SurveyGain> given_gain(const Survey& survey,
                                      const CorrectionOptions& options,
-                                     const std::string& settings_sha256) {
-    if (!options.gain.empty()) {
-        const auto& given = options.gain;
-        return SurveyGain{.gain = {given.front(), given[given.size() / 2], given.back()},
-                          .middle = wanted_middle(survey, options)};
-    }
+                                     std::vector<Suspicion>& doubts) {
+    if (!options.gain_from.empty()) return gain_of_folder(options.gain_from, survey.light, doubts);
+    const auto& given = options.gain;
+    if (given.empty()) return std::nullopt;
+    return SurveyGain{.gain = {given.front(), given[given.size() / 2], given.back()},
+                      .middle = wanted_middle(survey, options)};
+}
+
+std::optional<SurveyGain> kept_in(const CorrectionOptions& options,
+                                  const std::string& settings_sha256) {
     const fs::path notes = options.run.folder / kCorrectionNotes;
     return fs::exists(notes) ? kept_gain(read_text_file(notes), settings_sha256) : std::nullopt;
 }
@@ -69,15 +83,18 @@ std::optional<SurveyGain> known_gain(const Survey& survey,
 // another navigation by now.
 void look_first(const Survey& survey,
                 const CorrectionOptions& options,
+                const std::optional<SurveyGain>& given,
                 const RunWatch& watch,
                 CorrectionReport& report) {
-    const std::optional<SurveyGain> known = known_gain(survey, options, report.settings_sha256);
+    const std::optional<SurveyGain> known =
+        given ? given : kept_in(options, report.settings_sha256);
     const SurveyLook look = look_at(survey,
                                     {.gain_images = known ? 0 : options.gain_images,
                                      .least_light = options.limit.share,
                                      .jobs = options.run.jobs},
                                     watch);
-    report.looks_wrong = suspicions(look.images, survey.camera.mosaic);
+    std::ranges::move(suspicions(look.images, survey.camera.mosaic),
+                      std::back_inserter(report.looks_wrong));
     report.not_checked = not_checked(look.images);
     watch.looks_wrong(report.looks_wrong);
     report.gain = known ? *known : measured_gain(look, wanted_middle(survey, options));
@@ -92,7 +109,7 @@ Counts correct_image(const Survey& survey,
     NoiseLimit limit = options.limit;
     limit.read_noise = options.read_noise.value_or(taken.rounding);
     // Of a gain by itself nobody knows how much light the survey's middle has.
-    if (!options.gain.empty() && !options.middle) limit = {.share = options.limit.share};
+    if (gain.images.empty() && !options.middle) limit = {.share = options.limit.share};
     const Correction correction{
         .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = limit};
     CorrectedImage result = corrected(std::move(taken.raw), survey.light.map(sled), correction);
@@ -130,8 +147,10 @@ Json to_json(const CorrectionReport& report) {
               {"settings_sha256", report.settings_sha256},
               {"gain", report.gain.gain},
               {"gain_from", report.gain.images},
+              {"gain_folder", nullptr},
               {"looks_wrong", to_json(report.looks_wrong)},
               {"not_checked", report.not_checked}};
+    if (!report.gain.folder.empty()) json["gain_folder"] = report.gain.folder;
     if (!report.run) return json;
     json.update(to_json(*report.run));
     json["seconds"] = report.seconds;
@@ -148,9 +167,10 @@ CorrectionReport correct_survey(const Survey& survey,
     const ResultFolder folder(options.run, survey.files);
     const fs::path notes = options.run.folder / kCorrectionNotes;
     CorrectionReport report;
-    report.settings = settings_of(survey, options);
+    const std::optional<SurveyGain> given = given_gain(survey, options, report.looks_wrong);
+    report.settings = settings_of(survey, options, given);
     report.settings_sha256 = sha256_of_text(report.settings.dump());
-    look_first(survey, options, watch, report);
+    look_first(survey, options, given, watch, report);
     // Before the first image: also what an interrupted run leaves is no survey.
     write_text_file(notes, json_text(to_json(report)));
     report.run = run_images(survey.files, options.run, work_of(survey, options, report), watch);

@@ -22,8 +22,9 @@ namespace aphotic {
 
 struct CorrectionOptions {
     ImageRunOptions run{};
-    std::vector<double> gain{};      // one for all channels, or three; none: taken from the survey
-    std::optional<double> middle{};  // none: the floor's colour, grey where nobody knows it
+    std::vector<double> gain{};  // one for all channels, or three; none: taken from the survey
+    std::filesystem::path gain_from{};  // a folder of results that has one; empty: none
+    std::optional<double> middle{};     // none: the floor's colour, grey where nobody knows it
     std::size_t gain_images = 16;
     NoiseLimit limit{};
     std::optional<double> read_noise{};  // none: what the file's numbers are rounded by

@@ -9,6 +9,8 @@
 #include "spectral/light_family.h"
 #include "survey/survey_check.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -77,6 +79,19 @@ MapAsRadians map_as_radians(const Rig& rig, const Navigation& navigation, std::v
     }
 }
 
+// Wherever the curves came from and whatever they are called.
+std::string response_digest(const Sensor& sensor) {
+    std::string text;
+    const std::vector<const Spectrum*> curves = sensor.curves();
+    for (const double lambda_nm : union_of_knots(curves, sensor.range())) {
+        text += fmt::format("{}", lambda_nm);
+        for (int c = 0; c < kChannels; ++c)
+            text += fmt::format(" {}", sensor.response(c, lambda_nm));
+        text += '\n';
+    }
+    return sha256_of_text(text);
+}
+
 }  // namespace
 
 LightAt light_of_rig(const Rig& rig,
@@ -93,6 +108,7 @@ LightAt light_of_rig(const Rig& rig,
     const auto light = std::make_shared<const RigLight>(RigLight{
         .edges = ConeEdges(rig), .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), {})});
     return {.digest = rig.digest,
+            .camera_digest = response_digest(rig.camera.sensor),
             .size = {rig.camera.width_px, rig.camera.height_px},
             .map = [light](const Sled& sled) { return light->maker.map(sled); },
             .edges = [light](const Sled& sled,

@@ -21,7 +21,8 @@
 namespace aphotic {
 
 struct LightAt {
-    std::string digest;  // of all that the maps depend on, the pose aside
+    std::string digest;           // of all that the maps depend on, the pose aside
+    std::string camera_digest{};  // of its response alone; empty: the camera is not known
     PlaneSize size;
     // These are called from several threads.
     std::function<Lightmap(const Sled& sled)> map;
