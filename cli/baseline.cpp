@@ -53,6 +53,7 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
                    options.name,
                    run.kept > 0 ? fmt::format("{} kept as they were, ", run.kept) : "",
                    run.skipped.size());
+        if (report.srgb) print_srgb(*report.srgb, folder);
     }
     return status_of_skips(run.skipped.size(), survey.files.size(), options.allowed_skips);
 }
@@ -101,7 +102,7 @@ Action configure_baseline(CLI::App& app) {
     add_baseline_options(app, options->baseline.settings);
     add_camera_options(app, options->camera);
     add_white_level_option(app, options->camera);
-    add_format_options(app, options->baseline.run.format);
+    const Settle settle = add_format_options(app, options->baseline.run.format);
     add_jobs(app, options->baseline.run.jobs, "Correct N images at a time");
     add_strict_option(app, options->strict);
     add_allow_skipped(app, options->allowed_skips);
@@ -114,7 +115,10 @@ Action configure_baseline(CLI::App& app) {
         "than "
         "--allow-skipped. A mask's pixel "
         "is a sum of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
-    return [options] { return correct_by_baseline(*options); };
+    return [options, settle] {
+        settle();
+        return correct_by_baseline(*options);
+    };
 }
 
 }  // namespace

@@ -38,7 +38,9 @@ struct CorrectCommandOptions {
     bool json = false;
 };
 
-void print_report(const CorrectionReport& report, const std::filesystem::path& folder) {
+void print_report(const CorrectionReport& report,
+                  const std::filesystem::path& folder,
+                  bool has_page) {
     fmt::print("{} corrected in {:.1f} s, {} kept as they were, {} skipped\n",
                counted(report.run->corrected, "image"),
                report.seconds,
@@ -51,9 +53,11 @@ void print_report(const CorrectionReport& report, const std::filesystem::path& f
     }
     if (!report.gain.folder.empty()) from = ", that of " + report.gain.folder;
     fmt::print("  gain {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n", gain[0], gain[1], gain[2], from);
+    if (report.srgb) print_srgb(*report.srgb, folder);
     print_doubts(*report.run);
     if (!report.not_checked.empty()) fmt::print("  not checked: {}\n", report.not_checked);
     fmt::print("  {}\n", (folder / kCorrectionNotes).string());
+    if (has_page) fmt::print("  {}\n", (folder / kReportPage).string());
     for (const Skipped& one : report.run->skipped) {
         fmt::print("  skipped: {}: {}\n", one.image, one.why);
     }
@@ -104,7 +108,7 @@ ExitStatus correct(const CorrectCommandOptions& options) {
     if (options.json) {
         fmt::print("{}", json_text(to_json(report)));
     } else {
-        print_report(report, options.correction.run.folder);
+        print_report(report, options.correction.run.folder, options.correction.report);
     }
     return status_of_skips(report.run->skipped.size(), survey.files.size(), options.allowed_skips);
 }
@@ -146,7 +150,7 @@ void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
         ->capture_default_str();
 }
 
-void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
+[[nodiscard]] Settle add_result_options(CLI::App& app, CorrectCommandOptions& options) {
     constexpr double kLeastShare = 1e-6;
     constexpr double kLeastNoise = 1e-3;
     constexpr double kMostNoise = 10.0;
@@ -191,7 +195,7 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
                    "Mark N pixels around a beam's edge as doubtful")
         ->check(in_range(0, kMostEdge_px))
         ->capture_default_str();
-    add_format_options(app, options.correction.run.format);
+    return add_format_options(app, options.correction.run.format);
 }
 
 Action configure_correct(CLI::App& app) {
@@ -200,8 +204,12 @@ Action configure_correct(CLI::App& app) {
     add_light_options(app, *options);
     add_output_folder(app, options->correction.run.folder)->required();
     add_raw_options(app, *options);
-    add_result_options(app, *options);
+    const Settle settle = add_result_options(app, *options);
     add_jobs(app, options->correction.run.jobs, "Correct N images at a time");
+    app.add_flag("--report",
+                 options->correction.report,
+                 "Also write DIR/report.html: images before and after, light over altitude, gains, "
+                 "what was skipped and why");
     add_strict_option(app, options->strict);
     add_allow_skipped(app, options->allowed_skips);
     add_json(app, options->json, "Print DIR/correction.json");
@@ -211,7 +219,10 @@ Action configure_correct(CLI::App& app) {
         "mask's pixel is a "
         "sum of 1 dark, 2 saturated, 4 black, 8 on a beam's edge, 16 clipped by the format; 0 is "
         "good.");
-    return [options] { return correct(*options); };
+    return [options, settle] {
+        settle();
+        return correct(*options);
+    };
 }
 
 }  // namespace

@@ -48,6 +48,8 @@ struct WrittenImage {
     Compression compression = Compression::Fast;
     std::string description{};
     std::string date_time{};  // empty: not known. Never now: the same image is the same file
+    bool is_srgb = false;     // the samples are encoded as sRGB, which the file says
+    int jpeg_quality = 95;    // 1 to 100; JPEG alone loses something
 };
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image);
 

@@ -167,6 +167,10 @@ extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
                          static_cast<int>(image.channels.size()),
                          is_bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
     compress(spec, image.compression);
+    if (std::string_view(output->format_name()) == "jpeg") {
+        spec.attribute("compression", fmt::format("jpeg:{}", image.jpeg_quality));
+    }
+    if (image.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
     spec.channelnames = image.channels;
     if (!image.description.empty()) spec.attribute("ImageDescription", image.description);
     // Exif's words for a time that is not known; without any, TIFF gets the time of writing.

@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/sha256.h"
+#include "survey/contact_sheet.h"
+#include "survey/correction_page.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -57,6 +59,7 @@ Json settings_of(const Survey& survey,
     } else {
         json["gain_images"] = options.gain_images;
     }
+    if (format.srgb) json["encode"] = to_json(*format.srgb);
     if (options.read_noise) json["read_noise"] = *options.read_noise;
     if (survey.camera.white_level) json["white_level"] = *survey.camera.white_level;
     return json;
@@ -96,20 +99,26 @@ void look_first(const Survey& survey,
     std::ranges::move(suspicions(look.images, survey.camera.mosaic),
                       std::back_inserter(report.looks_wrong));
     report.not_checked = not_checked(look.images);
+    report.looks = look.images;
     watch.looks_wrong(report.looks_wrong);
     report.gain = known ? *known : measured_gain(look, wanted_middle(survey, options));
 }
 
+// Of a gain by itself nobody knows how much light the survey's middle has.
+bool is_middle_known(const CorrectionOptions& options, const SurveyGain& gain) {
+    return !gain.images.empty() || options.middle;
+}
+
 Counts correct_image(const Survey& survey,
                      const CorrectionOptions& options,
-                     const SurveyGain& gain,
+                     const CorrectionReport& report,
                      const ImageFile& file) {
+    const SurveyGain& gain = report.gain;
     const Sled sled = survey.sled_of(file);
     SurveyImage taken = read_survey_image(file.source, survey.camera);
     NoiseLimit limit = options.limit;
     limit.read_noise = options.read_noise.value_or(taken.rounding);
-    // Of a gain by itself nobody knows how much light the survey's middle has.
-    if (gain.images.empty() && !options.middle) limit = {.share = options.limit.share};
+    if (!is_middle_known(options, gain)) limit = {.share = options.limit.share};
     const Correction correction{
         .gain = gain.gain, .middle = gain.middle, .levels = taken.levels, .limit = limit};
     CorrectedImage result = corrected(std::move(taken.raw), survey.light.map(sled), correction);
@@ -117,6 +126,10 @@ Counts correct_image(const Survey& survey,
     const std::vector<std::uint8_t> edges = survey.light.edges(sled, options.edge_px);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         result.doubts[i] |= edges[i] != 0 ? kEdge : std::uint8_t{0};
+    }
+    if (report.srgb) {
+        const ResultFormat& format = options.run.format;
+        write_srgb(options.run.folder, file, result, taken, *report.srgb, *format.srgb);
     }
     return write_results(options.run.folder, file, std::move(result), taken, options.run.format);
 }
@@ -134,9 +147,7 @@ ImageWork work_of(const Survey& survey,
                            sled.pitch_rad,
                            sled.roll_rad);
     };
-    work.make = [&](const ImageFile& file) {
-        return correct_image(survey, options, report.gain, file);
-    };
+    work.make = [&](const ImageFile& file) { return correct_image(survey, options, report, file); };
     return work;
 }
 
@@ -150,11 +161,23 @@ Json to_json(const CorrectionReport& report) {
               {"gain_folder", nullptr},
               {"looks_wrong", to_json(report.looks_wrong)},
               {"not_checked", report.not_checked}};
+    if (report.srgb) json["srgb"] = to_json(*report.srgb);
     if (!report.gain.folder.empty()) json["gain_folder"] = report.gain.folder;
     if (!report.run) return json;
     json.update(to_json(*report.run));
     json["seconds"] = report.seconds;
     return json;
+}
+
+SrgbEncoding shown_as(const Survey& survey,
+                      const CorrectionOptions& options,
+                      const SurveyGain& gain) {
+    std::optional<CameraToSrgb> camera;
+    if (survey.light.to_srgb) camera = survey.light.to_srgb();
+    std::optional<PerChannel> middle;
+    if (is_middle_known(options, gain)) middle = gain.middle;
+    const auto& srgb = options.run.format.srgb;
+    return srgb_encoding(std::move(camera), middle, srgb ? srgb->stops : 0.0);
 }
 
 CorrectionReport correct_survey(const Survey& survey,
@@ -171,6 +194,7 @@ CorrectionReport correct_survey(const Survey& survey,
     report.settings = settings_of(survey, options, given);
     report.settings_sha256 = sha256_of_text(report.settings.dump());
     look_first(survey, options, given, watch, report);
+    if (options.run.format.srgb) report.srgb = shown_as(survey, options, report.gain);
     // Before the first image: also what an interrupted run leaves is no survey.
     write_text_file(notes, json_text(to_json(report)));
     report.run = run_images(survey.files, options.run, work_of(survey, options, report), watch);
@@ -180,6 +204,10 @@ CorrectionReport correct_survey(const Survey& survey,
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     write_text_file(notes, json_text(to_json(report)));
+    if (options.report) {
+        const std::vector<SheetImage> sheet = contact_sheet(survey, options, report);
+        write_text_file(options.run.folder / kReportPage, correction_html(survey, report, sheet));
+    }
     return report;
 }
 

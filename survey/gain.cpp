@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/parallel.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -21,12 +22,15 @@ double median(std::vector<double> numbers) {
     return *middle;
 }
 
+bool is_number(double number) {
+    return std::isfinite(number) && number > 0.0;
+}
+
 // What correct_survey() wrote. An nlohmann exception when it is something else.
 std::optional<SurveyGain> gain_in(const nlohmann::json& notes) {
     SurveyGain noted{.gain = notes.at("gain").get<PerChannel>(),
                      .middle = notes.at("settings").at("middle").get<PerChannel>(),
                      .images = notes.at("gain_from").get<std::vector<std::string>>()};
-    const auto is_number = [](double number) { return std::isfinite(number) && number > 0.0; };
     const bool is_gain =
         std::ranges::all_of(noted.gain, is_number) && std::ranges::all_of(noted.middle, is_number);
     return is_gain ? std::optional(noted) : std::nullopt;
@@ -137,6 +141,46 @@ SurveyGain gain_of_folder(const std::filesystem::path& folder,
                          kCorrectionNotes);
     }
     return gain_of_notes(read_text_file(file), folder.string(), light, doubts);
+}
+
+PerChannel grey_balance(const Survey& survey, double grey, std::size_t jobs) {
+    constexpr std::size_t kImages = 16;
+    const std::size_t count = std::min(kImages, survey.files.size());
+    std::vector<PerChannel> middles(count);  // 0 of those that cannot be read
+    parallel_for(count, jobs, [&](std::size_t i, std::size_t) {
+        try {
+            const SurveyImage taken = read_survey_image(
+                survey.files[i * survey.files.size() / count].source, survey.camera);
+            const RawImage& raw = taken.raw;
+            const Lightmap even{.width_px = raw.width_px,
+                                .height_px = raw.height_px,
+                                .samples = std::vector<float>(kChannels * raw.pixels(), 1.0F)};
+            middles[i] = middle_quotient(raw, even, taken.levels, 0.0);
+        } catch (const InputError&) {
+            // It is said of the image when its turn comes.
+        }
+    });
+    std::erase_if(middles, [](const PerChannel& m) { return !std::ranges::all_of(m, is_number); });
+    PerChannel balance{1.0, 1.0, 1.0};
+    for (std::size_t c = 0; c < kChannels && !middles.empty(); ++c) {
+        std::vector<double> of_channel;
+        for (const PerChannel& middle : middles) of_channel.push_back(middle[c]);
+        balance[c] = grey / median(of_channel);
+    }
+    return balance;
+}
+
+std::optional<PerChannel> kept_balance(std::string_view text, std::string_view settings) {
+    try {
+        const nlohmann::json notes = parse_json(text, "baseline.json");
+        if (notes.at("settings") != parse_json(settings, "settings")) return std::nullopt;
+        const auto balance = notes.at("srgb").at("balance").get<PerChannel>();
+        return std::ranges::all_of(balance, is_number) ? std::optional(balance) : std::nullopt;
+    } catch (const nlohmann::json::exception&) {
+        return std::nullopt;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
 }
 
 }  // namespace aphotic

@@ -45,4 +45,13 @@ struct SurveyGain {
                                        const LightAt& light,
                                        std::vector<Suspicion>& doubts);
 
+// What scales the camera's channels so that the median of some of the survey's images, in its files
+// evenly spread, is grey; 1 where none has light in every channel.
+[[nodiscard]] PerChannel grey_balance(const Survey& survey, double grey, std::size_t jobs);
+
+// The balance that the text of a folder's baseline.json tells of. None when the text is of other
+// settings, or no numbers over 0.
+[[nodiscard]] std::optional<PerChannel> kept_balance(std::string_view text,
+                                                     std::string_view settings);
+
 }  // namespace aphotic

@@ -107,13 +107,16 @@ LightAt light_of_rig(const Rig& rig,
     }
     const auto light = std::make_shared<const RigLight>(RigLight{
         .edges = ConeEdges(rig), .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), {})});
-    return {.digest = rig.digest,
+    return {.title = rig.title,
+            .toml = rig.toml,
+            .digest = rig.digest,
             .camera_digest = response_digest(rig.camera.sensor),
             .size = {rig.camera.width_px, rig.camera.height_px},
             .map = [light](const Sled& sled) { return light->maker.map(sled); },
             .edges = [light](const Sled& sled,
                              int within_px) { return light->edges.mask(sled, within_px); },
             .map_as_radians = map_as_radians(rig, navigation, sleds),
+            .to_srgb = [rig] { return camera_to_srgb(rig); },
             .floor_colour = floor_colour(rig)};
 }
 
@@ -165,6 +168,17 @@ PerChannel floor_colour(const Rig& rig) {
         given_back[c] = lamps[c] > 0.0 ? given_back[c] / lamps[c] : 0.0;
     }
     return given_back;
+}
+
+CameraToSrgb camera_to_srgb(const Rig& rig) {
+    const double path_m = 2.0 * rig.sled.altitude_m;
+    return camera_to_srgb(rig.camera.sensor, rig.camera.range, [&](double lambda_nm) {
+        double flux = 0.0;
+        for (const Strobe& strobe : rig.strobes) {
+            flux += strobe.power * strobe.spectrum.at(lambda_nm);
+        }
+        return flux * std::exp(-path_m * rig.water.attenuation_per_m(lambda_nm));
+    });
 }
 
 }  // namespace aphotic

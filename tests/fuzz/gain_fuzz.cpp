@@ -25,6 +25,11 @@ void demand_gain(const aphotic::SurveyGain& noted) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto text = aphotic::text_of(data, size);
     if (const auto kept = aphotic::kept_gain(text, "digest")) demand_gain(*kept);
+    if (const auto balance = aphotic::kept_balance(text, "{}")) {
+        for (const double number : *balance) {
+            if (!std::isfinite(number) || number <= 0.0) std::abort();
+        }
+    }
     aphotic::LightAt light;
     light.digest = "rig";
     light.camera_digest = "camera";
