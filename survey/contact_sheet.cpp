@@ -61,7 +61,9 @@ RawImage small(RawImage image) {
 RawImage result_of(const ImageFile& file, const Survey& survey, const CorrectionOptions& options) {
     const Mosaic mosaic = options.keep_mosaic ? survey.camera.mosaic : Mosaic::None;
     const fs::path written = options.run.folder / results_of(file, options.run.format).front();
-    SurveyImage result = read_survey_image(written, {.mosaic = mosaic});
+    CameraNumbers numbers;
+    numbers.mosaic = mosaic;
+    SurveyImage result = read_survey_image(written, numbers);
     if (options.run.format.clips()) {
         for (float& sample : result.raw.samples) sample /= result.levels.white;
     }

@@ -518,11 +518,17 @@ TEST_F(CorrectCommand, SrgbFilesSayThatTheyAreSrgb) {
         folder_.path(), {"compare", "tiff/srgb/a.tif", "png/srgb/a.png", "--bound", "0"});
     EXPECT_EQ(depth.status, 0) << depth.out << depth.err;
 
-    // Exif's ColorSpace is 1 for sRGB; a PNG has a chunk of that name.
+    // Exif's ColorSpace, tag 0xA001, one short number, is 1 for sRGB; in either order of bytes. A
+    // PNG has a chunk of that name.
+    const auto is_tagged = [](const std::string& file) {
+        const std::string little("\x01\xA0\x03\0\x01\0\0\0\x01\0", 10);
+        const std::string big("\xA0\x01\0\x03\0\0\0\x01\0\x01", 10);
+        return file.find(little) != std::string::npos || file.find(big) != std::string::npos;
+    };
     const std::string jpeg = files_in("jpeg").at("srgb/a.jpg");
-    const std::string color_space("\xA0\x01", 2);
-    EXPECT_TRUE(jpeg.find(color_space) != std::string::npos ||
-                jpeg.find("\x01\xA0") != std::string::npos);
+    EXPECT_TRUE(is_tagged(jpeg));
+    EXPECT_TRUE(is_tagged(files_in("tiff").at("srgb/a.tif")));
+    EXPECT_FALSE(is_tagged(files_in("tiff").at("a.tif")));
     EXPECT_NE(files_in("png").at("srgb/a.png").find("sRGB"), std::string::npos);
     EXPECT_EQ(files_in("png").at("a.png").find("sRGB"), std::string::npos);
 
