@@ -137,7 +137,7 @@ std::string light_over_altitude(std::span<const ImageLook> looks) {
                    .top = kMargin,
                    .width = kWidth - kAxisWidth - kMargin,
                    .height = kHeight - kAxisHeight - kMargin,
-                   .x = linear_axis(altitudes.least, altitudes.most, kTicks),
+                   .x = linear_axis_around(altitudes.least, altitudes.most, kTicks),
                    .y = log_axis(numbers.least, numbers.most)};
     panel.x.title = "altitude (m)";
     panel.y.title = "light (the camera’s numbers over black)";
@@ -147,8 +147,10 @@ std::string light_over_altitude(std::span<const ImageLook> looks) {
         const std::string tone = svg_tone(kChannelTones.at(c));
         elements += svg_curve(
             panel, light.altitude_m, light.map[c], fmt::format("class=\"curve\" {}", tone));
-        elements += svg_dots(
-            panel, light.altitude_m, light.image[c], fmt::format("class=\"dots\" {}", tone));
+        elements += svg_dots(panel,
+                             light.altitude_m,
+                             light.image[c],
+                             fmt::format("class=\"dots\" style=\"stroke-width: 7px\" {}", tone));
         keys += html_key(fmt::format("<svg class=\"stroke\" viewBox=\"0 0 34 12\"><path "
                                      "class=\"curve\" {} d=\"M2 6L32 6\"/></svg>",
                                      tone),
@@ -157,7 +159,7 @@ std::string light_over_altitude(std::span<const ImageLook> looks) {
     return html_section(
         "light",
         "Light over altitude",
-        html_legend(keys + html_key("<b>—</b>", "the maps") + html_key("<b>×</b>", "the images")) +
+        html_legend(keys + html_key("", "lines: the maps") + html_key("", "dots: the images")) +
             fmt::format(
                 "<div class=\"plot wide\">{}</div>\n",
                 svg_drawing("light-plot", "light over altitude", kWidth, kHeight, elements)) +

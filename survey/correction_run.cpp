@@ -176,8 +176,21 @@ SrgbEncoding shown_as(const Survey& survey,
     if (survey.light.to_srgb) camera = survey.light.to_srgb();
     std::optional<PerChannel> middle;
     if (is_middle_known(options, gain)) middle = gain.middle;
+    // The floor was given the colour that it has by the lamps; in the light that reaches the camera
+    // it has another, and only with that one is grey grey.
+    PerChannel balance{1.0, 1.0, 1.0};
+    const auto& by_lamps = survey.light.floor_colour;
+    const auto& in_water = survey.light.floor_colour_in_water;
+    if (middle && by_lamps && in_water && *middle == *by_lamps) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            if ((*by_lamps)[c] > 0.0) balance[c] = (*in_water)[c] / (*by_lamps)[c];
+        }
+        middle = in_water;
+    }
     const auto& srgb = options.run.format.srgb;
-    return srgb_encoding(std::move(camera), middle, srgb ? srgb->stops : 0.0);
+    SrgbEncoding encoding = srgb_encoding(std::move(camera), middle, srgb ? srgb->stops : 0.0);
+    encoding.balance = balance;
+    return encoding;
 }
 
 CorrectionReport correct_survey(const Survey& survey,

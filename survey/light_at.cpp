@@ -92,6 +92,17 @@ std::string response_digest(const Sensor& sensor) {
     return sha256_of_text(text);
 }
 
+// Of all lamps, relative, down and back at the rig's own altitude.
+std::function<double(double)> light_on_its_way(const Rig& rig) {
+    return [&rig, path_m = 2.0 * rig.sled.altitude_m](double lambda_nm) {
+        double flux = 0.0;
+        for (const Strobe& strobe : rig.strobes) {
+            flux += strobe.power * strobe.spectrum.at(lambda_nm);
+        }
+        return flux * std::exp(-path_m * rig.water.attenuation_per_m(lambda_nm));
+    };
+}
+
 }  // namespace
 
 LightAt light_of_rig(const Rig& rig,
@@ -117,7 +128,8 @@ LightAt light_of_rig(const Rig& rig,
                              int within_px) { return light->edges.mask(sled, within_px); },
             .map_as_radians = map_as_radians(rig, navigation, sleds),
             .to_srgb = [rig] { return camera_to_srgb(rig); },
-            .floor_colour = floor_colour(rig)};
+            .floor_colour = floor_colour(rig),
+            .floor_colour_in_water = floor_colour_in_water(rig)};
 }
 
 LightAt light_of_map(const std::filesystem::path& map_file) {
@@ -171,14 +183,25 @@ PerChannel floor_colour(const Rig& rig) {
 }
 
 CameraToSrgb camera_to_srgb(const Rig& rig) {
-    const double path_m = 2.0 * rig.sled.altitude_m;
-    return camera_to_srgb(rig.camera.sensor, rig.camera.range, [&](double lambda_nm) {
-        double flux = 0.0;
-        for (const Strobe& strobe : rig.strobes) {
-            flux += strobe.power * strobe.spectrum.at(lambda_nm);
+    return camera_to_srgb(rig.camera.sensor, rig.camera.range, light_on_its_way(rig));
+}
+
+PerChannel floor_colour_in_water(const Rig& rig) {
+    const auto light = light_on_its_way(rig);
+    PerChannel given_back{};
+    PerChannel lamps{};
+    for (double nm = std::ceil(rig.camera.range.first_nm); nm <= rig.camera.range.last_nm; ++nm) {
+        for (int c = 0; c < kChannels; ++c) {
+            const double seen = light(nm) * rig.camera.sensor.response(c, nm);
+            const auto i = static_cast<std::size_t>(c);
+            lamps[i] += seen;
+            given_back[i] += seen * rig.seafloor.reflectance.at(nm);
         }
-        return flux * std::exp(-path_m * rig.water.attenuation_per_m(lambda_nm));
-    });
+    }
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        given_back[c] = lamps[c] > 0.0 ? given_back[c] / lamps[c] : 0.0;
+    }
+    return given_back;
 }
 
 }  // namespace aphotic

@@ -35,7 +35,8 @@ struct LightAt {
     std::function<std::optional<Lightmap>(const Sled& sled)> map_as_radians{};
     // To show what is divided by the maps; empty: the camera is not known.
     std::function<CameraToSrgb()> to_srgb{};
-    std::optional<PerChannel> floor_colour{};  // none: nothing is known of the floor
+    std::optional<PerChannel> floor_colour{};           // none: nothing is known of the floor
+    std::optional<PerChannel> floor_colour_in_water{};  // by the light that images were taken in
 };
 
 // For the poses of these images: those that have none are passed over here.
@@ -54,5 +55,8 @@ struct LightAt {
 // Of the rig's camera, in the light of its lamps after the way to the floor and back at the rig's
 // own altitude.
 [[nodiscard]] CameraToSrgb camera_to_srgb(const Rig& rig);
+
+// The floor's colour in that light.
+[[nodiscard]] PerChannel floor_colour_in_water(const Rig& rig);
 
 }  // namespace aphotic

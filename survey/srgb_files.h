@@ -3,15 +3,16 @@
 // Corrected images as viewers, annotation platforms and photogrammetry take them: encoded as sRGB,
 // beside the linear ones, in a folder of their own with the same names.
 //
-//   shown = sRGB( e M v ),     e = 2^stops kMiddleGrey / luminance(M middle)
+//   shown = sRGB( e M b v ),     e = 2^stops kMiddleGrey / luminance(M b middle)
 //
 // v       corrected image, linear
+// b       what the channels are balanced by, near 1: where the middle is the colour that the rig's
+//         floor has by the lamps, the one it has in the light that reaches the camera over that
 // M       the camera's matrix (camera_to_srgb.h); the identity where the camera is not known
 // middle  what the survey's middle was made (gain.h); where only a gain is known, e = 2^stops
 // e       one exposure for the whole survey, so that its images can be compared
 // Of what a model did not correct (baseline_run.h), neither colours nor the middle are known, and
-// each channel is scaled so that the survey's median is kMiddleGrey: v is the corrected image times
-// that balance, M the identity, e = 2^stops.
+// b makes the survey's median in each channel kMiddleGrey; M is the identity, e = 2^stops.
 //
 // sRGB    transfer curve of IEC 61966-2-1; clipped to 0..1
 //

@@ -459,13 +459,17 @@ TEST_F(CorrectCommand, SrgbIsTheLinearImageByMatrixExposureAndCurve) {
     EXPECT_GT(srgb["mean_delta_e"].get<double>(), 0.0);
     EXPECT_LT(srgb["largest_delta_e"].get<double>(), 20.0);
     const PerChannel floor = floor_colour(rig_at({2.0, 0.0, 0.0}));
+    // By numpy: int rho E Q over int E Q of the sand, after 4 m of water over that before.
+    const PerChannel balance = srgb["balance"].get<PerChannel>();
+    const PerChannel numpy{0.955466, 0.982269, 0.99454};
+    for (std::size_t c = 0; c < kChannels; ++c) EXPECT_NEAR(balance[c], numpy[c], 1e-4) << c;
     const std::array<double, kChannels> luminance{0.2126, 0.7152, 0.0722};
     double middle = 0.0;
     for (std::size_t row = 0; row < kChannels; ++row) {
         double sum = 0.0;
         for (std::size_t c = 0; c < kChannels; ++c) {
             sum += srgb["matrix"][row][c].get<double>();
-            middle += luminance[row] * srgb["matrix"][row][c].get<double>() * floor[c];
+            middle += luminance[row] * srgb["matrix"][row][c].get<double>() * balance[c] * floor[c];
         }
         EXPECT_NEAR(sum, 1.0, 1e-12) << "grey stays grey";
     }
@@ -478,7 +482,8 @@ TEST_F(CorrectCommand, SrgbIsTheLinearImageByMatrixExposureAndCurve) {
         for (std::size_t row = 0; row < kChannels; ++row) {
             double value = 0.0;
             for (std::size_t c = 0; c < kChannels; ++c) {
-                value += exposure * srgb["matrix"][row][c].get<double>() * linear[c * kPixels + p];
+                value += exposure * srgb["matrix"][row][c].get<double>() * balance[c] *
+                         linear[c * kPixels + p];
             }
             value = std::clamp(value, 0.0, 1.0);
             const double curve =

@@ -30,8 +30,11 @@ struct CorrectedSurvey {
         survey.light.edges = [](const Sled&, int) {
             return std::vector<std::uint8_t>(RawSurvey::kPixels_of_plane, 0);
         };
-        report = correct_survey(
-            survey, {.run = {.folder = raw.path("out"), .jobs = 1}, .report = true}, {});
+        CorrectionOptions options;
+        options.run.folder = raw.path("out");
+        options.run.jobs = 1;
+        options.report = true;
+        report = correct_survey(survey, options, {});
         page = read_text_file(raw.path("out/report.html"));
     }
 
