@@ -423,9 +423,10 @@ TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
     EXPECT_EQ(correct({"--gain-from", "one", "--strict"}, "three").status, kBadInput);
     write_file(path("camera.csv"),
                "wavelength_nm,red,green,blue\n380,0.1,0.2,0.4\n780,0.3,0.2,0.1\n");
-    write_file(path("rig.toml"),
-               std::regex_replace(
-                   rig, std::regex("\"nikon-d5100\""), "\"camera.csv\"\nkind = \"energy\""));
+    write_file(
+        path("rig.toml"),
+        std::regex_replace(
+            rig, std::regex("\"nikon-d5100\""), R"({ table = "camera.csv", kind = "energy" })"));
     const auto refused = [&](const std::vector<std::string>& options, const std::string& why) {
         const CommandResult wrong = correct(options, "four");
         EXPECT_EQ(wrong.status, kBadInput) << wrong.out;
@@ -578,7 +579,7 @@ TEST_F(CorrectCommand, WhatCannotBeEncodedIsRefused) {
              {{"--encode", "srgb", "--stops", "nan"}, "--stops: found nan; allowed: a number"},
              {{"--encode", "adobe"}, "--encode: adobe not in {linear,srgb}"},
              {{"--encode", "srgb", "--format", "tiff"},
-              "raw/srgb/a.tif and raw/a.tif would both become out/srgb/a.tif"}}) {
+              "raw/a.tif and raw/srgb/a.tif would both become out/srgb/a.tif"}}) {
         const CommandResult run = correct(one.options);
         EXPECT_EQ(run.status, kBadInput) << run.out;
         EXPECT_NE(run.err.find(one.why), std::string::npos) << run.err << one.why;
