@@ -3,6 +3,7 @@
 // aphotic baseline NAME IMAGES... -o DIR: images corrected without a model of the lamps.
 #include "base/json_text.h"
 #include "base/words.h"
+#include "cli/allowed_skips.h"
 #include "cli/command.h"
 #include "cli/navigation_options.h"
 #include "cli/options.h"
@@ -28,6 +29,7 @@ struct BaselineCommandOptions {
     CameraNumbers camera;
     BaselineRunOptions baseline;
     bool strict = false;
+    AllowedSkips allowed_skips;
     bool json = false;
 };
 
@@ -55,8 +57,9 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
                    run.skipped.size());
         print_camera(survey.camera);
         print_navigation(survey.navigation);
+        if (report.srgb) print_srgb(*report.srgb, folder);
     }
-    return run.skipped.empty() ? kDone : kAnswerIsNo;
+    return status_of_skips(run.skipped.size(), survey.files.size(), options.allowed_skips);
 }
 
 void add_baseline_options(CLI::App& app, BaselineOptions& options) {
@@ -101,17 +104,23 @@ Action configure_baseline(CLI::App& app) {
     add_survey_rig(app, options->rig);
     add_camera_options(app, options->camera);
     add_white_level_option(app, options->camera);
-    add_format_options(app, options->baseline.run.format);
+    const Settle settle = add_format_options(app, options->baseline.run.format);
     add_jobs(app, options->baseline.run.jobs, "Correct N images at a time");
     add_strict_option(app, options->strict);
+    add_allow_skipped(app, options->allowed_skips);
     add_json(app, options->json, "Print DIR/baseline.json");
     app.footer(
         "The polynomials learn from all images given; the others correct each image by itself. An "
         "EXR holds the camera's own numbers less the black level; a TIFF or PNG has 65535 where "
         "the camera saturates. Interrupted, it continues where it stopped when run again. Images "
-        "that cannot be used are reported and skipped; the exit status is then 1. A mask's pixel "
+        "that cannot be used are reported and skipped; the exit status is 1 when these are more "
+        "than "
+        "--allow-skipped. A mask's pixel "
         "is a sum of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
-    return [options] { return correct_by_baseline(*options); };
+    return [options, settle] {
+        settle();
+        return correct_by_baseline(*options);
+    };
 }
 
 }  // namespace

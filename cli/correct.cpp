@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
+#include "cli/allowed_skips.h"
 #include "cli/command.h"
 #include "cli/navigation_options.h"
 #include "cli/options.h"
@@ -34,6 +35,7 @@ struct CorrectCommandOptions {
     std::vector<double> altitudes_m;
     CorrectionOptions correction;
     bool strict = false;
+    AllowedSkips allowed_skips;
     bool json = false;
 };
 
@@ -54,7 +56,8 @@ std::string gain_words(const PerChannel& gain) {
 
 void print_report(const CorrectionReport& report,
                   const Survey& survey,
-                  const std::filesystem::path& folder) {
+                  const std::filesystem::path& folder,
+                  bool has_page) {
     fmt::print("{} corrected in {:.1f} s, {} kept as they were, {} skipped\n",
                counted(report.run->corrected, "image"),
                report.seconds,
@@ -62,13 +65,17 @@ void print_report(const CorrectionReport& report,
                report.run->skipped.size());
     print_camera(survey.camera);
     print_scale(survey.light);
-    const std::size_t from = report.gain.images.size();
-    fmt::print("  gain {}{}\n",
-               gain_words(report.gain.gain),
-               from > 0 ? ", taken from " + counted(from, "image") : "");
+    std::string from;
+    if (!report.gain.images.empty()) {
+        from = ", taken from " + counted(report.gain.images.size(), "image");
+    }
+    if (!report.gain.folder.empty()) from = ", that of " + report.gain.folder;
+    fmt::print("  gain {}{}\n", gain_words(report.gain.gain), from);
+    if (report.srgb) print_srgb(*report.srgb, folder);
     print_doubts(*report.run);
     if (!report.not_checked.empty()) fmt::print("  not checked: {}\n", report.not_checked);
     fmt::print("  {}\n", (folder / kCorrectionNotes).string());
+    if (has_page) fmt::print("  {}\n", (folder / kReportPage).string());
     for (const Skipped& one : report.run->skipped) {
         fmt::print("  skipped: {}: {}\n", one.image, one.why);
     }
@@ -128,10 +135,10 @@ ExitStatus correct(const CorrectCommandOptions& options) {
     if (options.json) {
         fmt::print("{}", json_text(to_json(report)));
     } else {
-        print_report(report, survey, options.correction.run.folder);
+        print_report(report, survey, options.correction.run.folder, options.correction.report);
         print_navigation(survey.navigation);
     }
-    return report.run->skipped.empty() ? kDone : kAnswerIsNo;
+    return status_of_skips(report.run->skipped.size(), survey.files.size(), options.allowed_skips);
 }
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
@@ -167,24 +174,32 @@ void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
         ->capture_default_str();
 }
 
-void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
+[[nodiscard]] Settle add_result_options(CLI::App& app, CorrectCommandOptions& options) {
     constexpr double kLeastShare = 1e-6;
     constexpr double kLeastNoise = 1e-3;
     constexpr double kMostNoise = 10.0;
     constexpr int kMostEdge_px = 100;
     constexpr std::size_t kMostImages = 10000;
-    app.add_option("--gain",
-                   options.correction.gain,
-                   "Multiply (raw - black) / map by this: one number, or R,G,B; by default taken "
-                   "from the survey")
-        ->delimiter(',')
-        ->expected(1, kChannels)
-        ->check(positive());
+    auto* gain = app.add_option("--gain",
+                                options.correction.gain,
+                                "Multiply (raw - black) / map by this: one number, or R,G,B; by "
+                                "default taken from the survey")
+                     ->delimiter(',')
+                     ->expected(1, kChannels)
+                     ->check(positive());
+    auto* gain_from =
+        app.add_option("--gain-from",
+                       options.correction.gain_from,
+                       "Take the gain from the results of another survey by the same camera, so "
+                       "that both are on one scale")
+            ->type_name("DIR")
+            ->excludes(gain);
     app.add_option("--middle",
                    options.correction.middle,
                    "Make the survey's median pixel this value, such as 0.2 for grey; by default "
                    "the colour of the rig's floor, with --map 0.2")
-        ->check(positive());
+        ->check(positive())
+        ->excludes(gain_from);
     app.add_option("--gain-images", options.correction.gain_images, "Take the gain from N images")
         ->check(in_range(1, kMostImages))
         ->capture_default_str();
@@ -204,7 +219,7 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
                    "Mark N pixels around a beam's edge as doubtful")
         ->check(in_range(0, kMostEdge_px))
         ->capture_default_str();
-    add_format_options(app, options.correction.run.format);
+    return add_format_options(app, options.correction.run.format);
 }
 
 Action configure_correct(CLI::App& app) {
@@ -213,16 +228,25 @@ Action configure_correct(CLI::App& app) {
     add_light_options(app, *options);
     add_output_folder(app, options->correction.run.folder)->required();
     add_raw_options(app, *options);
-    add_result_options(app, *options);
+    const Settle settle = add_result_options(app, *options);
     add_jobs(app, options->correction.run.jobs, "Correct N images at a time");
+    app.add_flag("--report",
+                 options->correction.report,
+                 "Also write DIR/report.html: images before and after, light over altitude, gains, "
+                 "what was skipped and why");
     add_strict_option(app, options->strict);
+    add_allow_skipped(app, options->allowed_skips);
     add_json(app, options->json, "Print DIR/correction.json");
     app.footer(
         "Interrupted, it continues where it stopped when run again. Exit status 0 when every image "
-        "is corrected, 1 when some are skipped: correction.json lists them. A mask's pixel is a "
+        "is corrected, 1 when more are skipped than --allow-skipped: correction.json lists them. A "
+        "mask's pixel is a "
         "sum of 1 dark, 2 saturated, 4 black, 8 on a beam's edge, 16 clipped by the format; 0 is "
         "good.");
-    return [options] { return correct(*options); };
+    return [options, settle] {
+        settle();
+        return correct(*options);
+    };
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 // pattern of light that they share.
 #include "base/json_text.h"
 #include "base/words.h"
+#include "cli/allowed_skips.h"
 #include "cli/command.h"
 #include "cli/navigation_options.h"
 #include "cli/options.h"
@@ -28,6 +29,7 @@ struct ObserveCommandOptions {
     CameraNumbers camera;
     ObservationOptions observation;
     bool strict = false;
+    AllowedSkips allowed_skips;
     bool json = false;
 };
 
@@ -70,7 +72,7 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
         print_camera(survey.camera);
         print_navigation(survey.navigation);
     }
-    return observation.skipped.empty() ? kDone : kAnswerIsNo;
+    return status_of_skips(observation.skipped.size(), survey.files.size(), options.allowed_skips);
 }
 
 void add_average_options(CLI::App& app, ObservationOptions& options) {
@@ -117,11 +119,12 @@ Action configure_observe(CLI::App& app) {
         ->capture_default_str();
     add_jobs(app, options->observation.jobs, "Read N images at a time");
     add_strict_option(app, options->strict);
+    add_allow_skipped(app, options->allowed_skips);
     add_json(app, options->json);
     app.footer(
         "MAP.exr holds the average in R, G, B, the number of images in count.R ..., the standard "
         "error in stderr.R ...; what was never observed is NaN. Images that cannot be used are "
-        "reported and skipped; the exit status is then 1.");
+        "reported and skipped; the exit status is 1 when these are more than --allow-skipped.");
     return [options] { return observe_survey(*options); };
 }
 

@@ -24,6 +24,7 @@ namespace {
 constexpr std::array kWritten{"output", "preview", "report", "plot", "quick-look"};
 
 bool is_written(const CLI::Option& option) {
+    if (option.get_items_expected_max() == 0) return false;  // a flag names nothing
     return std::ranges::any_of(kWritten,
                                [&](const char* name) { return option.check_lname(name); });
 }

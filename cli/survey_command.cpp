@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "base/words.h"
+#include "cli/option_checks.h"
 #include "rig/rig_reader.h"
 #include "survey/camera_of_files.h"
 
@@ -113,12 +115,16 @@ void add_white_level_option(CLI::App& app, CameraNumbers& camera) {
                    "file's integer type");
 }
 
-void add_format_options(CLI::App& app, ResultFormat& format) {
+Settle add_format_options(CLI::App& app, ResultFormat& format) {
+    const auto encoded = std::make_shared<SrgbFormat>();
     app.add_flag("--mask", format.mask, "Write NAME.mask.png beside each image");
-    app.add_option(
-           "--format", format.format, "Write tiff or png (16 bits, white 65535) or exr (floats)")
-        ->check(CLI::IsMember({"tiff", "png", "exr"}))
-        ->capture_default_str();
+    const CLI::Option* name =
+        app.add_option("--format",
+                       format.format,
+                       "Write tiff or png (16 bits, white 65535) or exr (floats); of --encode "
+                       "srgb also jpeg, which it takes by default")
+            ->check(CLI::IsMember({"tiff", "png", "exr", "jpeg"}))
+            ->capture_default_str();
     app.add_option("--compression",
                    format.compression,
                    "Compress losslessly: none, fast, or small (a few per cent smaller, about 1.5 "
@@ -126,6 +132,50 @@ void add_format_options(CLI::App& app, ResultFormat& format) {
         ->transform(CLI::CheckedTransformer(kCompressions).description(""))
         ->type_name("none|fast|small")
         ->default_str("fast");
+    const auto encoding = std::make_shared<std::string>("linear");
+    app.add_option("--encode",
+                   *encoding,
+                   "With srgb, also write images to look at: DIR/srgb/NAME.jpg, under one exposure")
+        ->check(CLI::IsMember({"linear", "srgb"}))
+        ->capture_default_str();
+    const CLI::Option* bits =
+        app.add_option("--bits", encoded->bits, "Of sRGB as tiff or png: 8 or 16")
+            ->check(CLI::IsMember({8, 16}))
+            ->capture_default_str();
+    const CLI::Option* quality =
+        app.add_option("--quality", encoded->quality, "Of sRGB as jpeg: 1 to 100")
+            ->check(in_range(1, 100))
+            ->capture_default_str();
+    const CLI::Option* stops = app.add_option("--stops", encoded->stops, "Brighten sRGB by 2^STOPS")
+                                   ->check(in_range(-20.0, 20.0))
+                                   ->capture_default_str();
+    return [&format, linear = format.format, encoded, encoding, name, bits, quality, stops] {
+        const bool is_srgb = *encoding == "srgb";
+        for (const CLI::Option* option : {bits, quality, stops}) {
+            if (option->count() == 0 || is_srgb) continue;
+            throw InputError("{}: found linear images; allowed: with --encode srgb",
+                             option->get_name());
+        }
+        if (!is_srgb && format.format == "jpeg") {
+            throw InputError(
+                "--format: found jpeg, which holds no linear image; allowed: tiff, png, exr, or "
+                "jpeg with --encode srgb");
+        }
+        if (!is_srgb) return;
+        const bool is_named = name->count() > 0 && format.format != "exr";
+        encoded->format = is_named ? format.format : "jpeg";
+        if (format.format == "jpeg") format.format = linear;
+        const bool is_jpeg = encoded->format == "jpeg";
+        const CLI::Option* idle = is_jpeg ? bits : quality;
+        if (idle->count() > 0 && !(is_jpeg && encoded->bits == 8)) {
+            throw InputError("{}: found {} of {}; allowed: {}",
+                             idle->get_name(),
+                             idle->results().front(),
+                             encoded->format,
+                             is_jpeg ? "8, or --format png or tiff" : "with --format jpeg");
+        }
+        format.srgb = *encoded;
+    };
 }
 
 void add_survey_rig(CLI::App& app, std::string& rig) {
@@ -199,6 +249,20 @@ RunWatch terminal_watch(bool strict) {
                     throw InputError("--strict: suspicious survey: " + all);
                 }
             }};
+}
+
+void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folder) {
+    fmt::print(
+        "  sRGB in {}: exposure {:.4g}, ", (folder / kSrgbFolder).string(), encoding.exposure);
+    if (encoding.camera) {
+        fmt::print("colours within {:.1f} CIELAB units in the mean of {}, {:.1f} at most ({})\n",
+                   encoding.camera->mean_delta_e(),
+                   counted(encoding.camera->surfaces.size(), "surface"),
+                   encoding.camera->worst().delta_e,
+                   encoding.camera->worst().name);
+    } else {
+        fmt::print("channels shown as sRGB's own: the camera is not known\n");
+    }
 }
 
 void print_doubts(const RunOutcome& outcome) {

@@ -10,6 +10,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,7 +21,10 @@ void add_images(CLI::App& app, std::vector<std::string>& images);
 // --bayer, --half, --crop, --black-level, --exposure
 void add_camera_options(CLI::App& app, CameraNumbers& camera);
 void add_white_level_option(CLI::App& app, CameraNumbers& camera);
-void add_format_options(CLI::App& app, ResultFormat& format);  // --mask, --format, --compression
+// --mask, --format, --compression, and how to encode images to look at. Once parsed, the format has
+// all of it, or is refused.
+using Settle = std::function<void()>;
+[[nodiscard]] Settle add_format_options(CLI::App& app, ResultFormat& format);
 // --rig, where the rig tells of its camera alone.
 void add_survey_rig(CLI::App& app, std::string& rig);
 
@@ -40,6 +45,9 @@ void add_strict_option(CLI::App& app, bool& strict);
 // A line of progress, a warning of what looks wrong, or when strict an InputError, and each image
 // that is skipped.
 [[nodiscard]] RunWatch terminal_watch(bool strict);
+
+// "shown as sRGB ..."
+void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folder);
 
 // "doubtful pixels: dark 0.1 % ..."
 void print_doubts(const RunOutcome& outcome);

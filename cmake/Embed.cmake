@@ -29,14 +29,11 @@ function(aphotic_embed target)
 
 namespace aphotic {
 
-namespace {
-
-constexpr std::array<${arg_TYPE}, ${count}> kTexts{{
+std::span<const ${arg_TYPE}> ${arg_FUNCTION}() {
+    static constexpr std::array<${arg_TYPE}, ${count}> kTexts{{
 ${texts}}};
-
-}  // namespace
-
-std::span<const ${arg_TYPE}> ${arg_FUNCTION}() { return kTexts; }
+    return kTexts;
+}
 
 }  // namespace aphotic")
     set(output ${CMAKE_CURRENT_BINARY_DIR}/${arg_FUNCTION}.cpp)

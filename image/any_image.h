@@ -57,6 +57,7 @@ struct WrittenImage {
     std::string description{};
     std::string date_time{};  // empty: not known. Never now: the same image is the same file
     SharedTags tags{};        // of the file that it was made of; of TIFF, PNG and JPEG
+    bool is_srgb = false;     // the samples are encoded as sRGB, which the file says
     int jpeg_quality = 95;    // 1 to 100; colours are kept at every pixel
 };
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image);

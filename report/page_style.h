@@ -66,6 +66,10 @@ pre { margin: 12px 0; padding: 14px 18px; background: var(--ground); border-radi
 .holds .word { color: var(--good); }
 .fails .word { color: var(--bad); }
 .pair { display: grid; grid-template-columns: 1fr 1fr; gap: 20px; }
+.sheet { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(320px, 100%), 1fr));
+  gap: 22px 24px; margin-top: 16px; }
+.duo { display: grid; grid-template-columns: 1fr 1fr; gap: 3px; }
+.sheet figcaption { overflow-wrap: anywhere; }
 .picture { display: block; width: 100%; height: auto; border-radius: 2px; }
 .squares { image-rendering: pixelated; }
 .map { position: relative; outline: 1px solid var(--rule); }
@@ -114,7 +118,7 @@ tr.best { background: #eef6f1; }
   html { background: none; }
   body { font-size: 10pt; }
   main { padding: 0; max-width: none; }
-  figure, .map, .pair, p, dd, tr { break-inside: avoid; }
+  figure, .map, .pair, .duo, p, dd, tr { break-inside: avoid; }
   h2, h3 { break-after: avoid; }
   pre { white-space: pre-wrap; overflow-wrap: anywhere; }
   table { font-size: 6.6pt; }

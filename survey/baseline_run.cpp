@@ -7,8 +7,10 @@
 #include "base/json_text.h"
 #include "base/sha256.h"
 #include "survey/first_look.h"
+#include "survey/gain.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,22 +46,43 @@ Json settings_of(const Survey& survey, const BaselineRunOptions& options) {
     json.update(to_json(survey.camera));
     if (survey.navigation && survey.navigation->notes())
         json["navigation"] = to_json(*survey.navigation->notes());
+    if (format.srgb) json["encode"] = to_json(*format.srgb);
     return json;
+}
+
+// A folder keeps its own, so that images that come later fit the others.
+std::optional<SrgbEncoding> encoding_of(const Survey& survey,
+                                        const BaselineRunOptions& options,
+                                        const Json& settings) {
+    if (!options.run.format.srgb) return std::nullopt;
+    SrgbEncoding encoding =
+        srgb_encoding(std::nullopt, std::nullopt, options.run.format.srgb->stops);
+    const fs::path notes = options.run.folder / kBaselineNotes;
+    std::optional<PerChannel> kept;
+    if (fs::exists(notes)) kept = kept_balance(read_text_file(notes), settings.dump());
+    encoding.balance = kept ? *kept : grey_balance(survey, kMiddleGrey, options.run.jobs);
+    return encoding;
 }
 
 class BaselineWork {
   public:
-    BaselineWork(const Survey& survey, const BaselineRunOptions& options, const RunWatch& watch)
+    BaselineWork(const Survey& survey,
+                 const BaselineRunOptions& options,
+                 const std::optional<SrgbEncoding>& srgb,
+                 const RunWatch& watch)
         : survey_(survey),
           options_(options),
+          srgb_(srgb),
           watch_(watch),
           corrector_(options.baseline, options.settings) {}
 
     [[nodiscard]] ImageWork work(const std::string& settings) {
-        const std::string common = fmt::format("{} {} {}",
-                                               name_of(options_.baseline),
-                                               settings,
-                                               corrector_.learns() ? state_of_survey() : "");
+        const std::string common =
+            fmt::format("{} {} {} {}",
+                        name_of(options_.baseline),
+                        settings,
+                        fmt::join(srgb_ ? srgb_->balance : PerChannel{}, " "),
+                        corrector_.learns() ? state_of_survey() : "");
         return {.inputs =
                     [this, digest = sha256_of_text(common)](const ImageFile& file) {
                         return fmt::format("{} {}", digest, altitude_m(file));
@@ -123,6 +146,10 @@ class BaselineWork {
         CorrectedImage result{.image = corrector_.corrected(light, altitude_m(file)),
                               .doubts = doubts_of(taken)};
         if (is_bayer(light.mosaic)) result = demosaiced(result);
+        if (srgb_) {
+            const SrgbFormat& format = *options_.run.format.srgb;
+            write_srgb(options_.run.folder, file, result, taken, *srgb_, format);
+        }
         if (options_.run.format.clips()) {
             const float white = white_of(taken);
             for (float& sample : result.image.samples) sample /= white;
@@ -163,6 +190,7 @@ class BaselineWork {
 
     const Survey& survey_;
     const BaselineRunOptions& options_;
+    const std::optional<SrgbEncoding>& srgb_;
     const RunWatch& watch_;
     BaselineCorrector corrector_;
     std::map<fs::path, std::string> not_learned_;  // by the image's name, and why
@@ -175,6 +203,7 @@ Json to_json(const BaselineReport& report) {
               {"settings", report.settings},
               {"folder", report.folder},
               {"looks_wrong", to_json(report.looks_wrong)}};
+    if (report.srgb) json["srgb"] = to_json(*report.srgb);
     if (report.run) json.update(to_json(*report.run));
     return json;
 }
@@ -192,9 +221,10 @@ BaselineReport correct_by_baseline(const Survey& survey,
                           .settings = settings_of(survey, options),
                           .folder = options.run.folder.string()};
     report.looks_wrong = suspicions_of(survey.files, survey.camera, options.run.jobs, watch);
+    report.srgb = encoding_of(survey, options, report.settings);
     // Before the first image: also what an interrupted run leaves is no survey.
     write_text_file(notes, json_text(to_json(report)));
-    BaselineWork work(survey, options, watch);
+    BaselineWork work(survey, options, report.srgb, watch);
     report.run = run_images(survey.files, options.run, work.work(report.settings.dump()), watch);
     write_text_file(notes, json_text(to_json(report)));
     return report;

@@ -37,6 +37,7 @@ struct BaselineReport {
     std::string_view baseline;
     nlohmann::ordered_json settings;
     std::string folder;
+    std::optional<SrgbEncoding> srgb{};  // none: linear alone
     std::vector<Suspicion> looks_wrong{};
     std::optional<RunOutcome> run{};  // none: it has not ended
 };

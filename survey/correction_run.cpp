@@ -5,11 +5,15 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/sha256.h"
+#include "survey/contact_sheet.h"
+#include "survey/correction_page.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <utility>
 
 namespace aphotic {
@@ -28,14 +32,17 @@ PerChannel wanted_middle(const Survey& survey, const CorrectionOptions& options)
 
 // Their text stands for all that results depend on, images, poses and gain aside: changed, it does
 // every image of every folder anew.
-Json settings_of(const Survey& survey, const CorrectionOptions& options) {
+Json settings_of(const Survey& survey,
+                 const CorrectionOptions& options,
+                 const std::optional<SurveyGain>& given) {
     const ResultFormat& format = options.run.format;
     Json json{{"aphotic", APHOTIC_VERSION},
               {survey.navigation ? "rig_sha256" : "map_sha256", survey.light.digest},
+              {"camera_sha256", survey.light.camera_digest},
               {"keep_mosaic", options.keep_mosaic},
-              {"gain", options.gain},
+              {"gain", nullptr},
               {"gain_images", nullptr},
-              {"middle", wanted_middle(survey, options)},
+              {"middle", given ? given->middle : wanted_middle(survey, options)},
               {"least_light", options.limit.share},
               {"most_noise", options.limit.relative},
               {"read_noise", nullptr},
@@ -46,7 +53,12 @@ Json settings_of(const Survey& survey, const CorrectionOptions& options) {
               {"compression", name_of(format.compression)}};
     if (survey.navigation && survey.navigation->notes())
         json["navigation"] = to_json(*survey.navigation->notes());
-    if (options.gain.empty()) json["gain_images"] = options.gain_images;
+    if (given) {
+        json["gain"] = given->gain;
+    } else {
+        json["gain_images"] = options.gain_images;
+    }
+    if (format.srgb) json["encode"] = to_json(*format.srgb);
     if (options.read_noise) json["read_noise"] = *options.read_noise;
     json.update(to_json(survey.camera));
     json["rig_scale"] = nullptr;
@@ -55,14 +67,19 @@ Json settings_of(const Survey& survey, const CorrectionOptions& options) {
     return json;
 }
 
-std::optional<SurveyGain> known_gain(const Survey& survey,
+// By the user, as numbers or as the folder that has them.
+std::optional<SurveyGain> given_gain(const Survey& survey,
                                      const CorrectionOptions& options,
-                                     const std::string& settings_sha256) {
-    if (!options.gain.empty()) {
-        const auto& given = options.gain;
-        return SurveyGain{.gain = {given.front(), given[given.size() / 2], given.back()},
-                          .middle = wanted_middle(survey, options)};
-    }
+                                     std::vector<Suspicion>& doubts) {
+    if (!options.gain_from.empty()) return gain_of_folder(options.gain_from, survey.light, doubts);
+    const auto& given = options.gain;
+    if (given.empty()) return std::nullopt;
+    return SurveyGain{.gain = {given.front(), given[given.size() / 2], given.back()},
+                      .middle = wanted_middle(survey, options)};
+}
+
+std::optional<SurveyGain> kept_in(const CorrectionOptions& options,
+                                  const std::string& settings_sha256) {
     const fs::path notes = options.run.folder / kCorrectionNotes;
     return fs::exists(notes) ? kept_gain(read_text_file(notes), settings_sha256) : std::nullopt;
 }
@@ -71,31 +88,40 @@ std::optional<SurveyGain> known_gain(const Survey& survey,
 // another navigation by now.
 void look_first(const Survey& survey,
                 const CorrectionOptions& options,
+                const std::optional<SurveyGain>& given,
                 const RunWatch& watch,
                 CorrectionReport& report) {
-    const std::optional<SurveyGain> known = known_gain(survey, options, report.settings_sha256);
+    const std::optional<SurveyGain> known =
+        given ? given : kept_in(options, report.settings_sha256);
     const SurveyLook look = look_at(survey,
                                     {.gain_images = known ? 0 : options.gain_images,
                                      .least_light = options.limit.share,
                                      .jobs = options.run.jobs},
                                     watch);
-    report.looks_wrong = suspicions(look.images, mosaic_of(look.images));
+    std::ranges::move(suspicions(look.images, mosaic_of(look.images)),
+                      std::back_inserter(report.looks_wrong));
     report.not_checked = not_checked(look.images);
+    report.looks = look.images;
     watch.looks_wrong(report.looks_wrong);
     report.gain = known ? *known : measured_gain(look, wanted_middle(survey, options));
 }
 
+// Of a gain by itself nobody knows how much light the survey's middle has.
+bool is_middle_known(const CorrectionOptions& options, const SurveyGain& gain) {
+    return !gain.images.empty() || options.middle;
+}
+
 Counts correct_image(const Survey& survey,
                      const CorrectionOptions& options,
-                     const SurveyGain& gain,
+                     const CorrectionReport& report,
                      const ImageFile& file) {
+    const SurveyGain& gain = report.gain;
     const Sled sled = survey.sled_of(file);
     SurveyImage taken = read_survey_image(file.source, survey.camera);
     require_light_for(taken.raw, survey.light);
     NoiseLimit limit = options.limit;
     limit.read_noise = options.read_noise.value_or(taken.rounding);
-    // Of a gain by itself nobody knows how much light the survey's middle has.
-    if (!options.gain.empty() && !options.middle) limit = {.share = options.limit.share};
+    if (!is_middle_known(options, gain)) limit = {.share = options.limit.share};
     PerChannel at_exposure = gain.gain;
     for (double& channel : at_exposure) channel /= taken.exposure;
     const Correction correction{
@@ -105,6 +131,10 @@ Counts correct_image(const Survey& survey,
     const std::vector<std::uint8_t> edges = survey.light.edges(sled, options.edge_px);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         result.doubts[i] |= edges[i] != 0 ? kEdge : std::uint8_t{0};
+    }
+    if (report.srgb) {
+        const ResultFormat& format = options.run.format;
+        write_srgb(options.run.folder, file, result, taken, *report.srgb, *format.srgb);
     }
     Counts counts =
         write_results(options.run.folder, file, std::move(result), taken, options.run.format);
@@ -125,9 +155,7 @@ ImageWork work_of(const Survey& survey,
                            sled.pitch_rad,
                            sled.roll_rad);
     };
-    work.make = [&](const ImageFile& file) {
-        return correct_image(survey, options, report.gain, file);
-    };
+    work.make = [&](const ImageFile& file) { return correct_image(survey, options, report, file); };
     return work;
 }
 
@@ -138,12 +166,39 @@ Json to_json(const CorrectionReport& report) {
               {"settings_sha256", report.settings_sha256},
               {"gain", report.gain.gain},
               {"gain_from", report.gain.images},
+              {"gain_folder", nullptr},
               {"looks_wrong", to_json(report.looks_wrong)},
               {"not_checked", report.not_checked}};
+    if (report.srgb) json["srgb"] = to_json(*report.srgb);
+    if (!report.gain.folder.empty()) json["gain_folder"] = report.gain.folder;
     if (!report.run) return json;
     json.update(to_json(*report.run));
     json["seconds"] = report.seconds;
     return json;
+}
+
+SrgbEncoding shown_as(const Survey& survey,
+                      const CorrectionOptions& options,
+                      const SurveyGain& gain) {
+    std::optional<CameraToSrgb> camera;
+    if (survey.light.to_srgb) camera = survey.light.to_srgb();
+    std::optional<PerChannel> middle;
+    if (is_middle_known(options, gain)) middle = gain.middle;
+    // The floor was given the colour that it has by the lamps; in the light that reaches the camera
+    // it has another, and only with that one is grey grey.
+    PerChannel balance{1.0, 1.0, 1.0};
+    const auto& by_lamps = survey.light.floor_colour;
+    const auto& in_water = survey.light.floor_colour_in_water;
+    if (middle && by_lamps && in_water && *middle == *by_lamps) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            if ((*by_lamps)[c] > 0.0) balance[c] = (*in_water)[c] / (*by_lamps)[c];
+        }
+        middle = in_water;
+    }
+    const auto& srgb = options.run.format.srgb;
+    SrgbEncoding encoding = srgb_encoding(std::move(camera), middle, srgb ? srgb->stops : 0.0);
+    encoding.balance = balance;
+    return encoding;
 }
 
 CorrectionReport correct_survey(const Survey& survey,
@@ -160,9 +215,11 @@ CorrectionReport correct_survey(const Survey& survey,
     const ResultFolder folder(options.run, survey.files);
     const fs::path notes = options.run.folder / kCorrectionNotes;
     CorrectionReport report;
-    report.settings = settings_of(survey, options);
+    const std::optional<SurveyGain> given = given_gain(survey, options, report.looks_wrong);
+    report.settings = settings_of(survey, options, given);
     report.settings_sha256 = sha256_of_text(report.settings.dump());
-    look_first(survey, options, watch, report);
+    look_first(survey, options, given, watch, report);
+    if (options.run.format.srgb) report.srgb = shown_as(survey, options, report.gain);
     // Before the first image: also what an interrupted run leaves is no survey.
     write_text_file(notes, json_text(to_json(report)));
     report.run = run_images(survey.files, options.run, work_of(survey, options, report), watch);
@@ -172,6 +229,10 @@ CorrectionReport correct_survey(const Survey& survey,
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     write_text_file(notes, json_text(to_json(report)));
+    if (options.report) {
+        const std::vector<SheetImage> sheet = contact_sheet(survey, options, report);
+        write_text_file(options.run.folder / kReportPage, correction_html(survey, report, sheet));
+    }
     return report;
 }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/gain.h"
 
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/parallel.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -17,6 +20,50 @@ double median(std::vector<double> numbers) {
     const auto middle = numbers.begin() + std::ssize(numbers) / 2;
     std::ranges::nth_element(numbers, middle);
     return *middle;
+}
+
+bool is_number(double number) {
+    return std::isfinite(number) && number > 0.0;
+}
+
+// What correct_survey() wrote. An nlohmann exception when it is something else.
+std::optional<SurveyGain> gain_in(const nlohmann::json& notes) {
+    SurveyGain noted{.gain = notes.at("gain").get<PerChannel>(),
+                     .middle = notes.at("settings").at("middle").get<PerChannel>(),
+                     .images = notes.at("gain_from").get<std::vector<std::string>>()};
+    const bool is_gain =
+        std::ranges::all_of(noted.gain, is_number) && std::ranges::all_of(noted.middle, is_number);
+    return is_gain ? std::optional(noted) : std::nullopt;
+}
+
+// What tells cameras and rigs apart; of one map for all, no rig_sha256.
+std::string text_in(const nlohmann::json& settings, const char* key) {
+    const auto found = settings.find(key);
+    return found != settings.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+void compare_light(const nlohmann::json& settings,
+                   const LightAt& light,
+                   const std::string& folder,
+                   std::vector<Suspicion>& doubts) {
+    const bool has_rig = settings.contains("rig_sha256");
+    const std::string camera = text_in(settings, "camera_sha256");
+    if (has_rig == light.camera_digest.empty()) {
+        throw InputError("--gain-from: {}: was corrected with {}; allowed: results with {}",
+                         folder,
+                         has_rig ? "--rig" : "--map",
+                         has_rig ? "--map" : "--rig");
+    }
+    if (camera != light.camera_digest) {
+        throw InputError(
+            "--gain-from: {}: the rig there has a camera with another response; allowed: results "
+            "of the same camera",
+            folder);
+    }
+    if (text_in(settings, has_rig ? "rig_sha256" : "map_sha256") != light.digest) {
+        doubts.push_back(
+            {"gain-from", folder + (has_rig ? ": the rig there is another" : ": another map")});
+    }
 }
 
 }  // namespace
@@ -53,11 +100,82 @@ std::optional<SurveyGain> kept_gain(std::string_view text, const std::string& se
         const nlohmann::json notes = parse_json(text, "correction.json");
         if (notes.at("settings_sha256") != settings_sha256) return std::nullopt;
         if (!notes.at("looks_wrong").empty()) return std::nullopt;
-        SurveyGain kept{.gain = notes.at("gain").get<PerChannel>(),
-                        .middle = notes.at("settings").at("middle").get<PerChannel>(),
-                        .images = notes.at("gain_from").get<std::vector<std::string>>()};
-        const auto is_gain = [](double gain) { return std::isfinite(gain) && gain > 0.0; };
-        return std::ranges::all_of(kept.gain, is_gain) ? std::optional(kept) : std::nullopt;
+        return gain_in(notes);
+    } catch (const nlohmann::json::exception&) {
+        return std::nullopt;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
+SurveyGain gain_of_notes(std::string_view text,
+                         const std::string& folder,
+                         const LightAt& light,
+                         std::vector<Suspicion>& doubts) {
+    const std::string where = fmt::format("--gain-from: {}: {}", folder, kCorrectionNotes);
+    std::optional<SurveyGain> gain;
+    try {
+        const nlohmann::json notes = parse_json(text, where);
+        gain = gain_in(notes);
+        if (gain) compare_light(notes.at("settings"), light, folder, doubts);
+        if (!notes.at("looks_wrong").empty()) {
+            doubts.push_back({"gain-from", folder + ": its own survey looked wrong"});
+        }
+    } catch (const nlohmann::json::exception&) {
+        gain.reset();
+    }
+    if (!gain) {
+        throw InputError("{}: tells of no gain; allowed: as correct wrote it", where);
+    }
+    gain->folder = folder;
+    return *gain;
+}
+
+SurveyGain gain_of_folder(const std::filesystem::path& folder,
+                          const LightAt& light,
+                          std::vector<Suspicion>& doubts) {
+    const std::filesystem::path file = folder / kCorrectionNotes;
+    if (!std::filesystem::exists(file)) {
+        throw InputError("--gain-from: {}: holds no {}; allowed: a folder that correct wrote",
+                         folder.string(),
+                         kCorrectionNotes);
+    }
+    return gain_of_notes(read_text_file(file), folder.string(), light, doubts);
+}
+
+PerChannel grey_balance(const Survey& survey, double grey, std::size_t jobs) {
+    constexpr std::size_t kImages = 16;
+    const std::size_t count = std::min(kImages, survey.files.size());
+    std::vector<PerChannel> middles(count);  // 0 of those that cannot be read
+    parallel_for(count, jobs, [&](std::size_t i, std::size_t) {
+        try {
+            const SurveyImage taken = read_survey_image(
+                survey.files[i * survey.files.size() / count].source, survey.camera);
+            const RawImage& raw = taken.raw;
+            const Lightmap even{.width_px = raw.width_px,
+                                .height_px = raw.height_px,
+                                .samples = std::vector<float>(kChannels * raw.pixels(), 1.0F)};
+            middles[i] = middle_quotient(raw, even, taken.levels, 0.0);
+        } catch (const InputError&) {
+            // It is said of the image when its turn comes.
+        }
+    });
+    std::erase_if(middles, [](const PerChannel& m) { return !std::ranges::all_of(m, is_number); });
+    PerChannel balance{1.0, 1.0, 1.0};
+    for (std::size_t c = 0; c < kChannels && !middles.empty(); ++c) {
+        std::vector<double> of_channel;
+        for (const PerChannel& middle : middles) of_channel.push_back(middle[c]);
+        balance[c] = grey / median(of_channel);
+    }
+    return balance;
+}
+
+std::optional<PerChannel> kept_balance(std::string_view text, std::string_view settings) {
+    try {
+        const nlohmann::json notes = parse_json(text, "baseline.json");
+        if (notes.at("settings") != parse_json(settings, "settings")) return std::nullopt;
+        const auto balance = notes.at("srgb").at("balance").get<PerChannel>();
+        return std::ranges::all_of(balance, is_number) ? std::optional(balance) : std::nullopt;
     } catch (const nlohmann::json::exception&) {
         return std::nullopt;
     } catch (const InputError&) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -27,6 +28,21 @@ fs::path place_of(const fs::path& file) {
     return circle ? fs::absolute(file).lexically_normal() : place;
 }
 
+// An image in a folder of the survey that is called as that of the encoded ones.
+void require_separate_results(const std::vector<ImageFile>& files, const ImageRunOptions& options) {
+    std::map<fs::path, const ImageFile*> makers;
+    for (const ImageFile& file : files) {
+        for (const fs::path& result : results_of(file, options.format)) {
+            const auto [other, is_new] = makers.emplace(result, &file);
+            if (is_new) continue;
+            throw InputError("{} and {} would both become {}",
+                             other->second->source.string(),
+                             file.source.string(),
+                             (options.folder / result).string());
+        }
+    }
+}
+
 void require_sources_stay(const std::vector<ImageFile>& files, const ImageRunOptions& options) {
     std::set<fs::path> sources;
     for (const ImageFile& file : files) sources.insert(place_of(file.source));
@@ -42,6 +58,7 @@ void require_sources_stay(const std::vector<ImageFile>& files, const ImageRunOpt
 }
 
 FolderLock claimed(const ImageRunOptions& options, const std::vector<ImageFile>& files) {
+    require_separate_results(files, options);
     require_sources_stay(files, options);
     make_folder(options.folder);
     FolderLock lock(options.folder, FolderUse::Write);

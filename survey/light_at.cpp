@@ -9,6 +9,8 @@
 #include "spectral/light_family.h"
 #include "survey/survey_check.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -78,6 +80,30 @@ MapAsRadians map_as_radians(const Rig& rig, const Navigation& navigation, std::v
     }
 }
 
+// Wherever the curves came from and whatever they are called.
+std::string response_digest(const Sensor& sensor) {
+    std::string text;
+    const std::vector<const Spectrum*> curves = sensor.curves();
+    for (const double lambda_nm : union_of_knots(curves, sensor.range())) {
+        text += fmt::format("{}", lambda_nm);
+        for (int c = 0; c < kChannels; ++c)
+            text += fmt::format(" {}", sensor.response(c, lambda_nm));
+        text += '\n';
+    }
+    return sha256_of_text(text);
+}
+
+// Of all lamps, relative, down and back at the rig's own altitude.
+std::function<double(double)> light_on_its_way(const Rig& rig) {
+    return [&rig, path_m = 2.0 * rig.sled.altitude_m](double lambda_nm) {
+        double flux = 0.0;
+        for (const Strobe& strobe : rig.strobes) {
+            flux += strobe.power * strobe.spectrum.at(lambda_nm);
+        }
+        return flux * std::exp(-path_m * rig.water.attenuation_per_m(lambda_nm));
+    };
+}
+
 }  // namespace
 
 LightAt light_of_rig(const Rig& rig,
@@ -93,14 +119,20 @@ LightAt light_of_rig(const Rig& rig,
     }
     const auto light = std::make_shared<const RigLight>(RigLight{
         .edges = ConeEdges(rig), .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), {})});
-    return {.digest = rig.digest,
+    return {.title = rig.title,
+            .toml = rig.toml,
+            .digest = rig.digest,
+            .camera_digest = response_digest(rig.camera.sensor),
             .size = {rig.camera.width_px, rig.camera.height_px},
             .is_grey = rig.camera.sensor.is_mono(),
             .map = [light](const Sled& sled) { return light->maker.map(sled); },
             .edges = [light](const Sled& sled,
                              int within_px) { return light->edges.mask(sled, within_px); },
             .map_as_radians = map_as_radians(rig, navigation, sleds),
-            .floor_colour = floor_colour(rig)};
+            .to_srgb = rig.camera.sensor.is_mono() ? std::function<CameraToSrgb()>()
+                                                   : [rig] { return camera_to_srgb(rig); },
+            .floor_colour = floor_colour(rig),
+            .floor_colour_in_water = floor_colour_in_water(rig)};
 }
 
 void require_light_for(const RawImage& raw, const LightAt& light) {
@@ -156,6 +188,28 @@ PerChannel floor_colour(const Rig& rig) {
         for (std::size_t c = 0; c < kChannels; ++c) {
             lamps[c] += flux * w.weight[c];
             given_back[c] += flux * w.weight[c] * rig.seafloor.reflectance.at(w.lambda_nm);
+        }
+    }
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        given_back[c] = lamps[c] > 0.0 ? given_back[c] / lamps[c] : 0.0;
+    }
+    return given_back;
+}
+
+CameraToSrgb camera_to_srgb(const Rig& rig) {
+    return camera_to_srgb(rig.camera.sensor, rig.camera.range, light_on_its_way(rig));
+}
+
+PerChannel floor_colour_in_water(const Rig& rig) {
+    const auto light = light_on_its_way(rig);
+    PerChannel given_back{};
+    PerChannel lamps{};
+    for (double nm = std::ceil(rig.camera.range.first_nm); nm <= rig.camera.range.last_nm; ++nm) {
+        for (int c = 0; c < kChannels; ++c) {
+            const double seen = light(nm) * rig.camera.sensor.response(c, nm);
+            const auto i = static_cast<std::size_t>(c);
+            lamps[i] += seen;
+            given_back[i] += seen * rig.seafloor.reflectance.at(nm);
         }
     }
     for (std::size_t c = 0; c < kChannels; ++c) {

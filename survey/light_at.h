@@ -7,6 +7,7 @@
 #include "image/any_image.h"
 #include "lightmap/lightmap.h"
 #include "rig/rig.h"
+#include "spectral/camera_to_srgb.h"
 #include "survey/correction.h"
 #include "survey/image_files.h"
 #include "survey/navigation.h"
@@ -21,7 +22,10 @@
 namespace aphotic {
 
 struct LightAt {
-    std::string digest;  // of all that the maps depend on, the pose aside
+    std::string title{};  // of the rig, and its file; empty: no rig
+    std::string toml{};
+    std::string digest;           // of all that the maps depend on, the pose aside
+    std::string camera_digest{};  // of its response alone; empty: the camera is not known
     PlaneSize size;
     std::optional<PlaneSize> rig_size{};  // where the rig has another than its images, scaled
     bool is_grey = false;                 // the maps have R, G and B alike: of a mono camera
@@ -31,7 +35,10 @@ struct LightAt {
     // The map of tilts that the navigation tells in radians instead of degrees; none where that
     // puts a strobe under the floor. Empty where they are surely degrees.
     std::function<std::optional<Lightmap>(const Sled& sled)> map_as_radians{};
-    std::optional<PerChannel> floor_colour{};  // none: nothing is known of the floor
+    // To show what is divided by the maps; empty: the camera is not known.
+    std::function<CameraToSrgb()> to_srgb{};
+    std::optional<PerChannel> floor_colour{};           // none: nothing is known of the floor
+    std::optional<PerChannel> floor_colour_in_water{};  // by the light that images were taken in
 };
 
 // For the poses of these images: those that have none are passed over here.
@@ -49,5 +56,12 @@ void require_light_for(const RawImage& raw, const LightAt& light);
 // Of the rig's floor: how much of the lamps' own light, without water, it gives back to each
 // channel:  int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.
 [[nodiscard]] PerChannel floor_colour(const Rig& rig);
+
+// Of the rig's camera, in the light of its lamps after the way to the floor and back at the rig's
+// own altitude.
+[[nodiscard]] CameraToSrgb camera_to_srgb(const Rig& rig);
+
+// The floor's colour in that light.
+[[nodiscard]] PerChannel floor_colour_in_water(const Rig& rig);
 
 }  // namespace aphotic

@@ -96,6 +96,7 @@ std::string name_of(Compression compression) {
 std::vector<fs::path> results_of(const ImageFile& file, const ResultFormat& format) {
     std::vector<fs::path> files{image_of(file, format)};
     if (format.mask) files.push_back(mask_of(file));
+    if (format.srgb) files.push_back(srgb_file_of(file, *format.srgb));
     return files;
 }
 

@@ -6,6 +6,8 @@
 //   tiff, png  16 bits, 65535 for 1; what does not fit is clipped, and marked
 //   exr        32-bit floats, which clip nothing
 //
+// Beside them, when asked for, the image to look at (srgb_files.h).
+//
 // In a mask each pixel's 8 bits are its doubts (correction.h), 0 is good.
 #pragma once
 
@@ -14,10 +16,12 @@
 #include "survey/correction.h"
 #include "survey/image_files.h"
 #include "survey/journal.h"
+#include "survey/srgb_files.h"
 #include "survey/survey_image.h"
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +31,7 @@ struct ResultFormat {
     std::string format = "tiff";
     bool mask = false;
     Compression compression = Compression::Fast;
+    std::optional<SrgbFormat> srgb{};  // none: linear alone
 
     [[nodiscard]] bool clips() const { return format != "exr"; }
 };
@@ -39,7 +44,8 @@ inline const std::map<std::string, Compression> kCompressions{
 [[nodiscard]] std::vector<std::filesystem::path> results_of(const ImageFile& file,
                                                             const ResultFormat& format);
 
-// Writes them, and returns how many pixels have each doubt. more: attributes of an EXR.
+// Writes them, but for the one in sRGB, and returns how many pixels have each doubt. more:
+// attributes of an EXR.
 Counts write_results(const std::filesystem::path& folder,
                      const ImageFile& file,
                      CorrectedImage result,

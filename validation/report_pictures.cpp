@@ -5,7 +5,6 @@
 #include "validation/comparison.h"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -126,28 +125,6 @@ ErrorMap error_map(std::span<const float> errors,
     }
     map.png = png_of(pixels, map.width_px, map.height_px);
     return map;
-}
-
-std::string data_uri(std::string_view png) {
-    std::vector<unsigned char> base64(4 * ((png.size() + 2) / 3) + 1);  // and a closing 0
-    const int length = EVP_EncodeBlock(base64.data(),
-                                       reinterpret_cast<const unsigned char*>(png.data()),
-                                       static_cast<int>(png.size()));
-    return "data:image/png;base64," +
-           std::string(base64.begin(), base64.begin() + static_cast<std::ptrdiff_t>(length));
-}
-
-std::string picture_html(std::string_view png,
-                         int width_px,
-                         int height_px,
-                         std::string_view words) {
-    constexpr int kSmall_px = 400;
-    return fmt::format(R"(<img class="picture{}" width="{}" height="{}" alt="{}" src="{}"/>)",
-                       width_px < kSmall_px ? " squares" : "",
-                       width_px,
-                       height_px,
-                       words,
-                       data_uri(png));
 }
 
 }  // namespace aphotic

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "image/output_images.h"
+#include "report/picture.h"
 
 #include <array>
 #include <cstdint>
@@ -60,14 +61,5 @@ struct ErrorMap {
                                  int width_px,
                                  double scale,
                                  int least_side = 1);
-
-// For src="..."
-[[nodiscard]] std::string data_uri(std::string_view png);
-
-// An <img>. A small one shows its pixels as squares.
-[[nodiscard]] std::string picture_html(std::string_view png,
-                                       int width_px,
-                                       int height_px,
-                                       std::string_view words);
 
 }  // namespace aphotic

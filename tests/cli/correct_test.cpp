@@ -351,6 +351,246 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     EXPECT_EQ(files.size(), 4U + 2U);  // the images, and the two that say what was done
 }
 
+// A fifth of the images cannot be read.
+TEST_F(CorrectCommand, EndsWellWhenNoMoreAreSkippedThanAllowed) {
+    take_survey();
+    write_file(path("raw/words.tif"), "this is no image");
+    note("words.tif", {2.0, 0.0, 0.0});
+    struct Case {
+        std::vector<std::string> option;
+        int status;
+        int allowed;
+    };
+    for (const Case& one : std::vector<Case>{{{}, kAnswerIsNo, 0},
+                                             {{"--allow-skipped", "0"}, kAnswerIsNo, 0},
+                                             {{"--allow-skipped", "1"}, 0, 1},
+                                             {{"--allow-skipped", "3"}, 0, 3},
+                                             {{"--allow-skipped", "0.19"}, kAnswerIsNo, 0},
+                                             {{"--allow-skipped", "0.2"}, 0, 1},
+                                             {{"--allow-skipped", "20%"}, 0, 1}}) {
+        const CommandResult run = correct(one.option);
+        const std::string about = testing::PrintToString(one.option);
+        EXPECT_EQ(run.status, one.status) << about << run.err;
+        const std::string said = fmt::format(
+            "aphotic: 1 of 5 images skipped; allowed: {} (--allow-skipped)\n", one.allowed);
+        EXPECT_NE(run.err.find(said), std::string::npos) << about << run.err;
+    }
+    for (const char* wrong : {"-1", "some", "1.5", "101%", "", "3 images", "nan", "%"}) {
+        const CommandResult run = correct({"--allow-skipped", wrong});
+        EXPECT_EQ(run.status, kBadInput) << wrong;
+        const std::string said = fmt::format(
+            "--allow-skipped: found {}; allowed: a number of images, or a share such as 0.01 or 1%",
+            wrong);
+        EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
+    }
+}
+
+// The same floor in another dive, at half the exposure: by one gain it is half as bright.
+TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
+    const std::vector<Sled> sleds = take_survey();
+    ASSERT_EQ(correct({"--format", "exr"}, "one").status, 0);
+    fs::rename(path("raw"), path("raw-one"));
+    fs::create_directories(path("raw"));
+    exposure_ /= 2.0;
+    take("second.tif", sleds[0]);
+    const CommandResult run = correct({"--format", "exr", "--gain-from", "one", "--strict"}, "two");
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find(", that of one"), std::string::npos) << run.out;
+    const auto notes = [&](const std::string& folder) {
+        return Json::parse(read_text_file(path(folder + "/correction.json")));
+    };
+    EXPECT_EQ(notes("two")["gain"], notes("one")["gain"]);
+    EXPECT_EQ(notes("two")["settings"]["middle"], notes("one")["settings"]["middle"]);
+    EXPECT_EQ(notes("two")["gain_folder"], "one");
+    const std::vector<float> one = exr_samples(path("one/0.exr"), {"R", "G", "B"});
+    const std::vector<float> two = exr_samples(path("two/second.exr"), {"R", "G", "B"});
+    const std::size_t middle = kPixels / 2 + kWidth / 2;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const std::size_t i = c * kPixels + middle;
+        const double rounding = 2.0 / (seen(sleds[0], 0.0)[i]);  // half a number, of both
+        EXPECT_NEAR(two[i] / one[i], 0.5, rounding) << c;
+    }
+
+    // Another rig is told of, with --strict refused; another camera is refused.
+    const std::string rig = read_text_file(path("rig.toml"));
+    write_file(path("rig.toml"), rig + "# of the second dive\n");
+    const CommandResult other = correct({"--gain-from", "one"}, "three");
+    EXPECT_EQ(other.status, 0) << other.err;
+    EXPECT_NE(other.err.find("looks wrong: gain-from: one: the rig there is another"),
+              std::string::npos)
+        << other.err;
+    EXPECT_EQ(notes("three")["looks_wrong"][0]["about"], "gain-from");
+    EXPECT_EQ(correct({"--gain-from", "one", "--strict"}, "three").status, kBadInput);
+    write_file(path("camera.csv"),
+               "wavelength_nm,red,green,blue\n380,0.1,0.2,0.4\n780,0.3,0.2,0.1\n");
+    write_file(
+        path("rig.toml"),
+        std::regex_replace(
+            rig, std::regex("\"nikon-d5100\""), R"({ table = "camera.csv", kind = "energy" })"));
+    const auto refused = [&](const std::vector<std::string>& options, const std::string& why) {
+        const CommandResult wrong = correct(options, "four");
+        EXPECT_EQ(wrong.status, kBadInput) << wrong.out;
+        EXPECT_NE(wrong.err.find(why), std::string::npos) << wrong.err;
+        EXPECT_FALSE(fs::exists(path("four")));
+    };
+    refused({"--gain-from", "one"},
+            "--gain-from: one: the rig there has a camera with another response; allowed: results "
+            "of the same camera");
+    write_file(path("rig.toml"), rig);
+    refused({"--gain-from", "raw"},
+            "--gain-from: raw: holds no correction.json; allowed: a folder that correct wrote");
+    fs::create_directories(path("broken"));
+    write_file(path("broken/correction.json"), R"({"gain": [1, 0, 1]})");
+    refused({"--gain-from", "broken"},
+            "--gain-from: broken: correction.json: tells of no gain; allowed: as correct wrote it");
+    write_file(path("broken/correction.json"), "no notes");
+    refused({"--gain-from", "broken"}, "--gain-from: broken: correction.json: is not JSON");
+    refused({"--gain-from", "one", "--gain", "2"}, "--gain");
+    refused({"--gain-from", "one", "--middle", "0.2"}, "--middle");
+}
+
+// By the standard's formula from the linear result, the matrix and the exposure that are noted.
+TEST_F(CorrectCommand, SrgbIsTheLinearImageByMatrixExposureAndCurve) {
+    take_survey();
+    const CommandResult run =
+        correct({"--encode", "srgb", "--format", "png", "--bits", "16", "--json"}, "png");
+    ASSERT_EQ(run.status, 0) << run.err;
+    ASSERT_EQ(correct({"--format", "exr"}, "exr").status, 0);
+    const Json srgb = Json::parse(run.out).at("srgb");
+    EXPECT_GT(srgb["mean_delta_e"].get<double>(), 0.0);
+    EXPECT_LT(srgb["largest_delta_e"].get<double>(), 20.0);
+    const PerChannel floor = floor_colour(rig_at({2.0, 0.0, 0.0}));
+    // By numpy: int rho E Q over int E Q of the sand, after 4 m of water over that before.
+    const PerChannel balance = srgb["balance"].get<PerChannel>();
+    const PerChannel numpy{0.955466, 0.982269, 0.99454};
+    for (std::size_t c = 0; c < kChannels; ++c) EXPECT_NEAR(balance[c], numpy[c], 1e-4) << c;
+    const std::array<double, kChannels> luminance{0.2126, 0.7152, 0.0722};
+    double middle = 0.0;
+    for (std::size_t row = 0; row < kChannels; ++row) {
+        double sum = 0.0;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            sum += srgb["matrix"][row][c].get<double>();
+            middle += luminance[row] * srgb["matrix"][row][c].get<double>() * balance[c] * floor[c];
+        }
+        EXPECT_NEAR(sum, 1.0, 1e-12) << "grey stays grey";
+    }
+    const double exposure = srgb["exposure"].get<double>();
+    EXPECT_NEAR(exposure, 0.2 / middle, 1e-9);
+    const std::vector<float> linear = exr_samples(path("exr/0.exr"), {"R", "G", "B"});
+    const DecodedPng shown = decode_png(read_text_file(path("png/srgb/0.png")));
+    ASSERT_EQ(shown.width, kWidth);
+    for (std::size_t p = 0; p < kPixels; ++p) {
+        for (std::size_t row = 0; row < kChannels; ++row) {
+            double value = 0.0;
+            for (std::size_t c = 0; c < kChannels; ++c) {
+                value += exposure * srgb["matrix"][row][c].get<double>() * balance[c] *
+                         linear[c * kPixels + p];
+            }
+            value = std::clamp(value, 0.0, 1.0);
+            const double curve =
+                value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1.0 / 2.4) - 0.055;
+            // Rounded to 16 bits, of which the decoder keeps the upper 8.
+            const auto byte = static_cast<double>(shown.pixels[p] >> (16 - 8 * row) & 0xFFU);
+            EXPECT_NEAR(byte, std::floor(curve * 65535.0 / 256.0), 1.0) << p;
+        }
+    }
+}
+
+// A JPEG by default, beside the linear TIFF, and it says what it is.
+TEST_F(CorrectCommand, SrgbFilesSayThatTheyAreSrgb) {
+    take("a.tif", {2.0, 5.0 * kDegree, 0.0});
+    const auto made = [&](const std::vector<std::string>& format, const std::string& folder) {
+        std::vector<std::string> options{"--encode", "srgb"};
+        options.insert(options.end(), format.begin(), format.end());
+        const CommandResult run = correct(options, folder);
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_NE(run.out.find("sRGB in " + folder + "/srgb: exposure "), std::string::npos);
+        return files_in(folder);
+    };
+    EXPECT_TRUE(made({}, "jpeg").contains("srgb/a.jpg"));
+    EXPECT_TRUE(fs::exists(path("jpeg/a.tif")));
+    auto named = made({"--format", "jpeg"}, "named");
+    for (const char* file : {"a.tif", "srgb/a.jpg"}) {
+        EXPECT_TRUE(named[file] == files_in("jpeg")[file]) << file;
+    }
+    EXPECT_TRUE(made({"--format", "png"}, "png").contains("srgb/a.png"));
+    EXPECT_TRUE(made({"--format", "tiff"}, "tiff").contains("srgb/a.tif"));
+    EXPECT_TRUE(made({"--format", "exr"}, "exr").contains("srgb/a.jpg"));
+    EXPECT_LT(made({"--quality", "40"}, "small").at("srgb/a.jpg").size(),
+              files_in("jpeg").at("srgb/a.jpg").size());
+    // JPEG blurs colours over 2 x 2 pixels: at the patch's rim by up to half of its own
+    // step, 1.5-fold and some 1.2-fold once encoded.
+    const CommandResult same = run_aphotic(
+        folder_.path(),
+        {"compare", "jpeg/srgb/a.jpg", "png/srgb/a.png", "--bound", "0.2", "--black", "0.5"});
+    EXPECT_EQ(same.status, 0) << same.out << same.err;
+    const CommandResult depth = run_aphotic(
+        folder_.path(), {"compare", "tiff/srgb/a.tif", "png/srgb/a.png", "--bound", "0"});
+    EXPECT_EQ(depth.status, 0) << depth.out << depth.err;
+
+    // Exif's ColorSpace, tag 0xA001, one short number, is 1 for sRGB; in either order of bytes. A
+    // PNG has a chunk of that name.
+    const auto is_tagged = [](const std::string& file) {
+        const std::string little("\x01\xA0\x03\0\x01\0\0\0\x01\0", 10);
+        const std::string big("\xA0\x01\0\x03\0\0\0\x01\0\x01", 10);
+        return file.find(little) != std::string::npos || file.find(big) != std::string::npos;
+    };
+    const std::string jpeg = files_in("jpeg").at("srgb/a.jpg");
+    EXPECT_TRUE(is_tagged(jpeg));
+    EXPECT_TRUE(is_tagged(files_in("tiff").at("srgb/a.tif")));
+    EXPECT_FALSE(is_tagged(files_in("tiff").at("a.tif")));
+    EXPECT_NE(files_in("png").at("srgb/a.png").find("sRGB"), std::string::npos);
+    EXPECT_EQ(files_in("png").at("a.png").find("sRGB"), std::string::npos);
+
+    // Repeated, all is kept; without its JPEG, an image is made again.
+    const auto again = [&] {
+        const CommandResult run = correct({"--encode", "srgb", "--json"}, "jpeg");
+        return Json::parse(run.out)["kept"].get<int>();
+    };
+    EXPECT_EQ(again(), 1);
+    fs::remove(path("jpeg/srgb/a.jpg"));
+    EXPECT_EQ(again(), 0);
+    EXPECT_EQ(files_in("jpeg").at("srgb/a.jpg"), jpeg);
+
+    // Brighter by a stop.
+    const auto exposure = [&](const std::string& folder) {
+        return Json::parse(read_text_file(path(folder + "/correction.json")))["srgb"]["exposure"]
+            .get<double>();
+    };
+    made({"--stops", "1"}, "bright");
+    EXPECT_NEAR(exposure("bright") / exposure("jpeg"), 2.0, 1e-12);
+}
+
+TEST_F(CorrectCommand, WhatCannotBeEncodedIsRefused) {
+    take("a.tif", {2.0, 5.0 * kDegree, 0.0});
+    fs::create_directories(path("raw/srgb"));
+    fs::copy(path("raw/a.tif"), path("raw/srgb/a.tif"));
+    struct Case {
+        std::vector<std::string> options;
+        std::string why;
+    };
+    for (const Case& one : std::vector<Case>{
+             {{"--format", "jpeg"},
+              "--format: found jpeg, which holds no linear image; allowed: tiff, png, exr, or jpeg "
+              "with --encode srgb"},
+             {{"--quality", "90"}, "--quality: found linear images; allowed: with --encode srgb"},
+             {{"--encode", "srgb", "--bits", "16"},
+              "--bits: found 16 of jpeg; allowed: 8, or --format png or tiff"},
+             {{"--encode", "srgb", "--bits", "12"}, "--bits"},
+             {{"--encode", "srgb", "--quality", "101"}, "--quality: found 101; allowed: 1 to 100"},
+             {{"--encode", "srgb", "--format", "png", "--quality", "90"},
+              "--quality: found 90 of png; allowed: with --format jpeg"},
+             {{"--encode", "srgb", "--stops", "nan"}, "--stops: found nan; allowed: a number"},
+             {{"--encode", "adobe"}, "--encode: adobe not in {linear,srgb}"},
+             {{"--encode", "srgb", "--format", "tiff"},
+              "raw/a.tif and raw/srgb/a.tif would both become out/srgb/a.tif"}}) {
+        const CommandResult run = correct(one.options);
+        EXPECT_EQ(run.status, kBadInput) << run.out;
+        EXPECT_NE(run.err.find(one.why), std::string::npos) << run.err << one.why;
+        EXPECT_FALSE(fs::exists(path("out")));
+    }
+}
+
 TEST_F(CorrectCommand, AnImageWithoutAnAltitudeIsSkippedHoweverItIsWritten) {
     take("a.tif", {2.0, 0.0, 0.0});
     std::string lines = "image,altitude_m,pitch_deg,roll_deg\na,2,0,0\n";

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace aphotic::baseline_run_test {
 namespace {
@@ -65,6 +66,37 @@ TEST_F(BaselineRun, AloneItDoesWhatIsNewAndLearningItDoesAllAnew) {
     EXPECT_TRUE(fs::exists(raw_.path("out/c.exr")));
     options_.settings.order = 2;
     EXPECT_EQ(run(Baseline::LogPolynomial).corrected, 4U) << "other settings";
+}
+
+// The median of the images' own medians, (1.0625 + 0.1 c) times 0.1, 0.5, 1 and 3, is the third in
+// order; it becomes a fifth. An image that comes later is shown as the others were.
+TEST_F(BaselineRun, ShowsAllImagesUnderOneBalance) {
+    constexpr double kFloats = 1e-6;
+    options_.run.format.srgb = SrgbFormat{.format = "png"};
+    EXPECT_EQ(run(Baseline::Homomorphic).corrected, 4U);
+    const auto balance = [&] {
+        return nlohmann::json::parse(
+                   read_text_file(raw_.path("out/baseline.json")))["srgb"]["balance"]
+            .get<PerChannel>();
+    };
+    const PerChannel first = balance();
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        EXPECT_NEAR(first[c] * (1.0625 + 0.1 * static_cast<double>(c)), 0.2, kFloats) << c;
+    }
+    raw_.write("later", 20.0F);
+    const RunOutcome second = run(Baseline::Homomorphic);
+    EXPECT_EQ(second.corrected, 1U);
+    EXPECT_EQ(second.kept, 4U);
+    EXPECT_EQ(balance(), first);
+    const DecodedPng shown = decode_png(read_text_file(raw_.path("out/srgb/b.png")));
+    EXPECT_EQ(shown.width, RawSurvey::kWidth_px);
+    // By the standard's curve.
+    const std::vector<float> linear =
+        RawSurvey::samples_of(raw_.path("out/b.exr"), {"R", "G", "B"});
+    const double red = std::min(1.0, first[0] * linear[0]);
+    const double encoded =
+        red <= 0.0031308 ? 12.92 * red : 1.055 * std::pow(red, 1.0 / 2.4) - 0.055;
+    EXPECT_NEAR(static_cast<double>(shown.pixels[0] >> 16U & 0xFFU), 255.0 * encoded, 0.51);
 }
 
 // What comes of an interruption is what comes of none.

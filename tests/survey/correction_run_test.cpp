@@ -25,6 +25,7 @@ LightAt known_light() {
         return map;
     };
     return {.digest = "by hand",
+            .camera_digest = "",
             .size = {RawSurvey::kWidth_px, RawSurvey::kHeight_px},
             .map = map_at,
             .edges =

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The page is well-formed XML too.
+#include "survey/correction_page.h"
+
+#include "report/html.h"
+#include "report/picture.h"
+#include "report/svg.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+constexpr std::array kColours{"red", "green", "blue"};
+
+std::string percent(double share) {
+    constexpr double kPercent = 100.0;
+    return fmt::format("{:.3g}\xC2\xA0%", kPercent * share);  // a blank that does not break
+}
+
+std::string per_channel(const PerChannel& numbers) {
+    return fmt::format(
+        "{} red, {} green, {} blue", plain(numbers[0]), plain(numbers[1]), plain(numbers[2]));
+}
+
+// What came out.
+
+std::string verdict(const CorrectionReport& report) {
+    const RunOutcome& run = *report.run;
+    const std::size_t done = run.corrected + run.kept;
+    const bool is_good = run.skipped.empty() && report.looks_wrong.empty();
+    std::string words = counted(done, "image") + " corrected";
+    if (!run.skipped.empty()) words += fmt::format(", {} skipped", grouped(run.skipped.size()));
+    if (!report.looks_wrong.empty()) words += ", " + counted(report.looks_wrong.size(), "warning");
+    return html_verdict(
+        is_good,
+        words,
+        html_paragraph(fmt::format("{} in this run, which took {} s; {} kept from before.",
+                                   grouped(run.corrected),
+                                   plain(std::round(10.0 * report.seconds) / 10.0),
+                                   grouped(run.kept))));
+}
+
+std::string warnings(const CorrectionReport& report) {
+    std::string content;
+    for (const Suspicion& one : report.looks_wrong) {
+        content += html_paragraph(
+            fmt::format("<strong>{}</strong>: {}", escaped(one.about), user_text(one.what)));
+    }
+    if (!report.not_checked.empty()) {
+        content += html_paragraph("Not checked: " + escaped(report.not_checked));
+    }
+    return content.empty() ? "" : html_section("warnings", "Warnings", content);
+}
+
+// Before and after.
+
+std::string picture(const SheetPicture& shown, std::string_view words) {
+    return picture_html(shown.jpeg, shown.width_px, shown.height_px, words, kJpeg);
+}
+
+std::string before_and_after(std::span<const SheetImage> sheet) {
+    if (sheet.empty()) return "";
+    std::string figures;
+    for (const SheetImage& image : sheet) {
+        const std::string altitude =
+            image.altitude_m ? fmt::format(", {:.2f}\xC2\xA0m", *image.altitude_m) : "";
+        figures += fmt::format(
+            "<figure><div class=\"duo\">{}{}</div><figcaption>{}{}</figcaption></figure>\n",
+            picture(image.before, "before"),
+            picture(image.after, "after"),
+            user_text(image.name),
+            altitude);
+    }
+    return html_section(
+        "images",
+        "Before and after",
+        html_paragraph("Left as taken, right corrected; each under one exposure for all images.") +
+            fmt::format("<div class=\"sheet\">\n{}</div>\n", figures));
+}
+
+// Light over altitude.
+
+struct LightSeen {
+    std::vector<double> altitude_m;
+    std::array<std::vector<double>, kChannels> map;    // mean light of the image's map
+    std::array<std::vector<double>, kChannels> image;  // the image's own, by its median quotient
+};
+
+// By altitude. The maps are scaled to the images: by the median of what one is of the other.
+LightSeen light_seen(std::span<const ImageLook> looks) {
+    std::vector<const ImageLook*> seen;
+    const auto is_lit = [](double number) { return std::isfinite(number) && number > 0.0; };
+    for (const ImageLook& look : looks) {
+        if (look.altitude_m && std::ranges::all_of(look.quotient, is_lit)) seen.push_back(&look);
+    }
+    std::ranges::sort(seen, {}, [](const ImageLook* look) { return *look->altitude_m; });
+    LightSeen light;
+    if (seen.size() < 2) return light;
+    for (const ImageLook* look : seen) light.altitude_m.push_back(*look->altitude_m);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        std::vector<double> quotients;
+        for (const ImageLook* look : seen) quotients.push_back(look->quotient[c]);
+        const auto middle = quotients.begin() + std::ssize(quotients) / 2;
+        std::ranges::nth_element(quotients, middle);
+        for (const ImageLook* look : seen) {
+            light.map[c].push_back(*middle * look->map_mean[c]);
+            light.image[c].push_back(look->quotient[c] * look->map_mean[c]);
+        }
+    }
+    return light;
+}
+
+std::string light_over_altitude(std::span<const ImageLook> looks) {
+    constexpr double kWidth = 960.0;
+    constexpr double kHeight = 420.0;
+    constexpr double kMargin = 16.0;
+    constexpr int kTicks = 6;
+    const LightSeen light = light_seen(looks);
+    if (light.altitude_m.empty()) return "";
+    ValueRange altitudes;
+    altitudes.include(light.altitude_m);
+    ValueRange numbers;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        numbers.include(light.map[c]);
+        numbers.include(light.image[c]);
+    }
+    SvgPanel panel{.left = kAxisWidth,
+                   .top = kMargin,
+                   .width = kWidth - kAxisWidth - kMargin,
+                   .height = kHeight - kAxisHeight - kMargin,
+                   .x = linear_axis_around(altitudes.least, altitudes.most, kTicks),
+                   .y = log_axis(numbers.least, numbers.most)};
+    panel.x.title = "altitude (m)";
+    panel.y.title = "light (the camera’s numbers over black)";
+    std::string elements = svg_axes(panel);
+    std::string keys;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const std::string tone = svg_tone(kChannelTones.at(c));
+        elements += svg_curve(
+            panel, light.altitude_m, light.map[c], fmt::format("class=\"curve\" {}", tone));
+        elements += svg_dots(panel,
+                             light.altitude_m,
+                             light.image[c],
+                             fmt::format("class=\"dots\" style=\"stroke-width: 7px\" {}", tone));
+        keys += html_key(fmt::format("<svg class=\"stroke\" viewBox=\"0 0 34 12\"><path "
+                                     "class=\"curve\" {} d=\"M2 6L32 6\"/></svg>",
+                                     tone),
+                         kColours.at(c));
+    }
+    return html_section(
+        "light",
+        "Light over altitude",
+        html_legend(keys + html_key("", "lines: the maps") + html_key("", "dots: the images")) +
+            fmt::format(
+                "<div class=\"plot wide\">{}</div>\n",
+                svg_drawing("light-plot", "light over altitude", kWidth, kHeight, elements)) +
+            html_paragraph(fmt::format(
+                "{} that were looked at before the run: the mean light of each one’s map, scaled "
+                "to the images, and the light of the image by its median pixel. Where the rig is "
+                "right, the images scatter about the lines.",
+                counted(light.altitude_m.size(), "image"))));
+}
+
+// Numbers.
+
+std::string gain_section(const CorrectionReport& report) {
+    std::vector<HtmlItem> items{{"gain", per_channel(report.gain.gain)}};
+    if (!report.gain.folder.empty()) {
+        items.emplace_back("taken from", user_text(report.gain.folder));
+    } else {
+        items.emplace_back("taken from",
+                           report.gain.images.empty()
+                               ? "the command line"
+                               : counted(report.gain.images.size(), "image"));
+    }
+    items.emplace_back("the survey’s middle becomes", per_channel(report.gain.middle));
+    if (report.srgb) {
+        items.emplace_back("exposure of sRGB", plain(report.srgb->exposure));
+        if (const auto& camera = report.srgb->camera) {
+            items.emplace_back("colours of sRGB",
+                               fmt::format("{:.1f} CIELAB units off in the mean of {}, {:.1f} at "
+                                           "most ({})",
+                                           camera->mean_delta_e(),
+                                           counted(camera->surfaces.size(), "surface"),
+                                           camera->worst().delta_e,
+                                           escaped(camera->worst().name)));
+        }
+    }
+    return html_section("gain", "Gain", html_list("gains", items));
+}
+
+std::string doubts_section(const RunOutcome& run) {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords{
+        {{"dark", "the gain is held, so that noise is not amplified"},
+         {"saturated", "the camera saturates"},
+         {"black", "no light"},
+         {"edge", "the edge of a beam is near"},
+         {"clipped", "beyond what the file holds"}}};
+    std::vector<HtmlItem> items;
+    for (const auto& [name, words] : kWords) {
+        items.emplace_back(name, fmt::format("{}: {}", percent(run.doubtful_share(name)), words));
+    }
+    return html_section("doubts", "Doubtful pixels", html_list("doubtful", items));
+}
+
+std::string skipped_section(const RunOutcome& run) {
+    constexpr std::size_t kMostRows = 200;
+    if (run.skipped.empty()) return "";
+    std::vector<HtmlItem> items;
+    for (std::size_t i = 0; i < std::min(run.skipped.size(), kMostRows); ++i) {
+        items.emplace_back(user_text(run.skipped[i].image), user_text(run.skipped[i].why));
+    }
+    std::string content = html_list("skipped-images", items);
+    if (run.skipped.size() > kMostRows) {
+        content += html_paragraph(fmt::format("The first {} of {}; {} has all.",
+                                              kMostRows,
+                                              grouped(run.skipped.size()),
+                                              kCorrectionNotes));
+    }
+    return html_section("skipped", "Skipped images", content);
+}
+
+std::string settings_section(const CorrectionReport& report) {
+    std::vector<HtmlItem> items;
+    for (const auto& [key, value] : report.settings.items()) {
+        const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+        items.emplace_back(escaped(key), user_text(text));
+    }
+    return html_section("settings", "Settings", html_list("all-settings", items));
+}
+
+std::string rig_section(const LightAt& light) {
+    return light.toml.empty() ? "" : html_section("rig", "Rig", html_source(light.toml));
+}
+
+std::string title_of(const LightAt& light) {
+    return light.title.empty() ? "Corrected survey" : light.title;
+}
+
+}  // namespace
+
+std::string correction_html(const Survey& survey,
+                            const CorrectionReport& report,
+                            std::span<const SheetImage> sheet) {
+    const std::string title = title_of(survey.light);
+    return html_page("Correction: " + title,
+                     html_header("corrected survey", user_text(title), verdict(report)) +
+                         warnings(report) + before_and_after(sheet) +
+                         light_over_altitude(report.looks) + gain_section(report) +
+                         doubts_section(*report.run) + skipped_section(*report.run) +
+                         settings_section(report) + rig_section(survey.light));
+}
+
+}  // namespace aphotic
