@@ -80,7 +80,9 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options) {
            "--order", options.order, "log-polynomial, binned-polynomial: order of the polynomials")
         ->check(in_range(0, 12))
         ->capture_default_str();
-    app.add_option("--bin", options.bin_m, "binned-polynomial: width of an altitude bin, in metres")
+    app.add_option("--bin",
+                   options.bin_m,
+                   "binned-polynomial, altitude-exponential: width of an altitude bin, in metres")
         ->check(in_range(1e-3, 1e4))
         ->capture_default_str();
 }
@@ -94,7 +96,8 @@ Action configure_baseline(CLI::App& app) {
     add_output_folder(app, options->baseline.run.folder)->required();
     app.add_option("--nav",
                    options->navigation,
-                   "Altitude of each image, for binned-polynomial; as for observe")
+                   "Altitude of each image, for binned-polynomial and altitude-exponential; as for "
+                   "observe")
         ->type_name("FILE");
     add_baseline_options(app, options->baseline.settings);
     add_camera_options(app, options->camera);
@@ -104,8 +107,10 @@ Action configure_baseline(CLI::App& app) {
     add_strict_option(app, options->strict);
     add_json(app, options->json, "Print DIR/baseline.json");
     app.footer(
-        "The polynomials learn from all images given; the others correct each image by itself. An "
-        "EXR holds the camera's own numbers less the black level; a TIFF or PNG has 65535 where "
+        "The polynomials and exponentials learn from all images given; the others correct each "
+        "image "
+        "by itself. An EXR holds the camera's own numbers less the black level; a TIFF or PNG has "
+        "65535 where "
         "the camera saturates. Interrupted, it continues where it stopped when run again. Images "
         "that cannot be used are reported and skipped; the exit status is then 1. A mask's pixel "
         "is a sum of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
