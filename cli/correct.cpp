@@ -2,6 +2,7 @@
 //
 // aphotic correct IMAGES... --rig RIG --nav FILE -o DIR: survey images divided by the map of their
 // own altitude and attitude.
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
@@ -11,6 +12,7 @@
 #include "image/exr.h"
 #include "rig/rig_reader.h"
 #include "survey/correction_run.h"
+#include "survey/ifdo_results.h"
 #include "survey/navigation_csv.h"
 
 #include <fmt/format.h>
@@ -20,6 +22,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace aphotic::cli {
 namespace {
@@ -29,6 +32,7 @@ struct CorrectCommandOptions {
     std::string rig;
     std::string nav;
     std::string map;
+    std::string ifdo;
     CameraNumbers camera;
     std::vector<double> altitudes_m;
     CorrectionOptions correction;
@@ -93,16 +97,46 @@ Survey survey_of(const CorrectCommandOptions& options) {
     return survey;
 }
 
-ExitStatus correct(const CorrectCommandOptions& options) {
+// Read before anything is corrected, that a fault in it costs nothing.
+struct IfdoTask {
+    Ifdo of_raw;
+    std::filesystem::path place;
+};
+
+std::optional<IfdoTask> ifdo_task(const CorrectCommandOptions& options) {
+    if (options.ifdo.empty()) return std::nullopt;
+    const std::string text = read_text_file(options.ifdo, kMostIfdo_bytes);
+    return IfdoTask{.of_raw = parse_ifdo(options.ifdo, text),
+                    .place = ifdo_place(options.ifdo, options.correction.run.folder)};
+}
+
+void write_ifdo(const IfdoTask& task,
+                const CorrectCommandOptions& options,
+                const Survey& survey,
+                const CorrectionReport& report) {
+    std::optional<Rig> rig;
+    if (!options.rig.empty()) rig = read_rig(options.rig);
+    const IfdoResults made = write_ifdo_of_results(
+        task.of_raw, task.place, survey, options.correction, report, rig ? &*rig : nullptr);
+    if (!options.json) fmt::print("  {}: {}\n", made.file.string(), counted(made.images, "image"));
+    for (const std::string& image : made.without_item)
+        fmt::print(stderr, "warning: {}: has no item of its own for {}\n", options.ifdo, image);
+}
+
+ExitStatus correct(CorrectCommandOptions options) {
     keep_memory();
     set_exr_threads(0);  // the images themselves are spread over the threads
+    if (options.nav.empty() && !options.rig.empty()) options.nav = options.ifdo;
+    const std::optional<IfdoTask> task = ifdo_task(options);
+    const Survey survey = survey_of(options);
     const CorrectionReport report =
-        correct_survey(survey_of(options), options.correction, terminal_watch(options.strict));
+        correct_survey(survey, options.correction, terminal_watch(options.strict));
     if (options.json) {
         fmt::print("{}", json_text(to_json(report)));
     } else {
         print_report(report, options.correction.run.folder);
     }
+    if (task) write_ifdo(*task, options, survey, report);
     return report.run->skipped.empty() ? kDone : kAnswerIsNo;
 }
 
@@ -111,7 +145,8 @@ void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
     app.add_option("--nav",
                    options.nav,
                    "Altitude, pitch and roll of each image: CSV with the columns image, "
-                   "altitude_m, pitch_deg, roll_deg, or lines of these four without a header")
+                   "altitude_m, pitch_deg, roll_deg, lines of these four without a header, or an "
+                   "iFDO")
         ->type_name("FILE");
     app.add_option(
            "--map", options.map, "Use one lightmap (EXR) for all images instead of --rig and --nav")
@@ -181,6 +216,12 @@ void add_result_options(CLI::App& app, CorrectCommandOptions& options) {
         ->check(in_range(0, kMostEdge_px))
         ->capture_default_str();
     add_format_options(app, options.correction.run.format);
+    app.add_option(
+           "--ifdo",
+           options.ifdo,
+           "The images' iFDO, JSON or YAML: write that of the results to DIR under its name, "
+           "and without --nav take the navigation from it")
+        ->type_name("FILE");
 }
 
 Action configure_correct(CLI::App& app) {

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/nearest.h"
 #include "base/words.h"
+#include "survey/navigation_ifdo.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -176,7 +177,9 @@ Navigation parse_navigation_csv(const std::string& name,
 }
 
 Navigation read_navigation_csv(const std::filesystem::path& file, const Sled& rig_sled) {
-    return parse_navigation_csv(file.string(), read_text_file(file), rig_sled);
+    const std::string text = read_text_file(file);
+    return is_ifdo(text) ? parse_navigation_ifdo(file.string(), text, rig_sled)
+                         : parse_navigation_csv(file.string(), text, rig_sled);
 }
 
 }  // namespace aphotic

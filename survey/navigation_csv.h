@@ -25,6 +25,7 @@ namespace aphotic {
 [[nodiscard]] Navigation parse_navigation_csv(const std::string& name,
                                               std::string_view text,
                                               const Sled& rig_sled);
+// Or from an iFDO, known by its content (navigation_ifdo.h).
 [[nodiscard]] Navigation read_navigation_csv(const std::filesystem::path& file,
                                              const Sled& rig_sled);
 
