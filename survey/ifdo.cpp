@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/printable.h"
 
 #include <yaml-cpp/yaml.h>
 
@@ -111,7 +112,7 @@ IfdoJson json_of_yaml(const std::string& name, std::string_view text) {
             .json_of(YAML::Load(std::string(text)));
     } catch (const YAML::Exception& error) {
         const int line = error.mark.is_null() ? 0 : error.mark.line;
-        fail_at_line(name, static_cast<std::size_t>(line + 1), error.msg);
+        fail_at_line(name, static_cast<std::size_t>(line + 1), printable(error.msg));
     }
 }
 
