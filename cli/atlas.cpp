@@ -177,6 +177,9 @@ AtlasExports export_maps(const AtlasCommandOptions& options,
     if (is_exported(options, "exponential")) {
         made.exponential = export_exponential(options.folder, rig, request("fitting"));
     }
+    if (is_exported(options, "oplab")) {
+        made.oplab = export_oplab(options.folder, rig, request("fitting"));
+    }
     note_exports(options.folder, made);
     return made;
 }
@@ -204,7 +207,8 @@ AtlasWork work_of(const AtlasCommandOptions& options, const Rig& rig, const MapA
     return {.size = {.width_px = rig.camera.width_px, .height_px = rig.camera.height_px},
             .altitudes = finest.altitude_m.size(),
             .has_mosaics = is_exported(options, "bayer"),
-            .has_fits = is_exported(options, "exponential")};
+            .has_fits = is_exported(options, "exponential"),
+            .has_oplab = is_exported(options, "oplab")};
 }
 
 // Says what is to come, and refuses it where the disk has no room for it.
@@ -253,6 +257,7 @@ nlohmann::ordered_json to_json(const MadeAtlas& made) {
         exports["exponential"] = {
             {"file", made.fits().string()}, {"rms", fit->rms}, {"worst", fit->worst}};
     }
+    if (made.exports.oplab) exports["oplab"] = to_json(*made.exports.oplab);
     return {{"title", made.rig.title},
             {"rig_sha256", made.rig.digest},
             {"folder", made.folder.string()},
@@ -296,6 +301,17 @@ void print(const MadeAtlas& made) {
                    fit->rms,
                    fit->worst);
     }
+    if (const auto& fit = made.exports.oplab) {
+        fmt::print(
+            "  {}  parameters for oplab's correct_images, off by {:.2g} of a pixel's mean rms, "
+            "{:.2g} at "
+            "most;\n  {:.1f} % of all light by over {:.0f} %\n",
+            (made.folder / fit->folder).string(),
+            fit->rms,
+            fit->worst,
+            kPercent * fit->share_off,
+            kPercent * kOplabOff);
+    }
     fmt::print("  {}/atlas.json\n", made.folder.string());
     if (!made.holds()) {
         fmt::print("  not within the tolerance of {:.2g}: the steps allow no finer bins\n",
@@ -305,7 +321,7 @@ void print(const MadeAtlas& made) {
 
 MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes& finest) {
     require_over_floor(rig, finest);
-    if (is_exported(options, "exponential"))
+    if (is_exported(options, "exponential") || is_exported(options, "oplab"))
         AltitudeFitter{finest.altitude_m};  // or it says why not
     MadeAtlas made{.rig = rig,
                    .folder = options.folder,
@@ -351,13 +367,15 @@ Action configure_atlas(CLI::App& app) {
                    "beams' edges aside")
         ->check(in_range(kLeastTolerance, 1.0))
         ->option_text("E");
-    app.add_option("--export",
-                   options->exports,
-                   "Also export, over all altitudes at the rig's own attitude and water, RGGB "
-                   "mosaics (bayer) or a exp(b h) + c fitted to each pixel (exponential)")
+    app.add_option(
+           "--export",
+           options->exports,
+           "Also export, over all altitudes at the rig's own attitude and water, RGGB "
+           "mosaics (bayer), a exp(b h) + c fitted to each pixel (exponential), or parameters for "
+           "oplab's correct_images (oplab)")
         ->delimiter(',')
-        ->check(CLI::IsMember({"bayer", "exponential"}))
-        ->option_text("bayer,exponential");
+        ->check(CLI::IsMember({"bayer", "exponential", "oplab"}))
+        ->option_text("bayer,exponential,oplab");
     add_jobs(app, options->map.threads, "Map with N threads");
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json);

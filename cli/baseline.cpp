@@ -87,7 +87,9 @@ void add_baseline_options(CLI::App& app, BaselineOptions& options) {
            "--order", options.order, "log-polynomial, binned-polynomial: order of the polynomials")
         ->check(in_range(0, 12))
         ->capture_default_str();
-    app.add_option("--bin", options.bin_m, "binned-polynomial: width of an altitude bin, in metres")
+    app.add_option("--bin",
+                   options.bin_m,
+                   "binned-polynomial, altitude-exponential: width of an altitude bin, in metres")
         ->check(in_range(1e-3, 1e4))
         ->capture_default_str();
 }
@@ -110,8 +112,10 @@ Action configure_baseline(CLI::App& app) {
     add_allow_skipped(app, options->allowed_skips);
     add_json(app, options->json, "Print DIR/baseline.json");
     app.footer(
-        "The polynomials learn from all images given; the others correct each image by itself. An "
-        "EXR holds the camera's own numbers less the black level; a TIFF or PNG has 65535 where "
+        "The polynomials and exponentials learn from all images given; the others correct each "
+        "image "
+        "by itself. An EXR holds the camera's own numbers less the black level; a TIFF or PNG has "
+        "65535 where "
         "the camera saturates. Interrupted, it continues where it stopped when run again. Images "
         "that cannot be used are reported and skipped; the exit status is 1 when these are more "
         "than "

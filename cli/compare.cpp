@@ -1,39 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic compare A B: how far image A is from the reference B, channel by channel.
+// aphotic compare A B: how far image A is from the reference B, channel by channel; and how A shows
+// patches of known colour.
 #include "base/atomic_file.h"
+#include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "validation/image_comparison.h"
+#include "validation/patch_score.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace aphotic::cli {
 namespace {
 
 struct CompareCommandOptions {
     ComparisonRequest request;
-    std::string scale;  // as the user gave it
+    std::string scale;    // as the user gave it
+    std::string patches;  // a file
+    std::string encoding = "linear";
     std::string output;
     std::string report;
     bool json = false;
 };
 
 struct Compared {
-    ComparedImages images;
+    std::string image;
+    std::optional<ComparedImages> images{};  // none: without a reference
+    std::optional<PatchScores> patches{};
     double bound = 0.0;
     std::string scale;  // "image", "per-channel", or none
 };
 
-nlohmann::ordered_json to_json(const Compared& compared) {
-    const ComparedImages& images = compared.images;
+nlohmann::ordered_json images_json(const Compared& compared) {
+    const ComparedImages& images = *compared.images;
     nlohmann::ordered_json json{{"image", images.image},
                                 {"reference", images.reference},
                                 {"bound", compared.bound},
@@ -60,6 +68,13 @@ nlohmann::ordered_json to_json(const Compared& compared) {
                                     {"not_finite", c.not_finite}});
         if (images.scaled) json["channels"].back()["scale"] = channel.scale;
     }
+    return json;
+}
+
+nlohmann::ordered_json to_json(const Compared& compared) {
+    nlohmann::ordered_json json{{"image", compared.image}};
+    if (compared.images) json = images_json(compared);
+    if (compared.patches) json["patches"] = to_json(*compared.patches);
     return json;
 }
 
@@ -90,8 +105,39 @@ void print_unpaired(const ComparedImages& images) {
     print(images.left_aside, "left aside");
 }
 
-void print(const Compared& compared) {
-    const ComparedImages& images = compared.images;
+std::string figure(const std::optional<double>& value) {
+    return value ? fmt::format("{:.3f}", *value) : "-";
+}
+
+void print_patches(const PatchScores& scores) {
+    fmt::print("{:>18}  {:>9}  {:>9}  {:>9}  {:>9}  {:>9}\n",
+               "patch",
+               "R",
+               "G",
+               "B",
+               "deg grey",
+               "dE 2000");
+    for (const PatchScore& patch : scores.patches) {
+        fmt::print("{:>18}  {:>9.4g}  {:>9.4g}  {:>9.4g}  {:>9}  {:>9}\n",
+                   patch.name,
+                   patch.signal[0],
+                   patch.signal[1],
+                   patch.signal[2],
+                   figure(patch.degrees),
+                   figure(patch.difference));
+    }
+    const auto print_both = [](const char* what,
+                               const std::optional<double>& mean,
+                               const std::optional<double>& median) {
+        if (mean) fmt::print("{}: mean {:.3f}, median {:.3f}\n", what, *mean, *median);
+    };
+    print_both("degrees from grey", scores.mean_degrees, scores.median_degrees);
+    print_both("CIEDE2000", scores.mean_difference, scores.median_difference);
+    fmt::print("unevenness: {:.3f} % rms\n", 100.0 * scores.unevenness);
+}
+
+void print_images(const Compared& compared) {
+    const ComparedImages& images = *compared.images;
     fmt::print("{:>18}  {:>9}  {:>9}  {:>9}  {:>9}  worst pixel{}\n",
                "",
                "max |e|",
@@ -114,6 +160,11 @@ void print(const Compared& compared) {
     }
 }
 
+void print(const Compared& compared) {
+    if (compared.images) print_images(compared);
+    if (compared.patches) print_patches(*compared.patches);
+}
+
 ExitStatus compare(const CompareCommandOptions& options) {
     const std::map<std::string, ComparedScale> scales{
         {"", ComparedScale::None},
@@ -122,12 +173,24 @@ ExitStatus compare(const CompareCommandOptions& options) {
     ComparisonRequest request = options.request;
     request.scale = scales.at(options.scale);
     request.keep_samples = !options.report.empty();
-    const Compared compared{
-        .images = compare_images(request), .bound = request.bound, .scale = options.scale};
+    if (request.reference.empty() && options.patches.empty()) {
+        throw InputError("found no REFERENCE; allowed: an image to judge IMAGE by, or --patches");
+    }
+    if (request.reference.empty() && !options.report.empty()) {
+        throw InputError("--report: found no REFERENCE; allowed: with an image to judge IMAGE by");
+    }
+    Compared compared{.image = request.image, .bound = request.bound, .scale = options.scale};
+    if (!request.reference.empty()) compared.images = compare_images(request);
+    if (!options.patches.empty()) {
+        compared.patches = score_patches({.image = request.image,
+                                          .patches = options.patches,
+                                          .scale = request.scale,
+                                          .is_srgb = options.encoding == "srgb"});
+    }
     if (!options.output.empty()) write_text_file(options.output, json_text(to_json(compared)));
-    if (!options.report.empty()) write_text_file(options.report, comparison_html(compared.images));
+    if (!options.report.empty()) write_text_file(options.report, comparison_html(*compared.images));
     show(compared, options.json);
-    return compared.images.holds() ? kDone : kAnswerIsNo;
+    return !compared.images || compared.images->holds() ? kDone : kAnswerIsNo;
 }
 
 Action configure_compare(CLI::App& app) {
@@ -135,7 +198,8 @@ Action configure_compare(CLI::App& app) {
     ComparisonRequest& request = options->request;
     app.add_option("IMAGE", request.image, "The image to judge: EXR, TIFF, PNG, JPEG and others")
         ->required();
-    app.add_option("REFERENCE", request.reference, "The image to judge it by")->required();
+    app.add_option(
+        "REFERENCE", request.reference, "The image to judge it by; may be left out with --patches");
     app.add_option("--bound", request.bound, "Largest |e| that passes")
         ->check(not_negative())
         ->option_text("E")
@@ -156,6 +220,19 @@ Action configure_compare(CLI::App& app) {
                  "First divide the image by the factor that best fits it to the reference, one for "
                  "all channels; --scale=per-channel: one for each")
         ->check(CLI::IsMember({"image", "per-channel"}));
+    CLI::Option* patches =
+        app.add_option(
+               "--patches",
+               options->patches,
+               "Measure IMAGE's patches of known colour: CSV with the columns patch, x, y, "
+               "w, h and reference, which is grey, a reflectance, L a b, or a chart's patch")
+            ->type_name("FILE");
+    app.add_option("--encoding",
+                   options->encoding,
+                   "How IMAGE's samples are encoded, for --patches: linear or srgb")
+        ->check(CLI::IsMember({"linear", "srgb"}))
+        ->needs(patches)
+        ->capture_default_str();
     app.add_option("-o,--output", options->output, "Write the numbers to FILE as JSON")
         ->type_name("FILE");
     app.add_option("--report",

@@ -2,6 +2,7 @@
 //
 // aphotic correct IMAGES... --rig RIG --nav FILE -o DIR: survey images divided by the map of their
 // own altitude and attitude.
+#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
@@ -14,6 +15,7 @@
 #include "rig/rig_reader.h"
 #include "survey/camera_of_files.h"
 #include "survey/correction_run.h"
+#include "survey/ifdo_results.h"
 
 #include <fmt/format.h>
 #ifdef __GLIBC__
@@ -22,6 +24,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace aphotic::cli {
 namespace {
@@ -31,6 +34,7 @@ struct CorrectCommandOptions {
     std::string rig;
     NavigationOptions navigation;
     std::string map;
+    std::string ifdo;
     CameraNumbers camera;
     std::vector<double> altitudes_m;
     CorrectionOptions correction;
@@ -126,9 +130,38 @@ Survey survey_of(const CorrectCommandOptions& options) {
     return survey;
 }
 
-ExitStatus correct(const CorrectCommandOptions& options) {
+// Read before anything is corrected, that a fault in it costs nothing.
+struct IfdoTask {
+    Ifdo of_raw;
+    std::filesystem::path place;
+};
+
+std::optional<IfdoTask> ifdo_task(const CorrectCommandOptions& options) {
+    if (options.ifdo.empty()) return std::nullopt;
+    const std::string text = read_text_file(options.ifdo, kMostIfdo_bytes);
+    return IfdoTask{.of_raw = parse_ifdo(options.ifdo, text),
+                    .place = ifdo_place(options.ifdo, options.correction.run.folder)};
+}
+
+void write_ifdo(const IfdoTask& task,
+                const CorrectCommandOptions& options,
+                const Survey& survey,
+                const CorrectionReport& report) {
+    std::optional<Rig> rig;
+    if (!options.rig.empty()) rig = read_rig(options.rig);
+    const IfdoResults made = write_ifdo_of_results(
+        task.of_raw, task.place, survey, options.correction, report, rig ? &*rig : nullptr);
+    if (!options.json) fmt::print("  {}: {}\n", made.file.string(), counted(made.images, "image"));
+    for (const std::string& image : made.without_item)
+        fmt::print(stderr, "warning: {}: has no item of its own for {}\n", options.ifdo, image);
+}
+
+ExitStatus correct(CorrectCommandOptions options) {
     keep_memory();
     set_exr_threads(0);  // the images themselves are spread over the threads
+    if (options.navigation.source.empty() && !options.rig.empty())
+        options.navigation.source = options.ifdo;
+    const std::optional<IfdoTask> task = ifdo_task(options);
     const Survey survey = survey_of(options);
     const CorrectionReport report =
         correct_survey(survey, options.correction, terminal_watch(options.strict));
@@ -138,6 +171,7 @@ ExitStatus correct(const CorrectCommandOptions& options) {
         print_report(report, survey, options.correction.run.folder, options.correction.report);
         print_navigation(survey.navigation);
     }
+    if (task) write_ifdo(*task, options, survey, report);
     return status_of_skips(report.run->skipped.size(), survey.files.size(), options.allowed_skips);
 }
 
@@ -219,7 +253,14 @@ void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
                    "Mark N pixels around a beam's edge as doubtful")
         ->check(in_range(0, kMostEdge_px))
         ->capture_default_str();
-    return add_format_options(app, options.correction.run.format);
+    Settle settle = add_format_options(app, options.correction.run.format);
+    app.add_option(
+           "--ifdo",
+           options.ifdo,
+           "The images' iFDO, JSON or YAML: write that of the results to DIR under its name, "
+           "and without --nav take the navigation from it")
+        ->type_name("FILE");
+    return settle;
 }
 
 Action configure_correct(CLI::App& app) {

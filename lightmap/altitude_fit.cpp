@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace aphotic {
@@ -51,14 +52,23 @@ AltitudeFitter::AltitudeFitter(std::vector<double> altitude_m)
 
 AltitudeFitter::Rate AltitudeFitter::rate(double b_per_m) const {
     // Scaled to 1 at the end where it is largest.
-    const double at_m = b_per_m > 0.0 ? altitude_m_.back() : altitude_m_.front();
-    Rate rate{.b_per_m = b_per_m, .shape = {}};
-    for (const double h_m : altitude_m_) rate.shape.push_back(std::exp(b_per_m * (h_m - at_m)));
-    const double mean = mean_of(rate.shape);
-    for (double& value : rate.shape) value -= mean;
-    const double length = std::sqrt(product(rate.shape, rate.shape));
-    for (double& value : rate.shape) value /= length;
+    Rate rate{.b_per_m = b_per_m, .at_m = b_per_m > 0.0 ? altitude_m_.back() : altitude_m_.front()};
+    for (const double h_m : altitude_m_)
+        rate.shape.push_back(std::exp(b_per_m * (h_m - rate.at_m)));
+    rate.mean = mean_of(rate.shape);
+    for (double& value : rate.shape) value -= rate.mean;
+    rate.length = std::sqrt(product(rate.shape, rate.shape));
+    for (double& value : rate.shape) value /= rate.length;
     return rate;
+}
+
+void AltitudeFitter::state_residual(AltitudeFit& fit, std::span<const double> signal) const {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < signal.size(); ++i) {
+        const double left = signal[i] - (fit.a * std::exp(fit.b_per_m * altitude_m_[i]) + fit.c);
+        squares += left * left;
+    }
+    fit.residual = std::sqrt(squares / static_cast<double>(signal.size())) / mean_of(signal);
 }
 
 AltitudeFit AltitudeFitter::fit(std::span<const double> signal) const {
@@ -98,12 +108,52 @@ AltitudeFit AltitudeFitter::fit(std::span<const double> signal) const {
     }
     fit.a = above / below;
     fit.c = mean - fit.a * basis_mean;
-    double squares = 0.0;
-    for (std::size_t i = 0; i < basis.size(); ++i) {
-        const double left = signal[i] - (fit.a * basis[i] + fit.c);
-        squares += left * left;
+    state_residual(fit, signal);
+    return fit;
+}
+
+AltitudeFit AltitudeFitter::fit_bounded(std::span<const double> signal) const {
+    const double mean = mean_of(signal);
+    if (!(mean > 0.0)) return {};
+    const auto n = static_cast<double>(signal.size());
+    const double most_c = std::max(0.0, *std::ranges::min_element(signal));
+    struct Line {
+        double a;  // of exp(b (h - at))
+        double c;
+        double squares;  // that it leaves, less those of the signal
+    };
+    const auto line_over = [&](const Rate& rate) {
+        const double part = product(rate.shape, signal);
+        const double basis = n * rate.mean;
+        const double basis_squares = basis * rate.mean + rate.length * rate.length;
+        const double common = basis * mean + rate.length * part;
+        const double c = std::clamp(mean - part / rate.length * rate.mean, 0.0, most_c);
+        const double a = std::max(0.0, (common - c * basis) / basis_squares);
+        const double squares = a * a * basis_squares + n * c * c + 2.0 * a * c * basis -
+                               2.0 * (a * common + c * n * mean);
+        return Line{.a = a, .c = c, .squares = squares};
+    };
+    // The negative rates come first.
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < kRates; ++i) {
+        const double found = line_over(rates_[i]).squares;
+        if (found < least) best = i, least = found;
     }
-    fit.residual = std::sqrt(squares / static_cast<double>(basis.size())) / mean;
+    constexpr int kBits = 16;
+    const double b_per_m = boost::math::tools::brent_find_minima(
+                               [&](double b) { return line_over(rate(b)).squares; },
+                               rates_[best > 0 ? best - 1 : best].b_per_m,
+                               rates_[std::min<std::size_t>(best + 1, kRates - 1)].b_per_m,
+                               kBits)
+                               .first;
+    const Rate found = rate(b_per_m);
+    const Line line = line_over(found);
+    AltitudeFit fit{.a = mean};
+    if (line.squares < -n * mean * mean) {
+        fit = {.a = line.a * std::exp(-b_per_m * found.at_m), .b_per_m = b_per_m, .c = line.c};
+    }
+    state_residual(fit, signal);
     return fit;
 }
 

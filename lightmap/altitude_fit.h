@@ -14,6 +14,11 @@
 // between two rates.
 //
 // residual  root of the mean square of what the fit leaves, over the mean of S
+//
+// A corrector divides by the fit, which must not cross zero. The bounded one is the least squares
+// under a >= 0, b <= 0, 0 <= c <= the least S: for a given b, c is cut to its range and a follows,
+// which is exact, as the squares are convex. Light that rises with altitude is its mean then, at
+// b = 0.
 #pragma once
 
 #include <array>
@@ -36,6 +41,7 @@ class AltitudeFitter {
     explicit AltitudeFitter(std::vector<double> altitude_m);
 
     [[nodiscard]] AltitudeFit fit(std::span<const double> signal) const;
+    [[nodiscard]] AltitudeFit fit_bounded(std::span<const double> signal) const;
 
     static constexpr int kRates = 24;
     static constexpr double kSlowest = 0.1;
@@ -43,12 +49,17 @@ class AltitudeFitter {
     static constexpr double kMostExponent = 80.0;
 
   private:
-    // exp(b h), less its mean and of length 1: all that b's residual needs.
+    // exp(b (h - at)) = mean + length shape, the shape of mean 0 and length 1, which is all that
+    // b's residual needs.
     struct Rate {
         double b_per_m;
-        std::vector<double> shape;
+        double at_m;
+        double mean = 0.0;
+        double length = 0.0;
+        std::vector<double> shape{};
     };
     [[nodiscard]] Rate rate(double b_per_m) const;
+    void state_residual(AltitudeFit& fit, std::span<const double> signal) const;
 
     std::vector<double> altitude_m_;
     std::vector<Rate> rates_;  // in the order of b

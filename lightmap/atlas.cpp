@@ -76,6 +76,7 @@ OrderedJson json_of(const AtlasExports& exports) {
                                {"rms", exports.exponential->rms},
                                {"worst", exports.exponential->worst}};
     }
+    if (exports.oplab) json["oplab"] = to_json(*exports.oplab);
     return json;
 }
 
@@ -91,6 +92,13 @@ AtlasExports exports_of(const Json& json) {
         const Json& fit = json["exponential"];
         exports.exponential = {
             .file = fit.at("file"), .rms = fit.at("rms"), .worst = fit.at("worst")};
+    }
+    if (json.contains("oplab")) {
+        const Json& fit = json["oplab"];
+        exports.oplab = {.folder = fit.at("folder"),
+                         .rms = fit.at("rms"),
+                         .worst = fit.at("worst"),
+                         .share_off = fit.at("share_off_by_10_percent")};
     }
     return exports;
 }
@@ -333,6 +341,7 @@ std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasReque
     write_manifest(folder, manifest);
     remove_others(folder, points);
     remove_exports(folder);
+    remove_oplab_export(folder);
 
     // What is not noted is found again by its header, which takes longer.
     constexpr std::chrono::seconds kNoteEvery{2};

@@ -3,7 +3,8 @@
 // An atlas: a folder of a rig's maps over altitude, pitch, roll and water.
 //
 //   ATLAS/atlas.json                   what it is of, its axes, the bins with their checksums, and
-//                                      what was exported beside them (atlas_export.h)
+//                                      what was exported beside them (atlas_export.h,
+//                                      oplab_export.h)
 //   ATLAS/bins/a2.1_p-5_r0_w1.exr      R, G, B at 2.1 m, pitch -5, roll 0 degrees, the water once
 //
 // Maps between the bins are interpolated (map_axes.h), and atlas.json says with what error. Bins
@@ -16,6 +17,7 @@
 #include "lightmap/atlas_export.h"
 #include "lightmap/atlas_plan.h"
 #include "lightmap/map_axes.h"
+#include "lightmap/oplab_export.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -32,6 +34,7 @@ namespace aphotic {
 struct AtlasExports {
     std::vector<ExportedMosaic> bayer;
     std::optional<ExportedFit> exponential;
+    std::optional<ExportedOplab> oplab{};
 };
 
 struct AtlasManifest {

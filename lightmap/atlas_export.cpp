@@ -26,13 +26,6 @@ ExrAttributes attributes_of(const Rig& rig) {
             {"aphotic:renderer", "lightmap"}};
 }
 
-MapAxes axes_of(const Rig& rig, const std::vector<double>& altitude_m) {
-    return {.altitude_m = altitude_m,
-            .pitch_rad = {rig.sled.pitch_rad},
-            .roll_rad = {rig.sled.roll_rad},
-            .water_multiple = {rig.water.multiple}};
-}
-
 constexpr const char* kMosaicsFolder = "bayer";
 constexpr const char* kFits = "exponential.exr";
 
@@ -87,6 +80,13 @@ std::vector<float> fitted(const AltitudeFitter& fitter,
 
 }  // namespace
 
+MapAxes axes_at_own_pose(const Rig& rig, const std::vector<double>& altitude_m) {
+    return {.altitude_m = altitude_m,
+            .pitch_rad = {rig.sled.pitch_rad},
+            .roll_rad = {rig.sled.roll_rad},
+            .water_multiple = {rig.water.multiple}};
+}
+
 std::vector<float> mosaic_rggb(const Lightmap& map) {
     const auto width = static_cast<std::size_t>(map.width_px);
     const auto height = static_cast<std::size_t>(map.height_px);
@@ -104,7 +104,7 @@ std::vector<float> mosaic_rggb(const Lightmap& map) {
 std::vector<ExportedMosaic> export_bayer(const fs::path& folder,
                                          const Rig& rig,
                                          const AltitudeExport& request) {
-    const MapAxes axes = axes_of(rig, request.altitude_m);
+    const MapAxes axes = axes_at_own_pose(rig, request.altitude_m);
     const int digits = digits_of(request.altitude_m);
     MapSource source(rig, axes, request.map);
     make_folder(folder / kMosaicsFolder);
@@ -145,7 +145,7 @@ ExportedFit export_exponential(const fs::path& folder,
                                const Rig& rig,
                                const AltitudeExport& request) {
     constexpr int kRows = 32;  // of all altitudes at once
-    const MapAxes axes = axes_of(rig, request.altitude_m);
+    const MapAxes axes = axes_at_own_pose(rig, request.altitude_m);
     const AltitudeFitter fitter(request.altitude_m);
     MapSource source(rig, axes, request.map);
     ExrAttributes attributes = attributes_of(rig);

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "lightmap/lightmap.h"
+#include "lightmap/map_axes.h"
 
 #include <filesystem>
 #include <functional>
@@ -48,6 +49,9 @@ ExportedFit export_exponential(const std::filesystem::path& folder,
 
 // Files of these names that are there.
 void remove_exports(const std::filesystem::path& folder);
+
+// At these altitudes, and else as the rig is.
+[[nodiscard]] MapAxes axes_at_own_pose(const Rig& rig, const std::vector<double>& altitude_m);
 
 // The mosaic RGGB of a map of an even or odd size.
 [[nodiscard]] std::vector<float> mosaic_rggb(const Lightmap& map);

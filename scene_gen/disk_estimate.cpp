@@ -96,6 +96,13 @@ DiskNeeds atlas_needs(const AtlasWork& work) {
     DiskNeeds needs{.folder_bytes =
                         work.bins * (kBinNote_bytes + largest_files(image).image_bytes)};
     if (work.has_mosaics) needs.folder_bytes += work.altitudes * exr_bytes(image, 1, kFloat_bytes);
+    if (work.has_oplab) {
+        constexpr std::uint64_t kArrays = 6;  // a, b, c, gain, mean, deviation
+        constexpr std::uint64_t kHeaders_bytes = 4096;
+        needs.folder_bytes += kHeaders_bytes + kArrays * kChannels * kFloat_bytes *
+                                                   static_cast<std::uint64_t>(image.width_px) *
+                                                   static_cast<std::uint64_t>(image.height_px);
+    }
     if (work.has_fits) needs.folder_bytes += exr_bytes(image, kFittedChannels, kFloat_bytes);
     return needs;
 }

@@ -71,6 +71,7 @@ struct AtlasWork {
     std::size_t altitudes = 0;
     bool has_mosaics = false;  // one an altitude
     bool has_fits = false;     // over all of them
+    bool has_oplab = false;    // numpy's arrays over all of them
 };
 [[nodiscard]] DiskNeeds atlas_needs(const AtlasWork& work);
 

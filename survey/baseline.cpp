@@ -14,7 +14,36 @@ int BaselineCorrector::bin_of(double altitude_m) const {
     return needs_altitude() ? static_cast<int>(std::lround(altitude_m / options_.bin_m)) : 0;
 }
 
+void BaselineCorrector::learn_exponentials(const RawImage& image, double altitude_m) {
+    const std::vector<SitePlane> planes = site_planes(image);
+    for (std::size_t site = 0; site < planes.size(); ++site) {
+        const std::vector<float>& samples = planes[site].samples;
+        if (exponentials_.size() == site)
+            exponentials_.emplace_back(samples.size(), options_.bin_m);
+        AltitudeExponential& exponential = exponentials_[site];
+        if (ended_passes_ == 0)
+            exponential.learn_level(samples, altitude_m);
+        else
+            exponential.learn_spread(samples, altitude_m);
+    }
+    if (ended_passes_ == 0) ++learned_;
+}
+
+void BaselineCorrector::end_pass(std::size_t threads) {
+    for (AltitudeExponential& exponential : exponentials_) {
+        if (ended_passes_ == 0)
+            exponential.fit(threads);
+        else
+            exponential.end();
+    }
+    ++ended_passes_;
+}
+
 void BaselineCorrector::learn(const RawImage& image, double altitude_m) {
+    if (baseline_ == Baseline::AltitudeExponential) {
+        learn_exponentials(image, altitude_m);
+        return;
+    }
     Surfaces& surfaces = bins_[bin_of(altitude_m)];
     const std::vector<SitePlane> planes = site_planes(image);
     for (std::size_t site = 0; site < planes.size(); ++site) {
@@ -27,6 +56,7 @@ void BaselineCorrector::learn(const RawImage& image, double altitude_m) {
 }
 
 std::size_t BaselineCorrector::learned(double altitude_m) const {
+    if (baseline_ == Baseline::AltitudeExponential) return learned_;
     const auto bin = bins_.find(bin_of(altitude_m));
     return bin == bins_.end() ? 0 : bin->second.front().planes();
 }
@@ -82,6 +112,9 @@ RawImage BaselineCorrector::corrected(const RawImage& image, double altitude_m) 
             case Baseline::LogPolynomial:
             case Baseline::BinnedPolynomial:
                 plane.samples = without_pattern(plane.samples, site, bin_of(altitude_m));
+                break;
+            case Baseline::AltitudeExponential:
+                plane.samples = exponentials_[site].corrected(plane.samples, altitude_m);
                 break;
         }
     }

@@ -119,19 +119,27 @@ class BaselineWork {
     }
 
     void learn() {
-        if (!corrector_.learns()) return;
-        RawImage first;
+        for (int pass = 1; pass <= corrector_.passes(); ++pass) {
+            learn(corrector_.passes() == 1 ? "learning" : fmt::format("learning, pass {}", pass));
+            corrector_.end_pass(options_.run.jobs);
+        }
+    }
+
+    void learn(const std::string& what) {
         const std::size_t count = survey_.files.size();
         in_order(
             count,
             static_cast<int>(options_.run.jobs),
             [&](std::size_t i) { return read_light(survey_.files[i]).raw; },
             [&](std::size_t i, const RawImage& image) {
-                if (first.width_px == 0) first = image;
-                require_like(image, first, "as the first image");
+                if (first_.width_px == 0) {
+                    first_ = {.width_px = image.width_px,
+                              .height_px = image.height_px,
+                              .mosaic = image.mosaic};
+                }
+                require_like(image, first_, "as the first image");
                 corrector_.learn(image, altitude_m(survey_.files[i]));
-                watch_.progress("learning",
-                                static_cast<double>(i + 1) / static_cast<double>(count));
+                watch_.progress(what, static_cast<double>(i + 1) / static_cast<double>(count));
             },
             [&](std::size_t i, const std::string& why) {
                 not_learned_.emplace(survey_.files[i].name, why);
@@ -193,6 +201,7 @@ class BaselineWork {
     const std::optional<SrgbEncoding>& srgb_;
     const RunWatch& watch_;
     BaselineCorrector corrector_;
+    RawImage first_;                               // learned; its samples aside
     std::map<fs::path, std::string> not_learned_;  // by the image's name, and why
 };
 

@@ -8,6 +8,7 @@
 #include "survey/habcam_tags.h"
 #include "survey/image_time.h"
 #include "survey/navigation_csv.h"
+#include "survey/navigation_ifdo.h"
 #include "survey/vehicle_pose.h"
 
 #include <fmt/format.h>
@@ -179,6 +180,36 @@ void require_angles(const Navigation& navigation,
     }
 }
 
+// An iFDO says which fields it has, in which unit, and that they are the camera's.
+void require_ifdo_alone(const NavigationOptions& options) {
+    require_no_times(options);
+    const auto refuse = [&](std::string_view option) {
+        throw InputError("{}: found {} with an iFDO, whose fields say what they are; allowed: none",
+                         options.source,
+                         option);
+    };
+    if (!options.columns.empty()) refuse("--columns");
+    if (options.angles_in != AngleUnit::Degrees) refuse("--angles-in");
+    if (options.altitude_is) refuse("--altitude-is");
+    if (options.altitude_offset_m) refuse("--altitude-offset-m");
+}
+
+Navigation navigation_of_ifdo(std::string_view text,
+                              const NavigationOptions& options,
+                              const Rig* rig) {
+    require_ifdo_alone(options);
+    const Mounting camera{.altitude_is = AltitudeIs::Plumb};
+    Navigation navigation =
+        parse_navigation_ifdo(options.source, text, rig != nullptr ? rig->sled : Sled{});
+    require_angles(navigation, options, camera, rig != nullptr);
+    NavigationNotes notes{.format = "iFDO", .mounting = camera};
+    notes.columns.emplace_back("altitude_m", kIfdoHeight);
+    if (navigation.told().pitch) notes.columns.emplace_back("pitch_deg", kIfdoPitch);
+    if (navigation.told().roll) notes.columns.emplace_back("roll_deg", kIfdoRoll);
+    navigation.note(std::move(notes));
+    return navigation;
+}
+
 Navigation mounted(Navigation navigation,
                    const NavigationOptions& options,
                    const Mounting& mounting,
@@ -202,10 +233,10 @@ Navigation parse_navigation(std::string_view text,
                             const NavigationOptions& options,
                             const std::vector<ImageFile>& files,
                             const Rig* rig) {
+    // The camera's own poses are not mounted.
+    if (is_ifdo(text)) return limited(navigation_of_ifdo(text, options, rig), options);
     const Mounting mounting = mounting_of(options, rig);
     const Sled sled = rig != nullptr ? rig->sled : Sled{};
-    // What is no table is known by its text and read before. Poses that are the camera's own are
-    // limited, but not mounted.
     Navigation vehicle = navigation_of_table(text, options, files, mounting, sled);
     return limited(mounted(std::move(vehicle), options, mounting, rig != nullptr), options);
 }

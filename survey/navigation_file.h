@@ -3,13 +3,14 @@
 // Navigation from wherever a survey keeps it, known by its content:
 //
 //   a table          of poses by image, or of poses over time (navigation_csv.h, track.h)
+//   an iFDO          of the camera's own poses (navigation_ifdo.h)
 //   the images' tags HabCam's, with "tags" for a file's name (habcam_tags.h)
 //
 // What poses over time are of: an image's time (image_time.h) plus clock_offset_s. Lines of the
 // track without a time, or with a pose that no sled can have or from outside the altitudes, are
 // left out: an altimeter that loses the floor makes a gap, and no altitude between 2 m and 0.
 //
-// The poses are those of the vehicle; from them follow the camera's (vehicle_pose.h).
+// Else poses are those of the vehicle; from them follow the camera's (vehicle_pose.h).
 #pragma once
 
 #include "survey/image_files.h"

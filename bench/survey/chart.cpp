@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/survey/chart.h"
 
+#include "spectral/colour_difference.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -150,6 +152,7 @@ SurveyScore summed_up(std::span<const ChartScore> scores) {
     std::vector<double> red;
     std::vector<double> blue;
     std::vector<double> level;
+    std::vector<double> degrees;
     for (const ChartScore& score : scores) {
         for (std::size_t c = 0; c < kChannels; ++c) {
             squares.push_back(score.unevenness[c] * score.unevenness[c]);
@@ -159,11 +162,13 @@ SurveyScore summed_up(std::span<const ChartScore> scores) {
         red.push_back(score.light[0] / score.light[1]);
         blue.push_back(score.light[2] / score.light[1]);
         level.push_back(score.light[1]);
+        degrees.push_back(degrees_from_grey(score.light));
     }
     total.unevenness = std::sqrt(mean_of(squares));
     total.tone = mean_of(tones);
     total.colour_spread = std::max(spread_of(red), spread_of(blue));
     total.level_spread = spread_of(level);
+    total.degrees = mean_of(degrees);
     return total;
 }
 

@@ -52,6 +52,7 @@ struct SurveyScore {
     double tone = 0.0;
     double colour_spread = 0.0;
     double level_spread = 0.0;
+    double degrees = 0.0;  // mean over images: of the light tiles' signal from grey
     std::size_t images = 0;
 };
 

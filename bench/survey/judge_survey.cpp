@@ -111,18 +111,20 @@ Json json_of(const SurveyScore& score) {
             {"worst_unevenness", score.worst_unevenness},
             {"tone", score.tone},
             {"colour_spread", score.colour_spread},
-            {"level_spread", score.level_spread}};
+            {"level_spread", score.level_spread},
+            {"degrees_from_grey", score.degrees}};
 }
 
 void print_row(const std::string& name, const SurveyScore& score) {
-    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.2f} | {:.2f} |\n",
+    fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.2f} | {:.2f} | {:.2f} |\n",
                name,
                score.images,
                100.0 * score.unevenness,
                100.0 * score.worst_unevenness,
                score.tone,
                100.0 * score.colour_spread,
-               100.0 * score.level_spread);
+               100.0 * score.level_spread,
+               score.degrees);
 }
 
 // The light tiles of the shown images are grey of this level in the mean, sand somewhat lighter.
@@ -216,7 +218,7 @@ void judge(const Options& options) {
     }
     fmt::print(
         "| correction | images | unevenness, % rms | worst, % | tone | colour over altitude, "
-        "% | level over altitude, % |\n|---|---|---|---|---|---|---|\n");
+        "% | level over altitude, % | degrees from grey |\n|---|---|---|---|---|---|---|---|\n");
     for (std::size_t i = 0; i < scores.size(); ++i) {
         print_row(corrections[i].name, total_of(scores[i]));
     }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace aphotic::survey::chart_test {
 namespace {
@@ -106,6 +107,9 @@ TEST(Chart, SumsUpASurvey) {
     EXPECT_NEAR(sum.tone, 0.75, kFloatError);
     EXPECT_NEAR(sum.colour_spread, 0.25 / 1.25, kFloatError) << "R/G of 1 and 1.5";
     EXPECT_NEAR(sum.level_spread, 0.5 / 1.5, kFloatError) << "G of 1 and 2";
+    // The cosine between 3, 2, 2 and 1, 1, 1 is 7 / sqrt(17 * 3).
+    const double off_deg = std::acos(7.0 / std::sqrt(51.0)) * 180.0 / std::numbers::pi;
+    EXPECT_NEAR(sum.degrees, off_deg / 2.0, 1e-9) << "and the other none";
 }
 
 }  // namespace

@@ -233,6 +233,46 @@ TEST_F(CommandCompare, NamesItsStatisticsAsAValidationDoes) {
         EXPECT_TRUE(channel.contains(key)) << key;
 }
 
+// Light falls off in the pattern, alike in all channels: grey, and uneven over the patches.
+TEST_F(CommandCompare, MeasuresPatchesWithOrWithoutAReference) {
+    write("a.exr", times(kReference, {1.0, 1.0, 1.0}));
+    write_file(folder_.path() / "p.csv",
+               "patch,x,y,w,h,reference\nmiddle,11,7,2,2,0.5\ncorner,0,0,2,2,0.5\nskin,4,4,1,1,\n");
+    const CommandResult alone =
+        run_aphotic(folder_.path(), {"compare", "a.exr", "--patches", "p.csv", "--json"});
+    ASSERT_EQ(alone.status, 0) << alone.err;
+    const nlohmann::json patches = nlohmann::json::parse(alone.out)["patches"];
+    ASSERT_EQ(patches["patches"].size(), 3U);
+    EXPECT_TRUE(patches["patches"][0].contains("degrees_from_grey"));
+    EXPECT_TRUE(patches["patches"][0].contains("ciede2000"));
+    EXPECT_FALSE(patches["patches"][2].contains("degrees_from_grey"));
+    EXPECT_GT(patches["unevenness"], 0.01);
+    write("b.exr", kReference);
+    const nlohmann::json both = json_of({"--patches", "p.csv"}, 0);
+    EXPECT_EQ(both["patches"], patches);
+    EXPECT_TRUE(both.contains("channels"));
+    const CommandResult words =
+        run_aphotic(folder_.path(), {"compare", "a.exr", "--patches", "p.csv"});
+    EXPECT_TRUE(contains(words.out, "degrees from grey: mean ")) << words.out;
+}
+
+TEST_F(CommandCompare, NeedsAReferenceOrPatches) {
+    write("a.exr", kReference);
+    const auto refused = [&](std::vector<std::string> arguments, const std::string& why) {
+        arguments.insert(arguments.begin(), {"compare", "a.exr"});
+        const CommandResult result = run_aphotic(folder_.path(), arguments);
+        EXPECT_EQ(result.status, 2);
+        EXPECT_TRUE(contains(result.err, why)) << result.err;
+    };
+    refused({}, "found no REFERENCE; allowed: an image to judge IMAGE by, or --patches");
+    refused({"--encoding", "srgb"}, "--encoding requires --patches");
+    refused({"--patches", "none.csv"}, "none.csv: cannot be read");
+    write_file(folder_.path() / "p.csv", "patch,x,y,w,h\na,20,0,9,9\n");
+    refused({"--patches", "p.csv"},
+            "p.csv:2: found a patch up to 29, 9; allowed: the image's 24 x 16 pixels");
+    refused({"--patches", "p.csv", "--report", "r.html"}, "--report: found no REFERENCE");
+}
+
 TEST_F(CommandCompare, LeavesAPageOfBoth) {
     std::vector<Plane> observed = times(kReference, {3.0, 3.0, 3.0});
     observed[1][5] = kNaN;

@@ -4,6 +4,7 @@
 // which shares no geometry and no light with the maps that they are divided by.
 #include "survey/light_at.h"
 
+#include "base/sha256.h"
 #include "image/exr.h"
 #include "image/preview.h"
 #include "lightmap/cone_edge.h"
@@ -1116,6 +1117,39 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     refused(with({"empty", "-o", "out"}), "empty: the folder holds no image");
     write_file(path("nav.eic"), "a.tif two 0 0\n");
     refused(with({"raw", "-o", "out"}), "nav.eic:1: altitude_m: found 'two'; allowed: a number");
+}
+
+// Poses and results by an iFDO alone: heights are plumb, so pitch and roll count.
+TEST_F(CorrectCommand, TakesAnIfdoAndLeavesThatOfTheResults) {
+    const std::vector<Sled> sleds = take_survey();
+    Json set{{"image-set-header", {{"image-set-name", "a survey"}, {"image-altitude-meters", -60}}},
+             {"image-set-items", Json::object()}};
+    for (std::size_t i = 0; i < sleds.size(); ++i) {
+        const Sled& sled = sleds[i];
+        set["image-set-items"][fmt::format("{}.tif", i)] = {
+            {"image-meters-above-ground",
+             sled.altitude_m * std::cos(sled.pitch_rad) * std::cos(sled.roll_rad)},
+            {"image-camera-pitch-degrees", sled.pitch_rad / kDegree},
+            {"image-camera-roll-degrees", sled.roll_rad / kDegree}};
+    }
+    write_file(path("set.json"), set.dump());
+    ASSERT_EQ(correct({}).status, 0);
+    const CommandResult by_ifdo = correct({"--nav", "set.json", "--ifdo", "set.json"}, "by-ifdo");
+    ASSERT_EQ(by_ifdo.status, 0) << by_ifdo.err;
+    const Json results = Json::parse(read_text_file(path("by-ifdo/set.json")));
+    EXPECT_EQ(results["image-set-header"]["image-set-name"], "a survey");
+    EXPECT_EQ(results["image-set-header"]["image-quality"], "processed");
+    ASSERT_EQ(results["image-set-items"].size(), 4U);
+    for (const auto& [name, item] : results["image-set-items"].items()) {
+        EXPECT_EQ(item["image-hash-sha256"], sha256_of_file(path("by-ifdo/" + name)));
+        EXPECT_EQ(read_text_file(path("by-ifdo/" + name)), read_text_file(path("out/" + name)));
+    }
+    write_file(path("set.json"), R"({"image-set-header": {}})");
+    const CommandResult none = correct({"--ifdo", "set.json"}, "none");
+    EXPECT_EQ(none.status, kBadInput);
+    EXPECT_NE(none.err.find("set.json: image-set-items: found none"), std::string::npos)
+        << none.err;
+    EXPECT_FALSE(fs::exists(path("none")));
 }
 
 }  // namespace

@@ -147,15 +147,22 @@ TEST(NeedsOfAtlas, AreForetold) {
     constexpr int kSide_px = 64;
     const TempFolder folder;
     rig_of(folder.path(), kSide_px, kSide_px);
-    const CommandResult made = run_aphotic(
-        folder.path(),
-        {"atlas", "rig.toml", "-o", "out", "--altitude", "1:4:1", "--export", "bayer,exponential"});
+    const CommandResult made = run_aphotic(folder.path(),
+                                           {"atlas",
+                                            "rig.toml",
+                                            "-o",
+                                            "out",
+                                            "--altitude",
+                                            "1:4:1",
+                                            "--export",
+                                            "bayer,exponential,oplab"});
     ASSERT_EQ(made.status, 0) << made.err;
     const DiskNeeds needs = atlas_needs({.size = {.width_px = kSide_px, .height_px = kSide_px},
                                          .bins = 4,
                                          .altitudes = 4,
                                          .has_mosaics = true,
-                                         .has_fits = true});
+                                         .has_fits = true,
+                                         .has_oplab = true});
     std::uint64_t written = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "out")) {
         if (entry.is_regular_file()) written += entry.file_size();

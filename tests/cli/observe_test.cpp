@@ -384,9 +384,11 @@ TEST_F(CommandBaseline, SkipsBadImagesAndSaysSo) {
 TEST_F(CommandBaseline, RefusesWhatItCannotDo) {
     write_survey();
     EXPECT_EQ(run({"baseline", "magic", "raw", "-o", "out"}).status, 2);
-    const CommandResult blind = run({"baseline", "binned-polynomial", "raw", "-o", "out"});
-    EXPECT_EQ(blind.status, 2);
-    EXPECT_NE(blind.err.find("--nav"), std::string::npos);
+    for (const char* name : {"binned-polynomial", "altitude-exponential"}) {
+        const CommandResult blind = run({"baseline", name, "raw", "-o", "out"});
+        EXPECT_EQ(blind.status, 2);
+        EXPECT_NE(blind.err.find("--nav"), std::string::npos);
+    }
     EXPECT_EQ(run({"baseline", "homomorphic", "nowhere", "-o", "out"}).status, 2);
     EXPECT_FALSE(fs::exists(path("out")));
 }

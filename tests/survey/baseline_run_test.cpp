@@ -99,6 +99,21 @@ TEST_F(BaselineRun, ShowsAllImagesUnderOneBalance) {
     EXPECT_NEAR(static_cast<double>(shown.pixels[0] >> 16U & 0xFFU), 255.0 * encoded, 0.51);
 }
 
+// The survey's images are at 1.9, 2, 2.1 and 3.5 m.
+TEST_F(BaselineRun, ExponentialsNeedFourAltitudes) {
+    EXPECT_EQ(run(Baseline::AltitudeExponential).corrected, 4U);
+    EXPECT_EQ(run(Baseline::AltitudeExponential).kept, 4U);
+    options_.settings.bin_m = 0.5;
+    try {
+        run(Baseline::AltitudeExponential);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "altitude-exponential: found images in 2 bins of altitude, 0.5 m wide; "
+                     "allowed: 4 or more");
+    }
+}
+
 // What comes of an interruption is what comes of none.
 TEST_F(BaselineRun, ItGoesOnToTheSameImages) {
     run(Baseline::LogPolynomial);

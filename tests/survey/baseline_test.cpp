@@ -60,7 +60,11 @@ TEST(Baseline, EveryOneLeavesAConstant) {
             image_of(mosaic, [](int channel, double, double) { return 0.5 + channel; });
         for (std::size_t i = 0; i < kBaselineNames.size(); ++i) {
             BaselineCorrector corrector(static_cast<Baseline>(i), {});
-            if (corrector.learns()) corrector.learn(constant, 2.0);
+            for (int pass = 0; pass < corrector.passes(); ++pass) {
+                for (const double altitude_m : {1.0, 1.5, 2.0, 2.5})
+                    corrector.learn(constant, altitude_m);
+                corrector.end_pass(1);
+            }
             const RawImage same = corrector.corrected(constant, 2.0);
             for (std::size_t s = 0; s < same.samples.size(); ++s)
                 ASSERT_NEAR(same.samples[s], constant.samples[s], 3.0 * kFloat)
@@ -102,6 +106,35 @@ TEST(Baseline, BinnedPolynomialLevelsEachAltitude) {
             EXPECT_LT(unevenness(a), kFloat);
         }
         EXPECT_THROW((void)corrector.corrected(near, 1.3), InputError);
+    }
+}
+
+// Light that falls exponentially, at each pixel with a rate of its own, on floors that are as often
+// bright as dark: what is left is the floor.
+TEST(Baseline, AltitudeExponentialLeavesTheFloor) {
+    for (const Mosaic mosaic : {Mosaic::None, Mosaic::Grbg}) {
+        const auto image = [&](double altitude_m, double floor) {
+            return image_of(mosaic, [&](int c, double x, double y) {
+                return floor * slow(c, x, y) * std::exp(-(0.3 + 0.2 * x) * altitude_m);
+            });
+        };
+        BaselineCorrector corrector(Baseline::AltitudeExponential, {});
+        for (int pass = 0; pass < corrector.passes(); ++pass) {
+            for (const double altitude_m : {1.0, 1.5, 2.0, 2.5, 3.0}) {
+                for (const double floor : {0.8, 1.2})
+                    corrector.learn(image(altitude_m, floor), altitude_m);
+            }
+            corrector.end_pass(2);
+        }
+        EXPECT_EQ(corrector.learned(17.0), 10U);
+        const RawImage dark = corrector.corrected(image(1.2, 0.8), 1.2);
+        const RawImage bright = corrector.corrected(image(2.7, 1.2), 2.7);
+        constexpr double kSearch = 2e-3;  // of b, which ends at 16 bits
+        if (mosaic == Mosaic::None) {
+            EXPECT_LT(unevenness(dark), kSearch);
+        }
+        for (std::size_t i = 0; i < dark.samples.size(); ++i)
+            ASSERT_NEAR(bright.samples[i] / dark.samples[i], 1.5, kSearch) << i;
     }
 }
 

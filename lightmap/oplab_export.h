@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Maps over altitude as the parameters that oplab's correct_images learns from a survey, so that it
+// can correct one by a model: a folder of numpy's arrays, at the rig's own pitch, roll and water.
+//
+//   attenuation_parameters.npy  [channel, row, column, 3]  a, b [1/m], c of f(h) = a exp(b h) + c,
+//                               fitted with a >= 0, b <= 0 and 0 <= c <= the least light, so that
+//                               no divisor crosses zero (altitude_fit.h)
+//   correction_gains.npy        [channel, row, column]     f at the mean of the altitudes
+//   image_corrected_mean.npy    [row, column, channel]     the gains once more
+//   image_corrected_std.npy     [row, column, channel]     kContrastOverBrightness of them
+//
+// oplab makes (I gain / f(h) - mean) / std contrast + brightness of an image I, by default with a
+// brightness of 30 % and a contrast of 3 %. With these arrays that is 0.3 I / f(h): the image
+// divided by its light and nothing else. a, c and the gains may be in any unit, mean and std are in
+// that of I: multiply both by the factor from map to image (aphotic compare --scale).
+//
+// A pixel that no light reaches has a = 1, b = c = 0, as oplab gives it, a mean of 0 and a std
+// of 1.
+//
+// github.com/ocean-perception/oplab_pipeline, correct_images.
+#pragma once
+
+#include "lightmap/atlas_export.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace aphotic {
+
+inline constexpr double kContrastOverBrightness = 3.0 / 30.0;
+inline constexpr double kOplabOff = 0.1;
+
+struct ExportedOplab {
+    std::string folder;
+    // The residuals of all fits: relative to the mean of a pixel over altitude.
+    double rms = 0.0;
+    double worst = 0.0;
+    // Of the samples of all maps that have light, those that the fit is off by over kOplabOff.
+    double share_off = 0.0;
+};
+
+ExportedOplab export_oplab(const std::filesystem::path& folder,
+                           const Rig& rig,
+                           const AltitudeExport& request);
+
+[[nodiscard]] nlohmann::ordered_json to_json(const ExportedOplab& made);
+
+// Files of these names that are there.
+void remove_oplab_export(const std::filesystem::path& folder);
+
+}  // namespace aphotic
