@@ -14,7 +14,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <utility>
 
 namespace aphotic::cli {
 namespace {
@@ -191,7 +190,7 @@ CameraNumbers camera_of(const CameraNumbers& said,
                         const std::vector<ImageFile>& files,
                         const Camera* rig) {
     CameraNumbers camera = rig != nullptr ? with_rig(said, *rig) : said;
-    camera = with_reference(std::move(camera), files);
+    camera = with_reference(camera, files);
     static_cast<void>(usual_size(files, camera));  // a crop that no image has is one mistake
     return camera;
 }

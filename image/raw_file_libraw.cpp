@@ -2,6 +2,7 @@
 //
 // The part of the command that links LibRaw; see raw_file.h.
 #include "base/error.h"
+#include "image/image_size.h"
 #include "image/raw_file.h"
 
 #include <fmt/format.h>
@@ -15,6 +16,8 @@
 #include <vector>
 
 namespace {
+
+using aphotic::size_of;
 
 [[noreturn]] void refuse_raw(const std::filesystem::path& file, const std::string& why) {
     throw aphotic::InputError("{}: cannot be read: {}", file.string(), why);
@@ -67,7 +70,7 @@ struct BlackPattern {
     std::vector<double> blacks{};
 
     [[nodiscard]] double at(int row, int column) const {
-        return blacks[static_cast<std::size_t>(row % rows * columns + column % columns)];
+        return blacks[size_of(row % rows) * size_of(columns) + size_of(column % columns)];
     }
 };
 
@@ -99,8 +102,7 @@ std::vector<float> mosaic_of(LibRaw& raw, double black) {
     samples.reserve(std::size_t{sizes.height} * sizes.width);
     for (int row = 0; row < sizes.height; ++row) {
         const ushort* const from = raw.imgdata.rawdata.raw_image +
-                                   static_cast<std::size_t>(sizes.top_margin + row) * pitch +
-                                   sizes.left_margin;
+                                   size_of(sizes.top_margin + row) * pitch + sizes.left_margin;
         for (int column = 0; column < sizes.width; ++column)
             samples.push_back(static_cast<float>(from[column] - (blacks.at(row, column) - black)));
     }
@@ -119,9 +121,8 @@ std::vector<float> colours_of(LibRaw& raw, double black) {
     for (int channel = 0; channel < 3; ++channel) {
         const auto more = static_cast<float>(black_at(raw, 0, 0, channel) - black);
         for (int row = 0; row < sizes.height; ++row) {
-            const ushort* const from = pixels +
-                                       static_cast<std::size_t>(sizes.top_margin + row) * pitch +
-                                       sizes.left_margin * side_by_side;
+            const ushort* const from =
+                pixels + size_of(sizes.top_margin + row) * pitch + sizes.left_margin * side_by_side;
             for (std::size_t column = 0; column < sizes.width; ++column) {
                 planes.push_back(static_cast<float>(
                                      from[column * side_by_side + static_cast<unsigned>(channel)]) -
