@@ -46,6 +46,8 @@ TEST(GeometrySignature, KnowsOnlyWhatMovesLight) {
     for (const Change& change : std::vector<Change>{
              [](Rig& rig) { rig.title = "another"; },
              [](Rig& rig) { rig.digest = "another"; },
+             [](Rig& rig) { rig.mounting.position_m.z() = 3.0; },
+             [](Rig& rig) { rig.mounting.altitude_is = AltitudeIs::Plumb; },
              [](Rig& rig) { rig.water.multiple = 3.0; },
              [](Rig& rig) { rig.water.uniform_loss_per_m = 3.0; },
              [](Rig& rig) { rig.water.salinity_psu = 3.0; },
