@@ -75,9 +75,9 @@ double ciede2000(const Lab& one, const Lab& other) {
     double dh = has_hues ? h2 - h1 : 0.0;
     if (dh > kHalf_deg) dh -= 360.0;
     if (dh < -kHalf_deg) dh += 360.0;
-    const double dL = other.L - one.L;
-    const double dC = C2 - C1;
-    const double dH = 2.0 * std::sqrt(C1 * C2) * std::sin(0.5 * dh * kRadiansPerDegree);
+    const double lightness_step = other.L - one.L;
+    const double chroma_step = C2 - C1;
+    const double hue_step = 2.0 * std::sqrt(C1 * C2) * std::sin(0.5 * dh * kRadiansPerDegree);
 
     const double L = (one.L + other.L) / 2.0;
     const double C = (C1 + C2) / 2.0;
@@ -89,14 +89,14 @@ double ciede2000(const Lab& one, const Lab& other) {
     const double off_blue = (h - 275.0) / 25.0;
     const double turn_deg = 60.0 * std::exp(-off_blue * off_blue);  // 2 dtheta
     const double off_middle = (L - 50.0) * (L - 50.0);
-    const double S_L = 1.0 + 0.015 * off_middle / std::sqrt(20.0 + off_middle);
-    const double S_C = 1.0 + 0.045 * C;
-    const double S_H = 1.0 + 0.015 * C * T;
-    const double R_T = -2.0 * chroma_share(C) * std::sin(turn_deg * kRadiansPerDegree);
-    const double l = dL / S_L;
-    const double c = dC / S_C;
-    const double s = dH / S_H;
-    return std::sqrt(std::max(0.0, l * l + c * c + s * s + R_T * c * s));
+    const double per_l = 1.0 + 0.015 * off_middle / std::sqrt(20.0 + off_middle);
+    const double per_c = 1.0 + 0.045 * C;
+    const double per_h = 1.0 + 0.015 * C * T;
+    const double rotation = -2.0 * chroma_share(C) * std::sin(turn_deg * kRadiansPerDegree);
+    const double l = lightness_step / per_l;
+    const double c = chroma_step / per_c;
+    const double s = hue_step / per_h;
+    return std::sqrt(std::max(0.0, l * l + c * c + s * s + rotation * c * s));
 }
 
 double srgb_decoded(double encoded) {

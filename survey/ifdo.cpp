@@ -85,7 +85,7 @@ class Converter {
 
   private:
     [[noreturn]] void fail(const YAML::Node& node, const std::string& what) const {
-        fail_at_line(name_, static_cast<std::size_t>(node.Mark().line + 1), what);
+        fail_at_line(name_, static_cast<std::size_t>(node.Mark().line) + 1, what);
     }
 
     const std::string& name_;
@@ -112,7 +112,7 @@ IfdoJson json_of_yaml(const std::string& name, std::string_view text) {
             .json_of(YAML::Load(std::string(text)));
     } catch (const YAML::Exception& error) {
         const int line = error.mark.is_null() ? 0 : error.mark.line;
-        fail_at_line(name, static_cast<std::size_t>(line + 1), printable(error.msg));
+        fail_at_line(name, static_cast<std::size_t>(line) + 1, printable(error.msg));
     }
 }
 

@@ -94,7 +94,7 @@ std::string uuid_of(std::string_view text) {
 }
 
 fs::path ifdo_place(const fs::path& source, const fs::path& folder) {
-    const fs::path place = folder / source.filename();
+    fs::path place = folder / source.filename();
     std::error_code not_there;
     if (fs::equivalent(place, source, not_there)) {
         throw InputError("{}: would be overwritten by the iFDO of the results", source.string());

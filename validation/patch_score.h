@@ -7,7 +7,7 @@
 //   degrees     of grey patches, the angle between S and 1, 1, 1
 //   difference  CIEDE2000 between S, taken for linear sRGB, and the reference
 //   unevenness  rms over all pixels and channels of I_c / m_c - 1, m_c the mean of I_c over the
-//               patches of one reference; of a patch without a reference over itself
+//               patches of one reference; of a patch whose reference tells no level, over itself
 //
 //   k  1; or of the whole image, which takes away an exposure: least squares of the luminances
 //      against the references; or of each channel, a white balance: the same of R, G and B over the
