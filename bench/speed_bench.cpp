@@ -59,14 +59,17 @@ void fill(benchmark::State& state) {
 }
 BENCHMARK(fill)->Apply(least_of_many);
 
-void lightmap(benchmark::State& state, const std::string& name, int threads) {
-    const Rig rig = scene(name);
+void map_by(benchmark::State& state, const Rig& rig, int threads) {
     const LightmapMaker maker(rig, std::nullopt, {.error = 1e-5, .threads = threads});
     Lightmap map;
     for (auto _ : state) {
         maker.map_into(rig.sled, map);
         benchmark::DoNotOptimize(map.samples.data());
     }
+}
+
+void lightmap(benchmark::State& state, const std::string& name, int threads) {
+    map_by(state, scene(name), threads);
 }
 BENCHMARK_CAPTURE(lightmap, habcam, "habcam", kThreads)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap, habcam_one_thread, "habcam", 1)->Apply(least_of_many);
@@ -121,12 +124,7 @@ void lightmap_of(benchmark::State& state, void (*change)(Beam&)) {
         change(strobe.beam);
         strobe.beam = scaled_to_flux(std::move(strobe.beam));
     }
-    const LightmapMaker maker(rig, std::nullopt, {.error = 1e-5, .threads = 1});
-    Lightmap map;
-    for (auto _ : state) {
-        maker.map_into(rig.sled, map);
-        benchmark::DoNotOptimize(map.samples.data());
-    }
+    map_by(state, rig, 1);
 }
 BENCHMARK_CAPTURE(lightmap_of, soft_edges, make_soft)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap_of, data_sheet, make_data_sheet)->Apply(least_of_many);
@@ -168,12 +166,7 @@ void give_dome(Camera& camera) {
 void lightmap_seen_through(benchmark::State& state, void (*change)(Camera&)) {
     Rig rig = scene();
     change(rig.camera);
-    const LightmapMaker maker(rig, std::nullopt, {.error = 1e-5, .threads = 1});
-    Lightmap map;
-    for (auto _ : state) {
-        maker.map_into(rig.sled, map);
-        benchmark::DoNotOptimize(map.samples.data());
-    }
+    map_by(state, rig, 1);
 }
 BENCHMARK_CAPTURE(lightmap_seen_through, lens, give_lens)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap_seen_through, flat_port, give_flat_port)->Apply(least_of_many);
