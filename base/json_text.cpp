@@ -7,6 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
 
 namespace aphotic {
 namespace {
@@ -31,6 +34,38 @@ int depth_of(std::string_view text) {
     return deepest;
 }
 
+// Of a key that stands twice in an object the library would take the last, without a word.
+struct KeysOnce final : nlohmann::json_sax<nlohmann::json> {
+    std::vector<std::set<std::string>> open{};  // the keys of objects that have begun
+    std::string twice{};
+
+    bool start_object(std::size_t) override {
+        open.emplace_back();
+        return true;
+    }
+    bool end_object() override {
+        open.pop_back();
+        return true;
+    }
+    bool key(string_t& name) override {
+        if (open.back().insert(name).second) return true;
+        twice = name;
+        return false;
+    }
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_array(std::size_t) override { return true; }
+    bool end_array() override { return true; }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override {
+        return false;
+    }
+};
+
 }  // namespace
 
 nlohmann::json parse_json(std::string_view text, const std::string& what) {
@@ -40,6 +75,10 @@ nlohmann::json parse_json(std::string_view text, const std::string& what) {
     }
     nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
     if (json.is_discarded()) throw InputError(what + ": is not JSON");
+    KeysOnce keys;
+    nlohmann::json::sax_parse(text, &keys);
+    if (!keys.twice.empty())
+        throw InputError("{}: '{}' stands twice in an object", what, printable(keys.twice));
     return json;
 }
 

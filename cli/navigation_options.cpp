@@ -61,10 +61,7 @@ void add_columns(CLI::App& app, NavigationOptions& options) {
         ->option_text("NAME=COLUMN,...")
         ->check(readable(column_names, ""));
     app.add_option("--angles-in", options.angles_in, "Unit of pitch and roll: deg or rad")
-        ->transform(
-            CLI::CheckedTransformer(std::map<std::string, AngleUnit>{{"deg", AngleUnit::Degrees},
-                                                                     {"rad", AngleUnit::Radians}})
-                .description(""))
+        ->transform(word_of<AngleUnit>({{"deg", AngleUnit::Degrees}, {"rad", AngleUnit::Radians}}))
         ->type_name("deg|rad")
         ->default_str("deg");
 }
@@ -101,7 +98,7 @@ void add_altitude_meaning(CLI::App& app, NavigationOptions& options) {
                    options.altitude_is,
                    "What navigation's altitudes are: along the camera's axis, the vertical height, "
                    "or to the nearest floor; by default the rig's altitude_is, or axis")
-        ->transform(CLI::CheckedTransformer(words).description(""))
+        ->transform(word_of(words))
         ->type_name("axis|plumb|nearest");
     app.add_option("--altitude-offset-m",
                    options.altitude_offset_m,

@@ -77,7 +77,7 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
 
 void add_average_options(CLI::App& app, ObservationOptions& options) {
     app.add_option("--method", options.average, "Average by mean, median or trimmed mean")
-        ->transform(CLI::CheckedTransformer(kAverages).description(""))
+        ->transform(word_of(kAverages))
         ->type_name("mean|median|trimmed")
         ->default_str("mean");
     app.add_option(

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a parser of command lines does not see: numbers out of their range or that are none, and
-// files that would be written in the place of what they are made from or under the name of another
-// format.
+// What a parser of command lines does not see: numbers out of their range or that are none, words
+// that stand for something else, and files that would be written in the place of what they are made
+// from or under the name of another format.
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <map>
+#include <ranges>
+#include <string>
 #include <vector>
 
 namespace aphotic::cli {
@@ -16,6 +21,21 @@ namespace aphotic::cli {
 [[nodiscard]] CLI::Validator in_range(double least, double most);
 [[nodiscard]] CLI::Validator positive();
 [[nodiscard]] CLI::Validator not_negative();
+
+// One of these words, for what it stands for.
+template <class Value>
+[[nodiscard]] CLI::Validator word_of(const std::map<std::string, Value>& words) {
+    return {[words](std::string& text) {
+                const auto found = words.find(text);
+                if (found == words.end()) {
+                    return fmt::format(
+                        "found {}; allowed: {}", text, fmt::join(std::views::keys(words), ", "));
+                }
+                text = std::to_string(static_cast<int>(found->second));
+                return std::string();
+            },
+            ""};
+}
 
 // Every option of the command that takes a number refuses NaN, which no range does; one that names
 // what is read or written refuses the empty name; and one that writes a file of one format, whose

@@ -35,7 +35,7 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
                    options.white,
                    "Show as grey the lamps' own light (lamp, the default), the image's mean "
                    "(image), or equal signals (none)")
-        ->transform(CLI::CheckedTransformer(kWhites))
+        ->transform(word_of(kWhites))
         ->option_text("WHITE");
     app.add_option("--preview-stops", options.stops, "Brighten the preview by 2^STOPS")
         ->check(in_range(-kMostStops, kMostStops))

@@ -54,7 +54,8 @@ void add_crop_options(CLI::App& app, CameraNumbers& camera) {
            "--crop",
            [&camera](const std::string& text) { camera.crop = crop_named(text); },
            "Take this part of each file, from column X and row Y of the top left, which are 0,0")
-        ->check(CLI::Validator(wrong, "X,Y,WIDTH,HEIGHT"))
+        ->check(CLI::Validator(wrong, ""))
+        ->option_text("X,Y,WIDTH,HEIGHT")
         ->excludes(half);
 }
 
@@ -102,7 +103,7 @@ void add_camera_options(CLI::App& app, CameraNumbers& camera) {
                    camera.exposure_by,
                    "Bring images to one exposure by their Exif: exif, by time, ISO number and "
                    "f-number; flash, without the time")
-        ->transform(CLI::CheckedTransformer(kWays).description(""))
+        ->transform(word_of(kWays))
         ->type_name("none|exif|flash")
         ->default_str("none");
 }
@@ -128,7 +129,7 @@ Settle add_format_options(CLI::App& app, ResultFormat& format) {
                    format.compression,
                    "Compress losslessly: none, fast, or small (a few per cent smaller, about 1.5 "
                    "times slower)")
-        ->transform(CLI::CheckedTransformer(kCompressions).description(""))
+        ->transform(word_of(kCompressions))
         ->type_name("none|fast|small")
         ->default_str("fast");
     const auto encoding = std::make_shared<std::string>("linear");
@@ -260,7 +261,7 @@ void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folde
                    encoding.camera->worst().delta_e,
                    encoding.camera->worst().name);
     } else {
-        fmt::print("channels shown as sRGB's own: the camera is not known\n");
+        fmt::print("channels shown as sRGB's own\n");
     }
 }
 

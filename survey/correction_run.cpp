@@ -71,7 +71,8 @@ Json settings_of(const Survey& survey,
 std::optional<SurveyGain> given_gain(const Survey& survey,
                                      const CorrectionOptions& options,
                                      std::vector<Suspicion>& doubts) {
-    if (!options.gain_from.empty()) return gain_of_folder(options.gain_from, survey.light, doubts);
+    if (!options.gain_from.empty())
+        return gain_of_folder(options.gain_from, survey.light, survey.camera, doubts);
     const auto& given = options.gain;
     if (given.empty()) return std::nullopt;
     return SurveyGain{.gain = {given.front(), given[given.size() / 2], given.back()},

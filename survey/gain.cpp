@@ -66,6 +66,26 @@ void compare_light(const nlohmann::json& settings,
     }
 }
 
+// A gain is of numbers between these.
+void compare_levels(const nlohmann::json& settings,
+                    const CameraNumbers& camera,
+                    const std::string& folder,
+                    std::vector<Suspicion>& doubts) {
+    const nlohmann::json here = to_json(camera);
+    for (const char* level : {"black_level", "white_level"}) {
+        const nlohmann::json there = settings.value(level, nlohmann::json());
+        if (there == here.value(level, nlohmann::json())) continue;
+        doubts.push_back(
+            {"gain-from",
+             fmt::format("{}: the {} there is {}, here {}",
+                         folder,
+                         level,
+                         there.is_null() ? "the file's" : there.dump(),
+                         here.value(level, nlohmann::json()).is_null() ? "the file's"
+                                                                       : here.at(level).dump())});
+    }
+}
+
 }  // namespace
 
 SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
@@ -111,13 +131,17 @@ std::optional<SurveyGain> kept_gain(std::string_view text, const std::string& se
 SurveyGain gain_of_notes(std::string_view text,
                          const std::string& folder,
                          const LightAt& light,
+                         const CameraNumbers& camera,
                          std::vector<Suspicion>& doubts) {
     const std::string where = fmt::format("--gain-from: {}: {}", folder, kCorrectionNotes);
     std::optional<SurveyGain> gain;
     try {
         const nlohmann::json notes = parse_json(text, where);
         gain = gain_in(notes);
-        if (gain) compare_light(notes.at("settings"), light, folder, doubts);
+        if (gain) {
+            compare_light(notes.at("settings"), light, folder, doubts);
+            compare_levels(notes.at("settings"), camera, folder, doubts);
+        }
         if (!notes.at("looks_wrong").empty()) {
             doubts.push_back({"gain-from", folder + ": its own survey looked wrong"});
         }
@@ -133,6 +157,7 @@ SurveyGain gain_of_notes(std::string_view text,
 
 SurveyGain gain_of_folder(const std::filesystem::path& folder,
                           const LightAt& light,
+                          const CameraNumbers& camera,
                           std::vector<Suspicion>& doubts) {
     const std::filesystem::path file = folder / kCorrectionNotes;
     if (!std::filesystem::exists(file)) {
@@ -140,7 +165,7 @@ SurveyGain gain_of_folder(const std::filesystem::path& folder,
                          folder.string(),
                          kCorrectionNotes);
     }
-    return gain_of_notes(read_text_file(file), folder.string(), light, doubts);
+    return gain_of_notes(read_text_file(file), folder.string(), light, camera, doubts);
 }
 
 PerChannel grey_balance(const Survey& survey, double grey, std::size_t jobs) {

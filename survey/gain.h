@@ -38,11 +38,13 @@ struct SurveyGain {
 // none, or when it is of another camera. What else differs is added to the doubts.
 [[nodiscard]] SurveyGain gain_of_folder(const std::filesystem::path& folder,
                                         const LightAt& light,
+                                        const CameraNumbers& camera,
                                         std::vector<Suspicion>& doubts);
 // The same from the text of that file.
 [[nodiscard]] SurveyGain gain_of_notes(std::string_view text,
                                        const std::string& folder,
                                        const LightAt& light,
+                                       const CameraNumbers& camera,
                                        std::vector<Suspicion>& doubts);
 
 // What scales the camera's channels so that the median of some of the survey's images, in its files

@@ -74,6 +74,8 @@ class Converter {
                 for (const auto& entry : node) {
                     const YAML::Node& key = entry.first;
                     if (!key.IsScalar()) fail(key, "a key is not a word");
+                    if (object.contains(key.Scalar()))
+                        fail(key, fmt::format("'{}' stands twice", printable(key.Scalar())));
                     object[key.Scalar()] = json_of(entry.second, depth + 1);
                 }
                 return object;
@@ -114,6 +116,17 @@ IfdoJson json_of_yaml(const std::string& name, std::string_view text) {
         const int line = error.mark.is_null() ? 0 : error.mark.line;
         fail_at_line(name, static_cast<std::size_t>(line) + 1, printable(error.msg));
     }
+}
+
+// Fields have other names and meanings in other versions.
+void require_version(const Ifdo& ifdo) {
+    const auto version = ifdo.header().find("image-set-ifdo-version");
+    if (version == ifdo.header().end()) return;
+    const std::string words = version->is_string() ? version->get<std::string>() : version->dump();
+    if (words.starts_with("v2.") || words.starts_with("2.")) return;
+    throw InputError("{}: image-set-ifdo-version: found {}; allowed: v2.0.0 and later, below v3",
+                     ifdo.source,
+                     printable(words));
 }
 
 void emit(YAML::Emitter& out, const IfdoJson& value) {
@@ -171,6 +184,7 @@ Ifdo parse_ifdo(const std::string& name, std::string_view text) {
                          key,
                          is_there ? ifdo.set[key].type_name() : "none");
     }
+    require_version(ifdo);
     return ifdo;
 }
 

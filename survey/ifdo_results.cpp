@@ -150,6 +150,11 @@ IfdoResults write_ifdo_of_results(const Ifdo& of_raw,
         all_hashes += hash;
         ++made.images;
     }
+    if (made.images == 0) {
+        throw InputError("{}: has no item for any of the {} images that were corrected",
+                         of_raw.source,
+                         made.without_item.size());
+    }
     Ifdo of_results{.source = place.string(), .is_yaml = of_raw.is_yaml, .set = of_raw.set};
     IfdoJson& header = of_results.set["image-set-header"];
     forget_pixels(header);

@@ -136,7 +136,13 @@ LightAt light_of_rig(const Rig& rig,
 }
 
 void require_light_for(const RawImage& raw, const LightAt& light) {
-    require_size(raw, light.size.width_px, light.size.height_px, "as the map has");
+    const bool is_double = std::int64_t{raw.width_px} * light.size.height_px ==
+                           2 * std::int64_t{light.size.width_px} * raw.height_px;
+    require_size(raw,
+                 light.size.width_px,
+                 light.size.height_px,
+                 is_double ? "as the map has; if two cameras' images are side by side, --half"
+                           : "as the map has");
     if (raw.mosaic != Mosaic::Mono || light.is_grey) return;
     throw InputError(
         "found the image of a mono camera, and a map whose R, G and B differ; allowed: the map of "

@@ -16,6 +16,8 @@
 namespace aphotic {
 namespace {
 
+constexpr std::size_t kEicFields = 4;
+
 using enum NavigationField;
 using Fields = std::vector<std::string_view>;
 
@@ -57,7 +59,7 @@ struct Layout {
 
 Layout eic_layout() {
     return {.columns = {.format = "HabCam's .eic",
-                        .count = 4,
+                        .count = kEicFields,
                         .places = {0, std::nullopt, 1, 2, 3},
                         .names = {"image", "", "altitude_m", "pitch_deg", "roll_deg"}},
             .has_commas = false};
@@ -125,6 +127,11 @@ NavigationTable parse_navigation_csv(const std::string& name,
         const bool has_commas =
             layout ? layout->has_commas : content.find(',') != std::string_view::npos;
         const Fields fields = has_commas ? unquoted_fields(content) : blank_fields(content);
+        if (!layout && !has_commas && content.find(';') != std::string_view::npos)
+            fail_at_line(name, line, "found semicolons between fields; allowed: commas");
+        if (!layout && !has_commas && content.find('\t') != std::string_view::npos &&
+            fields.size() != kEicFields)
+            fail_at_line(name, line, "found tabs between fields; allowed: commas");
         if (!layout && !has_commas) {
             if (!given.empty())
                 fail_at_line(name, line, "found no header row; needed by --columns");

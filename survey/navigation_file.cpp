@@ -233,6 +233,8 @@ Navigation parse_navigation(std::string_view text,
                             const NavigationOptions& options,
                             const std::vector<ImageFile>& files,
                             const Rig* rig) {
+    if (text.find('\0') != std::string_view::npos)
+        throw InputError("{}: found zero bytes, as UTF-16 has; allowed: UTF-8", options.source);
     // The camera's own poses are not mounted.
     if (is_ifdo(text)) return limited(navigation_of_ifdo(text, options, rig), options);
     const Mounting mounting = mounting_of(options, rig);

@@ -65,7 +65,9 @@ ImagePose ifdo_pose(const Ifdo& ifdo,
     if (told.pitch)
         sled.pitch_rad = ifdo_number(ifdo, *image, kIfdoPitch, pose) * kRadiansPerDegree;
     if (told.roll) sled.roll_rad = ifdo_number(ifdo, *image, kIfdoRoll, pose) * kRadiansPerDegree;
-    sled.altitude_m = height_m / (std::cos(sled.pitch_rad) * std::cos(sled.roll_rad));
+    sled.altitude_m = height_m;
+    if (pose.fault.empty()) pose.fault = fault_of(sled);
+    sled.altitude_m /= std::cos(sled.pitch_rad) * std::cos(sled.roll_rad);
     return pose;
 }
 

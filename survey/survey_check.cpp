@@ -164,12 +164,29 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
     const double other = median_of(others) - 1.0;
     if (green < kGreen || other > kOtherSites * green) return;
     found.push_back({.about = "bayer",
-                     .what = fmt::format("the two sites that {} makes green differ by {:.2g} %, "
-                                         "the other two by {:.2g} %: the pattern is {}",
+                     .what = fmt::format("the two sites that {} makes green differ by {:.3g} %, "
+                                         "the other two by {:.3g} %: the pattern is {}",
                                          mosaic_name(mosaic),
                                          kPercent * green,
                                          kPercent * other,
                                          is_green_beside ? "GRBG or GBRG" : "RGGB or BGGR")});
+}
+
+Mosaic with_red_for_blue(Mosaic mosaic) {
+    switch (mosaic) {
+        case Mosaic::Rggb:
+            return Mosaic::Bggr;
+        case Mosaic::Bggr:
+            return Mosaic::Rggb;
+        case Mosaic::Grbg:
+            return Mosaic::Gbrg;
+        case Mosaic::Gbrg:
+            return Mosaic::Grbg;
+        case Mosaic::None:
+        case Mosaic::Mono:
+            break;
+    }
+    return mosaic;
 }
 
 void check_colour(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<Suspicion>& found) {
@@ -188,7 +205,9 @@ void check_colour(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
              "{:.3g}-fold the other way: red and blue are swapped{}",
              fold_of(images),
              fold_of(maps),
-             mosaic == Mosaic::None ? "" : fmt::format("; --bayer is {}", mosaic_name(mosaic)))});
+             is_bayer(mosaic) ? fmt::format("; --bayer {} puts them right",
+                                            mosaic_name(with_red_for_blue(mosaic)))
+                              : "")});
 }
 
 std::string range_of(std::span<const ImageLook> looks) {

@@ -35,8 +35,8 @@ std::vector<std::size_t> places_of(const AnyImage& image, Mosaic mosaic) {
     }
     if (image.channels.size() == 1) {
         throw InputError(
-            "found one channel and no --bayer; allowed: R, G, B, or a mosaic whose pattern --bayer "
-            "names");
+            "found one channel and no --bayer; allowed: R, G, B, a mosaic whose pattern --bayer "
+            "names, or --bayer mono");
     }
     std::vector<std::size_t> places;
     for (const std::string_view name : kChannelNames) {
@@ -92,6 +92,20 @@ SurveyImage cropped_image(const CameraNumbers& camera, PlaneSize file, Mosaic mo
             .date_time = {}};
 }
 
+// Of what whole numbers can be; beyond it, levels are those of other files.
+void require_levels(const SensorLevels& levels, double most) {
+    if (levels.white > most) {
+        throw InputError("white level: found {}; allowed: up to {}, the file's largest number",
+                         levels.white,
+                         most);
+    }
+    if (levels.black >= levels.white) {
+        throw InputError("black level: found {}; allowed: less than the white level, {}",
+                         levels.black,
+                         levels.white);
+    }
+}
+
 constexpr double kRounding = 0.28867513459481287;  // 1 / sqrt(12): of whole numbers
 
 SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) {
@@ -109,6 +123,9 @@ SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) 
         taken.rounding = kRounding;
     }
     if (camera.white_level) taken.levels.white = *camera.white_level;
+    require_levels(
+        taken.levels,
+        image.full_scale > 0.0 ? image.full_scale : std::numeric_limits<double>::infinity());
     return taken;
 }
 
@@ -129,6 +146,7 @@ SurveyImage survey_image_of(const RawFile& file, const CameraNumbers& camera) {
     taken.rounding = kRounding;
     taken.levels.black = camera.black_level.value_or(static_cast<float>(file.black));
     taken.levels.white = camera.white_level.value_or(static_cast<float>(file.white));
+    require_levels(taken.levels, std::numeric_limits<double>::infinity());
     return taken;
 }
 

@@ -32,12 +32,12 @@ struct Sums {
         }
         pixels += other.pixels;
     }
-    // Of I / m - 1, all channels.
+    // Of I / m - 1, all channels; none where m is 0.
     [[nodiscard]] double deviations() const {
         double sum = 0.0;
         for (std::size_t c = 0; c < kChannels; ++c) {
             const double mean = signal[c] / pixels;
-            sum += std::max(0.0, squares[c] / (mean * mean) - pixels);
+            if (mean > 0.0) sum += std::max(0.0, squares[c] / (mean * mean) - pixels);
         }
         return sum;
     }
@@ -84,12 +84,15 @@ Sums sums_of(const Patch& patch,
                 sums.squares[c] += sample * sample;
             }
         }
-        if (!(std::isfinite(sums.signal[c]) && sums.signal[c] > 0.0)) {
-            throw InputError("{}: the patch '{}' has a mean {} of {:.3g}; allowed: above 0",
+        // Of a colour beyond sRGB a channel is clipped to 0; of grey none is.
+        const bool is_allowed = patch.is_grey ? sums.signal[c] > 0.0 : sums.signal[c] >= 0.0;
+        if (!(std::isfinite(sums.signal[c]) && is_allowed)) {
+            throw InputError("{}: the patch '{}' has a mean {} of {:.3g}; allowed: {}",
                              request.image,
                              patch.name,
                              kChannelNames[c],
-                             sums.signal[c] / sums.pixels);
+                             sums.signal[c] / sums.pixels,
+                             patch.is_grey ? "above 0, of a grey patch" : "0 or more");
         }
     }
     return sums;

@@ -1112,7 +1112,7 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
             "no gain can be taken from these images");
     refused(with({"raw", "-o", "out"}),
             "none of the 1 images looked at can be corrected; a: found one channel and no --bayer; "
-            "allowed: R, G, B, or a mosaic whose pattern --bayer names");
+            "allowed: R, G, B, a mosaic whose pattern --bayer names, or --bayer mono");
     fs::create_directories(path("empty"));
     refused(with({"empty", "-o", "out"}), "empty: the folder holds no image");
     write_file(path("nav.eic"), "a.tif two 0 0\n");

@@ -240,6 +240,46 @@ TEST_F(Sabotage, EmitterTurnedBy90Degrees) {
     EXPECT_GT(worst_error(), kFarOut);
 }
 
+// A whole number is the centre of OpenCV's pixels, and the edge of COLMAP's.
+TEST_F(Sabotage, LensHalfAPixelOff) {
+    write_file(folder_.path() / "cameras.txt",
+               "1 OPENCV 34 26 47 46 17.5 12.5 -0.2 0.05 0.002 -0.001\n");
+    write_file(folder_.path() / "half.txt", "1 OPENCV 34 26 47 46 17 12 -0.2 0.05 0.002 -0.001\n");
+    const std::string honest =
+        replaced(honest_rig(), "focal_length_mm = 12.0", "calibration = \"cameras.txt\"");
+    expect_no_when_rendered_from(kAllOfThem, replaced(honest, "cameras", "half"), honest);
+}
+
+TEST_F(Sabotage, TangentialTermsSwapped) {
+    write_file(folder_.path() / "cameras.txt",
+               "1 OPENCV 34 26 47 46 17.5 12.5 -0.2 0.05 0.002 -0.001\n");
+    write_file(folder_.path() / "swapped.txt",
+               "1 OPENCV 34 26 47 46 17.5 12.5 -0.2 0.05 -0.001 0.002\n");
+    const std::string honest =
+        replaced(honest_rig(), "focal_length_mm = 12.0", "calibration = \"cameras.txt\"");
+    expect_no_when_rendered_from(kAllOfThem, replaced(honest, "cameras", "swapped"), honest);
+}
+
+TEST_F(Sabotage, VignettingLeftOut) {
+    const std::string honest = replaced(
+        honest_rig(), "focal_length_mm = 12.0", "focal_length_mm = 12.0\nvignetting = \"natural\"");
+    expect_no_when_rendered_from(kAnyChannel, honest_rig(), honest);
+}
+
+TEST_F(Sabotage, PortThatIsNotTilted) {
+    const std::string honest = replaced(
+        rig_behind_a_port(), "shape = \"flat\"", "shape = \"flat\"\nnormal = [0.05, -0.03, 1]");
+    expect_no_when_rendered_from(kAllOfThem, rig_behind_a_port(), honest);
+}
+
+TEST_F(Sabotage, DomeAMillimetreOffItsPlace) {
+    const std::string honest =
+        replaced(rig_behind_a_port(),
+                 "shape = \"flat\"\ndistance_mm = 50.0",
+                 "shape = \"dome\"\nradius_mm = 50.0\ncentre_mm = [2, -1, 3]");
+    expect_no_when_rendered_from(kAllOfThem, replaced(honest, "[2, -1, 3]", "[2, 0, 3]"), honest);
+}
+
 // The tables are the built-in ones, given as the user's own.
 TEST_F(Sabotage, QuantumEfficiencyTakenForEnergyResponse) {
     write_file(folder_.path() / "rgb.csv",

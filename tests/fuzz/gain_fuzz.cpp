@@ -35,7 +35,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     light.camera_digest = "camera";
     aphotic::expect_result_or_placed_error("--gain-from: dive", [&] {
         std::vector<aphotic::Suspicion> doubts;
-        demand_gain(aphotic::gain_of_notes(text, "dive", light, doubts));
+        demand_gain(aphotic::gain_of_notes(text, "dive", light, {}, doubts));
     });
     return 0;
 }

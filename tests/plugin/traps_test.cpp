@@ -58,7 +58,7 @@ const std::vector<Trap> kTraps{
     {"NoCosineInTheCone", {{"tightness Exponent", "tightness 0"}}},
     {"PointAtIsNoDirection", {{"point_at Position + Axis", "point_at Axis"}}},
     {"WaterInTheHousing", {{"no_shadow\n", "no_shadow hollow\n"}}, give_port},
-    {"IndexOfAirForWater", {{"1 / Aphotic_Water_Index", "1"}}, give_port},
+    {"IndexOfAirForWater", {{"ior Index / Aphotic_Water_Index", "ior Index"}}, give_port},
 };
 
 // Without symmetry between fore and aft or port and starboard.

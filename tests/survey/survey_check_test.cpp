@@ -168,7 +168,7 @@ TEST(SurveyCheck, RedAndBlueThatAreSwappedAreTold) {
     for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
         EXPECT_EQ(told_of(changed(seed), Mosaic::Bggr), kBayer) << seed;
     }
-    EXPECT_NE(suspicions(changed(1), Mosaic::Bggr)[0].what.find("--bayer is BGGR"),
+    EXPECT_NE(suspicions(changed(1), Mosaic::Bggr)[0].what.find("--bayer RGGB puts them right"),
               std::string::npos);
 }
 
