@@ -164,8 +164,8 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
     const double other = median_of(others) - 1.0;
     if (green < kGreen || other > kOtherSites * green) return;
     found.push_back({.about = "bayer",
-                     .what = fmt::format("the two sites that {} makes green differ by {:.3g} %, "
-                                         "the other two by {:.3g} %: the pattern is {}",
+                     .what = fmt::format("the two sites that {} makes green differ by {:.0f} %, "
+                                         "the other two by {:.1f} %: the pattern is {}",
                                          mosaic_name(mosaic),
                                          kPercent * green,
                                          kPercent * other,

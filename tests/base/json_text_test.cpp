@@ -88,6 +88,20 @@ TEST(WholeNumber, IsOneWithinItsBounds) {
     EXPECT_THROW(static_cast<void>(whole_number_at(json, "none")), nlohmann::json::out_of_range);
 }
 
+TEST(ParseJson, RefusesAKeyThatStandsTwiceInAnObject) {
+    const auto error_of = [](const char* text) -> std::string {
+        try {
+            static_cast<void>(parse_json(text, "f"));
+            return "none";
+        } catch (const InputError& error) {
+            return error.what();
+        }
+    };
+    EXPECT_EQ(error_of(R"({"a": {"b": 1}, "b": {"b": 2}, "c": [{"b": 1}, {"b": 1}]})"), "none");
+    EXPECT_EQ(error_of(R"({"a": {"b": 1, "c": {"b": 1}, "b": 2}})"),
+              "f: 'b' stands twice in an object");
+}
+
 // Where each key was held against all before it, a million would take an hour.
 TEST(ParseJson, TakesAMillionKeys) {
     constexpr int kKeys = 1'000'000;

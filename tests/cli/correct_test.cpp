@@ -422,6 +422,12 @@ TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
         << other.err;
     EXPECT_EQ(notes("three")["looks_wrong"][0]["about"], "gain-from");
     EXPECT_EQ(correct({"--gain-from", "one", "--strict"}, "three").status, kBadInput);
+    write_file(path("rig.toml"), rig);
+    const CommandResult levels = correct({"--gain-from", "one", "--black-level", "1"}, "levels");
+    EXPECT_NE(levels.err.find("looks wrong: gain-from: one: the black_level there is "),
+              std::string::npos)
+        << levels.err;
+    EXPECT_NE(levels.err.find(", here 1.0"), std::string::npos) << levels.err;
     write_file(path("camera.csv"),
                "wavelength_nm,red,green,blue\n380,0.1,0.2,0.4\n780,0.3,0.2,0.1\n");
     write_file(

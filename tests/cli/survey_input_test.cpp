@@ -212,9 +212,9 @@ TEST_F(SurveyInput, PartsThatAreNotThereAreOneMistake) {
          {"1,2,3", "1,2,3,4,5", "-1,0,5,5", "0,0,0,5", "a,0,5,5", "0;0;5;5", ""})
         refused({"--crop", wrong}, fmt::format("--crop: found '{}'; allowed: X,Y,WIDTH", wrong));
     refused({"--half", "upper"}, "--half");
+    refused({"--exposure", "auto"}, "--exposure: found auto; allowed: exif, flash, none");
     refused({"--half", "left", "--crop", "0,0,5,5"}, "--half excludes --crop");
     refused({"--bayer", "gray"}, "found 'gray'; allowed: RGGB, BGGR, GRBG, GBRG, mono");
-    refused({"--exposure", "auto"}, "--exposure");
     refused({"--bayer", "RGGB", "--exposure", "exif"}, "no image's Exif has ExposureTime");
 }
 
@@ -474,6 +474,20 @@ TEST_F(RigOfSurvey, OfAnotherScaleIsScaledToTheImages) {
     EXPECT_EQ(read_text_file(path("own/a.exr")), read_text_file(path("scaled/a.exr")));
     const Json notes = Json::parse(read_text_file(path("scaled/correction.json")));
     EXPECT_EQ(notes["settings"]["rig_scale"], 0.5);
+    // A part of the rig's own image is not its whole one, smaller.
+    write_rig("[64, 48]", kPitch_um);
+    const CommandResult part =
+        correct_by_rig("part", levels({"--bayer", "RGGB", "--crop", "0,0,32,24"}));
+    EXPECT_EQ(part.status, kBadInput);
+    EXPECT_NE(part.err.find("--crop: found 32 x 24 of files that have the rig's 64 x 48 pixels"),
+              std::string::npos)
+        << part.err;
+    write_rig("[32, 48]", kPitch_um);
+    const CommandResult stereo = correct_by_rig("stereo", levels({"--bayer", "RGGB"}));
+    EXPECT_NE(stereo.err.find("found 64 x 48 pixels; allowed: 32 x 48, as the map has; if two "
+                              "cameras' images are side by side, --half"),
+              std::string::npos)
+        << stereo.err;
     write_rig("[128, 95]", "68.53125");
     const CommandResult other = correct_by_rig("other", levels({"--bayer", "RGGB"}));
     EXPECT_EQ(other.status, kBadInput);

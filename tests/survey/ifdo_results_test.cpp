@@ -130,6 +130,17 @@ TEST(IfdoUuid, IsASha256OfVersion4) {
         EXPECT_TRUE(std::regex_match(uuid_of(text), kUuid)) << uuid_of(text);
 }
 
+TEST_F(IfdoResultsOf, OfAnotherSurveyAreRefused) {
+    set_["image-set-items"] = {{"never-given.exr", {{"image-uuid", kOldUuid}}}};
+    try {
+        (void)write();
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "set: has no item for any of the 3 images that were corrected");
+    }
+    EXPECT_FALSE(std::filesystem::exists(raw_.path("out/set.json")));
+}
+
 TEST_F(IfdoResultsOf, NeverTakeTheSourcesPlace) {
     write_text_file(raw_.path("out/set.json"), "{}");
     EXPECT_THROW((void)ifdo_place(raw_.path("out/set.json"), raw_.path("out")), InputError);

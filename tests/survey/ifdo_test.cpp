@@ -99,6 +99,16 @@ TEST(Ifdo, RefusesWhatIsNone) {
     EXPECT_EQ(fault_of("{\"image-set-header\": ").find("set.yaml"), 0U);
     EXPECT_EQ(fault_of("image-set-header: {a: \xff}\nimage-set-items: {}\n"),
               "set.yaml: found bytes that are no UTF-8");
+    EXPECT_EQ(fault_of("image-set-header: {}\nimage-set-items:\n  a.jpg: {}\n  a.jpg: {}\n"),
+              "set.yaml:4: 'a.jpg' stands twice");
+    const auto of_version = [](const std::string& version) {
+        return fault_of("image-set-header: {image-set-ifdo-version: " + version +
+                        "}\nimage-set-items: {}\n");
+    };
+    EXPECT_EQ(of_version("v2.2.1"), "none");
+    EXPECT_EQ(
+        of_version("v1.1.0"),
+        "set.yaml: image-set-ifdo-version: found v1.1.0; allowed: v2.0.0 and later, below v3");
     EXPECT_EQ(fault_of("? {a: 1}\n: 2\n"), "set.yaml:1: a key is not a word");
 }
 

@@ -183,6 +183,12 @@ TEST(NavigationCsv, FaultsOfTheHeaderNameFileAndLine) {
               "'altitude'?), or --columns altitude_m=NAME");
     EXPECT_EQ(fault_in("image,altitude_m,altitude_m\n"),
               "nav.csv:1: the column 'altitude_m' stands twice");
+    EXPECT_EQ(fault_in("image;altitude_m\na.tif;2\n"),
+              "nav.csv:1: found semicolons between fields; allowed: commas");
+    EXPECT_EQ(fault_in("image\taltitude_m\tpitch_deg\na.tif\t2\t0\n"),
+              "nav.csv:1: found tabs between fields; allowed: commas");
+    EXPECT_EQ(fault_in(std::string_view("i\0m\0", 4)),
+              "nav.csv: found zero bytes, as UTF-16 has; allowed: UTF-8");
     EXPECT_EQ(fault_in("# nothing\n"), "nav.csv:2: the file ends without a line of an image");
     EXPECT_EQ(fault_in("image,altitude_m\n,2\n"),
               "nav.csv:3: the file ends without a line of an image");
