@@ -11,7 +11,6 @@
 
 #include <filesystem>
 #include <map>
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -28,8 +27,9 @@ template <class Value>
     return {[words](std::string& text) {
                 const auto found = words.find(text);
                 if (found == words.end()) {
-                    return fmt::format(
-                        "found {}; allowed: {}", text, fmt::join(std::views::keys(words), ", "));
+                    std::vector<std::string> allowed;
+                    for (const auto& word : words) allowed.push_back(word.first);
+                    return fmt::format("found {}; allowed: {}", text, fmt::join(allowed, ", "));
                 }
                 text = std::to_string(static_cast<int>(found->second));
                 return std::string();
