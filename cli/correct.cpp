@@ -95,24 +95,6 @@ void keep_memory() {
 #endif
 }
 
-// A crop's image is the rig's whole one, as of two cameras in one file.
-void require_whole_view(const Survey& survey, const Camera& rig) {
-    if (!survey.camera.crop) return;
-    CameraNumbers uncropped = survey.camera;
-    uncropped.crop.reset();
-    const std::optional<PlaneSize> file = usual_size(survey.files, uncropped);
-    const Crop& crop = *survey.camera.crop;
-    if (!file || file->width_px != rig.width_px || file->height_px != rig.height_px) return;
-    if (crop.width_px == rig.width_px && crop.height_px == rig.height_px) return;
-    throw InputError(
-        "--crop: found {} x {} of files that have the rig's {} x {} pixels; allowed: a part that "
-        "is the whole image of the rig's camera",
-        crop.width_px,
-        crop.height_px,
-        rig.width_px,
-        rig.height_px);
-}
-
 Survey survey_of(const CorrectCommandOptions& options) {
     if (options.rig.empty() == options.map.empty()) {
         throw InputError("--rig with --nav, or --map: one of them is needed");
@@ -135,7 +117,7 @@ Survey survey_of(const CorrectCommandOptions& options) {
     Rig rig = read_rig(options.rig);
     survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
     const std::optional<PlaneSize> images = usual_size(survey.files, survey.camera);
-    require_whole_view(survey, rig.camera);
+    require_whole_view(survey.files, survey.camera, rig.camera);
     const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
     NavigationOptions navigation = options.navigation;
     if (!altitudes_m.empty()) {

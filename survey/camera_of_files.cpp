@@ -48,6 +48,25 @@ CameraNumbers with_reference(CameraNumbers camera, const std::vector<ImageFile>&
                      camera.exposure_by == ExposureBy::Exif ? "ExposureTime, " : "");
 }
 
+void require_whole_view(const std::vector<ImageFile>& files,
+                        const CameraNumbers& camera,
+                        const Camera& rig) {
+    if (!camera.crop) return;
+    CameraNumbers uncropped = camera;
+    uncropped.crop.reset();
+    const std::optional<PlaneSize> file = usual_size(files, uncropped);
+    const Crop& crop = *camera.crop;
+    if (!file || file->width_px != rig.width_px || file->height_px != rig.height_px) return;
+    if (crop.width_px == rig.width_px && crop.height_px == rig.height_px) return;
+    throw InputError(
+        "--crop: found {} x {} of files that have the rig's {} x {} pixels; allowed: a part that "
+        "is the whole image of the rig's camera",
+        crop.width_px,
+        crop.height_px,
+        rig.width_px,
+        rig.height_px);
+}
+
 std::optional<PlaneSize> fit_to(Camera& camera, PlaneSize images) {
     const PlaneSize rig{camera.width_px, camera.height_px};
     const auto is_same_shape = std::int64_t{rig.width_px} * images.height_px ==

@@ -24,6 +24,12 @@ namespace aphotic {
 [[nodiscard]] CameraNumbers with_reference(CameraNumbers camera,
                                            const std::vector<ImageFile>& files);
 
+// An InputError when a crop is a part of the rig's own image: a rig shows what all of the crop
+// does, such as one of two cameras' images in a file.
+void require_whole_view(const std::vector<ImageFile>& files,
+                        const CameraNumbers& camera,
+                        const Camera& rig);
+
 // A camera of the same view with as many pixels, where these have the shape of its own: the size
 // that it had. None, and the camera as it was, where they are as many, or have another shape.
 [[nodiscard]] std::optional<PlaneSize> fit_to(Camera& camera, PlaneSize images);

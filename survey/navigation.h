@@ -66,6 +66,10 @@ class Navigation {
     [[nodiscard]] std::size_t size() const { return poses_.size(); }
     [[nodiscard]] const ToldAngles& told() const { return told_; }
 
+    // Which angles poses have from anywhere: the source, or a rig that stands in for it.
+    [[nodiscard]] const ToldAngles& known() const { return known_; }
+    void take_angles_of_rig() { known_ = {.pitch = true, .roll = true}; }
+
     // None when no reader told.
     [[nodiscard]] const std::optional<NavigationNotes>& notes() const { return notes_; }
     void note(NavigationNotes notes) { notes_ = std::move(notes); }
@@ -75,6 +79,7 @@ class Navigation {
 
     std::string source_;
     ToldAngles told_;
+    ToldAngles known_;
     ImagesKnownBy known_by_;
     std::optional<NavigationNotes> notes_{};
     std::size_t nameless_line_ = 0;  // the first; 0: none

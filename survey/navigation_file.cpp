@@ -202,6 +202,7 @@ Navigation navigation_of_ifdo(std::string_view text,
     Navigation navigation =
         parse_navigation_ifdo(options.source, text, rig != nullptr ? rig->sled : Sled{});
     require_angles(navigation, options, camera, rig != nullptr);
+    if (rig != nullptr) navigation.take_angles_of_rig();
     NavigationNotes notes{.format = "iFDO", .mounting = camera};
     notes.columns.emplace_back("altitude_m", kIfdoHeight);
     if (navigation.told().pitch) notes.columns.emplace_back("pitch_deg", kIfdoPitch);
@@ -240,6 +241,7 @@ Navigation parse_navigation(std::string_view text,
     const Mounting mounting = mounting_of(options, rig);
     const Sled sled = rig != nullptr ? rig->sled : Sled{};
     Navigation vehicle = navigation_of_table(text, options, files, mounting, sled);
+    if (rig != nullptr) vehicle.take_angles_of_rig();
     return limited(mounted(std::move(vehicle), options, mounting, rig != nullptr), options);
 }
 

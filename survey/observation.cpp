@@ -35,14 +35,13 @@ struct Selection {
 
 Selection selected(const Survey& survey, const ObservationOptions& options) {
     constexpr double kRounding_m = 1e-9;  // 2.1 lies within 0.1 of 2
-    const ToldAngles told = survey.navigation->told();
+    const ToldAngles known = survey.navigation->known();
     Selection selection;
     for (const ImageFile& file : survey.files) {
         try {
             Sled sled = survey.sled_of(file);
-            // There is no rig here to take them from.
-            if (!told.pitch) sled.pitch_rad = kUnknown;
-            if (!told.roll) sled.roll_rad = kUnknown;
+            if (!known.pitch) sled.pitch_rad = kUnknown;
+            if (!known.roll) sled.roll_rad = kUnknown;
             const double off_m = std::abs(sled.altitude_m - options.altitude_m);
             if (off_m > options.within_m + kRounding_m) {
                 ++selection.outside;

@@ -102,6 +102,10 @@ TEST_F(CommandObserve, AnAttitudeThatNobodyToldIsUnknown) {
     const nlohmann::json json = nlohmann::json::parse(observe({"--json"}).out);
     EXPECT_TRUE(json["pitch_deg"].is_null());
     EXPECT_NEAR(json["roll_deg"].get<double>(), 2.0, kFloat);
+    // HabCam's own pitch.
+    const std::string rig = std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml";
+    const nlohmann::json known = nlohmann::json::parse(observe({"--rig", rig, "--json"}).out);
+    EXPECT_NEAR(known["pitch_deg"].get<double>(), 5.0, 100.0 * kFloat);
 }
 
 // 2 m over the floor at 60 degrees are 4 m along the axis.

@@ -168,6 +168,28 @@ TEST_F(SurveyInput, AHalfOrACropIsTreatedAsAFileOfItsOwn) {
 }
 
 // Another crop is another result.
+// Levels of a 16-bit camera for files of 8 bits, as of another camera's rig.
+TEST_F(SurveyInput, LevelsBeyondTheFilesNumbersAreRefused) {
+    write_map(false);
+    write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
+    const auto refusal = [&](const std::vector<std::string>& levels) {
+        std::vector<std::string> options{"--bayer", "RGGB"};
+        options.insert(options.end(), levels.begin(), levels.end());
+        const CommandResult result = correct("out", options);
+        EXPECT_EQ(result.status, kBadInput);
+        EXPECT_FALSE(fs::exists(path("out")));
+        return result.err;
+    };
+    EXPECT_NE(
+        refusal({"--white-level", "65536"})
+            .find("white level: found 65536; allowed: up to 65535, the file's largest number"),
+        std::string::npos);
+    EXPECT_NE(refusal({"--black-level", "4095", "--white-level", "4095"})
+                  .find("black level: found 4095; allowed: less than the white level, 4095"),
+              std::string::npos);
+    EXPECT_EQ(correct("out", {"--bayer", "RGGB", "--white-level", "65535"}).status, 0);
+}
+
 TEST_F(SurveyInput, ACropIsPartOfWhatIsKept) {
     write_map(false);
     write_tiff("a.tif",

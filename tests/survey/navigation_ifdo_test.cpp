@@ -67,6 +67,8 @@ TEST(NavigationIfdo, SkipsImagesAndSaysWhy) {
            "word.tif: {image-meters-above-ground: high, image-camera-pitch-degrees: 1},"
            "flat.tif: {image-meters-above-ground: 2},"
            "film.tif: [{image-meters-above-ground: 2}, {image-meters-above-ground: 3}],"
+           "steep.tif: {image-meters-above-ground: 2, image-camera-pitch-degrees: 95},"
+           "under.tif: {image-meters-above-ground: -1, image-camera-pitch-degrees: 60},"
            "text.tif: nothing");
     EXPECT_EQ(fault_of(navigation, "good.tif"), "none");
     EXPECT_EQ(
@@ -78,6 +80,11 @@ TEST(NavigationIfdo, SkipsImagesAndSaysWhy) {
     EXPECT_EQ(fault_of(navigation, "flat.tif"), "set.yaml: found no image-camera-pitch-degrees");
     EXPECT_EQ(fault_of(navigation, "film.tif"),
               "set.yaml: found 2 objects, as of a video; allowed: 1");
+    // In the file's own numbers, not in what follows from them.
+    EXPECT_EQ(fault_of(navigation, "steep.tif"),
+              "set.yaml: pitch_deg: found 95; allowed: -89.9 to 89.9");
+    EXPECT_EQ(fault_of(navigation, "under.tif"),
+              "set.yaml: altitude_m: found -1; allowed: 0.001 to 10000");
     EXPECT_EQ(fault_of(navigation, "text.tif"), "set.yaml: found a string; allowed: an object");
 }
 

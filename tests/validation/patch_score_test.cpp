@@ -82,6 +82,28 @@ TEST_F(PatchScoring, ScalesTakeExposureAndWhiteBalanceAway) {
     EXPECT_THROW(score("a,0,0,4,4,orange\n", ComparedScale::OfEachChannel), InputError);
 }
 
+// A colour beyond sRGB is clipped to 0 in one channel, and is that far off. Grey is never.
+TEST_F(PatchScoring, TakesColoursThatLackAChannel) {
+    std::vector<float> samples(3 * kPixels, 0.25F);
+    std::fill_n(samples.begin(), kPixels, 0.0F);
+    ExrWriter exr(path("a.exr"), kWidth_px, kHeight_px, {"R", "G", "B"}, {});
+    exr.write_rows(kHeight_px, samples);
+    exr.finish();
+    const PatchScores scores = score("cyan,0,0,4,4,cyan\n");
+    EXPECT_EQ(scores.patches[0].signal[0], 0.0);
+    EXPECT_TRUE(std::isfinite(*scores.patches[0].difference));
+    EXPECT_EQ(scores.unevenness, 0.0);
+    try {
+        score("grey,0,0,4,4,0.5\n");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.what(),
+                  path("a.exr") +
+                      ": the patch 'grey' has a mean R of 0; allowed: above 0, of a "
+                      "grey patch");
+    }
+}
+
 TEST_F(PatchScoring, RefusesPatchesBeyondTheImage) {
     try {
         score("a,0,0,4,4,\nb,6,1,3,3,\n");
