@@ -27,6 +27,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <set>
 #include <sstream>
@@ -1075,7 +1076,7 @@ void require_tables_to_cover_the_range(const Rig& rig) {
     curves.push_back(&rig.seafloor.reflectance);
     for (const Spectrum& material : rig.materials) curves.push_back(&material);
     for (const Object& object : rig.objects) curves.push_back(&object.reflectance);
-    if (rig.water.multiple != 0.0) curves.push_back(&rig.water.absorption_per_m);
+    std::ranges::copy(rig.water.curves(), std::back_inserter(curves));
     for (const Strobe& strobe : rig.strobes) curves.push_back(&strobe.spectrum);
     std::vector<Spectrum> indices;
     if (rig.camera.port) {

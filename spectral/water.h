@@ -1,25 +1,48 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How much light a metre of this water takes away.
+// What a metre of this water does to light.
 //
-//   K(lambda) = multiple * a(lambda) + uniform_loss
+//   K  = multiple (a + sum of b_i (1 - F_i(psi_d))) + uniform_loss     what direct light loses
+//   c' = multiple (a + sum of b_i (1 - F_i(psi_c))) + uniform_loss     what the veil loses
 //
-// K             loss along a path of length l: the light that is left is exp(-K l)     [1/m]
-// a             absorption coefficient of the water, a table                           [1/m]
-// multiple      0 is air-like, 0.5 half water, 1 water (the source paper's figure 6)   [1]
-// uniform_loss  scattering as one wavelength-free loss (the paper's assumption 1)      [1/m]
+// K, c'         losses along a path of length l: the light that is left is exp(-K l)    [1/m]
+// a             absorption coefficient, a table                                         [1/m]
+// b_i, F_i      scattering coefficient of a scatterer, a table, and the share that it
+//               scatters within an angle (spectral/phase_function.h)                    [1/m], [1]
+// psi_d, psi_c  kDirectCut, kVeilCut: light that is turned by less counts as not scattered, for it
+//               arrives all the same
+// multiple      0 is air-like, 0.5 half water, 1 water (the source paper's figure 6)    [1]
+// uniform_loss  scattering as one wavelength-free loss (the paper's assumption 1)       [1/m]
 //
-// With multiple = 0 the table is never read, so it need not cover the range.
+// Neither is the beam attenuation c = a + b, nor the diffuse attenuation K_d of daylight. The two
+// cuts differ, for the floor is lit by light that was turned a little, while light that is turned
+// towards the camera has been turned by much: docs/water.md has the Monte Carlo that they are
+// chosen by.
+//
+// With multiple = 0 no table is read, so none need cover the range.
 // K = 0 at every wavelength is bare air: is_clear() holds.
 #pragma once
 
+#include "spectral/phase_function.h"
 #include "spectral/spectrum.h"
 
+#include <cstddef>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
 namespace aphotic {
+
+// [rad]
+inline constexpr double kDirectCut = 45.0 * std::numbers::pi / 180.0;
+inline constexpr double kVeilCut = 10.0 * std::numbers::pi / 180.0;
+
+// One kind of what scatters: the water itself, or the particles in it.
+struct Scatterer {
+    Spectrum scattering_per_m;  // b
+    PhaseFunction phase;
+};
 
 struct Water {
     Spectrum absorption_per_m;
@@ -27,18 +50,21 @@ struct Water {
     double uniform_loss_per_m = 0.0;
     double salinity_psu = 35.0;  // it and the temperature are for the refractive index only
     double temperature_c = 10.0;
+    std::vector<Scatterer> scatterers{};
 
-    [[nodiscard]] double attenuation_per_m(double lambda_nm) const {
-        const double absorbed = multiple == 0.0 ? 0.0 : multiple * absorption_per_m.at(lambda_nm);
-        return absorbed + uniform_loss_per_m;
-    }
+    [[nodiscard]] double attenuation_per_m(double lambda_nm) const;       // K
+    [[nodiscard]] double veil_attenuation_per_m(double lambda_nm) const;  // c'
 
-    // No more than K at any wavelength of the table.
+    // Of one scatterer, multiple included: b_i.
+    [[nodiscard]] double scattering_per_m(std::size_t scatterer, double lambda_nm) const;
+
+    // No more than K, or than c', at any wavelength of the tables.
     [[nodiscard]] double least_attenuation_per_m() const;
 
+    [[nodiscard]] bool scatters() const { return multiple != 0.0 && !scatterers.empty(); }
     [[nodiscard]] bool is_clear() const { return multiple == 0.0 && uniform_loss_per_m == 0.0; }
 
-    // The tables that K is read from, as long as the water lives.
+    // The tables that K and c' are read from, as long as the water lives.
     [[nodiscard]] std::vector<const Spectrum*> curves() const;
 
     // Relative to air.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace aphotic {
 namespace {
@@ -116,7 +117,7 @@ std::vector<WavelengthRange> panels_of(const Sensor& sensor,
     for (const auto& source : lights.sources) {
         for (const Spectrum& factor : source) tables.push_back(&factor);
     }
-    if (lights.water.multiple != 0.0) tables.push_back(&lights.water.absorption_per_m);
+    std::ranges::copy(lights.water.curves(), std::back_inserter(tables));
     const std::vector<double> knots_nm = union_of_knots(tables, range);
     std::vector<WavelengthRange> panels;
     for (std::size_t i = 0; i + 1 < knots_nm.size(); ++i) {

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which way scattered light goes.
+//
+//   p(psi)   share of the scattered light per solid angle at the angle psi off its way   [1/sr]
+//   F(psi)   share within psi:   F(psi) = 2 pi int_0^psi p(psi') sin(psi') dpsi',   F(pi) = 1
+//
+// Henyey and Greenstein, with the mean cosine g:
+//
+//   p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos(psi))^1.5)
+//
+// Fournier and Forand (1994, in the form of Fournier and Jonasz 1999), of particles of the relative
+// index n whose sizes follow a power law of the slope mu:
+//
+//   p = ( nu (1 - d) - (1 - d^nu) + (d (1 - d^nu) - nu (1 - d)) / s^2 ) / (4 pi (1 - d)^2 d^nu)
+//       + (1 - D^nu) (3 cos^2(psi) - 1) / (16 pi (D - 1) D^nu)
+//
+// with nu = (3 - mu)/2, s = sin(psi/2), d = 4 s^2 / (3 (n - 1)^2), and D = d at psi = pi. F is
+// known in closed form. Of one number, the share that is scattered back, along the line
+// n = 1.01 + 0.1542 (mu - 3) (Mobley, Sundman and Boss 2002): fournier_forand().
+//
+// Molecular: sea water's own, with the depolarisation ratio delta (0.039, Zhang, Hu and He 2009):
+//
+//   p = 3 (1 + P cos^2(psi)) / (4 pi (3 + P)),      P = (1 - delta)/(1 + delta)
+//
+// Table: a power law of the angle between neighbouring rows, and below the first row as between the
+// first two; linear where a row has the angle or the value 0. It is scaled to F(pi) = 1.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace aphotic {
+
+struct HenyeyGreenstein {
+    double g = 0.0;  // -1 to 1, neither included
+};
+
+struct FournierForand {
+    double index = 1.1;   // n, over 1
+    double slope = 3.58;  // mu, over 3
+};
+
+struct MolecularScattering {
+    double depolarisation = 0.039;
+};
+
+struct PhaseTable {
+    std::vector<double> angle_rad;  // increasing, the last is pi
+    std::vector<double> per_sr;     // scaled
+    std::vector<double> share;      // F at each angle
+};
+
+struct PhaseFunction {
+    std::string name;  // as a rig has it
+    std::variant<HenyeyGreenstein, FournierForand, MolecularScattering, PhaseTable> kind{};
+
+    [[nodiscard]] double at(double psi_rad) const;
+    [[nodiscard]] double share_within(double psi_rad) const;
+
+    // b_b/b: the share over 90 degrees.
+    [[nodiscard]] double backscatter_ratio() const;
+};
+
+// Of the line above; the ratio lies within kLeastBackscatter and kMostBackscatter.
+[[nodiscard]] PhaseFunction fournier_forand(double backscatter_ratio);
+inline constexpr double kLeastBackscatter = 0.0005;
+inline constexpr double kMostBackscatter = 0.4;
+
+// Angles from 0 or more up to pi, increasing; values not negative, of any scale, not all 0.
+[[nodiscard]] PhaseFunction phase_table(std::string name,
+                                        std::vector<double> angle_rad,
+                                        std::vector<double> values);
+
+}  // namespace aphotic
