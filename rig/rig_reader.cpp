@@ -14,7 +14,10 @@
 #include "rig/key_depth.h"
 #include "rig/mesh_reader.h"
 #include "rig/photometric_file.h"
+#include "rig/rig_files.h"
+#include "rig/section.h"
 #include "rig/solid.h"
+#include "rig/water_reader.h"
 #include "spectral/curve_loader.h"
 #include "spectral/lamp_flux.h"
 #include "spectral/refractive_index.h"
@@ -43,20 +46,8 @@ constexpr double kMetresPerMicrometre = 1e-6;
 // A thousand strobes, each written out, are a fiftieth of it.
 constexpr std::size_t kMostRigBytes = 8 * kMebibyte;
 
-// Strobes, beams, cones of a beam, materials, objects: of each. What is done for one is done beside
-// all the others.
-constexpr std::size_t kMostOfAKind = 1024;
-
 // Of all strobes together: what POV-Ray takes where the water is clear (pov_scene.cpp).
 constexpr std::size_t kMostCones = 100'000;
-
-// Any title or file name; and POV-Ray reads a comment of it.
-constexpr std::size_t kMostTextBytes = 1000;
-
-struct Bounds {
-    double least;
-    double most;
-};
 
 // What a rig may hold. Wide enough for any sled, narrow enough to catch a slipped unit.
 constexpr Bounds kAltitudeM{0.001, 10000.0};
@@ -75,10 +66,6 @@ constexpr Bounds kPortDistanceMm{1.0, 10000.0};
 constexpr Bounds kPortThicknessMm{1.0, 1000.0};
 constexpr Bounds kDomeCentreMm{-10000.0, 10000.0};
 constexpr double kMostPortTiltDeg = 60.0;
-constexpr Bounds kMultiple{0.0, 1e6};
-constexpr Bounds kLossPerM{0.0, 1e6};
-constexpr Bounds kSalinityPsu{0.0, 40.0};
-constexpr Bounds kTemperatureC{-2.0, 35.0};
 constexpr Bounds kPhong{0.0, 1e6};
 constexpr Bounds kPhongSize{0.0, 1e6};
 constexpr Bounds kHalfAngleDeg{0.001, 90.0};
@@ -103,248 +90,9 @@ const std::string kOneKindOfBeam =
 constexpr Bounds kRadiusM{0.001, 1000.0};
 constexpr double kLeastSideM = 0.001;
 
-// As the user wrote it: 0.1 and not 0.10000000000000001, and on one line.
-std::string shown(const toml::node& node) {
-    if (node.is_table()) return "a table";
-    if (const auto* array = node.as_array()) {
-        std::vector<std::string> items;
-        for (const toml::node& item : *array) items.push_back(shown(item));
-        return fmt::format("[{}]", fmt::join(items, ", "));
-    }
-    if (const auto real = node.value_exact<double>()) return fmt::format("{}", *real);
-    std::ostringstream text;
-    node.visit([&](const auto& leaf) { text << leaf; });
-    return text.str();
-}
-
-std::string allowed_number(Bounds bounds) {
-    return fmt::format("a number from {} to {}", bounds.least, bounds.most);
-}
-
-// One table of the rig file, which knows where it stands and which of its keys were asked for.
-class Section {
-  public:
-    Section(const toml::table& table, std::string path, const std::string& file)
-        : table_(table), path_(std::move(path)), file_(file) {}
-
-    [[noreturn]] void fail(const toml::node& node,
-                           std::string_view key,
-                           const std::string& what) const {
-        throw InputError(fmt::format("{}:{}: {}: {}", file_, line(node), name_of(key), what));
-    }
-
-    [[noreturn]] void fail_at(std::string_view key, const std::string& what) const {
-        fail(*table_.get(key), key, what);
-    }
-
-    [[noreturn]] void found_but(std::string_view key, const std::string& allowed) const {
-        const toml::node& node = *table_.get(key);
-        fail(node, key, fmt::format("found {}; allowed: {}", shown(node), allowed));
-    }
-
-    [[nodiscard]] bool has(std::string_view key) {
-        if (!is_known(key)) known_.emplace_back(key);
-        return table_.contains(key);
-    }
-
-    [[nodiscard]] const toml::node& required(std::string_view key, const std::string& allowed) {
-        if (has(key)) return *table_.get(key);
-        // Most often it is there, misspelt.
-        for (const auto& [name, node] : table_) {
-            if (is_known(name.str())) continue;
-            if (nearest_name(name.str(), std::array{std::string(key)}).empty()) continue;
-            fail(node, name.str(), fmt::format("is not a known key; did you mean '{}'?", key));
-        }
-        fail(table_, key, "is missing; allowed: " + allowed);
-    }
-
-    [[nodiscard]] double number(std::string_view key, Bounds bounds) {
-        const toml::node& node = required(key, allowed_number(bounds));
-        if (!is_within(node, bounds)) found_but(key, allowed_number(bounds));
-        return *node.value<double>();
-    }
-
-    [[nodiscard]] double number_or(std::string_view key, Bounds bounds, double absent) {
-        return has(key) ? number(key, bounds) : absent;
-    }
-
-    template <std::size_t n>
-    [[nodiscard]] std::array<double, n> numbers(std::string_view key, Bounds bounds) {
-        const std::string allowed =
-            fmt::format("an array of {} numbers, each from {} to {}", n, bounds.least, bounds.most);
-        const toml::array* array = required(key, allowed).as_array();
-        if (array == nullptr || array->size() != n) found_but(key, allowed);
-        std::array<double, n> values{};
-        for (std::size_t i = 0; i < n; ++i) {
-            if (!is_within((*array)[i], bounds)) found_but(key, allowed);
-            values[i] = *(*array)[i].template value<double>();
-        }
-        return values;
-    }
-
-    [[nodiscard]] std::string text(std::string_view key, const std::string& allowed) {
-        const toml::node& node = required(key, allowed);
-        if (!node.is_string()) found_but(key, allowed);
-        return one_line(node, key);
-    }
-
-    [[nodiscard]] std::string text_or(std::string_view key,
-                                      const std::string& allowed,
-                                      std::string absent) {
-        return has(key) ? text(key, allowed) : absent;
-    }
-
-    [[nodiscard]] std::vector<std::string> texts(std::string_view key, const std::string& allowed) {
-        const toml::array* array = required(key, allowed).as_array();
-        if (array == nullptr) found_but(key, allowed);
-        require_few(key, array->size());
-        std::vector<std::string> all;
-        for (const toml::node& node : *array) {
-            if (!node.is_string()) found_but(key, allowed);
-            all.push_back(one_line(node, key));
-        }
-        return all;
-    }
-
-    void require_few(std::string_view key, std::size_t count) const {
-        if (count <= kMostOfAKind) return;
-        fail(
-            *table_.get(key), key, fmt::format("found {}; allowed: up to {}", count, kMostOfAKind));
-    }
-
-    // One of a few words.
-    [[nodiscard]] std::string word(std::string_view key, const std::vector<std::string>& words) {
-        const std::string allowed = fmt::format("\"{}\"", fmt::join(words, "\" or \""));
-        std::string found = text(key, allowed);
-        if (std::find(words.begin(), words.end(), found) == words.end()) found_but(key, allowed);
-        return found;
-    }
-
-    [[nodiscard]] Section section(std::string_view key, const std::string& allowed) {
-        const toml::node& node = required(key, allowed);
-        if (!node.is_table()) found_but(key, allowed);
-        return {*node.as_table(), name_of(key), file_};
-    }
-
-    // The tables of an array, which may not be empty.
-    [[nodiscard]] std::vector<Section> sections(std::string_view key, const std::string& allowed) {
-        const toml::array* array = required(key, allowed).as_array();
-        if (array == nullptr || array->empty()) found_but(key, allowed);
-        require_few(key, array->size());
-        std::vector<Section> all;
-        for (std::size_t i = 0; i < array->size(); ++i) {
-            const toml::table* table = (*array)[i].as_table();
-            if (table == nullptr) found_but(key, allowed);
-            all.emplace_back(*table, fmt::format("{}[{}]", name_of(key), i), file_);
-        }
-        return all;
-    }
-
-    [[nodiscard]] std::vector<std::string> keys() const {
-        std::vector<std::string> all;
-        for (const auto& [key, node] : table_) all.emplace_back(key.str());
-        return all;
-    }
-
-    // Call when every key that is known has been asked for.
-    void refuse_unknown_keys() const {
-        for (const auto& [key, node] : table_) {
-            const std::string_view name = key.str();
-            if (is_known(name)) continue;
-            const std::string nearest = nearest_name(name, known_);
-            const std::string hint =
-                nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
-            fail(node,
-                 name,
-                 fmt::format("is not a known key{} Known here: {}",
-                             hint.empty() ? "." : hint,
-                             fmt::join(known_, ", ")));
-        }
-    }
-
-    // Before any is asked for: where another key stands in place of one that is required, that is
-    // the cause.
-    void refuse_keys_but(const std::vector<std::string>& known) {
-        known_ = known;
-        refuse_unknown_keys();
-    }
-
-    // Ways to say one thing.
-    void refuse_both(std::initializer_list<std::string_view> keys) {
-        std::string_view first;
-        for (const std::string_view key : keys) {
-            if (!has(key)) continue;
-            if (!first.empty())
-                fail_at(key, fmt::format("found beside '{}'; allowed: one of them", first));
-            first = key;
-        }
-    }
-
-    // Runs read(), and puts file, line and key before whatever InputError comes out of it.
-    template <typename Read>
-    [[nodiscard]] auto at_key(std::string_view key, Read read) const {
-        try {
-            return read();
-        } catch (const InputError& error) {
-            const toml::node* node = table_.get(key);
-            fail(node == nullptr ? table_ : *node, key, error.what());
-        }
-    }
-
-    // Texts of a rig stand in scenes, settings, pages and messages, where a line's end or an escape
-    // would be read as more than text.
-    void require_one_line(const toml::node& node,
-                          std::string_view key,
-                          std::string_view text) const {
-        if (has_control_characters(text)) {
-            fail(node,
-                 key,
-                 fmt::format("found '{}'; allowed: a text without control characters",
-                             printable(text.substr(0, kMostTextBytes))));
-        }
-        if (text.size() > kMostTextBytes) {
-            fail(node,
-                 key,
-                 fmt::format(
-                     "found a text of {} bytes; allowed: up to {}", text.size(), kMostTextBytes));
-        }
-    }
-
-  private:
-    [[nodiscard]] std::string one_line(const toml::node& node, std::string_view key) const {
-        std::string text = *node.value<std::string>();
-        require_one_line(node, key, text);
-        return text;
-    }
-
-    static bool is_within(const toml::node& node, Bounds bounds) {
-        if (!node.is_number()) return false;
-        const auto value = node.value<double>();  // nothing: an integer that no double holds
-        return value && *value >= bounds.least && *value <= bounds.most;  // false for NaN
-    }
-
-    [[nodiscard]] bool is_known(std::string_view key) const {
-        return std::find(known_.begin(), known_.end(), key) != known_.end();
-    }
-
-    static std::size_t line(const toml::node& node) {
-        return std::max<std::size_t>(1, node.source().begin.line);
-    }
-
-    [[nodiscard]] std::string name_of(std::string_view key) const {
-        const std::string name = printable(key);
-        return path_.empty() ? name : fmt::format("{}.{}", path_, name);
-    }
-
-    const toml::table& table_;
-    std::string path_;
-    const std::string& file_;
-    std::vector<std::string> known_;
-};
-
 class RigReader {
   public:
-    RigReader(std::string_view toml, fs::path folder) : folder_(std::move(folder)), toml_(toml) {}
+    RigReader(std::string_view toml, fs::path folder) : files_(std::move(folder)), toml_(toml) {}
 
     Rig read(Section top);
 
@@ -374,7 +122,6 @@ class RigReader {
     Camera read_camera(Section section, Mounting& mounting);
     Sensor read_response(Section& camera);
     Sensor read_response_table(Section response);
-    Water read_water(Section section);
     Seafloor read_seafloor(Section section);
     Beam read_beam(Section section, std::string name, const Water& water);
     std::vector<Beam> read_beams(Section& top, const Water& water);
@@ -388,68 +135,11 @@ class RigReader {
     Shape read_shape(Section& object, std::string_view key);
     Mesh read_mesh_of(Section& object);
     std::vector<Object> read_objects(Section& top, const std::vector<Strobe>& strobes);
-    Spectrum curve(Section& section,
-                   std::string_view key,
-                   CurveRole role,
-                   const std::string& absent);
-    std::vector<Spectrum> curves(Section& section, std::string_view key, CurveRole role);
-    std::vector<Spectrum> curves_named(const Section& section,
-                                       std::string_view key,
-                                       const std::string& name,
-                                       CurveRole role);
     std::vector<Spectrum> read_materials(Section& top);
 
-    std::string read_beside(const std::string& name, const fs::path& file, std::size_t most_bytes);
-    [[nodiscard]] std::string digest() const;
-
-    fs::path folder_;
+    RigFiles files_;
     std::string toml_;
-    std::vector<RigFile> files_;
 };
-
-// What a file holds counts in the rig's digest.
-std::string RigReader::read_beside(const std::string& name,
-                                   const fs::path& file,
-                                   std::size_t most_bytes) {
-    std::string text = read_text_file(file, most_bytes);
-    files_.push_back({.name = name, .sha256 = sha256_of_text(text)});
-    return text;
-}
-
-std::string RigReader::digest() const {
-    std::string digested = toml_;
-    for (const RigFile& file : files_) digested += file.sha256;
-    return sha256_of_text(digested);
-}
-
-// Curves by built-in name or from a CSV file beside the rig.
-std::vector<Spectrum> RigReader::curves(Section& section, std::string_view key, CurveRole role) {
-    return curves_named(
-        section,
-        key,
-        section.text(key, "a built-in table's name (aphotic data) or a .csv file beside the rig"),
-        role);
-}
-
-std::vector<Spectrum> RigReader::curves_named(const Section& section,
-                                              std::string_view key,
-                                              const std::string& name,
-                                              CurveRole role) {
-    return section.at_key(key, [&] {
-        std::vector<Spectrum> curves = load_curves(name, role, folder_);
-        const CurveSource& source = curves.front().source().value();
-        if (source.is_file()) files_.push_back({.name = name, .sha256 = source.file_sha256});
-        return curves;
-    });
-}
-
-Spectrum RigReader::curve(Section& section,
-                          std::string_view key,
-                          CurveRole role,
-                          const std::string& absent) {
-    if (section.has(key)) return curves(section, key, role).front();
-    return load_curve(absent, role, folder_);
-}
 
 // What navigation means by an altitude.
 void read_altitude_meaning(Section& sled, Mounting& mounting) {
@@ -535,16 +225,17 @@ PortWindow RigReader::read_calibrated_port(Section section, const CalibratedPort
 
 Sensor RigReader::read_response_table(Section response) {
     if (response.has("table")) {
-        std::vector<Spectrum> channels = curves(response, "table", CurveRole::SensorResponse);
+        std::vector<Spectrum> channels =
+            files_.curves(response, "table", CurveRole::SensorResponse);
         const bool energy = response.word("kind", {"energy", "quantum"}) == "energy";
         response.refuse_unknown_keys();
         return {std::move(channels), energy ? ResponseKind::Energy : ResponseKind::Quantum};
     }
     const bool is_mono = response.has("quantum_efficiency") && !response.has("filters");
     std::vector<Spectrum> filters;
-    if (!is_mono) filters = curves(response, "filters", CurveRole::FilterTransmittance);
+    if (!is_mono) filters = files_.curves(response, "filters", CurveRole::FilterTransmittance);
     std::vector<Spectrum> efficiency =
-        curves(response, "quantum_efficiency", CurveRole::QuantumEfficiency);
+        files_.curves(response, "quantum_efficiency", CurveRole::QuantumEfficiency);
     response.refuse_unknown_keys();
     if (is_mono) return Sensor::mono(efficiency.front());
     return Sensor::filtered(std::move(filters), std::move(efficiency.front()));
@@ -571,8 +262,7 @@ std::optional<CameraCalibration> RigReader::read_calibration(Section& section) {
     const std::string name =
         section.text("calibration", "the name of a camera calibration beside the rig");
     return section.at_key("calibration", [&] {
-        const std::string text =
-            read_beside(name, file_beside(folder_, name), kMostCalibrationBytes);
+        const std::string text = files_.read(name, kMostCalibrationBytes);
         CameraCalibration calibration = parse_calibration(name, text);
         naming(name, [&] {
             require_to_hold(calibration.lens, calibration.width_px, calibration.height_px);
@@ -629,7 +319,7 @@ void RigReader::read_lens(Section& section,
 TabulatedVignetting RigReader::read_vignetting_table(Section& section) {
     const std::string name = section.text("table", "the name of a .csv file beside the rig");
     return section.at_key("table", [&] {
-        const std::string text = read_beside(name, file_beside(folder_, name), kMostTableBytes);
+        const std::string text = files_.read(name, kMostTableBytes);
         return parse_vignetting_csv(name, text);
     });
 }
@@ -738,21 +428,11 @@ Camera RigReader::read_camera(Section section, Mounting& mounting) {
     return camera;
 }
 
-Water RigReader::read_water(Section section) {
-    Water water{.absorption_per_m =
-                    curve(section, "absorption", CurveRole::WaterAbsorption, "pope-fry-1997"),
-                .multiple = section.number_or("multiple", kMultiple, 1.0),
-                .uniform_loss_per_m = section.number_or("uniform_loss_per_m", kLossPerM, 0.0),
-                .salinity_psu = section.number_or("salinity_psu", kSalinityPsu, 35.0),
-                .temperature_c = section.number_or("temperature_c", kTemperatureC, 10.0)};
-    section.refuse_unknown_keys();
-    return water;
-}
-
 Seafloor RigReader::read_seafloor(Section section) {
-    Seafloor floor{.reflectance = curve(section, "reflectance", CurveRole::Reflectance, "sand"),
-                   .phong = section.number_or("phong", kPhong, 0.0),
-                   .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
+    Seafloor floor{
+        .reflectance = files_.curve(section, "reflectance", CurveRole::Reflectance, "sand"),
+        .phong = section.number_or("phong", kPhong, 0.0),
+        .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
     section.refuse_unknown_keys();
     return floor;
 }
@@ -763,7 +443,8 @@ std::vector<Spectrum> RigReader::read_materials(Section& top) {
     const std::string allowed =
         "an array of built-in reflectances (aphotic data) or .csv files beside the rig";
     for (const std::string& name : top.texts("materials", allowed)) {
-        materials.push_back(curves_named(top, "materials", name, CurveRole::Reflectance).front());
+        materials.push_back(
+            files_.curves_named(top, "materials", name, CurveRole::Reflectance).front());
     }
     return materials;
 }
@@ -800,7 +481,7 @@ BeamTable RigReader::read_beam_table(Section& section) {
     if (!is_photometric_file_name(name)) section.found_but("table", allowed);
     return section.at_key("table", [&] {
         const auto read = [&](const std::string& file) {
-            return read_beside(file, file_beside(folder_, file), kMostPhotometricBytes);
+            return files_.read(file, kMostPhotometricBytes);
         };
         const PhotometricFile file = parse_photometric_file(name, read(name), read);
         if (file.tilt &&
@@ -956,13 +637,14 @@ Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, c
             "position_m",
             fmt::format("a point at least {} m above the sea floor", kLeastDistance_m));
     }
-    Strobe strobe{.name = section.text("name", "a name in quotes"),
-                  .position_m = {x, y, z},
-                  .axis = read_axis(section, {x, y, z}),
-                  .beam = {},
-                  .spectrum = curve(section, "spectrum", CurveRole::LampSpectrum, "xenon-flash"),
-                  .power = 1.0,
-                  .emitter = std::nullopt};
+    Strobe strobe{
+        .name = section.text("name", "a name in quotes"),
+        .position_m = {x, y, z},
+        .axis = read_axis(section, {x, y, z}),
+        .beam = {},
+        .spectrum = files_.curve(section, "spectrum", CurveRole::LampSpectrum, "xenon-flash"),
+        .power = 1.0,
+        .emitter = std::nullopt};
     strobe.power = read_power(section, strobe.spectrum);
     strobe.is_absolute =
         section.has("luminous_flux_lm") || section.has("radiant_flux_w") || section.has("energy_j");
@@ -999,8 +681,8 @@ Mesh RigReader::read_mesh_of(Section& object) {
         position_m = Eigen::Vector3d(object.numbers<3>("position_m", kPositionM).data());
     }
     return object.at_key("file", [&] {
-        const fs::path file = file_beside(folder_, name);
-        const std::string obj = read_beside(name, file, kMostMeshBytes);
+        const fs::path file = files_.path_of(name);
+        const std::string obj = files_.read(name, kMostMeshBytes);
         return parse_mesh(file.string(), obj, position_m);
     });
 }
@@ -1038,11 +720,12 @@ void require_place(const Shape& shape, const std::vector<Strobe>& strobes) {
 Object RigReader::read_object(Section section, const std::vector<Strobe>& strobes) {
     std::string name = section.text("name", "a name in quotes");
     const std::string_view key = place_key(section.word("shape", {"sphere", "box", "mesh"}));
-    Object object{.name = std::move(name),
-                  .shape = read_shape(section, key),
-                  .reflectance = curves(section, "reflectance", CurveRole::Reflectance).front(),
-                  .phong = section.number_or("phong", kPhong, 0.0),
-                  .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
+    Object object{
+        .name = std::move(name),
+        .shape = read_shape(section, key),
+        .reflectance = files_.curves(section, "reflectance", CurveRole::Reflectance).front(),
+        .phong = section.number_or("phong", kPhong, 0.0),
+        .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
     section.refuse_unknown_keys();
     (void)section.at_key(key, [&] {
         require_place(object.shape, strobes);
@@ -1124,7 +807,7 @@ Rig RigReader::read(Section top) {
     Mounting mounting;
     const Sled sled = read_sled(top.section("sled", "a table [sled]"), mounting);
     Camera camera = read_camera(top.section("camera", "a table [camera]"), mounting);
-    Water water = read_water(top.section("water", "a table [water]"));
+    Water water = read_water(top.section("water", "a table [water]"), files_);
     Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"));
 
     const std::vector<Beam> beams = read_beams(top, water);
@@ -1134,7 +817,7 @@ Rig RigReader::read(Section top) {
     fs::path scene;
     if (top.has("scene")) {
         const std::string name = top.text("scene", "a POV-Ray scene beside the rig");
-        scene = top.at_key("scene", [&] { return file_beside(folder_, name); });
+        scene = top.at_key("scene", [&] { return files_.path_of(name); });
     }
     top.refuse_unknown_keys();
 
@@ -1148,9 +831,9 @@ Rig RigReader::read(Section top) {
             .materials = std::move(materials),
             .objects = std::move(objects),
             .scene = std::move(scene),
-            .digest = digest(),
+            .digest = files_.digest(toml_),
             .toml = toml_,
-            .files = files_};
+            .files = files_.all()};
     const Section camera_section = top.section("camera", "a table [camera]");
     (void)camera_section.at_key("range_nm", [&] {
         require_tables_to_cover_the_range(rig);

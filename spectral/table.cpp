@@ -34,6 +34,15 @@ const std::vector<RoleRule>& role_rules() {
     const std::string nm = "wavelength_nm";
     static const std::vector<RoleRule> kRules{
         {CurveRole::WaterAbsorption, "water absorption", {{nm, "absorption_per_m"}}, kNoUpperBound},
+        {CurveRole::WaterScattering, "water scattering", {{nm, "scattering_per_m"}}, kNoUpperBound},
+        {CurveRole::WaterAttenuation,
+         "water attenuation",
+         {{nm, "attenuation_per_m"}},
+         kNoUpperBound},
+        {CurveRole::WaterType,
+         "water type",
+         {{nm, "absorption_per_m", "scattering_per_m"}},
+         kNoUpperBound},
         {CurveRole::LampSpectrum,
          "lamp spectrum",
          {{nm, "relative_power"}, {nm, "radiant_flux_w_per_nm"}},

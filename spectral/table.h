@@ -13,6 +13,9 @@
 // The role that a curve is to play fixes the header rows and the values that are allowed:
 //
 //   WaterAbsorption      wavelength_nm,absorption_per_m        0 or more      [1/m]
+//   WaterScattering      wavelength_nm,scattering_per_m        0 or more      [1/m]
+//   WaterAttenuation     wavelength_nm,attenuation_per_m       0 or more      [1/m]
+//   WaterType            wavelength_nm,absorption_per_m,scattering_per_m      [1/m]
 //   LampSpectrum         wavelength_nm,relative_power          0 or more      [relative per nm]
 //                        wavelength_nm,radiant_flux_w_per_nm   0 or more      [W/nm]
 //   Reflectance          wavelength_nm,reflectance             0 to 1         [1]
@@ -62,6 +65,9 @@ inline constexpr std::size_t kMostTableBytes = std::size_t{64} << 20U;
 
 enum class CurveRole {
     WaterAbsorption,
+    WaterScattering,
+    WaterAttenuation,
+    WaterType,
     LampSpectrum,
     Reflectance,
     SensorResponse,
@@ -71,6 +77,9 @@ enum class CurveRole {
 };
 
 inline constexpr std::array kCurveRoles{CurveRole::WaterAbsorption,
+                                        CurveRole::WaterScattering,
+                                        CurveRole::WaterAttenuation,
+                                        CurveRole::WaterType,
                                         CurveRole::LampSpectrum,
                                         CurveRole::Reflectance,
                                         CurveRole::SensorResponse,

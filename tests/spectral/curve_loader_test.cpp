@@ -32,26 +32,24 @@ Spectrum built_in(const std::string& name, CurveRole role) {
 TEST(BuiltinTables, AreThoseOfTheManual) {
     std::set<std::string> names;
     for (const BuiltinTable& table : builtin_tables()) names.emplace(table.name);
-    EXPECT_EQ(names,
-              (std::set<std::string>{"pope-fry-1997",
-                                     "pure-2016",
-                                     "xenon-flash",
-                                     "xenon-arc",
-                                     "sand",
-                                     "green-algae",
-                                     "brown-algae",
-                                     "red-algae",
-                                     "nikon-d5100",
-                                     "cie-1931",
-                                     "cie-d65",
-                                     "cie-led-b4",
-                                     "cie-led-b5",
-                                     "bk7",
-                                     "fused-silica",
-                                     "sapphire",
-                                     "pmma",
-                                     "polycarbonate",
-                                     "quan-fry-1995"}));
+    EXPECT_EQ(names, (std::set<std::string>{"pope-fry-1997",  "pure-2016",
+                                            "xenon-flash",    "xenon-arc",
+                                            "sand",           "green-algae",
+                                            "brown-algae",    "red-algae",
+                                            "nikon-d5100",    "cie-1931",
+                                            "cie-d65",        "cie-led-b4",
+                                            "cie-led-b5",     "bk7",
+                                            "fused-silica",   "sapphire",
+                                            "pmma",           "polycarbonate",
+                                            "quan-fry-1995",  "jerlov-IB",
+                                            "jerlov-II",      "jerlov-III",
+                                            "jerlov-1C",      "jerlov-3C",
+                                            "jerlov-5C",      "jerlov-I-2015",
+                                            "jerlov-IA-2015", "jerlov-IB-2015",
+                                            "jerlov-II-2015", "jerlov-III-2015",
+                                            "jerlov-1C-2015", "jerlov-3C-2015",
+                                            "jerlov-5C-2015", "jerlov-7C-2015",
+                                            "jerlov-9C-2015"}));
     EXPECT_EQ(names.size(), builtin_tables().size());
 }
 

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// One table of a rig file, as its readers ask for it: every key by name, its type and bounds
+// checked, and in the end no key that nobody asked for. Every fault is an InputError
+// "file:line: key: what was found; allowed: ...".
+#pragma once
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+// Strobes, beams, cones of a beam, materials, objects: of each. What is done for one is done beside
+// all the others.
+inline constexpr std::size_t kMostOfAKind = 1024;
+
+// Any title or file name; and POV-Ray reads a comment of it.
+inline constexpr std::size_t kMostTextBytes = 1000;
+
+struct Bounds {
+    double least;
+    double most;
+};
+
+[[nodiscard]] std::string allowed_number(Bounds bounds);
+
+// One table of the rig file, which knows where it stands and which of its keys were asked for.
+class Section {
+  public:
+    Section(const toml::table& table, std::string path, const std::string& file)
+        : table_(table), path_(std::move(path)), file_(file) {}
+
+    [[noreturn]] void fail(const toml::node& node,
+                           std::string_view key,
+                           const std::string& what) const;
+
+    [[noreturn]] void fail_at(std::string_view key, const std::string& what) const {
+        fail(*table_.get(key), key, what);
+    }
+
+    [[noreturn]] void found_but(std::string_view key, const std::string& allowed) const;
+
+    [[nodiscard]] bool has(std::string_view key);
+
+    [[nodiscard]] const toml::node& required(std::string_view key, const std::string& allowed);
+
+    [[nodiscard]] double number(std::string_view key, Bounds bounds);
+
+    [[nodiscard]] double number_or(std::string_view key, Bounds bounds, double absent) {
+        return has(key) ? number(key, bounds) : absent;
+    }
+
+    template <std::size_t n>
+    [[nodiscard]] std::array<double, n> numbers(std::string_view key, Bounds bounds) {
+        const std::string allowed =
+            fmt::format("an array of {} numbers, each from {} to {}", n, bounds.least, bounds.most);
+        const toml::array* array = required(key, allowed).as_array();
+        if (array == nullptr || array->size() != n) found_but(key, allowed);
+        std::array<double, n> values{};
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!is_within((*array)[i], bounds)) found_but(key, allowed);
+            values[i] = *(*array)[i].template value<double>();
+        }
+        return values;
+    }
+
+    [[nodiscard]] std::string text(std::string_view key, const std::string& allowed);
+
+    [[nodiscard]] std::string text_or(std::string_view key,
+                                      const std::string& allowed,
+                                      std::string absent) {
+        return has(key) ? text(key, allowed) : absent;
+    }
+
+    [[nodiscard]] std::vector<std::string> texts(std::string_view key, const std::string& allowed);
+
+    void require_few(std::string_view key, std::size_t count) const;
+
+    // One of a few words.
+    [[nodiscard]] std::string word(std::string_view key, const std::vector<std::string>& words);
+
+    [[nodiscard]] Section section(std::string_view key, const std::string& allowed);
+
+    // The tables of an array, which may not be empty.
+    [[nodiscard]] std::vector<Section> sections(std::string_view key, const std::string& allowed);
+
+    [[nodiscard]] std::vector<std::string> keys() const;
+
+    // Call when every key that is known has been asked for.
+    void refuse_unknown_keys() const;
+
+    // Before any is asked for: where another key stands in place of one that is required, that is
+    // the cause.
+    void refuse_keys_but(const std::vector<std::string>& known);
+
+    // Ways to say one thing.
+    void refuse_both(std::initializer_list<std::string_view> keys);
+
+    // Runs read(), and puts file, line and key before whatever InputError comes out of it.
+    template <typename Read>
+    [[nodiscard]] auto at_key(std::string_view key, Read read) const {
+        try {
+            return read();
+        } catch (const InputError& error) {
+            const toml::node* node = table_.get(key);
+            fail(node == nullptr ? table_ : *node, key, error.what());
+        }
+    }
+
+    // Texts of a rig stand in scenes, settings, pages and messages, where a line's end or an escape
+    // would be read as more than text.
+    void require_one_line(const toml::node& node,
+                          std::string_view key,
+                          std::string_view text) const;
+
+  private:
+    [[nodiscard]] std::string one_line(const toml::node& node, std::string_view key) const;
+
+    static bool is_within(const toml::node& node, Bounds bounds);
+
+    [[nodiscard]] bool is_known(std::string_view key) const {
+        return std::find(known_.begin(), known_.end(), key) != known_.end();
+    }
+
+    static std::size_t line(const toml::node& node) {
+        return std::max<std::size_t>(1, node.source().begin.line);
+    }
+
+    [[nodiscard]] std::string name_of(std::string_view key) const;
+
+    const toml::table& table_;
+    std::string path_;
+    const std::string& file_;
+    std::vector<std::string> known_;
+};
+
+}  // namespace aphotic
