@@ -281,6 +281,8 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     for (const double nm : index_nodes_nm_)
         ray_tables_.push_back(ray_table(rig_, nm, options_.threads));
     if (paths_.longest_m > 0.0) tabulate();
+    if (rig.water.scatters() && options.has_veil)
+        veil_ = std::make_shared<VeilMap>(rig, paths_, options.error);
 }
 
 void LightmapMaker::tabulate() {
@@ -462,13 +464,14 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
             store(work.sums, row, static_cast<int>(block) * kRowBlock, map);
         }
     };
-    const auto take_off = [&](int row) {
+    map.veil.clear();
+    if (veil_) veil_->rows_into(sled, first_row, count, options_.threads, map.veil);
+    const auto take_off = [&](int row, std::vector<float>& all) {
         const auto width = static_cast<std::size_t>(map.width_px);
         const float* const V = &vignetting_[static_cast<std::size_t>(first_row + row) * width];
-        for (std::size_t c = 0; c < kChannels; ++c) {
+        for (std::size_t c = 0; c < kChannels && !all.empty(); ++c) {
             float* const samples =
-                &map.samples[(c * static_cast<std::size_t>(count) + static_cast<std::size_t>(row)) *
-                             width];
+                &all[(c * static_cast<std::size_t>(count) + static_cast<std::size_t>(row)) * width];
             for (std::size_t i = 0; i < width; ++i) samples[i] *= V[i];
         }
     };
@@ -477,7 +480,9 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
                  workspaces.size(),
                  [&](std::size_t row, std::size_t thread) {
                      make_row(static_cast<int>(row), workspaces[thread]);
-                     if (!vignetting_.empty()) take_off(static_cast<int>(row));
+                     if (vignetting_.empty()) return;
+                     take_off(static_cast<int>(row), map.samples);
+                     take_off(static_cast<int>(row), map.veil);
                  });
     const auto sum_of = [&](int Outside::*kind) {
         long long sum = 0;

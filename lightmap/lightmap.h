@@ -26,6 +26,7 @@
 #include "lightmap/beam_edges.h"
 #include "lightmap/path_table.h"
 #include "lightmap/ray_table.h"
+#include "lightmap/veil_map.h"
 #include "rig/path_range.h"
 #include "rig/rig.h"
 #include "spectral/bands.h"
@@ -41,7 +42,8 @@ struct LightmapOptions {
     // Relative, of the spectral integral and of its table. The rounding of floats comes on top, and
     // behind a port the interpolation over the index.
     double error = 1e-5;
-    int threads = 1;  // changes no bit
+    int threads = 1;       // changes no bit
+    bool has_veil = true;  // where the water scatters
 };
 
 // How far a signal of a map may be from the exact one of the same lamps, relative, off the beams'
@@ -63,6 +65,9 @@ struct Lightmap {
     int width_px = 0;
     int height_px = 0;
     std::vector<float> samples;
+    // What the water scatters into the view (veil_map.h), in the same unit: the signal is
+    // samples + veil. Empty where the water does not scatter.
+    std::vector<float> veil{};
 };
 
 inline constexpr std::size_t kIndexNodes = 3;
@@ -117,7 +122,8 @@ class LightmapMaker {
     std::vector<float> vignetting_;                            // by pixel; empty: none
     std::vector<LightTables> tables_;                          // by lamp spectrum
     std::vector<std::size_t> spectrum_of_strobe_;
-    std::vector<BeamEdges> edges_;  // by strobe
+    std::vector<BeamEdges> edges_;         // by strobe
+    std::shared_ptr<const VeilMap> veil_;  // none where the water does not scatter
 };
 
 // Throws InputError, which names the sled's pose and the strobe, unless the sled holds all lamps of
