@@ -192,6 +192,25 @@ void move_to_totals(Workspace& work) {
     }
 }
 
+Lightmap rows_of(const Lightmap& map, int first_row, int count) {
+    const auto some = [&](const std::vector<float>& all) {
+        const auto width = static_cast<std::size_t>(map.width_px);
+        const auto height = static_cast<std::size_t>(map.height_px);
+        const std::size_t size = width * static_cast<std::size_t>(count);
+        std::vector<float> samples(kChannels * size);
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const float* const from =
+                &all[(c * height + static_cast<std::size_t>(first_row)) * width];
+            std::copy_n(from, size, &samples[c * size]);
+        }
+        return samples;
+    };
+    return {.width_px = map.width_px,
+            .height_px = count,
+            .samples = some(map.samples),
+            .veil = some(map.veil)};
+}
+
 std::size_t block_of(int column) {
     return static_cast<std::size_t>(column / kRowBlock);
 }
@@ -273,7 +292,8 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     : rig_(rig), options_(options), spectrum_of_strobe_(lamps_by_strobe(rig)) {
     require_bare_floor(rig);
     for (const Strobe& strobe : rig.strobes) edges_.push_back(beam_edges(strobe));
-    paths_ = paths ? *paths : path_range(rig);
+    const PathRange direct = paths ? *paths : path_range(rig);
+    paths_ = direct;
     // The rig's own end where the floor does, or else where its light does.
     if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
     if (rig.camera.vignetting) vignetting_ = vignetting_plane(rig.camera);
@@ -282,7 +302,12 @@ LightmapMaker::LightmapMaker(const Rig& rig,
         ray_tables_.push_back(ray_table(rig_, nm, options_.threads));
     if (paths_.longest_m > 0.0) tabulate();
     if (rig.water.scatters() && options.has_veil)
-        veil_ = std::make_shared<VeilMap>(rig, paths_, options.error);
+        veil_ = std::make_shared<VeilMap>(
+            rig,
+            PathRange{.shortest_m = direct.shortest_m,
+                      .longest_m = direct.longest_m,
+                      .has_horizon = direct.has_horizon || ends_in_darkness(rig.water, direct)},
+            options.error);
 }
 
 void LightmapMaker::tabulate() {
@@ -385,6 +410,15 @@ void LightmapMaker::map_into(const Sled& sled, Lightmap& map) const {
 }
 
 void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightmap& map) const {
+    if (veil_) {
+        const VeilMap::Rows rows = veil_->rows_for({.first = first_row, .count = count});
+        if (rows.first != first_row || rows.count != count) {
+            Lightmap more;
+            rows_into(sled, rows.first, rows.count, more);
+            map = rows_of(more, first_row - rows.first, count);
+            return;
+        }
+    }
     map.width_px = rig_.camera.width_px;
     map.height_px = count;
     map.samples.resize(kChannels * static_cast<std::size_t>(map.width_px) *
@@ -464,12 +498,10 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
             store(work.sums, row, static_cast<int>(block) * kRowBlock, map);
         }
     };
-    map.veil.clear();
-    if (veil_) veil_->rows_into(sled, first_row, count, options_.threads, map.veil);
     const auto take_off = [&](int row, std::vector<float>& all) {
         const auto width = static_cast<std::size_t>(map.width_px);
         const float* const V = &vignetting_[static_cast<std::size_t>(first_row + row) * width];
-        for (std::size_t c = 0; c < kChannels && !all.empty(); ++c) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
             float* const samples =
                 &all[(c * static_cast<std::size_t>(count) + static_cast<std::size_t>(row)) * width];
             for (std::size_t i = 0; i < width; ++i) samples[i] *= V[i];
@@ -480,9 +512,8 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
                  workspaces.size(),
                  [&](std::size_t row, std::size_t thread) {
                      make_row(static_cast<int>(row), workspaces[thread]);
-                     if (vignetting_.empty()) return;
-                     take_off(static_cast<int>(row), map.samples);
-                     take_off(static_cast<int>(row), map.veil);
+                     if (!vignetting_.empty() && !veil_)
+                         take_off(static_cast<int>(row), map.samples);
                  });
     const auto sum_of = [&](int Outside::*kind) {
         long long sum = 0;
@@ -490,6 +521,15 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
         return sum;
     };
     require_served(sled, sum_of(&Outside::before) > 0, sum_of(&Outside::beyond) > 0);
+    map.veil.clear();
+    if (!veil_) return;
+    veil_->rows_into(
+        sled, {.first = first_row, .count = count}, map.samples, options_.threads, map.veil);
+    if (vignetting_.empty()) return;
+    for (int row = 0; row < count; ++row) {
+        take_off(row, map.samples);
+        take_off(row, map.veil);
+    }
 }
 
 std::vector<double> LightmapMaker::cones(const Sled& sled) const {

@@ -14,6 +14,16 @@ namespace {
 
 constexpr double kVeilGridShare = 0.1;
 constexpr double kVeilTableShare = 0.5;
+constexpr int kVeilStencil = 4;
+constexpr std::size_t kMostCell_px = 18;
+
+// Lagrange's through 0, 1, 2, 3.
+std::array<double, 4> lagrange_weights(double a) {
+    const double b = a - 1.0;
+    const double c = a - 2.0;
+    const double d = a - 3.0;
+    return {-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0};
+}
 
 // A water whose direct light is lost at this one's c'.
 Water lost_from_veil(const Rig& rig) {
@@ -91,7 +101,11 @@ double middle_index_nm(const Rig& rig) {
 }  // namespace
 
 VeilMap::VeilMap(const Rig& rig, const PathRange& direct, double error)
-    : rig_(rig), veil_(rig), lambda_nm_(middle_index_nm(rig)) {
+    : rig_(rig),
+      veil_(rig, kVeilMapPoints),
+      across_(rig.camera.width_px),
+      down_(rig.camera.height_px),
+      lambda_nm_(middle_index_nm(rig)) {
     const Water water = lost_from_veil(rig);
     const PathRange paths = veil_paths(rig, water, direct);
     LightFamily family{.sources = {},
@@ -121,7 +135,8 @@ VeilMap::VeilMap(const Rig& rig, const PathRange& direct, double error)
 
 VeilMap::Signal VeilMap::table_at(const std::vector<float>& table, double path_m) const {
     const double place = (path_m - steps_.first_m) * steps_.steps_per_m;
-    // Rounding may lead out of it a little; beyond the horizon's end nothing is left.
+    // Rounding may lead out of it a little. Beyond the horizon's end nothing is left.
+    if (place > steps_.count + 0.01) return {};
     const int step = std::clamp(static_cast<int>(place), 0, steps_.count - 1);
     const double t = place - step;
     const float* const of_step = &table[static_cast<std::size_t>(step) * kTableStride];
@@ -135,8 +150,8 @@ VeilMap::Signal VeilMap::table_at(const std::vector<float>& table, double path_m
     return signal;
 }
 
-VeilMap::Signal VeilMap::at(const Rig& flown, int column, int row, VeilNodes& nodes) const {
-    const VeilSight sight = sight_of(flown, column + 0.5, row + 0.5, lambda_nm_);
+VeilMap::Signal VeilMap::at(const Rig& flown, double column, double row, VeilNodes& nodes) const {
+    const VeilSight sight = sight_of(flown, column, row, lambda_nm_);
     Signal sum{};
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
         veil_.nodes(s, sight.ray, sight.length_m, nodes);
@@ -155,22 +170,277 @@ VeilMap::Signal VeilMap::at(const Rig& flown, int column, int row, VeilNodes& no
     return sum;
 }
 
-void VeilMap::rows_into(
-    const Sled& sled, int first_row, int count, int threads, std::vector<float>& samples) const {
-    const auto width = static_cast<std::size_t>(rig_.camera.width_px);
-    const auto rows = static_cast<std::size_t>(count);
-    samples.resize(kChannels * width * rows);
+VeilMap::Axis::Axis(int count)
+    : pixels(count),
+      cells(std::max(kVeilStencil - 1, static_cast<int>(std::ceil((count - 1) / kVeilCell_px)))),
+      apart_px(std::max(1, count - 1) / static_cast<double>(cells)) {}
+
+int VeilMap::Axis::first_pixel(int cell) const {
+    if (cell >= cells) return pixels;
+    return static_cast<int>(std::ceil(cell * apart_px));
+}
+
+VeilMap::Rows VeilMap::rows_for(Rows wanted) const {
+    const auto cell_of = [&](int row) {
+        int cell = std::min(down_.cells - 1, static_cast<int>(row / down_.apart_px));
+        while (down_.first_pixel(cell) > row) --cell;
+        while (down_.first_pixel(cell + 1) <= row) ++cell;
+        return cell;
+    };
+    const int first = down_.first_pixel(cell_of(wanted.first));
+    const int end = down_.first_pixel(cell_of(wanted.first + wanted.count - 1) + 1);
+    return {first, end - first};
+}
+
+// A row of cells.
+class VeilMap::Strip {
+  public:
+    Strip(const VeilMap& map,
+          const Rig& flown,
+          const std::vector<Signal>& nodes,  // of all rows of nodes that are there
+          int first_node_row,
+          Rows rows,
+          const std::vector<float>& floor,
+          std::vector<float>& samples)
+        : map_(map),
+          flown_(flown),
+          nodes_(nodes),
+          first_node_row_(first_node_row),
+          rows_(rows),
+          floor_(floor),
+          samples_(samples) {}
+
+    void fill(int cell_row, VeilNodes& room) const {
+        for (int cell = 0; cell < map_.across_.cells; ++cell) fill_cell(cell_row, cell, room);
+    }
+
+  private:
+    static constexpr auto kSide = static_cast<std::size_t>(kVeilStencil);
+    using Stencil = std::array<std::array<Signal, kSide>, kSide>;
+    // Where a stencil begins, and how its nodes lie in the image.
+    struct Place {
+        double first_column;
+        double first_row;
+        double apart_column;
+        double apart_row;
+    };
+
+    static Signal cubic(const Stencil& nodes, const Place& place, double column, double row) {
+        const auto of_column = lagrange_weights((column - place.first_column) / place.apart_column);
+        const auto of_row = lagrange_weights((row - place.first_row) / place.apart_row);
+        Signal sum{};
+        for (std::size_t j = 0; j < kSide; ++j) {
+            for (std::size_t i = 0; i < kSide; ++i) {
+                for (std::size_t c = 0; c < kChannels; ++c)
+                    sum[c] += of_row[j] * of_column[i] * nodes[j][i][c];
+            }
+        }
+        return sum;
+    }
+
+    [[nodiscard]] std::size_t index(std::size_t channel, int row, int column) const {
+        const auto width = static_cast<std::size_t>(map_.across_.pixels);
+        return (channel * static_cast<std::size_t>(rows_.count) +
+                static_cast<std::size_t>(row - rows_.first)) *
+                   width +
+               static_cast<std::size_t>(column);
+    }
+
+    // Whether the cubic is right there, as far as the signal of the nearest of these pixels asks.
+    bool holds(const Signal& found, const Signal& exact, int row, int column) const {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const double signal = exact[c] + static_cast<double>(floor_[index(c, row, column)]);
+            if (std::abs(found[c] - exact[c]) > kVeilOff * signal) return false;
+        }
+        return true;
+    }
+
+    // Pixels of a part of the image, by one cubic.
+    void store(const Stencil& nodes, const Place& place, Rows rows, Rows columns) const {
+        std::array<std::array<double, kSide>, kMostCell_px> weights{};
+        for (int i = 0; i < columns.count; ++i) {
+            weights[static_cast<std::size_t>(i)] = lagrange_weights(
+                (columns.first + i + 0.5 - place.first_column) / place.apart_column);
+        }
+        for (int row = rows.first; row < rows.first + rows.count; ++row) {
+            const auto of_row = lagrange_weights((row + 0.5 - place.first_row) / place.apart_row);
+            for (std::size_t c = 0; c < kChannels; ++c) {
+                std::array<double, kSide> line{};
+                for (std::size_t j = 0; j < kSide; ++j) {
+                    for (std::size_t i = 0; i < kSide; ++i) line[i] += of_row[j] * nodes[j][i][c];
+                }
+                float* const to = &samples_[index(c, row, columns.first)];
+                for (int i = 0; i < columns.count; ++i) {
+                    const auto& w = weights[static_cast<std::size_t>(i)];
+                    to[i] = static_cast<float>(w[0] * line[0] + w[1] * line[1] + w[2] * line[2] +
+                                               w[3] * line[3]);
+                }
+            }
+        }
+    }
+
+    void fill_cell(int cell_row, int cell, VeilNodes& room) const {
+        const Axis& across = map_.across_;
+        const Axis& down = map_.down_;
+        const Rows rows =
+            pixels_between(down.first_pixel(cell_row), down.first_pixel(cell_row + 1));
+        const Rows columns = pixels_between(across.first_pixel(cell), across.first_pixel(cell + 1));
+        if (rows.count == 0 || columns.count == 0) return;
+        const int left = std::clamp(cell - 1, 0, across.cells + 1 - kVeilStencil);
+        const int top = std::clamp(cell_row - 1, 0, down.cells + 1 - kVeilStencil);
+        Stencil nodes;
+        for (int j = 0; j < kVeilStencil; ++j) {
+            for (int i = 0; i < kVeilStencil; ++i) {
+                nodes[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] =
+                    node(top + j, left + i);
+            }
+        }
+        const Place place{across.node_px(left), down.node_px(top), across.apart_px, down.apart_px};
+        const double column = across.node_px(cell + 0.5);
+        const double row = down.node_px(cell_row + 0.5);
+        const Signal middle = map_.at(flown_, column, row, room);
+        if (holds(cubic(nodes, place, column, row),
+                  middle,
+                  nearest(row, rows),
+                  nearest(column, columns)))
+            store(nodes, place, rows, columns);
+        else
+            refine(cell_row, cell, rows, columns, room);
+    }
+
+    void refine(int cell_row, int cell, Rows rows, Rows columns, VeilNodes& room) const {
+        const Axis& across = map_.across_;
+        const Axis& down = map_.down_;
+        constexpr auto kNodes = static_cast<std::size_t>(kVeilParts + 1);
+        const Place own{across.node_px(cell),
+                        down.node_px(cell_row),
+                        across.apart_px / kVeilParts,
+                        down.apart_px / kVeilParts};
+        std::array<std::array<Signal, kNodes>, kNodes> fine;
+        for (std::size_t j = 0; j < kNodes; ++j) {
+            for (std::size_t i = 0; i < kNodes; ++i) {
+                const auto x = static_cast<double>(i);
+                const auto y = static_cast<double>(j);
+                const bool is_corner = i % kVeilParts == 0 && j % kVeilParts == 0;
+                fine[j][i] = is_corner ? node(cell_row + static_cast<int>(j) / kVeilParts,
+                                              cell + static_cast<int>(i) / kVeilParts)
+                                       : map_.at(flown_,
+                                                 own.first_column + x * own.apart_column,
+                                                 own.first_row + y * own.apart_row,
+                                                 room);
+            }
+        }
+        for (int j = 0; j < kVeilParts; ++j) {
+            for (int i = 0; i < kVeilParts; ++i) {
+                const Rows part_rows = part_of(rows, own.first_row, own.apart_row, j);
+                const Rows part_columns = part_of(columns, own.first_column, own.apart_column, i);
+                if (part_rows.count == 0 || part_columns.count == 0) continue;
+                const int left = std::clamp(i - 1, 0, kVeilParts + 1 - kVeilStencil);
+                const int top = std::clamp(j - 1, 0, kVeilParts + 1 - kVeilStencil);
+                Stencil nodes;
+                for (std::size_t y = 0; y < kSide; ++y) {
+                    for (std::size_t x = 0; x < kSide; ++x)
+                        nodes[y][x] = fine[static_cast<std::size_t>(top) + y]
+                                          [static_cast<std::size_t>(left) + x];
+                }
+                const Place place{own.first_column + left * own.apart_column,
+                                  own.first_row + top * own.apart_row,
+                                  own.apart_column,
+                                  own.apart_row};
+                fill_part(nodes, place, own, i, j, part_rows, part_columns, room);
+            }
+        }
+    }
+
+    void fill_part(const Stencil& nodes,
+                   const Place& place,
+                   const Place& own,
+                   int i,
+                   int j,
+                   Rows rows,
+                   Rows columns,
+                   VeilNodes& room) const {
+        const double column = own.first_column + (i + 0.5) * own.apart_column;
+        const double row = own.first_row + (j + 0.5) * own.apart_row;
+        const Signal middle = map_.at(flown_, column, row, room);
+        if (holds(cubic(nodes, place, column, row),
+                  middle,
+                  nearest(row, rows),
+                  nearest(column, columns))) {
+            store(nodes, place, rows, columns);
+            return;
+        }
+        for (int y = rows.first; y < rows.first + rows.count; ++y) {
+            for (int x = columns.first; x < columns.first + columns.count; ++x) {
+                const Signal exact = map_.at(flown_, x + 0.5, y + 0.5, room);
+                for (std::size_t c = 0; c < kChannels; ++c)
+                    samples_[index(c, y, x)] = static_cast<float>(exact[c]);
+            }
+        }
+    }
+
+    static Rows pixels_between(int first, int end) { return {first, std::max(0, end - first)}; }
+    static int nearest(double place, Rows pixels) {
+        return std::clamp(static_cast<int>(place), pixels.first, pixels.first + pixels.count - 1);
+    }
+    // Pixels whose centres are in a part; the last part takes the last one, too.
+    static Rows part_of(Rows pixels, double first, double apart, int part) {
+        const auto at = [&](int k) {
+            const int pixel = static_cast<int>(std::ceil(first + k * apart - 0.5));
+            return std::clamp(pixel, pixels.first, pixels.first + pixels.count);
+        };
+        const int end = part + 1 == kVeilParts ? pixels.first + pixels.count : at(part + 1);
+        return pixels_between(part == 0 ? pixels.first : at(part), end);
+    }
+
+    [[nodiscard]] const Signal& node(int row, int column) const {
+        const auto stride = static_cast<std::size_t>(map_.across_.cells + 1);
+        return nodes_[static_cast<std::size_t>(row - first_node_row_) * stride +
+                      static_cast<std::size_t>(column)];
+    }
+
+    const VeilMap& map_;
+    const Rig& flown_;
+    const std::vector<Signal>& nodes_;
+    int first_node_row_;
+    Rows rows_;
+    const std::vector<float>& floor_;
+    std::vector<float>& samples_;
+};
+
+void VeilMap::rows_into(const Sled& sled,
+                        Rows rows,
+                        const std::vector<float>& floor,
+                        int threads,
+                        std::vector<float>& samples) const {
+    samples.resize(floor.size());
     Rig flown = rig_;
     flown.sled = sled;
-    std::vector<VeilNodes> nodes(static_cast<std::size_t>(threads));
-    parallel_for(rows, nodes.size(), [&](std::size_t row, std::size_t thread) {
-        for (std::size_t column = 0; column < width; ++column) {
-            const Signal found = at(
-                flown, static_cast<int>(column), first_row + static_cast<int>(row), nodes[thread]);
-            for (std::size_t c = 0; c < kChannels; ++c)
-                samples[(c * rows + row) * width + column] = static_cast<float>(found[c]);
+    int first_cell = 0;
+    while (down_.first_pixel(first_cell + 1) <= rows.first) ++first_cell;
+    int end_cell = first_cell;
+    while (end_cell < down_.cells && down_.first_pixel(end_cell) < rows.first + rows.count)
+        ++end_cell;
+    const int first_node = std::clamp(first_cell - 1, 0, down_.cells + 1 - kVeilStencil);
+    const int last_node =
+        std::min(down_.cells, std::max(end_cell + 1, first_node + kVeilStencil - 1));
+    const auto stride = static_cast<std::size_t>(across_.cells + 1);
+    std::vector<Signal> nodes(stride * static_cast<std::size_t>(last_node - first_node + 1));
+    std::vector<VeilNodes> rooms(static_cast<std::size_t>(threads));
+    parallel_for(nodes.size() / stride, rooms.size(), [&](std::size_t row, std::size_t thread) {
+        for (std::size_t column = 0; column < stride; ++column) {
+            nodes[row * stride + column] = at(flown,
+                                              across_.node_px(static_cast<double>(column)),
+                                              down_.node_px(static_cast<double>(row) + first_node),
+                                              rooms[thread]);
         }
     });
+    const Strip strip(*this, flown, nodes, first_node, rows, floor, samples);
+    parallel_for(static_cast<std::size_t>(end_cell - first_cell),
+                 rooms.size(),
+                 [&](std::size_t row, std::size_t thread) {
+                     strip.fill(first_cell + static_cast<int>(row), rooms[thread]);
+                 });
 }
 
 }  // namespace aphotic

@@ -13,6 +13,14 @@
 // to the camera to the longest that the floor's direct light takes, or where less than
 // e^-kVeilDepth is left.
 //
+// The veil is smooth over the image but where the sight touches a beam's edge in the water or meets
+// it on the floor. So it is computed on a grid of nodes at most kVeilCell_px apart, and in between
+// it is the cubic through the four next of each way. In the middle of each cell it is computed,
+// too: where the cubic is off there by more than kVeilOff of the signal, floor's light and veil,
+// the cell gets a grid of its own, four times as fine, and its parts the same test; those that fail
+// are computed pixel by pixel. All depends on the cell alone: neither threads nor the rows that are
+// asked for change a bit.
+//
 // Behind a port all wavelengths take the ray of the middle index: the veil changes little over the
 // few pixels of dispersion.
 #pragma once
@@ -29,25 +37,53 @@
 
 namespace aphotic {
 
+inline constexpr double kVeilCell_px = 16.0;
+inline constexpr int kVeilParts = 4;  // of a cell, each way
+inline constexpr double kVeilOff = 3e-5;
+inline constexpr unsigned kVeilMapPoints = 4;  // rig/veil.h's, of a panel
+
 class VeilMap {
   public:
     // Of water that scatters. direct: what the floor's tables serve. error: relative, of the
     // spectral integral and its table.
     VeilMap(const Rig& rig, const PathRange& direct, double error);
 
-    // R, G, B planar of these rows of the image.
-    void rows_into(
-        const Sled& sled, int first_row, int count, int threads, std::vector<float>& samples) const;
+    // Rows whose floor must be known for these, which they are among.
+    struct Rows {
+        int first = 0;
+        int count = 0;
+    };
+    [[nodiscard]] Rows rows_for(Rows wanted) const;
 
-    // At the centre of a pixel, without interpolation.
+    // R, G, B planar, of rows that rows_for() gave, beside the floor's signal.
+    void rows_into(const Sled& sled,
+                   Rows rows,
+                   const std::vector<float>& floor,
+                   int threads,
+                   std::vector<float>& samples) const;
+
+    // At a place of the image, without interpolation; pixels' centres are at .5.
     using Signal = std::array<double, kChannels>;
-    [[nodiscard]] Signal at(const Rig& flown, int column, int row, VeilNodes& nodes) const;
+    [[nodiscard]] Signal at(const Rig& flown, double column, double row, VeilNodes& nodes) const;
 
   private:
+    // Nodes along one way, from the first pixel's centre to the last's.
+    struct Axis {
+        explicit Axis(int count);
+        [[nodiscard]] double node_px(double node) const { return 0.5 + node * apart_px; }
+        [[nodiscard]] int first_pixel(int cell) const;  // of all that are in no cell before
+        int pixels;
+        int cells;
+        double apart_px;
+    };
+    class Strip;
+
     [[nodiscard]] Signal table_at(const std::vector<float>& table, double path_m) const;
 
     Rig rig_;
     Veil veil_;
+    Axis across_;
+    Axis down_;
     double lambda_nm_ = 0.0;  // whose rays are taken
     PathSteps steps_;
     std::vector<std::vector<float>> tables_;  // by lamp spectrum and scatterer

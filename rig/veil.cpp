@@ -6,89 +6,101 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
+#include <variant>
 
 namespace aphotic {
+
+namespace {
+
+constexpr double kPoleRad = 0.5 * std::numbers::pi;
+constexpr double kNoPole = 10.0;
+
+}  // namespace
+
+// Two directions on the plane of ray and lamp, and what lies between lamp and ray.
+struct Veil::View {
+    double foot_m;            // t_0
+    double away_m;            // h
+    Eigen::Vector3d towards;  // e, unit, across the ray
+    Eigen::Vector3d along;    // u
+    // Where the ray passes a table's pole: the middle, and how far aside.
+    double pole_rad = 0.0;
+    double off_pole_rad = kNoPole;
+
+    // Distance from a panel to the singularities next to it.
+    [[nodiscard]] double room(double start, double width) const {
+        double room = std::min(kPoleRad - start - width, start + kPoleRad);
+        for (const double turn : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
+            if (off_pole_rad >= kNoPole) break;
+            const double at = pole_rad + turn * std::numbers::pi;
+            const double aside = std::max({0.0, start - at, at - start - width});
+            room = std::min(room, std::hypot(aside, off_pole_rad));
+        }
+        return room;
+    }
+};
+
 namespace {
 
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-// Two directions on the plane of ray and lamp, and what lies between lamp and ray.
-struct View {
-    double foot_m;     // t_0
-    double away_m;     // h
-    Vector3d towards;  // e, unit, across the ray
-    Vector3d along;    // u
-};
-
-View view_of(const Vector3d& lamp_m, const WaterRay& ray) {
-    const Vector3d to_lamp = lamp_m - ray.origin_m;
-    const double foot_m = to_lamp.dot(ray.direction);
-    const Vector3d across = ray.origin_m + foot_m * ray.direction - lamp_m;
-    // On the ray itself its light has no end; a micrometre beside it has.
-    constexpr double kNear_m = 1e-6;
-    const double away_m = across.norm();
-    if (away_m >= kNear_m) return {foot_m, away_m, across / away_m, ray.direction};
-    return {foot_m, kNear_m, ray.direction.unitOrthogonal(), ray.direction};
-}
-
-// Where the beam's edges cross the ray.
-void add_crossings(const View& view,
-                   const Vector3d& axis,
-                   const std::vector<double>& edges_rad,
-                   std::vector<double>& cuts) {
-    const double A = axis.dot(view.towards);
-    const double B = axis.dot(view.along);
-    const double size = std::hypot(A, B);
-    for (const double edge_rad : edges_rad) {
-        const double cosine = std::cos(edge_rad);
-        if (std::abs(cosine) >= size) continue;
-        const double middle = std::atan2(B, A);
-        const double half = std::acos(cosine / size);
-        for (const double phi : {middle - half, middle + half})
-            cuts.push_back(std::remainder(phi, 2.0 * pi));
-    }
-}
-
-// Where the ray crosses a beam's rim, found between steps.
-void add_rim_crossings(const View& view,
-                       const Beam& beam,
-                       const BeamFrame& frame,
-                       double first,
-                       double last,
-                       std::vector<double>& cuts) {
-    constexpr int kSteps = 48;
-    constexpr int kHalvings = 50;
-    const auto is_lit = [&](double phi) {
-        return is_within_rim(
-            beam, frame, std::cos(phi) * view.towards + std::sin(phi) * view.along);
-    };
-    double before = first;
-    bool was_lit = is_lit(before);
-    for (int step = 1; step <= kSteps; ++step) {
-        const double after = first + (last - first) * step / kSteps;
-        const bool is_lit_now = is_lit(after);
-        if (is_lit_now != was_lit) {
-            double low = before;
-            double high = after;
-            for (int i = 0; i < kHalvings; ++i) {
-                const double middle = 0.5 * (low + high);
-                (is_lit(middle) == was_lit ? low : high) = middle;
-            }
-            cuts.push_back(low);
-        }
-        before = after;
-        was_lit = is_lit_now;
-    }
-}
+// A path of this many times 2 h is as good as infinite.
+constexpr double kVeilEndRad = 1e-9;
+// On the ray itself a lamp's light has no end; a micrometre beside it has.
+constexpr double kVeilNear_m = 1e-6;
 
 double least_veil_attenuation_per_m(const Rig& rig) {
-    std::vector<double> knots_nm = union_of_knots(rig.water.curves(), rig.camera.range);
+    const std::vector<double> knots_nm = union_of_knots(rig.water.curves(), rig.camera.range);
     double least = std::numeric_limits<double>::infinity();
     for (const double nm : knots_nm) least = std::min(least, rig.water.veil_attenuation_per_m(nm));
     return least;
+}
+
+// Light over the plane of an emitter, as Gauss-Legendre's rule has it.
+template <class Rule, class Lamps>
+void add_lamps_of(const Strobe& strobe, const BeamFrame& frame, const Rule& rule, Lamps& lamps) {
+    for (std::size_t i = 0; i < rule.points.size(); ++i) {
+        for (std::size_t j = 0; j < rule.points.size(); ++j) {
+            lamps.push_back({strobe.position_m +
+                                 (rule.points[i] - 0.5) * strobe.emitter->across_m * frame.across +
+                                 (rule.points[j] - 0.5) * strobe.emitter->along_m * frame.along,
+                             rule.weights[i] * rule.weights[j]});
+        }
+    }
+}
+
+// About which a table's angles turn.
+std::optional<Vector3d> pole_of(const Beam& beam, const BeamFrame& frame) {
+    const auto* table = std::get_if<BeamTable>(&beam.pattern);
+    if (table == nullptr) return std::nullopt;
+    if (table->angles == TableAngles::TypeC) return frame.axis;
+    const double c = std::cos(beam.turn_rad);
+    const double s = std::sin(beam.turn_rad);
+    if (table->angles == TableAngles::TypeA) return c * frame.along + s * frame.across;
+    return c * frame.across - s * frame.along;
+}
+
+bool is_whole(double x) {
+    return x == std::floor(x);
+}
+
+double steepest_cone(const Beam& beam) {
+    double steepest = 1.0;
+    for (const Cone& cone : beam.cones) steepest = std::max(steepest, cone.exponent);
+    return steepest;
+}
+
+// How many of these suffice in a narrower panel, by rho^-2n.
+std::size_t points_for(std::size_t points, double width, double room) {
+    const double z = 1.0 + 2.0 * room / width;
+    const double rho = z + std::sqrt(z * z - 1.0);
+    constexpr double kRho = 3.0 + 2.0 * std::numbers::sqrt2;  // of room = width
+    const double share = std::log(kRho) / std::log(rho);
+    return static_cast<std::size_t>(std::ceil(static_cast<double>(points) * std::min(1.0, share)));
 }
 
 }  // namespace
@@ -98,104 +110,277 @@ void VeilNodes::clear() {
     for (std::vector<double>& of_scatterer : weight) of_scatterer.clear();
 }
 
-Veil::Veil(const Rig& rig, unsigned points) : rig_(rig) {
-    const std::vector<double> zeros =
-        boost::math::legendre_p_zeros<double>(static_cast<int>(points));
-    for (const double zero : zeros) {  // those that are not negative
-        const double slope = boost::math::legendre_p_prime(static_cast<int>(points), zero);
-        const double weight = 1.0 / ((1.0 - zero * zero) * slope * slope);
-        points_.push_back(0.5 + 0.5 * zero);
-        weights_.push_back(weight);
-        if (zero == 0.0) continue;
-        points_.push_back(0.5 - 0.5 * zero);
-        weights_.push_back(weight);
-    }
-    for (const Strobe& strobe : rig.strobes) {
-        frames_.push_back(frame_about(strobe.axis));
-        edges_rad_.push_back(edges_rad(strobe.beam));
-        std::vector<Lamp> lamps{{strobe.position_m, 1.0}};
-        if (strobe.emitter) {
-            lamps.clear();
-            const BeamFrame& frame = frames_.back();
-            const double out = 0.5 * std::sqrt(0.6);
-            const std::array<double, 3> places{-out, 0.0, out};
-            const std::array<double, 3> shares{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-            for (std::size_t i = 0; i < 3; ++i) {
-                for (std::size_t j = 0; j < 3; ++j) {
-                    lamps.push_back({strobe.position_m +
-                                         places[i] * strobe.emitter->across_m * frame.across +
-                                         places[j] * strobe.emitter->along_m * frame.along,
-                                     shares[i] * shares[j]});
+Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(rig)) {
+    for (unsigned n = 0; n <= points; ++n) {
+        Rule rule;
+        if (n > 0) {
+            const int order = static_cast<int>(n);
+            for (const double zero : boost::math::legendre_p_zeros<double>(order)) {
+                const double slope = boost::math::legendre_p_prime(order, zero);
+                const double weight = 1.0 / ((1.0 - zero * zero) * slope * slope);
+                for (const double sign : {-1.0, 1.0}) {
+                    if (zero == 0.0 && sign > 0.0) continue;
+                    rule.points.push_back(0.5 + 0.5 * sign * zero);
+                    rule.weights.push_back(weight);
                 }
             }
         }
-        lamps_.push_back(std::move(lamps));
+        rules_.push_back(std::move(rule));
+    }
+    constexpr unsigned kEmitterSide = 3;
+    const unsigned side =
+        std::min(points, std::max(kEmitterSide, points * kEmitterSide / kVeilPoints));
+    for (const Strobe& strobe : rig_->strobes) {
+        const Beam& beam = strobe.beam;
+        const BeamFrame light_frame = frame_about(strobe.axis);
+        Light light{.beam = beam,
+                    .frame = light_frame,
+                    .creases = {},
+                    .cones = {},
+                    .lamps = {},
+                    .widest_panel_rad = std::min(
+                        kVeilPanelRad, 4.0 * kVeilPanelRad / std::sqrt(steepest_cone(beam))),
+                    .ends_in_a_power = beam.window.has_value(),
+                    .is_of_optics = std::holds_alternative<BeamOptics>(beam.pattern),
+                    .pole = pole_of(beam, light_frame)};
+        light.creases = creases_of(beam, light.frame);
+        const bool is_of_cones =
+            std::holds_alternative<std::monostate>(beam.pattern) && !beam.window;
+        for (const Beam& part : is_of_cones ? parts_of(beam) : std::vector<Beam>{}) {
+            const Cone& cone = part.cones.front();
+            light.cones.push_back(
+                {.on_axis = most_intensity(part),
+                 .exponent = cone.exponent,
+                 .edge_cosine = std::max(0.0, std::cos(cone.half_angle_rad)),
+                 .full_cosine =
+                     cone.edge_rad > 0.0 ? std::cos(cone.half_angle_rad - cone.edge_rad) : -1.0});
+            light.ends_in_a_power |= cone.half_angle_rad >= kPoleRad && !is_whole(cone.exponent);
+        }
+        if (strobe.emitter)
+            add_lamps_of(strobe, light.frame, rules_[side], light.lamps);
+        else
+            light.lamps.push_back({strobe.position_m, 1.0});
+        lights_.push_back(std::move(light));
+    }
+    for (const Scatterer& scatterer : rig_->water.scatterers) {
+        Phase phase{.function = &scatterer.phase, .samples = {}};
+        const auto& kind = scatterer.phase.kind;
+        if (const auto* table = std::get_if<PhaseTable>(&kind)) {
+            for (const double angle_rad : table->angle_rad)
+                if (angle_rad > kVeilCut) kinks_rad_.push_back(angle_rad - kPoleRad);
+        }
+        if (std::holds_alternative<PhaseTable>(kind) ||
+            std::holds_alternative<FournierForand>(kind)) {
+            constexpr int kSteps = 8192;
+            for (int i = 0; i <= kSteps; ++i)
+                phase.samples.push_back(
+                    scatterer.phase.at(kVeilCut + (pi - kVeilCut) * i / kSteps));
+        }
+        phases_.push_back(std::move(phase));
     }
     const double least_per_m = rig.water.scatters() ? least_veil_attenuation_per_m(rig) : 0.0;
     longest_m_ =
         least_per_m > 0.0 ? kVeilDepth / least_per_m : std::numeric_limits<double>::infinity();
 }
 
+// Lagrange's cubic through the four next samples.
+double Veil::Phase::at(double psi_rad) const {
+    if (samples.empty()) return function->at(psi_rad);
+    const double steps = static_cast<double>(samples.size() - 1);
+    const double place = (psi_rad - kVeilCut) * steps / (pi - kVeilCut);
+    const double first = std::clamp(std::floor(place) - 1.0, 0.0, steps - 3.0);
+    const double* const y = &samples[static_cast<std::size_t>(first)];
+    const double a = place - first;
+    const double b = a - 1.0;
+    const double c = a - 2.0;
+    const double d = a - 3.0;
+    return (c * d * (3.0 * a * y[1] - b * y[0]) + a * b * (c * y[3] - 3.0 * d * y[2])) / 6.0;
+}
+
+const Veil::Rule& Veil::rule_for(double width, double room) const {
+    return rules_[points_for(rules_.size() - 1, width, room)];
+}
+
 void Veil::nodes(std::size_t strobe, const WaterRay& ray, double length_m, VeilNodes& nodes) const {
     nodes.clear();
-    nodes.weight.resize(rig_.water.scatterers.size());
-    const Beam& beam = rig_.strobes[strobe].beam;
-    const BeamFrame& frame = frames_[strobe];
-    for (const Lamp& lamp : lamps_[strobe]) {
-        const View view = view_of(lamp.position_m, ray);
-        const double end_m = std::min(length_m, longest_m_);
-        const double first = std::max(std::atan2(-view.foot_m, view.away_m), kVeilCut - 0.5 * pi);
-        const double last = std::atan2(end_m - view.foot_m, view.away_m);
-        if (!(last > first)) continue;
-        std::vector<double> cuts{first, last};
-        add_crossings(view, frame.axis, edges_rad_[strobe], cuts);
-        if (has_rim(beam)) add_rim_crossings(view, beam, frame, first, last, cuts);
-        std::erase_if(cuts, [&](double cut) { return cut < first || cut > last; });
-        std::ranges::sort(cuts);
-        for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
-            const double span = cuts[k + 1] - cuts[k];
-            if (span <= 0.0) continue;
-            const double middle = 0.5 * (cuts[k] + cuts[k + 1]);
-            const Vector3d seen = std::cos(middle) * view.towards + std::sin(middle) * view.along;
-            if (!edges_rad_[strobe].empty() && intensity_towards(beam, frame, seen) == 0.0)
-                continue;
-            const int panels = std::max(1, static_cast<int>(std::ceil(span / kVeilPanelRad)));
-            const double width = span / panels;
-            for (int panel = 0; panel < panels; ++panel) {
-                for (std::size_t n = 0; n < points_.size(); ++n) {
-                    const double phi = cuts[k] + width * (panel + points_[n]);
-                    const double cosine = std::cos(phi);
-                    const double sine = std::sin(phi);
-                    const double intensity = continued_intensity(
-                        beam, frame, cosine * view.towards + sine * view.along, seen);
-                    nodes.path_m.push_back(view.foot_m + view.away_m * (1.0 + sine) / cosine);
-                    const double share = lamp.share * intensity * width * weights_[n] / view.away_m;
-                    for (std::size_t i = 0; i < nodes.weight.size(); ++i) {
-                        nodes.weight[i].push_back(
-                            share * rig_.water.scatterers[i].phase.at(phi + 0.5 * pi));
-                    }
-                }
+    nodes.weight.resize(phases_.size());
+    const Light& light = lights_[strobe];
+    for (const Lamp& lamp : light.lamps) add_lamp(light, lamp, ray, length_m, nodes);
+}
+
+void Veil::add_lamp(const Light& light,
+                    const Lamp& lamp,
+                    const WaterRay& ray,
+                    double length_m,
+                    VeilNodes& nodes) const {
+    const Vector3d to_lamp = lamp.position_m - ray.origin_m;
+    View view{.foot_m = to_lamp.dot(ray.direction),
+              .away_m = 0.0,
+              .towards = ray.direction.unitOrthogonal(),
+              .along = ray.direction};
+    const Vector3d across = view.foot_m * ray.direction - to_lamp;
+    view.away_m = std::max(kVeilNear_m, across.norm());
+    if (across.norm() > kVeilNear_m) view.towards = across / view.away_m;
+
+    if (light.pole) {
+        const double A = light.pole->dot(view.towards);
+        const double B = light.pole->dot(view.along);
+        constexpr double kLeastRoom = 1e-3;
+        view.pole_rad = std::atan2(B, A);
+        view.off_pole_rad = std::max(kLeastRoom, std::acos(std::min(1.0, std::hypot(A, B))));
+    }
+    const double end_m = std::min(length_m, longest_m_);
+    const double first = std::max(std::atan2(-view.foot_m, view.away_m), kVeilCut - kPoleRad);
+    const double last =
+        std::min(std::atan2(end_m - view.foot_m, view.away_m), kPoleRad - kVeilEndRad);
+    if (!(last > first)) return;
+    std::vector<double>& cuts = nodes.cuts_rad;
+    cuts = kinks_rad_;
+    for (const Crease& crease : light.creases)
+        add_crossings(crease, view.towards, view.along, cuts);
+    // Towards what ends like a power panels shrink.
+    const auto shrink_towards = [&](std::size_t from, std::initializer_list<double> steps) {
+        const std::size_t end = cuts.size();
+        for (std::size_t k = from; k < end; ++k) {
+            for (const double step : steps) {
+                cuts.push_back(cuts[k] - step);
+                cuts.push_back(cuts[k] + step);
             }
         }
+    };
+    if (light.is_of_optics) shrink_towards(kinks_rad_.size(), {0.03, 0.004});
+    if (light.ends_in_a_power) {
+        const std::size_t from = cuts.size();
+        add_crossings(light.creases.back(), view.towards, view.along, cuts);
+        shrink_towards(from, {0.12, 0.03, 0.006, 0.0012, 0.0002});
+    }
+    std::erase_if(cuts, [&](double cut) { return !(cut > first && cut < last); });
+    cuts.push_back(first);
+    cuts.push_back(last);
+    std::ranges::sort(cuts);
+    for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+        if (cuts[k] < cuts[k + 1]) add_piece(light, lamp, view, cuts[k], cuts[k + 1], nodes);
+    }
+}
+
+void Veil::add_piece(const Light& light,
+                     const Lamp& lamp,
+                     const View& view,
+                     double from,
+                     double to,
+                     VeilNodes& nodes) const {
+    const double centre = 0.5 * (from + to);
+    const Vector3d seen = std::cos(centre) * view.towards + std::sin(centre) * view.along;
+    const double k_e = light.frame.axis.dot(view.towards);
+    const double k_u = light.frame.axis.dot(view.along);
+    // Which cones shine here, and on which side of their soft edges.
+    constexpr std::size_t kMostCones = 16;
+    std::array<const ConeLight*, kMostCones> lit{};
+    std::size_t count = 0;
+    const bool is_of_cones = !light.cones.empty() && light.cones.size() <= kMostCones;
+    const double cos_seen = light.frame.axis.dot(seen);
+    for (const ConeLight& cone : light.cones) {
+        if (is_of_cones && cos_seen > cone.edge_cosine) lit[count++] = &cone;
+    }
+    if (is_of_cones ? count == 0 : intensity_towards(light.beam, light.frame, seen) == 0.0) return;
+    const auto intensity_at = [&](double cosine, double sine) {
+        if (!is_of_cones) {
+            return continued_intensity(
+                light.beam, light.frame, cosine * view.towards + sine * view.along, seen);
+        }
+        const double cos_theta = std::max(0.0, cosine * k_e + sine * k_u);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const ConeLight& cone = *lit[i];
+            double I = cone.on_axis *
+                       (cone.exponent == 1.0 ? cos_theta : std::pow(cos_theta, cone.exponent));
+            if (cos_seen < cone.full_cosine) {
+                const double t =
+                    (cos_theta - cone.edge_cosine) / (cone.full_cosine - cone.edge_cosine);
+                I *= t * t * (3.0 - 2.0 * t);
+            }
+            sum += I;
+        }
+        return sum;
+    };
+    for (double start = from; start < to;) {
+        // Halves of what is left, until a panel is no wider than its room.
+        double width = to - start;
+        double room = 0.0;
+        while (true) {
+            room = std::min(light.widest_panel_rad, view.room(start, width));
+            if (width <= room * (1.0 + 1e-9)) break;
+            width *= 0.5;
+        }
+        const bool is_last = width >= (to - start) * (1.0 - 1e-9);
+        const Rule& rule = rule_for(width, room);
+        for (std::size_t n = 0; n < rule.points.size(); ++n) {
+            const double phi = start + width * rule.points[n];
+            const double cosine = std::cos(phi);
+            const double sine = std::sin(phi);
+            const double share =
+                lamp.share * intensity_at(cosine, sine) * width * rule.weights[n] / view.away_m;
+            nodes.path_m.push_back(view.foot_m + view.away_m * (1.0 + sine) / cosine);
+            for (std::size_t i = 0; i < phases_.size(); ++i)
+                nodes.weight[i].push_back(share * phases_[i].at(phi + kPoleRad));
+        }
+        start = is_last ? to : start + width;
     }
 }
 
 double Veil::radiance(const WaterRay& ray, double length_m, double lambda_nm) const {
-    const double loss_per_m = rig_.water.veil_attenuation_per_m(lambda_nm);
+    const Rig& rig = *rig_;
+    const double loss_per_m = rig.water.veil_attenuation_per_m(lambda_nm);
     double sum = 0.0;
     VeilNodes found;
-    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         nodes(s, ray, length_m, found);
         double light = 0.0;
         for (std::size_t i = 0; i < found.weight.size(); ++i) {
             double of_scatterer = 0.0;
             for (std::size_t n = 0; n < found.path_m.size(); ++n)
                 of_scatterer += found.weight[i][n] * std::exp(-loss_per_m * found.path_m[n]);
-            light += rig_.water.scattering_per_m(i, lambda_nm) * of_scatterer;
+            light += rig.water.scattering_per_m(i, lambda_nm) * of_scatterer;
         }
-        sum += rig_.strobes[s].power * rig_.strobes[s].spectrum.at(lambda_nm) * light;
+        sum += rig.strobes[s].power * rig.strobes[s].spectrum.at(lambda_nm) * light;
     }
     return sum;
+}
+
+double veil_error(const Rig& rig, unsigned points) {
+    if (!rig.water.scatters()) return 0.0;
+    constexpr int kColumns = 9;
+    constexpr int kRows = 7;
+    const WavelengthRange range = rig.camera.range;
+    const std::array<double, 3> lambda_nm{
+        range.first_nm, 0.5 * (range.first_nm + range.last_nm), range.last_nm};
+    const Veil veil(rig, points);
+    const Veil finer(rig, 2 * points);
+    struct Pair {
+        double found;
+        double wanted;
+    };
+    double worst = 0.0;
+    for (const double nm : lambda_nm) {
+        std::vector<Pair> pairs;
+        double most = 0.0;
+        for (int i = 0; i < kColumns; ++i) {
+            for (int j = 0; j < kRows; ++j) {
+                const VeilSight sight = sight_of(rig,
+                                                 rig.camera.width_px * (i + 0.5) / kColumns,
+                                                 rig.camera.height_px * (j + 0.5) / kRows,
+                                                 lambda_nm[1]);
+                pairs.push_back({veil.radiance(sight.ray, sight.length_m, nm),
+                                 finer.radiance(sight.ray, sight.length_m, nm)});
+                most = std::max(most, pairs.back().wanted);
+            }
+        }
+        for (const Pair& pair : pairs) {
+            const double scale = std::max(pair.wanted, kDimVeilShare * most);
+            if (scale > 0.0) worst = std::max(worst, std::abs(pair.found - pair.wanted) / scale);
+        }
+    }
+    return worst;
 }
 
 VeilSight sight_of(const Rig& rig, double column, double row, double lambda_nm) {
