@@ -212,10 +212,17 @@ AtlasWork work_of(const AtlasCommandOptions& options, const Rig& rig, const MapA
 }
 
 // Says what is to come, and refuses it where the disk has no room for it.
-void announce(const AtlasCommandOptions& options, const MapAxes& chosen, AtlasWork work) {
+void announce(const AtlasCommandOptions& options,
+              const MapAxes& chosen,
+              AtlasWork work,
+              bool has_veil) {
     const std::size_t all = bin_count(chosen);
     // One more, for a bin is written beside the one that it replaces.
     work.bins = std::min(all, bins_missing(options.folder, chosen) + 1);
+    if (has_veil) {  // as many planes again
+        work.bins *= 2;
+        work.altitudes *= 2;
+    }
     const DiskNeeds needs = atlas_needs(work);
     if (!options.json) {
         fmt::print("{} of {} x {} pixels: up to {} to write to {}\n",
@@ -327,7 +334,7 @@ MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes
                    .folder = options.folder,
                    .chosen = choose(options, rig, finest),
                    .tolerance = options.tolerance};
-    announce(options, made.chosen.axes, work_of(options, rig, finest));
+    announce(options, made.chosen.axes, work_of(options, rig, finest), rig.water.scatters());
     set_exr_threads(options.map.threads);
     const FolderLock lock = claim_folder(options.folder);
     remove_abandoned_files(fs::path(options.folder) / "bins");

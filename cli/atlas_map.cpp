@@ -47,7 +47,7 @@ void write(const LightmapCommandOptions& options,
     ExrWriter writer(options.file,
                      map.width_px,
                      map.height_px,
-                     {kChannelNames.begin(), kChannelNames.end()},
+                     plane_names("", !map.veil.empty()),
                      {{"aphotic:version", APHOTIC_VERSION},
                       {"aphotic:rig_title", manifest.title},
                       {"aphotic:rig_sha256", manifest.rig_digest},
@@ -58,7 +58,7 @@ void write(const LightmapCommandOptions& options,
                       {"aphotic:water_multiple", text(point.water_multiple)},
                       {"aphotic:normalised", options.normalised ? "yes" : "no"},
                       {"aphotic:interpolation_error", text(manifest.interpolation.worst)}});
-    writer.write_rows(map.height_px, map.samples);
+    writer.write_rows(map.height_px, all_planes(map));
     writer.finish();
 }
 
@@ -134,7 +134,7 @@ ExitStatus write_atlas_map(const LightmapCommandOptions& options) {
     if (!options.preview_file.empty()) {
         PreviewOptions preview = options.preview;
         if (preview.white == PreviewWhite::Lamp) preview.white = PreviewWhite::Image;  // by default
-        write_preview({blended.map.width_px, blended.map.height_px, blended.map.samples},
+        write_preview({blended.map.width_px, blended.map.height_px, signal_of(blended.map)},
                       {1.0, 1.0, 1.0},
                       preview,
                       options.preview_file);

@@ -46,7 +46,9 @@ std::string words_of(const MapPromise& promise) {
     return fmt::format("{} to {:.1e} of a signal off the beams' edges{}{}",
                        promise.is_bounded ? "exact" : "near",
                        promise.error,
-                       promise.is_bounded ? "" : ", as measured behind ports and not bounded",
+                       promise.is_bounded ? ""
+                       : promise.has_veil ? ", the veil included, as measured and not bounded"
+                                          : ", as measured behind ports and not bounded",
                        promise.is_of_lamp_grids ? ", emitters being grids of lamps" : "");
 }
 
@@ -110,9 +112,12 @@ WrittenLightmap write_map(const LightmapCommandOptions& options, const Rig& rig)
                             .is_normalised = options.normalised,
                             .map = options.map,
                             .version = APHOTIC_VERSION};
+    // As many planes again, of the whole and of each part.
+    const bool has_veil = rig.water.scatters() && options.map.has_veil;
+    const std::size_t planes_of_veil = has_veil ? 1 + request.parts.size() : 0;
     require_room(lightmap_needs({.width_px = rig.camera.width_px,
                                  .height_px = rig.camera.height_px,
-                                 .parts = request.parts.size(),
+                                 .parts = request.parts.size() + planes_of_veil,
                                  .has_preview = !options.preview_file.empty()}),
                  std::filesystem::absolute(options.file).parent_path(),
                  options.ignore_needs);
@@ -125,7 +130,7 @@ ExitStatus make_lightmap(const LightmapCommandOptions& options) {
     made.promise = map_promise(made.rig, options.map);
     if (!options.preview_file.empty()) {
         const Lightmap& map = made.written.map;
-        write_preview({map.width_px, map.height_px, map.samples},
+        write_preview({map.width_px, map.height_px, signal_of(map)},
                       lamp_signal(made.rig, light_family(made.rig)),
                       options.preview,
                       options.preview_file);
@@ -135,7 +140,7 @@ ExitStatus make_lightmap(const LightmapCommandOptions& options) {
 }
 
 void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& options) {
-    for (const char* option : {"--per-strobe", "--per-cone", "--error"}) {
+    for (const char* option : {"--per-strobe", "--per-cone", "--error", "--no-veil"}) {
         if (app.count(option) == 0) continue;
         throw InputError(
             "{}: found with the atlas {}; allowed: with a rig", option, options.source);
@@ -198,6 +203,10 @@ Action configure_lightmap(CLI::App& app) {
         ->check(in_range(kLeastError, kMostError))
         ->option_text("E")
         ->capture_default_str();
+    app.add_flag_callback(
+        "--no-veil",
+        [options] { options->map.has_veil = false; },
+        "Leave out the light that the water scatters into the view");
     add_jobs(app, options->map.threads, "Map with N threads");
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json);
@@ -207,7 +216,9 @@ Action configure_lightmap(CLI::App& app) {
     add_preview_options(app, options->preview);
     app.footer(
         "Maps the bare flat floor, without POV-Ray. The file holds what image.exr of a render "
-        "does: R, G, B, linear, 32-bit floats. Given an atlas, blends the bins around the "
+        "does: R, G, B, linear, 32-bit floats, and the veil apart, as veil.R, veil.G, veil.B, "
+        "where "
+        "the water scatters. Given an atlas, blends the bins around the "
         "altitude, attitude and water; its preview's white is image (the default) or none.");
     return [&app, options] { return make_map(app, *options); };
 }

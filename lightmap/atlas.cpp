@@ -9,6 +9,7 @@
 #include "base/sha256.h"
 #include "image/exr.h"
 #include "image/image_size.h"
+#include "lightmap/planes.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -179,10 +180,6 @@ AtlasManifest read_manifest(const fs::path& folder) {
     return parse_atlas(read_text_file(file), file.string());
 }
 
-std::vector<std::string> channel_names() {
-    return {kChannelNames.begin(), kChannelNames.end()};
-}
-
 // All that a bin depends on.
 ExrAttributes attributes_of(const AtlasManifest& manifest, const MapPoint& point) {
     const auto degrees = [](double rad) {
@@ -200,8 +197,9 @@ ExrAttributes attributes_of(const AtlasManifest& manifest, const MapPoint& point
 }
 
 void write_bin(const fs::path& file, const ExrAttributes& attributes, const Lightmap& map) {
-    ExrWriter writer(file, map.width_px, map.height_px, channel_names(), attributes);
-    writer.write_rows(map.height_px, map.samples);
+    ExrWriter writer(
+        file, map.width_px, map.height_px, plane_names("", !map.veil.empty()), attributes);
+    writer.write_rows(map.height_px, all_planes(map));
     writer.finish();
 }
 
@@ -216,9 +214,10 @@ Lightmap read_bin(const fs::path& file, const AtlasManifest& manifest) {
                                    manifest.height_px));
     }
     Lightmap map{.width_px = manifest.width_px, .height_px = manifest.height_px, .samples = {}};
-    map.samples.resize(kChannels * static_cast<std::size_t>(map.width_px) *
-                       static_cast<std::size_t>(map.height_px));
-    reader.read_rows(0, map.height_px, channel_names(), map.samples);
+    map.samples = reader.planes(plane_names("", false));
+    const std::vector<std::string> veil = {"veil.R", "veil.G", "veil.B"};
+    const std::vector<std::string> there = reader.channels();
+    if (std::ranges::find(there, veil.front()) != there.end()) map.veil = reader.planes(veil);
     return map;
 }
 

@@ -5,7 +5,8 @@
 //   ATLAS/atlas.json                   what it is of, its axes, the bins with their checksums, and
 //                                      what was exported beside them (atlas_export.h,
 //                                      oplab_export.h)
-//   ATLAS/bins/a2.1_p-5_r0_w1.exr      R, G, B at 2.1 m, pitch -5, roll 0 degrees, the water once
+//   ATLAS/bins/a2.1_p-5_r0_w1.exr      R, G, B at 2.1 m, pitch -5, roll 0 degrees, the water once;
+//                                      and veil.R, veil.G, veil.B where the water scatters
 //
 // Maps between the bins are interpolated (map_axes.h), and atlas.json says with what error. Bins
 // are written one by one and noted as they are: an atlas that was interrupted goes on where it

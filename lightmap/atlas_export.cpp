@@ -64,8 +64,9 @@ std::vector<float> fitted(const AltitudeFitter& fitter,
     const auto fit_some = [&](std::size_t part, std::size_t) {
         std::vector<double> signal(maps.size());
         for (std::size_t i = part * kAtOnce; i < std::min((part + 1) * kAtOnce, samples); ++i) {
-            std::ranges::transform(
-                maps, signal.begin(), [&](const Lightmap& map) { return map.samples[i]; });
+            std::ranges::transform(maps, signal.begin(), [&](const Lightmap& map) {
+                return map.samples[i] + (map.veil.empty() ? 0.0F : map.veil[i]);
+            });
             const AltitudeFit fit = fitter.fit(signal);
             float* to = &planes[i / plane * kFitted.size() * plane + i % plane];
             for (const double value : {fit.a, fit.b_per_m, fit.c, fit.residual}) {
@@ -118,9 +119,17 @@ std::vector<ExportedMosaic> export_bayer(const fs::path& folder,
         ExrAttributes attributes = attributes_of(rig);
         attributes.emplace_back("aphotic:altitude_m", fmt::format("{}", altitude_m));
         attributes.emplace_back("aphotic:mosaic", "RGGB");
+        const Lightmap map = source.map(point);
+        std::vector<std::string> names{"Y"};
+        std::vector<float> mosaics = mosaic_rggb(map);
+        if (!map.veil.empty()) {
+            const std::vector<float> veil = mosaic_rggb({map.width_px, map.height_px, map.veil});
+            names.emplace_back("veil.Y");
+            mosaics.insert(mosaics.end(), veil.begin(), veil.end());
+        }
         ExrWriter writer(
-            folder / file, rig.camera.width_px, rig.camera.height_px, {"Y"}, attributes);
-        writer.write_rows(rig.camera.height_px, mosaic_rggb(source.map(point)));
+            folder / file, rig.camera.width_px, rig.camera.height_px, names, attributes);
+        writer.write_rows(rig.camera.height_px, mosaics);
         writer.finish();
         made.push_back({.file = file, .altitude_m = altitude_m});
     }

@@ -6,7 +6,9 @@
 //   bayer        bayer/altitude_1.00m.exr, one a step: the channel Y is the sensor's mosaic RGGB,
 //                R in even rows and columns counted from 0, B in odd ones, G in the others. Names
 //                have two digits after the point, or as many as the finest altitude needs
-//   exponential  exponential.exr: per pixel and channel a exp(b h) + c (altitude_fit.h), in
+//                In water that scatters veil.Y beside it
+//   exponential  exponential.exr: per pixel and channel a exp(b h) + c (altitude_fit.h), of the
+//                floor's light and the veil together, in
 //   channels a.R,
 //                b.R, c.R, residual.R and so on
 #pragma once

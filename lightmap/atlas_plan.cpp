@@ -65,11 +65,11 @@ double rms_of(const Tally& tally) {
     return tally.samples > 0.0 ? std::sqrt(tally.squares / tally.samples) : 0.0;
 }
 
-std::array<float, kChannels> dimmest_of(const Lightmap& map) {
+std::array<float, kChannels> dimmest_of(const std::vector<float>& signal) {
     std::array<float, kChannels> dimmest{};
-    const auto size = static_cast<std::ptrdiff_t>(map.samples.size() / kChannels);
+    const auto size = static_cast<std::ptrdiff_t>(signal.size() / kChannels);
     for (std::size_t c = 0; c < kChannels; ++c) {
-        const auto first = map.samples.begin() + static_cast<std::ptrdiff_t>(c) * size;
+        const auto first = signal.begin() + static_cast<std::ptrdiff_t>(c) * size;
         dimmest[c] = kDimShare * *std::max_element(first, first + size);
     }
     return dimmest;
@@ -94,13 +94,15 @@ struct Measure {
 
 Tally compare(const Lightmap& between, const Lightmap& truth, const Measure& measure) {
     Tally tally;
-    const std::array<float, kChannels> dimmest = dimmest_of(truth);
-    const std::size_t plane = truth.samples.size() / kChannels;
-    for (std::size_t i = 0; i < truth.samples.size(); ++i) {
-        float scale = std::max(truth.samples[i], dimmest[i / plane]);
-        if (measure.against == Against::LargerOfBoth) scale = std::max(scale, between.samples[i]);
+    const std::vector<float> wanted = signal_of(truth);
+    const std::vector<float> found = signal_of(between);
+    const std::array<float, kChannels> dimmest = dimmest_of(wanted);
+    const std::size_t plane = wanted.size() / kChannels;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        float scale = std::max(wanted[i], dimmest[i / plane]);
+        if (measure.against == Against::LargerOfBoth) scale = std::max(scale, found[i]);
         if (scale == 0.0F) continue;
-        const double error = std::abs(between.samples[i] - truth.samples[i]) / scale;
+        const double error = std::abs(found[i] - wanted[i]) / scale;
         tally.worst = std::max(tally.worst, error);
         tally.squares += error * error;
         tally.samples += 1.0;

@@ -9,6 +9,8 @@
 // peak somewhat aside of it, and errors of several axes may have opposite signs, and so be less
 // inside a cell than on its edges.
 //
+// In water that scatters it is that of the sum, floor and veil, which are interpolated apart.
+//
 // It is that of the light without the beams' edges, each cone going on to 90 degrees. What an edge
 // crosses on its way through the cell is no better than the step there, however fine the bins: a
 // tolerance says nothing of it. How much that is of the whole maps is measured apart, in the

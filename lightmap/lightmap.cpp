@@ -243,6 +243,12 @@ struct LightmapMaker::Scene {
     std::vector<ColumnBlock> samples;  // of its blocks; none where they are not worth it
 };
 
+std::vector<float> signal_of(const Lightmap& map) {
+    std::vector<float> signal = map.samples;
+    for (std::size_t i = 0; i < map.veil.size(); ++i) signal[i] += map.veil[i];
+    return signal;
+}
+
 PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds) {
     constexpr double kRoom = 1.02;
     PathRange all{.shortest_m = std::numeric_limits<double>::infinity()};
@@ -278,10 +284,13 @@ MapPromise map_promise(const Rig& rig, const LightmapOptions& options) {
     const bool has_port = rig.camera.port.has_value();
     const bool is_fitted = std::ranges::all_of(
         rig.strobes, [](const Strobe& strobe) { return is_smooth_between(beam_edges(strobe)); });
+    const bool has_veil = rig.water.scatters() && options.has_veil;
+    const double off_the_veil = has_veil ? kVeilOfSignal + veil_error(rig, kVeilMapPoints) : 0.0;
     const double off_the_lens = rig.camera.vignetting ? kVignettingRounding : 0.0;
     return {.error = options.error + kRounding + off_the_lens + (is_fitted ? kRowFitError : 0.0) +
-                     (has_port ? kOverTheIndex : 0.0),
-            .is_bounded = !has_port,
+                     (has_port ? kOverTheIndex : 0.0) + off_the_veil,
+            .is_bounded = !has_port && !has_veil,
+            .has_veil = has_veil,
             .is_of_lamp_grids = std::ranges::any_of(
                 rig.strobes, [](const Strobe& strobe) { return strobe.emitter.has_value(); })};
 }

@@ -50,14 +50,17 @@ struct LightmapOptions {
 // edges.
 struct MapPromise {
     double error = 0.0;
-    // Behind a port the interpolation over the index is measured and has no bound.
+    // Behind a port the interpolation over the index is measured and has no bound, nor has that of
+    // a veil.
     bool is_bounded = true;
+    bool has_veil = false;  // it is of the sum
     // Emitters of a size are their grids of lamps, and penumbras have as many steps.
     bool is_of_lamp_grids = false;
 };
 
 // The error that is asked for, that of fits along a row where all beams are smooth and the rounding
-// of floats, that of a sum of a dozen; behind a port besides 1e-4.
+// of floats, that of a sum of a dozen; behind a port besides 1e-4. Of the sum of both in water that
+// scatters: kVeilOfSignal and veil_error() (rig/veil.h) on top, measured and no bound.
 [[nodiscard]] MapPromise map_promise(const Rig& rig, const LightmapOptions& options);
 
 // R, G, B planar: all rows of R, then of G, then of B.
@@ -69,6 +72,9 @@ struct Lightmap {
     // samples + veil. Empty where the water does not scatter.
     std::vector<float> veil{};
 };
+
+// samples + veil: what a camera gets.
+[[nodiscard]] std::vector<float> signal_of(const Lightmap& map);
 
 inline constexpr std::size_t kIndexNodes = 3;
 

@@ -8,7 +8,6 @@
 
 #include <chrono>
 #include <optional>
-#include <string_view>
 
 namespace aphotic {
 namespace {
@@ -25,11 +24,10 @@ struct NamedPlanes {
     std::vector<float> samples;
 
     void take(const std::string& layer, const Lightmap& map) {
-        for (const std::string_view channel : kChannelNames) {
-            names.push_back(layer.empty() ? std::string(channel)
-                                          : fmt::format("{}.{}", layer, channel));
-        }
-        samples.insert(samples.end(), map.samples.begin(), map.samples.end());
+        const std::vector<std::string> own = plane_names(layer, !map.veil.empty());
+        names.insert(names.end(), own.begin(), own.end());
+        for (const std::vector<float>* planes : {&map.samples, &map.veil})
+            samples.insert(samples.end(), planes->begin(), planes->end());
     }
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A lightmap as an OpenEXR file: R, G, B, and on request the same of the rig's parts, in channels
+// A lightmap as an OpenEXR file: R, G, B, where the water scatters veil.R, veil.G, veil.B, and on
+// request the same of the rig's parts, in channels
 // such as fore.R (planes.h). Its attributes say which rig, pose and error it is of.
 #pragma once
 

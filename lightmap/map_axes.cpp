@@ -71,8 +71,28 @@ Place place_on(const NamedAxis& axis, double value) {
 }
 
 // Of the logarithms; NaN or infinity where one is black.
-void add_logarithm(const Lightmap& map, float weight, std::vector<float>& sum) {
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * std::log(map.samples[i]);
+void add_logarithm(const std::vector<float>& samples, float weight, std::vector<float>& sum) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * std::log(samples[i]);
+}
+
+using LightPlanes = std::vector<float> Lightmap::*;
+
+std::vector<float> blended_planes(std::span<const Lightmap* const> maps,
+                                  std::span<const Neighbour> neighbours,
+                                  LightPlanes planes) {
+    std::vector<float> sum((maps[0]->*planes).size(), 0.0F);
+    for (std::size_t n = 0; n < maps.size(); ++n)
+        add_logarithm(maps[n]->*planes, static_cast<float>(neighbours[n].weight), sum);
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        if (std::isfinite(sum[i])) {
+            sum[i] = std::exp(sum[i]);
+            continue;
+        }
+        sum[i] = 0.0F;
+        for (std::size_t n = 0; n < maps.size(); ++n)
+            sum[i] += static_cast<float>(neighbours[n].weight) * (maps[n]->*planes)[i];
+    }
+    return sum;
 }
 
 }  // namespace
@@ -159,22 +179,22 @@ MapAxes with_middles(const MapAxes& axes) {
 
 Lightmap blended(std::span<const Lightmap* const> maps, std::span<const Neighbour> neighbours) {
     if (maps.size() == 1) return *maps[0];
-    Lightmap map{.width_px = maps[0]->width_px, .height_px = maps[0]->height_px, .samples = {}};
-    map.samples.assign(maps[0]->samples.size(), 0.0F);
-    for (std::size_t n = 0; n < maps.size(); ++n) {
-        add_logarithm(*maps[n], static_cast<float>(neighbours[n].weight), map.samples);
+    // Water taken 0 times has no veil, while its neighbour's has.
+    std::vector<Lightmap> filled;
+    filled.reserve(maps.size());
+    std::vector<const Lightmap*> all(maps.begin(), maps.end());
+    const bool has_veil =
+        std::ranges::any_of(maps, [](const Lightmap* map) { return !map->veil.empty(); });
+    for (const Lightmap*& map : all) {
+        if (!has_veil || !map->veil.empty()) continue;
+        filled.push_back(*map);
+        filled.back().veil.assign(map->samples.size(), 0.0F);
+        map = &filled.back();
     }
-    for (std::size_t i = 0; i < map.samples.size(); ++i) {
-        if (std::isfinite(map.samples[i])) {
-            map.samples[i] = std::exp(map.samples[i]);
-            continue;
-        }
-        map.samples[i] = 0.0F;
-        for (std::size_t n = 0; n < maps.size(); ++n) {
-            map.samples[i] += static_cast<float>(neighbours[n].weight) * maps[n]->samples[i];
-        }
-    }
-    return map;
+    return {.width_px = maps[0]->width_px,
+            .height_px = maps[0]->height_px,
+            .samples = blended_planes(all, neighbours, &Lightmap::samples),
+            .veil = blended_planes(all, neighbours, &Lightmap::veil)};
 }
 
 }  // namespace aphotic

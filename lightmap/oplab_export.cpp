@@ -92,7 +92,8 @@ Fits fits_of(const Rig& rig, const AltitudeExport& request) {
             std::vector<double> signal(maps.size());
             for (std::size_t column = 0; column < width; ++column) {
                 std::ranges::transform(maps, signal.begin(), [&](const Lightmap& map) {
-                    return map.samples[part * width + column];
+                    const std::size_t i = part * width + column;
+                    return map.samples[i] + (map.veil.empty() ? 0.0F : map.veil[i]);
                 });
                 const std::size_t whole_row = static_cast<std::size_t>(row) + at;
                 fitter.fit((channel * height + whole_row) * width + column, signal);

@@ -10,6 +10,9 @@
 //   image_corrected_mean.npy    [row, column, channel]     the gains once more
 //   image_corrected_std.npy     [row, column, channel]     kContrastOverBrightness of them
 //
+// In water that scatters, f is of the signal, floor and veil: c then carries what the veil tends to
+// with altitude.
+//
 // oplab makes (I gain / f(h) - mean) / std contrast + brightness of an image I, by default with a
 // brightness of 30 % and a contrast of 3 %. With these arrays that is 0.3 I / f(h): the image
 // divided by its light and nothing else. a, c and the gains may be in any unit, mean and std are in

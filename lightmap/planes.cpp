@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <set>
 #include <span>
+#include <string_view>
 
 namespace aphotic {
 namespace {
@@ -57,6 +58,22 @@ void require_different_names(const std::vector<RigPart>& parts) {
     }
 }
 
+std::vector<std::string> plane_names(const std::string& layer, bool has_veil) {
+    std::vector<std::string> names;
+    for (const std::string_view of : {"", "veil."}) {
+        if (!of.empty() && !has_veil) break;
+        for (const std::string_view channel : kChannelNames)
+            names.push_back(fmt::format("{}{}{}{}", layer, layer.empty() ? "" : ".", of, channel));
+    }
+    return names;
+}
+
+std::vector<float> all_planes(const Lightmap& map) {
+    std::vector<float> planes = map.samples;
+    planes.insert(planes.end(), map.veil.begin(), map.veil.end());
+    return planes;
+}
+
 std::array<float, kChannels> peaks_of(const Lightmap& map) {
     std::array<float, kChannels> peaks{};
     for (std::size_t c = 0; c < kChannels; ++c) {
@@ -70,7 +87,10 @@ void divide_by(const std::array<float, kChannels>& peaks, Lightmap& map) {
     const std::size_t size = map.samples.size() / kChannels;
     for (std::size_t c = 0; c < kChannels; ++c) {
         if (peaks[c] <= 0.0F) continue;
-        for (std::size_t i = c * size; i < (c + 1) * size; ++i) map.samples[i] /= peaks[c];
+        for (std::vector<float>* planes : {&map.samples, &map.veil}) {
+            for (std::size_t i = c * size; i < (c + 1) * size && !planes->empty(); ++i)
+                (*planes)[i] /= peaks[c];
+        }
     }
 }
 

@@ -4,7 +4,8 @@
 // Light adds up, so a part is the map of a rig that has nothing else, and the parts' sum is the
 // map.
 //
-// A part's planes are named as layers of OpenEXR are: fore.R, or fore.collimated.R.
+// A part's planes are named as layers of OpenEXR are: fore.R, or fore.collimated.R; its veil's
+// fore.veil.R.
 #pragma once
 
 #include "lightmap/lightmap.h"
@@ -28,10 +29,14 @@ struct RigPart {
 // "collimated" of the strobe "fore".
 void require_different_names(const std::vector<RigPart>& parts);
 
+// Of a map in a file: R, G, B, and veil.R, veil.G, veil.B where it has a veil; and in their order.
+[[nodiscard]] std::vector<std::string> plane_names(const std::string& layer, bool has_veil);
+[[nodiscard]] std::vector<float> all_planes(const Lightmap& map);
+
 // The largest sample of each channel.
 [[nodiscard]] std::array<float, kChannels> peaks_of(const Lightmap& map);
 
-// Divides each channel by its peak; one that is black stays so.
+// Divides each channel by its peak, its veil too; one that is black stays so.
 void divide_by(const std::array<float, kChannels>& peaks, Lightmap& map);
 
 }  // namespace aphotic

@@ -40,7 +40,9 @@ namespace aphotic {
 inline constexpr double kVeilCell_px = 16.0;
 inline constexpr int kVeilParts = 4;  // of a cell, each way
 inline constexpr double kVeilOff = 3e-5;
-inline constexpr unsigned kVeilMapPoints = 4;  // rig/veil.h's, of a panel
+// What maps are off by at most, as measured (docs/lightmaps.md): away from the middles, too.
+inline constexpr double kVeilOfSignal = 1e-4;
+inline constexpr unsigned kVeilMapPoints = 3;  // rig/veil.h's, of a panel
 
 class VeilMap {
   public:

@@ -84,6 +84,24 @@ std::optional<Vector3d> pole_of(const Beam& beam, const BeamFrame& frame) {
     return c * frame.across - s * frame.along;
 }
 
+struct CosSin {
+    double cosine;
+    double sine;
+};
+
+// Of half a panel at most: right to rounding.
+CosSin near_zero(double x) {
+    static_assert(kVeilPanelRad <= 0.36);
+    const double q = x * x;
+    return {1.0 - q * (1.0 / 2.0) *
+                      (1.0 - q * (1.0 / 12.0) *
+                                 (1.0 - q * (1.0 / 30.0) *
+                                            (1.0 - q * (1.0 / 56.0) * (1.0 - q * (1.0 / 90.0))))),
+            x * (1.0 - q * (1.0 / 6.0) *
+                           (1.0 - q * (1.0 / 20.0) *
+                                      (1.0 - q * (1.0 / 42.0) * (1.0 - q * (1.0 / 72.0)))))};
+}
+
 bool is_whole(double x) {
     return x == std::floor(x);
 }
@@ -167,7 +185,8 @@ Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(r
         const auto& kind = scatterer.phase.kind;
         if (const auto* table = std::get_if<PhaseTable>(&kind)) {
             for (const double angle_rad : table->angle_rad)
-                if (angle_rad > kVeilCut) kinks_rad_.push_back(angle_rad - kPoleRad);
+                if (points >= kVeilPoints && angle_rad > kVeilCut)
+                    kinks_rad_.push_back(angle_rad - kPoleRad);
         }
         if (std::holds_alternative<PhaseTable>(kind) ||
             std::holds_alternative<FournierForand>(kind)) {
@@ -314,10 +333,15 @@ void Veil::add_piece(const Light& light,
         }
         const bool is_last = width >= (to - start) * (1.0 - 1e-9);
         const Rule& rule = rule_for(width, room);
+        const double middle = start + 0.5 * width;
+        const double cos_middle = std::cos(middle);
+        const double sin_middle = std::sin(middle);
         for (std::size_t n = 0; n < rule.points.size(); ++n) {
-            const double phi = start + width * rule.points[n];
-            const double cosine = std::cos(phi);
-            const double sine = std::sin(phi);
+            const double off = width * (rule.points[n] - 0.5);
+            const auto [cos_off, sin_off] = near_zero(off);
+            const double phi = middle + off;
+            const double cosine = cos_middle * cos_off - sin_middle * sin_off;
+            const double sine = sin_middle * cos_off + cos_middle * sin_off;
             const double share =
                 lamp.share * intensity_at(cosine, sine) * width * rule.weights[n] / view.away_m;
             nodes.path_m.push_back(view.foot_m + view.away_m * (1.0 + sine) / cosine);
