@@ -316,7 +316,9 @@ LightmapMaker::LightmapMaker(const Rig& rig,
             PathRange{.shortest_m = direct.shortest_m,
                       .longest_m = direct.longest_m,
                       .has_horizon = direct.has_horizon || ends_in_darkness(rig.water, direct)},
-            options.error);
+            options.error,
+            index_nodes_nm_,
+            [this](std::size_t j, double nm) { return lagrange(rig_, index_nodes_nm_, j, nm); });
 }
 
 void LightmapMaker::tabulate() {

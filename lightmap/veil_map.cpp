@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -16,6 +18,13 @@ constexpr double kVeilGridShare = 0.1;
 constexpr double kVeilTableShare = 0.5;
 constexpr int kVeilStencil = 4;
 constexpr std::size_t kMostCell_px = 18;
+
+// The veil knows no pixels: of a small image a cell is smaller.
+double cell_px(const Camera& camera) {
+    constexpr double kLeast_px = 4.0;
+    return std::clamp(
+        std::max(camera.width_px, camera.height_px) / kVeilCells, kLeast_px, kVeilCell_px);
+}
 
 // Lagrange's through 0, 1, 2, 3.
 std::array<double, 4> lagrange_weights(double a) {
@@ -70,42 +79,33 @@ SpectralSum veil_sum(const Rig& rig,
                      const Water& water,
                      const std::vector<WeightedWavelength>& grid,
                      const Spectrum& lamp,
-                     std::size_t scatterer) {
+                     std::size_t scatterer,
+                     const std::function<double(double)>& share) {
     const auto count = static_cast<Eigen::Index>(grid.size());
     SpectralSum sum{.K_per_m = Eigen::ArrayXd(count), .weights = Eigen::ArrayXXd(count, kChannels)};
     for (Eigen::Index i = 0; i < count; ++i) {
         const WeightedWavelength& node = grid[static_cast<std::size_t>(i)];
         sum.K_per_m(i) = water.attenuation_per_m(node.lambda_nm);
-        const double light =
-            lamp.at(node.lambda_nm) * rig.water.scattering_per_m(scatterer, node.lambda_nm);
+        const double light = share(node.lambda_nm) * lamp.at(node.lambda_nm) *
+                             rig.water.scattering_per_m(scatterer, node.lambda_nm);
         for (Eigen::Index c = 0; c < kChannels; ++c)
             sum.weights(i, c) = node.weight[static_cast<std::size_t>(c)] * light;
     }
     return sum;
 }
 
-double middle_index_nm(const Rig& rig) {
-    const WavelengthRange range = rig.camera.range;
-    const double middle = 0.5 * (rig.water.refractive_index(range.first_nm) +
-                                 rig.water.refractive_index(range.last_nm));
-    double low_nm = range.first_nm;
-    double high_nm = range.last_nm;
-    constexpr int kHalvings = 60;
-    for (int i = 0; i < kHalvings; ++i) {
-        const double nm = 0.5 * (low_nm + high_nm);
-        (rig.water.refractive_index(nm) > middle ? low_nm : high_nm) = nm;
-    }
-    return low_nm;
-}
-
 }  // namespace
 
-VeilMap::VeilMap(const Rig& rig, const PathRange& direct, double error)
+VeilMap::VeilMap(const Rig& rig,
+                 const PathRange& direct,
+                 double error,
+                 std::vector<double> index_nodes_nm,
+                 const IndexShare& share)
     : rig_(rig),
       veil_(rig, kVeilMapPoints),
-      across_(rig.camera.width_px),
-      down_(rig.camera.height_px),
-      lambda_nm_(middle_index_nm(rig)) {
+      across_(rig.camera.width_px, cell_px(rig.camera)),
+      down_(rig.camera.height_px, cell_px(rig.camera)),
+      index_nodes_nm_(std::move(index_nodes_nm)) {
     const Water water = lost_from_veil(rig);
     const PathRange paths = veil_paths(rig, water, direct);
     LightFamily family{.sources = {},
@@ -118,19 +118,30 @@ VeilMap::VeilMap(const Rig& rig, const PathRange& direct, double error)
     }
     const auto grid =
         reference_grid(rig.camera.sensor, family, rig.camera.range, kVeilGridShare * error);
-    std::vector<SpectralSum> sums;
+    std::vector<const Spectrum*> lamps;
     for (const Strobe& strobe : rig.strobes) {
-        std::size_t first = 0;
-        while (!is_same_curve(rig.strobes[first].spectrum, strobe.spectrum)) ++first;
-        const bool is_known = first < first_table_.size();
-        first_table_.push_back(is_known ? first_table_[first] : sums.size());
-        for (std::size_t i = 0; i < rig.water.scatterers.size() && !is_known; ++i) {
-            sums.push_back(veil_sum(rig, water, grid, strobe.spectrum, i));
-            const PathSteps steps = path_steps(sums.back(), paths, kVeilTableShare * error);
-            if (steps.count > steps_.count) steps_ = steps;
-        }
+        const auto known = std::ranges::find_if(
+            lamps, [&](const Spectrum* lamp) { return is_same_curve(*lamp, strobe.spectrum); });
+        lamp_of_strobe_.push_back(static_cast<std::size_t>(known - lamps.begin()));
+        if (known == lamps.end()) lamps.push_back(&strobe.spectrum);
     }
-    for (const SpectralSum& sum : sums) tables_.push_back(path_table(sum, steps_));
+    const auto every = [&](double) { return 1.0; };
+    const auto for_each_kind = [&](const auto& take) {
+        for (const Spectrum* lamp : lamps) {
+            for (std::size_t i = 0; i < rig.water.scatterers.size(); ++i) take(*lamp, i);
+        }
+    };
+    for_each_kind([&](const Spectrum& lamp, std::size_t i) {
+        const SpectralSum sum = veil_sum(rig, water, grid, lamp, i, every);
+        const PathSteps steps = path_steps(sum, paths, kVeilTableShare * error);
+        if (steps.count > steps_.count) steps_ = steps;
+    });
+    for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
+        for_each_kind([&](const Spectrum& lamp, std::size_t i) {
+            const auto of_node = [&](double nm) { return share(j, nm); };
+            tables_.push_back(path_table(veil_sum(rig, water, grid, lamp, i, of_node), steps_));
+        });
+    }
 }
 
 VeilMap::Signal VeilMap::table_at(const std::vector<float>& table, double path_m) const {
@@ -151,28 +162,33 @@ VeilMap::Signal VeilMap::table_at(const std::vector<float>& table, double path_m
 }
 
 VeilMap::Signal VeilMap::at(const Rig& flown, double column, double row, VeilNodes& nodes) const {
-    const VeilSight sight = sight_of(flown, column, row, lambda_nm_);
     Signal sum{};
-    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-        veil_.nodes(s, sight.ray, sight.length_m, nodes);
-        for (std::size_t i = 0; i < nodes.weight.size(); ++i) {
-            const std::vector<float>& table = tables_[first_table_[s] + i];
-            Signal of_scatterer{};
-            for (std::size_t n = 0; n < nodes.path_m.size(); ++n) {
-                const Signal T = table_at(table, nodes.path_m[n]);
+    const std::size_t scatterers = rig_.water.scatterers.size();
+    const std::size_t kinds = tables_.size() / index_nodes_nm_.size();
+    for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
+        const VeilSight sight = sight_of(flown, column, row, index_nodes_nm_[j]);
+        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+            veil_.nodes(s, sight.ray, sight.length_m, nodes);
+            for (std::size_t i = 0; i < scatterers; ++i) {
+                const std::vector<float>& table =
+                    tables_[j * kinds + lamp_of_strobe_[s] * scatterers + i];
+                Signal of_scatterer{};
+                for (std::size_t n = 0; n < nodes.path_m.size(); ++n) {
+                    const Signal T = table_at(table, nodes.path_m[n]);
+                    for (std::size_t c = 0; c < kChannels; ++c)
+                        of_scatterer[c] += nodes.weight[i][n] * T[c];
+                }
                 for (std::size_t c = 0; c < kChannels; ++c)
-                    of_scatterer[c] += nodes.weight[i][n] * T[c];
+                    sum[c] += rig_.strobes[s].power * of_scatterer[c];
             }
-            for (std::size_t c = 0; c < kChannels; ++c)
-                sum[c] += rig_.strobes[s].power * of_scatterer[c];
         }
     }
     return sum;
 }
 
-VeilMap::Axis::Axis(int count)
+VeilMap::Axis::Axis(int count, double cell_px)
     : pixels(count),
-      cells(std::max(kVeilStencil - 1, static_cast<int>(std::ceil((count - 1) / kVeilCell_px)))),
+      cells(std::max(kVeilStencil - 1, static_cast<int>(std::ceil((count - 1) / cell_px)))),
       apart_px(std::max(1, count - 1) / static_cast<double>(cells)) {}
 
 int VeilMap::Axis::first_pixel(int cell) const {
@@ -255,6 +271,44 @@ class VeilMap::Strip {
         return true;
     }
 
+    // Third differences: where an edge crosses the nodes, they stand out.
+    bool is_straight(const Stencil& nodes, Rows rows, Rows columns) const {
+        const int row = rows.first + rows.count / 2;
+        const int column = columns.first + columns.count / 2;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const double most =
+                kVeilBend * (nodes[1][1][c] + static_cast<double>(floor_[index(c, row, column)]));
+            for (std::size_t k = 0; k < kSide; ++k) {
+                const auto& line = nodes[k];
+                const double along = line[3][c] - line[0][c] + 3.0 * (line[1][c] - line[2][c]);
+                const double down =
+                    nodes[3][k][c] - nodes[0][k][c] + 3.0 * (nodes[1][k][c] - nodes[2][k][c]);
+                if (!(std::abs(along) <= most && std::abs(down) <= most)) return false;
+            }
+        }
+        return true;
+    }
+
+    // Whether the stencil's cubic serves a cell or a part of one.
+    bool fits(const Stencil& nodes,
+              const Place& place,
+              const Place& part,
+              Rows rows,
+              Rows columns,
+              VeilNodes& room) const {
+        if (is_straight(nodes, rows, columns)) return true;
+        constexpr std::array<std::array<double, 2>, 5> kLooks{
+            {{0.5, 0.5}, {0.2, 0.2}, {0.8, 0.8}, {0.2, 0.8}, {0.8, 0.2}}};
+        return std::ranges::all_of(kLooks, [&](const auto& look) {
+            const double column = part.first_column + look[0] * part.apart_column;
+            const double row = part.first_row + look[1] * part.apart_row;
+            return holds(cubic(nodes, place, column, row),
+                         map_.at(flown_, column, row, room),
+                         nearest(row, rows),
+                         nearest(column, columns));
+        });
+    }
+
     // Pixels of a part of the image, by one cubic.
     void store(const Stencil& nodes, const Place& place, Rows rows, Rows columns) const {
         std::array<std::array<double, kSide>, kMostCell_px> weights{};
@@ -296,13 +350,9 @@ class VeilMap::Strip {
             }
         }
         const Place place{across.node_px(left), down.node_px(top), across.apart_px, down.apart_px};
-        const double column = across.node_px(cell + 0.5);
-        const double row = down.node_px(cell_row + 0.5);
-        const Signal middle = map_.at(flown_, column, row, room);
-        if (holds(cubic(nodes, place, column, row),
-                  middle,
-                  nearest(row, rows),
-                  nearest(column, columns)))
+        const Place own{
+            across.node_px(cell), down.node_px(cell_row), across.apart_px, down.apart_px};
+        if (fits(nodes, place, own, rows, columns, room))
             store(nodes, place, rows, columns);
         else
             refine(cell_row, cell, rows, columns, room);
@@ -360,13 +410,11 @@ class VeilMap::Strip {
                    Rows rows,
                    Rows columns,
                    VeilNodes& room) const {
-        const double column = own.first_column + (i + 0.5) * own.apart_column;
-        const double row = own.first_row + (j + 0.5) * own.apart_row;
-        const Signal middle = map_.at(flown_, column, row, room);
-        if (holds(cubic(nodes, place, column, row),
-                  middle,
-                  nearest(row, rows),
-                  nearest(column, columns))) {
+        const Place part{own.first_column + i * own.apart_column,
+                         own.first_row + j * own.apart_row,
+                         own.apart_column,
+                         own.apart_row};
+        if (fits(nodes, place, part, rows, columns, room)) {
             store(nodes, place, rows, columns);
             return;
         }

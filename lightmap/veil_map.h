@@ -15,14 +15,15 @@
 //
 // The veil is smooth over the image but where the sight touches a beam's edge in the water or meets
 // it on the floor. So it is computed on a grid of nodes at most kVeilCell_px apart, and in between
-// it is the cubic through the four next of each way. In the middle of each cell it is computed,
-// too: where the cubic is off there by more than kVeilOff of the signal, floor's light and veil,
-// the cell gets a grid of its own, four times as fine, and its parts the same test; those that fail
-// are computed pixel by pixel. All depends on the cell alone: neither threads nor the rows that are
-// asked for change a bit.
+// it is the cubic through the four next of each way. Where the nodes' third differences are over
+// kVeilBend of the signal, floor's light and veil, the veil itself is computed at five places of
+// the cell: if the cubic is off at one by more than kVeilOff of the signal, the cell gets a grid of
+// its own, four times as fine, and its parts the same test; those that fail are computed pixel by
+// pixel. All depends on the cell alone: neither threads nor the rows that are asked for change a
+// bit.
 //
-// Behind a port all wavelengths take the ray of the middle index: the veil changes little over the
-// few pixels of dispersion.
+// Behind a port the veil is that of the three rays that the floor's light is of (lightmap.h), by
+// the same interpolation over the water's index.
 #pragma once
 
 #include "lightmap/path_table.h"
@@ -32,23 +33,33 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
+#include <functional>
 #include <vector>
 
 namespace aphotic {
 
 inline constexpr double kVeilCell_px = 16.0;
+inline constexpr double kVeilCells =
+    85.0;                             // at least, along the longer side, down to 4 pixels each
 inline constexpr int kVeilParts = 4;  // of a cell, each way
 inline constexpr double kVeilOff = 3e-5;
+inline constexpr double kVeilBend = 6e-5;
 // What maps are off by at most, as measured (docs/lightmaps.md): away from the middles, too.
 inline constexpr double kVeilOfSignal = 1e-4;
 inline constexpr unsigned kVeilMapPoints = 3;  // rig/veil.h's, of a panel
 
 class VeilMap {
   public:
+    // The share that the ray of an index node has in a wavelength's.
+    using IndexShare = std::function<double(std::size_t, double)>;
+
     // Of water that scatters. direct: what the floor's tables serve. error: relative, of the
-    // spectral integral and its table.
-    VeilMap(const Rig& rig, const PathRange& direct, double error);
+    // spectral integral and its table. Index nodes: by the wavelengths whose rays they are.
+    VeilMap(const Rig& rig,
+            const PathRange& direct,
+            double error,
+            std::vector<double> index_nodes_nm,
+            const IndexShare& share);
 
     // Rows whose floor must be known for these, which they are among.
     struct Rows {
@@ -71,7 +82,7 @@ class VeilMap {
   private:
     // Nodes along one way, from the first pixel's centre to the last's.
     struct Axis {
-        explicit Axis(int count);
+        Axis(int count, double cell_px);
         [[nodiscard]] double node_px(double node) const { return 0.5 + node * apart_px; }
         [[nodiscard]] int first_pixel(int cell) const;  // of all that are in no cell before
         int pixels;
@@ -86,10 +97,10 @@ class VeilMap {
     Veil veil_;
     Axis across_;
     Axis down_;
-    double lambda_nm_ = 0.0;  // whose rays are taken
+    std::vector<double> index_nodes_nm_;  // whose rays are taken
     PathSteps steps_;
-    std::vector<std::vector<float>> tables_;  // by lamp spectrum and scatterer
-    std::vector<std::size_t> first_table_;    // by strobe
+    std::vector<std::vector<float>> tables_;  // by index node, lamp spectrum and scatterer
+    std::vector<std::size_t> lamp_of_strobe_;
 };
 
 }  // namespace aphotic
