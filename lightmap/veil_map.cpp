@@ -163,24 +163,32 @@ VeilMap::Signal VeilMap::table_at(const std::vector<float>& table, double path_m
 
 VeilMap::Signal VeilMap::at(const Rig& flown, double column, double row, VeilNodes& nodes) const {
     Signal sum{};
+    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+        const Signal of_strobe = at(flown, s, column, row, nodes);
+        for (std::size_t c = 0; c < kChannels; ++c) sum[c] += of_strobe[c];
+    }
+    return sum;
+}
+
+VeilMap::Signal VeilMap::at(
+    const Rig& flown, std::size_t strobe, double column, double row, VeilNodes& nodes) const {
+    Signal sum{};
     const std::size_t scatterers = rig_.water.scatterers.size();
     const std::size_t kinds = tables_.size() / index_nodes_nm_.size();
     for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
         const VeilSight sight = sight_of(flown, column, row, index_nodes_nm_[j]);
-        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-            veil_.nodes(s, sight.ray, sight.length_m, nodes);
-            for (std::size_t i = 0; i < scatterers; ++i) {
-                const std::vector<float>& table =
-                    tables_[j * kinds + lamp_of_strobe_[s] * scatterers + i];
-                Signal of_scatterer{};
-                for (std::size_t n = 0; n < nodes.path_m.size(); ++n) {
-                    const Signal T = table_at(table, nodes.path_m[n]);
-                    for (std::size_t c = 0; c < kChannels; ++c)
-                        of_scatterer[c] += nodes.weight[i][n] * T[c];
-                }
+        veil_.nodes(strobe, sight.ray, sight.length_m, nodes);
+        for (std::size_t i = 0; i < scatterers; ++i) {
+            const std::vector<float>& table =
+                tables_[j * kinds + lamp_of_strobe_[strobe] * scatterers + i];
+            Signal of_scatterer{};
+            for (std::size_t n = 0; n < nodes.path_m.size(); ++n) {
+                const Signal T = table_at(table, nodes.path_m[n]);
                 for (std::size_t c = 0; c < kChannels; ++c)
-                    sum[c] += rig_.strobes[s].power * of_scatterer[c];
+                    of_scatterer[c] += nodes.weight[i][n] * T[c];
             }
+            for (std::size_t c = 0; c < kChannels; ++c)
+                sum[c] += rig_.strobes[strobe].power * of_scatterer[c];
         }
     }
     return sum;
@@ -213,7 +221,7 @@ class VeilMap::Strip {
   public:
     Strip(const VeilMap& map,
           const Rig& flown,
-          const std::vector<Signal>& nodes,  // of all rows of nodes that are there
+          const std::vector<Signal>& nodes,  // by row, column and strobe
           int first_node_row,
           Rows rows,
           const std::vector<float>& floor,
@@ -241,6 +249,14 @@ class VeilMap::Strip {
         double apart_row;
     };
 
+    // Pixels, and what is looked at there: one strobe's veil, beside that of all about here.
+    struct Scope {
+        Rows rows;
+        Rows columns;
+        std::size_t strobe = 0;
+        Signal veil{};
+    };
+
     static Signal cubic(const Stencil& nodes, const Place& place, double column, double row) {
         const auto of_column = lagrange_weights((column - place.first_column) / place.apart_column);
         const auto of_row = lagrange_weights((row - place.first_row) / place.apart_row);
@@ -263,21 +279,27 @@ class VeilMap::Strip {
     }
 
     // Whether the cubic is right there, as far as the signal of the nearest of these pixels asks.
-    bool holds(const Signal& found, const Signal& exact, int row, int column) const {
+    bool holds(const Signal& found,
+               const Signal& exact,
+               const Scope& scope,
+               double column,
+               double row) const {
+        const int y = nearest(row, scope.rows);
+        const int x = nearest(column, scope.columns);
         for (std::size_t c = 0; c < kChannels; ++c) {
-            const double signal = exact[c] + static_cast<double>(floor_[index(c, row, column)]);
+            const double signal = scope.veil[c] + static_cast<double>(floor_[index(c, y, x)]);
             if (std::abs(found[c] - exact[c]) > kVeilOff * signal) return false;
         }
         return true;
     }
 
     // Third differences: where an edge crosses the nodes, they stand out.
-    bool is_straight(const Stencil& nodes, Rows rows, Rows columns) const {
-        const int row = rows.first + rows.count / 2;
-        const int column = columns.first + columns.count / 2;
+    bool is_straight(const Stencil& nodes, const Scope& scope) const {
+        const int row = scope.rows.first + scope.rows.count / 2;
+        const int column = scope.columns.first + scope.columns.count / 2;
         for (std::size_t c = 0; c < kChannels; ++c) {
             const double most =
-                kVeilBend * (nodes[1][1][c] + static_cast<double>(floor_[index(c, row, column)]));
+                kVeilBend * (scope.veil[c] + static_cast<double>(floor_[index(c, row, column)]));
             for (std::size_t k = 0; k < kSide; ++k) {
                 const auto& line = nodes[k];
                 const double along = line[3][c] - line[0][c] + 3.0 * (line[1][c] - line[2][c]);
@@ -293,23 +315,23 @@ class VeilMap::Strip {
     bool fits(const Stencil& nodes,
               const Place& place,
               const Place& part,
-              Rows rows,
-              Rows columns,
+              const Scope& scope,
               VeilNodes& room) const {
-        if (is_straight(nodes, rows, columns)) return true;
+        if (is_straight(nodes, scope)) return true;
         constexpr std::array<std::array<double, 2>, 5> kLooks{
             {{0.5, 0.5}, {0.2, 0.2}, {0.8, 0.8}, {0.2, 0.8}, {0.8, 0.2}}};
         return std::ranges::all_of(kLooks, [&](const auto& look) {
             const double column = part.first_column + look[0] * part.apart_column;
             const double row = part.first_row + look[1] * part.apart_row;
             return holds(cubic(nodes, place, column, row),
-                         map_.at(flown_, column, row, room),
-                         nearest(row, rows),
-                         nearest(column, columns));
+                         map_.at(flown_, scope.strobe, column, row, room),
+                         scope,
+                         column,
+                         row);
         });
     }
 
-    // Pixels of a part of the image, by one cubic.
+    // Adds to the pixels of a part of the image, by one cubic.
     void store(const Stencil& nodes, const Place& place, Rows rows, Rows columns) const {
         std::array<std::array<double, kSide>, kMostCell_px> weights{};
         for (int i = 0; i < columns.count; ++i) {
@@ -326,8 +348,8 @@ class VeilMap::Strip {
                 float* const to = &samples_[index(c, row, columns.first)];
                 for (int i = 0; i < columns.count; ++i) {
                     const auto& w = weights[static_cast<std::size_t>(i)];
-                    to[i] = static_cast<float>(w[0] * line[0] + w[1] * line[1] + w[2] * line[2] +
-                                               w[3] * line[3]);
+                    to[i] += static_cast<float>(w[0] * line[0] + w[1] * line[1] + w[2] * line[2] +
+                                                w[3] * line[3]);
                 }
             }
         }
@@ -342,23 +364,37 @@ class VeilMap::Strip {
         if (rows.count == 0 || columns.count == 0) return;
         const int left = std::clamp(cell - 1, 0, across.cells + 1 - kVeilStencil);
         const int top = std::clamp(cell_row - 1, 0, down.cells + 1 - kVeilStencil);
-        Stencil nodes;
-        for (int j = 0; j < kVeilStencil; ++j) {
-            for (int i = 0; i < kVeilStencil; ++i) {
-                nodes[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] =
-                    node(top + j, left + i);
-            }
-        }
         const Place place{across.node_px(left), down.node_px(top), across.apart_px, down.apart_px};
         const Place own{
             across.node_px(cell), down.node_px(cell_row), across.apart_px, down.apart_px};
-        if (fits(nodes, place, own, rows, columns, room))
-            store(nodes, place, rows, columns);
-        else
-            refine(cell_row, cell, rows, columns, room);
+        Scope scope{.rows = rows, .columns = columns};
+        for (std::size_t s = 0; s < map_.rig_.strobes.size(); ++s) {
+            for (std::size_t c = 0; c < kChannels; ++c) scope.veil[c] += node(s, cell_row, cell)[c];
+        }
+        Stencil smooth{};  // of all strobes that it serves
+        for (std::size_t s = 0; s < map_.rig_.strobes.size(); ++s) {
+            Stencil nodes;
+            for (int j = 0; j < kVeilStencil; ++j) {
+                for (int i = 0; i < kVeilStencil; ++i) {
+                    nodes[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] =
+                        node(s, top + j, left + i);
+                }
+            }
+            scope.strobe = s;
+            if (!fits(nodes, place, own, scope, room)) {
+                refine(cell_row, cell, scope, room);
+                continue;
+            }
+            for (std::size_t j = 0; j < kSide; ++j) {
+                for (std::size_t i = 0; i < kSide; ++i) {
+                    for (std::size_t c = 0; c < kChannels; ++c) smooth[j][i][c] += nodes[j][i][c];
+                }
+            }
+        }
+        store(smooth, place, rows, columns);
     }
 
-    void refine(int cell_row, int cell, Rows rows, Rows columns, VeilNodes& room) const {
+    void refine(int cell_row, int cell, const Scope& scope, VeilNodes& room) const {
         const Axis& across = map_.across_;
         const Axis& down = map_.down_;
         constexpr auto kNodes = static_cast<std::size_t>(kVeilParts + 1);
@@ -372,9 +408,11 @@ class VeilMap::Strip {
                 const auto x = static_cast<double>(i);
                 const auto y = static_cast<double>(j);
                 const bool is_corner = i % kVeilParts == 0 && j % kVeilParts == 0;
-                fine[j][i] = is_corner ? node(cell_row + static_cast<int>(j) / kVeilParts,
+                fine[j][i] = is_corner ? node(scope.strobe,
+                                              cell_row + static_cast<int>(j) / kVeilParts,
                                               cell + static_cast<int>(i) / kVeilParts)
                                        : map_.at(flown_,
+                                                 scope.strobe,
                                                  own.first_column + x * own.apart_column,
                                                  own.first_row + y * own.apart_row,
                                                  room);
@@ -382,9 +420,10 @@ class VeilMap::Strip {
         }
         for (int j = 0; j < kVeilParts; ++j) {
             for (int i = 0; i < kVeilParts; ++i) {
-                const Rows part_rows = part_of(rows, own.first_row, own.apart_row, j);
-                const Rows part_columns = part_of(columns, own.first_column, own.apart_column, i);
-                if (part_rows.count == 0 || part_columns.count == 0) continue;
+                Scope part = scope;
+                part.rows = part_of(scope.rows, own.first_row, own.apart_row, j);
+                part.columns = part_of(scope.columns, own.first_column, own.apart_column, i);
+                if (part.rows.count == 0 || part.columns.count == 0) continue;
                 const int left = std::clamp(i - 1, 0, kVeilParts + 1 - kVeilStencil);
                 const int top = std::clamp(j - 1, 0, kVeilParts + 1 - kVeilStencil);
                 Stencil nodes;
@@ -397,32 +436,31 @@ class VeilMap::Strip {
                                   own.first_row + top * own.apart_row,
                                   own.apart_column,
                                   own.apart_row};
-                fill_part(nodes, place, own, i, j, part_rows, part_columns, room);
+                const Place at{own.first_column + i * own.apart_column,
+                               own.first_row + j * own.apart_row,
+                               own.apart_column,
+                               own.apart_row};
+                fill_part(nodes, place, at, part, room);
             }
         }
     }
 
     void fill_part(const Stencil& nodes,
                    const Place& place,
-                   const Place& own,
-                   int i,
-                   int j,
-                   Rows rows,
-                   Rows columns,
+                   const Place& at,
+                   const Scope& scope,
                    VeilNodes& room) const {
-        const Place part{own.first_column + i * own.apart_column,
-                         own.first_row + j * own.apart_row,
-                         own.apart_column,
-                         own.apart_row};
-        if (fits(nodes, place, part, rows, columns, room)) {
+        const Rows rows = scope.rows;
+        const Rows columns = scope.columns;
+        if (fits(nodes, place, at, scope, room)) {
             store(nodes, place, rows, columns);
             return;
         }
         for (int y = rows.first; y < rows.first + rows.count; ++y) {
             for (int x = columns.first; x < columns.first + columns.count; ++x) {
-                const Signal exact = map_.at(flown_, x + 0.5, y + 0.5, room);
+                const Signal exact = map_.at(flown_, scope.strobe, x + 0.5, y + 0.5, room);
                 for (std::size_t c = 0; c < kChannels; ++c)
-                    samples_[index(c, y, x)] = static_cast<float>(exact[c]);
+                    samples_[index(c, y, x)] += static_cast<float>(exact[c]);
             }
         }
     }
@@ -441,10 +479,12 @@ class VeilMap::Strip {
         return pixels_between(part == 0 ? pixels.first : at(part), end);
     }
 
-    [[nodiscard]] const Signal& node(int row, int column) const {
+    [[nodiscard]] const Signal& node(std::size_t strobe, int row, int column) const {
         const auto stride = static_cast<std::size_t>(map_.across_.cells + 1);
-        return nodes_[static_cast<std::size_t>(row - first_node_row_) * stride +
-                      static_cast<std::size_t>(column)];
+        return nodes_[(static_cast<std::size_t>(row - first_node_row_) * stride +
+                       static_cast<std::size_t>(column)) *
+                          map_.rig_.strobes.size() +
+                      strobe];
     }
 
     const VeilMap& map_;
@@ -461,7 +501,7 @@ void VeilMap::rows_into(const Sled& sled,
                         const std::vector<float>& floor,
                         int threads,
                         std::vector<float>& samples) const {
-    samples.resize(floor.size());
+    samples.assign(floor.size(), 0.0F);
     Rig flown = rig_;
     flown.sled = sled;
     int first_cell = 0;
@@ -473,14 +513,18 @@ void VeilMap::rows_into(const Sled& sled,
     const int last_node =
         std::min(down_.cells, std::max(end_cell + 1, first_node + kVeilStencil - 1));
     const auto stride = static_cast<std::size_t>(across_.cells + 1);
-    std::vector<Signal> nodes(stride * static_cast<std::size_t>(last_node - first_node + 1));
+    const auto node_rows = static_cast<std::size_t>(last_node - first_node + 1);
+    const std::size_t strobes = rig_.strobes.size();
+    std::vector<Signal> nodes(node_rows * stride * strobes);
     std::vector<VeilNodes> rooms(static_cast<std::size_t>(threads));
-    parallel_for(nodes.size() / stride, rooms.size(), [&](std::size_t row, std::size_t thread) {
-        for (std::size_t column = 0; column < stride; ++column) {
-            nodes[row * stride + column] = at(flown,
-                                              across_.node_px(static_cast<double>(column)),
-                                              down_.node_px(static_cast<double>(row) + first_node),
-                                              rooms[thread]);
+    parallel_for(node_rows, rooms.size(), [&](std::size_t row, std::size_t thread) {
+        for (std::size_t i = 0; i < stride * strobes; ++i) {
+            nodes[row * stride * strobes + i] =
+                at(flown,
+                   i % strobes,
+                   across_.node_px(static_cast<double>(i / strobes)),
+                   down_.node_px(static_cast<double>(row) + first_node),
+                   rooms[thread]);
         }
     });
     const Strip strip(*this, flown, nodes, first_node, rows, floor, samples);

@@ -19,8 +19,9 @@
 // kVeilBend of the signal, floor's light and veil, the veil itself is computed at five places of
 // the cell: if the cubic is off at one by more than kVeilOff of the signal, the cell gets a grid of
 // its own, four times as fine, and its parts the same test; those that fail are computed pixel by
-// pixel. All depends on the cell alone: neither threads nor the rows that are asked for change a
-// bit.
+// pixel. All that strobe
+// by strobe, for edges of one are none of the others'. It depends on the cell alone: neither
+// threads nor the rows that are asked for change a bit.
 //
 // Behind a port the veil is that of the three rays that the floor's light is of (lightmap.h), by
 // the same interpolation over the water's index.
@@ -78,6 +79,9 @@ class VeilMap {
     // At a place of the image, without interpolation; pixels' centres are at .5.
     using Signal = std::array<double, kChannels>;
     [[nodiscard]] Signal at(const Rig& flown, double column, double row, VeilNodes& nodes) const;
+    // Of one strobe.
+    [[nodiscard]] Signal at(
+        const Rig& flown, std::size_t strobe, double column, double row, VeilNodes& nodes) const;
 
   private:
     // Nodes along one way, from the first pixel's centre to the last's.
