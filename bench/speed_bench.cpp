@@ -75,6 +75,33 @@ BENCHMARK_CAPTURE(lightmap, habcam, "habcam", kThreads)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap, habcam_one_thread, "habcam", 1)->Apply(least_of_many);
 BENCHMARK_CAPTURE(lightmap, port, "port", kThreads)->Apply(least_of_many);
 
+// HabCam in coastal water, beside the floor's light alone: the veil's goal is ten times as long.
+
+Rig coast() {
+    Rig rig = scene();
+    const auto line = [](const char* name, double blue, double red) {
+        return Spectrum(name, {300.0, 400.0, 700.0, 900.0}, {blue, blue, red, red});
+    };
+    rig.water.absorption_per_m = line("absorption", 0.3, 0.65);
+    rig.water.scatterers = {{line("scattering", 0.28, 0.18), fournier_forand(0.0183)}};
+    return rig;
+}
+
+void lightmap_in_coastal_water(benchmark::State& state, bool has_veil, int threads) {
+    const Rig rig = coast();
+    const LightmapMaker maker(
+        rig, std::nullopt, {.error = 1e-5, .threads = threads, .has_veil = has_veil});
+    Lightmap map;
+    for (auto _ : state) {
+        maker.map_into(rig.sled, map);
+        benchmark::DoNotOptimize(map.samples.data());
+    }
+}
+BENCHMARK_CAPTURE(lightmap_in_coastal_water, floor, false, kThreads)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_in_coastal_water, veil, true, kThreads)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_in_coastal_water, floor_one_thread, false, 1)->Apply(least_of_many);
+BENCHMARK_CAPTURE(lightmap_in_coastal_water, veil_one_thread, true, 1)->Apply(least_of_many);
+
 // The same strobes with other beams, by one thread: over habcam_one_thread, what a kind costs.
 
 constexpr BeamWindow kAcrylic{.glass_index = 1.49, .water_index = 1.34};

@@ -43,8 +43,8 @@ inline constexpr double kVeilCell_px = 16.0;
 inline constexpr double kVeilCells =
     85.0;                             // at least, along the longer side, down to 4 pixels each
 inline constexpr int kVeilParts = 4;  // of a cell, each way
-inline constexpr double kVeilOff = 3e-5;
-inline constexpr double kVeilBend = 6e-5;
+inline constexpr double kVeilOff = 4e-5;
+inline constexpr double kVeilBend = 8e-5;
 // What maps are off by at most, as measured (docs/lightmaps.md): away from the middles, too.
 inline constexpr double kVeilOfSignal = 1e-4;
 inline constexpr unsigned kVeilMapPoints = 3;  // rig/veil.h's, of a panel

@@ -123,12 +123,12 @@ void add_crossings(const Crease& crease,
     if (!crease.is_quadratic) {
         const double A = crease.l.dot(e);
         const double B = crease.l.dot(u);
-        const double size = std::hypot(A, B);
+        const double size = std::sqrt(A * A + B * B);
         if (std::abs(crease.at) >= size) return;
         const double middle = std::atan2(B, A);
         const double half = std::acos(crease.at / size);
         for (const double phi : {middle - half, middle + half})
-            phi_rad.push_back(std::remainder(phi, 2.0 * pi));
+            phi_rad.push_back(std::abs(phi) <= pi ? phi : std::remainder(phi, 2.0 * pi));
         return;
     }
     const Vector3d Qe = crease.Q * e;
@@ -141,7 +141,7 @@ void add_crossings(const Crease& crease,
     const double middle = 0.5 * std::atan2(c, a - b);
     const double half = 0.5 * std::acos(at / size);
     for (const double phi : {middle - half, middle + half, middle - half + pi, middle + half + pi})
-        phi_rad.push_back(std::remainder(phi, 2.0 * pi));
+        phi_rad.push_back(std::abs(phi) <= pi ? phi : std::remainder(phi, 2.0 * pi));
 }
 
 }  // namespace aphotic
