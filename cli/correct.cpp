@@ -34,6 +34,7 @@ struct CorrectCommandOptions {
     std::string rig;
     NavigationOptions navigation;
     std::string map;
+    bool no_veil = false;
     std::string ifdo;
     CameraNumbers camera;
     std::vector<double> altitudes_m;
@@ -111,7 +112,7 @@ Survey survey_of(const CorrectCommandOptions& options) {
                   .camera = options.camera};
     if (!options.map.empty()) {
         survey.camera = camera_of(survey.camera, survey.files, nullptr);
-        survey.light = light_of_map(options.map);
+        survey.light = light_of_map(options.map, !options.no_veil);
         return survey;
     }
     Rig rig = read_rig(options.rig);
@@ -125,8 +126,9 @@ Survey survey_of(const CorrectCommandOptions& options) {
         navigation.most_altitude_m = altitudes_m[1];
     }
     survey.navigation = read_navigation(navigation, survey.files, &rig);
-    survey.light =
-        naming(options.rig, [&] { return light_of_rig(rig, *survey.navigation, survey.files); });
+    survey.light = naming(options.rig, [&] {
+        return light_of_rig(rig, *survey.navigation, survey.files, !options.no_veil);
+    });
     survey.light.rig_size = own;
     return survey;
 }
@@ -182,6 +184,9 @@ void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
     app.add_option(
            "--map", options.map, "Use one lightmap (EXR) for all images instead of --rig and --nav")
         ->type_name("FILE");
+    app.add_flag("--no-veil",
+                 options.no_veil,
+                 "Leave in what the water scatters into the view, for comparison");
     app.add_option(kAltitudeNames,
                    options.altitudes_m,
                    "Skip images from outside these altitudes in metres")

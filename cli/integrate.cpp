@@ -10,6 +10,7 @@
 #include "cli/output_folder.h"
 #include "rig/rig_reader.h"
 #include "scene_gen/reweighting.h"
+#include "scene_gen/veil_planes.h"
 
 #include <filesystem>
 #include <memory>
@@ -86,7 +87,10 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     // Frames that cannot serve, and images that have no room, leave no folder behind.
     require_room(images_needs(image_size(manifest_of(options))), images, options.ignore_needs);
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
-    const Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
+    Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
+    if (!options.rig_file.empty()) {
+        manifest.veil = write_veil_of_signals(images, read_rig(options.rig_file), manifest);
+    }
     const Integration integration =
         integrate_folder(options.folder, manifest, options.preview, images);
     if (!options.rig_file.empty()) {

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "lightmap/row_light.h"
 #include "rig/geometry.h"
+#include "rig/index_nodes.h"
 #include "spectral/light_family.h"
 
 #include <fmt/format.h>
@@ -50,44 +51,6 @@ std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
         lamps.push_back(first);
     }
     return lamps;
-}
-
-// The wavelength whose water index this is; the index falls with the wavelength.
-double wavelength_of_index(const Rig& rig, double index) {
-    WavelengthRange between = rig.camera.range;
-    constexpr int kHalvings = 60;
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle_nm = std::midpoint(between.first_nm, between.last_nm);
-        (rig.water.refractive_index(middle_nm) > index ? between.first_nm : between.last_nm) =
-            middle_nm;
-    }
-    return between.first_nm;
-}
-
-// Chebyshev's points of the range of the index; the middle one is in the middle.
-std::vector<double> index_nodes_nm(const Rig& rig) {
-    if (!rig.camera.port) return {rig.camera.range.first_nm};
-    const double first = rig.water.refractive_index(rig.camera.range.first_nm);
-    const double last = rig.water.refractive_index(rig.camera.range.last_nm);
-    std::vector<double> nodes_nm;
-    for (std::size_t j = 0; j < kIndexNodes; ++j) {
-        const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / kIndexNodes;
-        const double index = std::midpoint(first, last) + 0.5 * (first - last) * std::cos(angle);
-        nodes_nm.push_back(wavelength_of_index(rig, index));
-    }
-    return nodes_nm;
-}
-
-// Lagrange's polynomial of node j over the indices of the nodes, at one wavelength.
-double lagrange(const Rig& rig, const std::vector<double>& nodes_nm, std::size_t j, double nm) {
-    double value = 1.0;
-    for (std::size_t m = 0; m < nodes_nm.size(); ++m) {
-        if (m == j) continue;
-        const double n_m = rig.water.refractive_index(nodes_nm[m]);
-        value *= (rig.water.refractive_index(nm) - n_m) /
-                 (rig.water.refractive_index(nodes_nm[j]) - n_m);
-    }
-    return value;
 }
 
 SpectralSum spectral_sum(const Rig& rig,
@@ -316,9 +279,7 @@ LightmapMaker::LightmapMaker(const Rig& rig,
             PathRange{.shortest_m = direct.shortest_m,
                       .longest_m = direct.longest_m,
                       .has_horizon = direct.has_horizon || ends_in_darkness(rig.water, direct)},
-            options.error,
-            index_nodes_nm_,
-            [this](std::size_t j, double nm) { return lagrange(rig_, index_nodes_nm_, j, nm); });
+            options.error);
 }
 
 void LightmapMaker::tabulate() {
@@ -362,7 +323,7 @@ void LightmapMaker::tabulate_lamp(const Spectrum& lamp,
     const Spectrum& floor = rig_.seafloor.reflectance;
     for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
         const auto bare = [&](double nm) {
-            return lagrange(rig_, index_nodes_nm_, j, nm) * lamp.at(nm);
+            return index_share(rig_, index_nodes_nm_, j, nm) * lamp.at(nm);
         };
         const auto diffuse = [&](double nm) { return bare(nm) * floor.at(nm); };
         tables.diffuse.push_back(path_table(spectral_sum(rig_, grid, diffuse), steps_));

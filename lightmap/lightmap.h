@@ -4,13 +4,13 @@
 //
 //   S_c = sum_s sum_k  A_k cos^n(theta) cos(i) / (pi d^2) T_sc(d + r)  +  highlight
 //
-// as docs/physics.md has it, with T the signal over the path's length (path_table.h). Once per
+// as docs/physics.md has it, with T the signal over the path's length (rig/path_table.h). Once per
 // water T is tabulated; then a map of any altitude and attitude is geometry and a look-up a pixel,
 // written so that compilers vectorise it (row_light.h).
 //
 // Behind a port every wavelength has its own ray. The light of one path, at one K, is a smooth
 // function of the water's index, for the ray moves smoothly with it. So it is interpolated between
-// kIndexNodes indices n_j by Lagrange's polynomials L_j:
+// kIndexNodes indices n_j by Lagrange's polynomials L_j (rig/index_nodes.h):
 //
 //   S_c = sum_j  G_j T_jc(l_j),      T_jc(l) = int f Q_c L_j(n(lambda)) exp(-K l) dlambda
 //
@@ -24,11 +24,11 @@
 #pragma once
 
 #include "lightmap/beam_edges.h"
-#include "lightmap/path_table.h"
 #include "lightmap/ray_table.h"
-#include "lightmap/veil_map.h"
 #include "rig/path_range.h"
+#include "rig/path_table.h"
 #include "rig/rig.h"
+#include "rig/veil_map.h"
 #include "spectral/bands.h"
 
 #include <array>
@@ -68,15 +68,13 @@ struct Lightmap {
     int width_px = 0;
     int height_px = 0;
     std::vector<float> samples;
-    // What the water scatters into the view (veil_map.h), in the same unit: the signal is
+    // What the water scatters into the view (rig/veil_map.h), in the same unit: the signal is
     // samples + veil. Empty where the water does not scatter.
     std::vector<float> veil{};
 };
 
 // samples + veil: what a camera gets.
 [[nodiscard]] std::vector<float> signal_of(const Lightmap& map);
-
-inline constexpr std::size_t kIndexNodes = 3;
 
 class LightmapMaker {
   public:

@@ -35,11 +35,11 @@
 #pragma once
 
 #include "lightmap/beam_light.h"
-#include "lightmap/path_table.h"
 #include "lightmap/ray_table.h"
 #include "lightmap/row_block.h"
 #include "lightmap/row_fit.h"
 #include "rig/geometry.h"
+#include "rig/path_table.h"
 #include "rig/rig.h"
 
 #include <Eigen/Core>

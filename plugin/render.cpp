@@ -124,7 +124,7 @@ RenderResult render(const PovRay& povray,
     result.kept = set.scenes.size() - missing.size();
     take_away_what_is_past(folder, earlier, result.manifest);
     for (const ManifestFrame& frame : missing) take_away(image_path(folder, frame));
-    write_scenes(folder, set);
+    result.manifest.veil = write_scenes(folder, set);
     write_manifest(folder, result.manifest);
 
     RunOptions run = options;
@@ -165,7 +165,7 @@ Manifest generate(const fs::path& folder, const SceneSet& set) {
         if (!may_be_this) take_away(image_path(folder, frame));
     }
     take_away_what_is_past(folder, earlier, manifest);
-    write_scenes(folder, set);
+    manifest.veil = write_scenes(folder, set);
     write_manifest(folder, manifest);
     return manifest;
 }

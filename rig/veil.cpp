@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/veil.h"
 
+#include <Eigen/Geometry>
 #include <boost/math/special_functions/legendre.hpp>
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "scene_gen/certificate.h"
+#include "scene_gen/veil_planes.h"
 #include "spectral/wavelength_search.h"
 
 #include <fmt/format.h>
@@ -73,7 +74,7 @@ void share_frames(const Rig& rig,
     std::span<const PlannedWavelength> in_view;
     if (!plan.scene.user_scene) in_view = plan.wavelengths;
     certify(rig, fitter, frames, in_view, rule);
-    plan.quality = rule.quality;
+    plan.quality = with_veil(rule.quality, plan.veil_error);
     if (!std::isfinite(plan.promise())) {
         throw InputError(
             "found weights that show a channel light it is blind to, so that nothing can be "
@@ -91,7 +92,7 @@ bool keeps(double tolerance,
            RenderPlan& plan) {
     constexpr int kMostTrials = 4;
     constexpr double kStricter = 0.7;
-    PlanTarget target{.tolerance = tolerance,
+    PlanTarget target{.tolerance = tolerance - plan.veil_error,
                       .frame_error = plan.frame_error,
                       .step = wavelengths_per_step(rig, request.scene),
                       .most = most_wavelengths(plan.family)};
@@ -209,11 +210,13 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
             "a pixel for it",
             request.scene.antialias);
     }
+    if (rig.water.scatters()) require_bare_floor_under_veil(rig);
     const WavelengthRange range = rig.camera.range;
     RenderPlan plan{.method = PlanMethod::Fitted,
                     .tolerance = 0.0,
                     .family = family_of(rig, request),
                     .frame_error = frame_error(rig),
+                    .veil_error = rig.water.scatters() ? veil_plane_error(rig) : 0.0,
                     .scene = request.scene,
                     .omissions = omissions(rig, request.scene.user_scene != nullptr)};
     plan.scene.pixel_shift = pixel_shift(rig, request.scene);

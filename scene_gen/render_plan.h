@@ -47,6 +47,7 @@ struct RenderPlan {
     std::vector<PlannedWavelength> wavelengths{};  // increasing; not exposed yet
     std::array<RuleQuality, kChannels> quality{};
     double frame_error = 0.0;
+    double veil_error = 0.0;  // of what is added for water that scatters; part of quality's
     SceneOptions scene;
     std::vector<Omission> omissions;
     std::vector<std::string> no_promise{};  // why what the scene shows has none; empty: it has

@@ -6,6 +6,7 @@
 #include "rig/solid.h"
 #include "scene_gen/certificate.h"
 #include "scene_gen/scene_set.h"
+#include "scene_gen/veil_planes.h"
 #include "spectral/wavelength_search.h"
 
 #include <fmt/format.h>
@@ -125,6 +126,14 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
     std::span<const PlannedWavelength> in_view;
     if (!manifest.scene) in_view = now.wavelengths;
     certify(changed, fitter, frames, in_view, rule);
+    if (changed.water.scatters()) {
+        require_bare_floor_under_veil(changed);
+        if (manifest.scene)
+            throw InputError(
+                "found frames of a scene; allowed with water that scatters: those of "
+                "the bare floor");
+        rule.quality = with_veil(rule.quality, veil_plane_error(changed));
+    }
     const double promise = rule.promise(manifest.frame_error);
     if (promise > tolerance) {
         throw InputError(
@@ -134,6 +143,7 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
                         tolerance,
                         lacking(fitter, changed, frames, manifest.frame_error, tolerance)));
     }
+    now.veil.reset();  // the frames' own rig's
     now.rig_title = changed.title;
     now.rig_sha256 = changed.digest;
     now.method = "fitted to frames of another rig";

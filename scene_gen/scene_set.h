@@ -26,6 +26,7 @@ struct SceneSet {
     std::string ini;                     // less the paths, which change no pixel
     std::optional<Camera> camera{};      // with a lens, whose rays are written; none: a pinhole
     std::vector<float> vignetting{};     // by pixel; empty: none
+    std::optional<Rig> scattering{};     // whose veil is written beside the frames; none: none
     std::filesystem::path scene_file{};  // of the user's own, absolute; none: the rig's floor
     std::string scene_files_digest{};    // of the user's own, as it was planned for
     bool scene_writes_files = false;     // the user's own
@@ -56,7 +57,7 @@ void require_light_that_counts(std::span<const PlannedWavelength> wavelengths, d
 void require_place_for_scenes(const std::filesystem::path& folder, const SceneSet& set);
 
 // Scenes, settings and an empty folder for the frames; not the manifest, in which whoever
-// renders first notes what is there already.
-void write_scenes(const std::filesystem::path& folder, const SceneSet& set);
+// renders first notes what is there already. Returns what the manifest notes of the veil.
+std::optional<ManifestVeil> write_scenes(const std::filesystem::path& folder, const SceneSet& set);
 
 }  // namespace aphotic

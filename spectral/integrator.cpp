@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 namespace aphotic {
@@ -160,8 +161,42 @@ void take_off(const std::vector<float>& vignetting, const Manifest& manifest, Bl
     }
 }
 
+// What the water scatters into the view, beside the frames' light.
+class VeilReader {
+  public:
+    VeilReader(const fs::path& file, const Manifest& manifest, std::size_t planes)
+        : channels_(veil_channels(manifest)) {
+        if (!manifest.veil) return;
+        if (!fs::exists(file)) throw RunError("{}: the veil is missing", file.string());
+        if (sha256_of_file(file) != manifest.veil->sha256)
+            throw RunError("{}: is not the veil that the manifest notes", file.string());
+        channels_.resize(kChannels + planes);
+        reader_.emplace(file);
+        check_size(
+            file, reader_->width_px(), reader_->height_px(), manifest.width_px, manifest.height_px);
+    }
+
+    void add_to(Block& block, const std::vector<float>& vignetting) {
+        if (!reader_) return;
+        const std::size_t count = block.plane * channels_.size();
+        std::vector<float> veil(count);
+        reader_->read_rows(block.first_row, block.rows, channels_, veil);
+        const auto first = static_cast<std::size_t>(block.first_row) *
+                           static_cast<std::size_t>(reader_->width_px());
+        for (std::size_t i = 0; i < count; ++i) {
+            block.samples[i] +=
+                vignetting.empty() ? veil[i] : veil[i] * vignetting[first + i % block.plane];
+        }
+    }
+
+  private:
+    std::vector<std::string> channels_;
+    std::optional<ExrReader> reader_;
+};
+
 CameraImage integrate_into(const fs::path& images_folder,
                            const std::vector<double>& planes_nm,
+                           const fs::path& veil_file,
                            const fs::path& folder,
                            const Manifest& manifest,
                            const ProgressReport& report) {
@@ -169,6 +204,7 @@ CameraImage integrate_into(const fs::path& images_folder,
     OutputImages images(
         images_folder, manifest.width_px, manifest.height_px, planes_nm, attributes_of(manifest));
     const std::vector<float> vignetting = vignetting_of(folder, manifest);
+    VeilReader veil(veil_file, manifest, planes_nm.size());
     const int height_px = manifest.height_px;
     const int block_rows = rows_per_block(manifest.width_px, manifest.wavelengths.size());
     for (int row = 0; row < height_px; row += block_rows) {
@@ -181,6 +217,7 @@ CameraImage integrate_into(const fs::path& images_folder,
         read_radiance(folder, manifest, block);
         if (!vignetting.empty()) take_off(vignetting, manifest, block);
         sum_signals(manifest, block);
+        veil.add_to(block, vignetting);
         require_finite(folder, manifest, block);
         images.write_rows(block.rows, std::move(block.samples));
         if (report) report(static_cast<double>(row + block.rows) / height_px);
@@ -198,14 +235,15 @@ int rows_per_block(int width_px, std::size_t wavelengths) {
 CameraImage integrate(const fs::path& folder,
                       const Manifest& manifest,
                       const ProgressReport& report) {
-    return integrate_into(folder, wavelengths_of(manifest), folder, manifest, report);
+    return integrate_into(
+        folder, wavelengths_of(manifest), veil_path(folder), folder, manifest, report);
 }
 
 CameraImage integrate_signals(const fs::path& folder,
                               const Manifest& manifest,
                               const fs::path& images_folder,
                               const ProgressReport& report) {
-    return integrate_into(images_folder, {}, folder, manifest, report);
+    return integrate_into(images_folder, {}, veil_path(images_folder), folder, manifest, report);
 }
 
 }  // namespace aphotic

@@ -3,7 +3,7 @@
 // From frames to images: the camera's signal and the spectral radiance of every pixel.
 //
 //   L(lambda_j) = 2^-e_j F_j
-//   S_c         = sum_j w_cj L(lambda_j)
+//   S_c         = sum_j w_cj L(lambda_j)        and the veil's, where the water scatters
 //
 // F_j   what the frame of wavelength j holds, in its channel      e_j   the frame's exposure
 // L     spectral radiance       [unit of the lamp's spectrum / (m^2 sr)]
@@ -36,7 +36,8 @@ CameraImage integrate(const std::filesystem::path& folder,
                       const ProgressReport& report = {});
 
 // The signals alone, into images/image.exr: for weights of another rig than the frames', whose
-// radiance they do not hold.
+// radiance they do not hold. Its veil, where its manifest has one, is
+// veil_path(images).
 CameraImage integrate_signals(const std::filesystem::path& folder,
                               const Manifest& manifest,
                               const std::filesystem::path& images,

@@ -260,6 +260,11 @@ void fields(const Visit& visit, Camera& camera) {
     visit("vignetting_sha256", camera.vignetting_sha256);
 }
 
+template <typename Visit, Is<ManifestVeil> Veil>
+void fields(const Visit& visit, Veil& veil) {
+    visit("sha256", veil.sha256);
+}
+
 template <typename Visit, Is<Manifest> Whole>
 void fields(const Visit& visit, Whole& manifest) {
     visit("aphotic_version", manifest.aphotic_version);
@@ -278,6 +283,7 @@ void fields(const Visit& visit, Whole& manifest) {
     visit("geometry", manifest.geometry);
     visit.list("strobes", manifest.strobes);
     visit.optional("scene", manifest.scene);
+    visit.optional("veil", manifest.veil);
     std::set<std::string> names;
     visit.list("frames", manifest.frames, names);
     Before before{.frames = static_cast<int>(manifest.frames.size())};
@@ -314,6 +320,17 @@ fs::path image_path(const fs::path& folder, const ManifestFrame& frame) {
 
 fs::path vignetting_path(const fs::path& folder) {
     return folder / "povray" / "vignetting.exr";
+}
+
+fs::path veil_path(const fs::path& folder) {
+    return folder / "povray" / "veil.exr";
+}
+
+std::vector<std::string> veil_channels(const Manifest& manifest) {
+    std::vector<std::string> channels(kChannelNames.begin(), kChannelNames.end());
+    for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j)
+        channels.push_back(fmt::format("wavelength_{}", j));
+    return channels;
 }
 
 void write_manifest(const fs::path& folder, const Manifest& manifest) {

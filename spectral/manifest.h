@@ -62,6 +62,11 @@ struct ManifestCamera {
     std::string vignetting_sha256{};
 };
 
+// What the water scatters into the view, which no frame holds (veil_path).
+struct ManifestVeil {
+    std::string sha256;  // of the file
+};
+
 struct Manifest {
     std::string aphotic_version;
     std::string povray_version;  // empty: not rendered by us
@@ -88,6 +93,7 @@ struct Manifest {
     std::map<std::string, std::string> geometry;
     std::vector<ManifestStrobe> strobes{};  // those of every wavelength's flux
     std::optional<ManifestScene> scene{};   // none: the rig's own floor
+    std::optional<ManifestVeil> veil{};     // none: the water does not scatter
     std::vector<ManifestFrame> frames;
     std::vector<PlannedWavelength> wavelengths;  // increasing
 
@@ -113,6 +119,11 @@ struct Manifest {
 
 // What the lens takes off, a factor a pixel: an EXR of one channel, Y.
 [[nodiscard]] std::filesystem::path vignetting_path(const std::filesystem::path& folder);
+
+// The veil of every pixel, to be added: R, G, B as signals, and a plane of radiance for each
+// wavelength, in the manifest's order.
+[[nodiscard]] std::filesystem::path veil_path(const std::filesystem::path& folder);
+[[nodiscard]] std::vector<std::string> veil_channels(const Manifest& manifest);
 
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 

@@ -14,9 +14,13 @@
 namespace aphotic {
 namespace {
 
+std::span<const float> plane_of(const std::vector<float>& samples, int channel) {
+    const std::size_t pixels = samples.size() / kChannels;
+    return std::span(samples).subspan(size_of(channel) * pixels, pixels);
+}
+
 std::span<const float> plane_of(const Lightmap& map, int channel) {
-    const std::size_t pixels = map.samples.size() / kChannels;
-    return std::span(map.samples).subspan(size_of(channel) * pixels, pixels);
+    return plane_of(map.samples, channel);
 }
 
 // Samples of one channel in a row: in a mosaic, every other pixel at most.
@@ -81,11 +85,11 @@ float held_share(const std::array<std::span<const float>, kChannels>& lights,
 
 }  // namespace
 
-double least_signal(const NoiseLimit& limit) {
+double least_signal(const NoiseLimit& limit, double veil) {
     const double q = limit.electrons_per_number > 0.0 ? 1.0 / limit.electrons_per_number : 0.0;
     const double most2 = limit.relative * limit.relative;
-    return (q + std::sqrt(q * q + 4.0 * most2 * limit.read_noise * limit.read_noise)) /
-           (2.0 * most2);
+    const double dark = limit.read_noise * limit.read_noise + q * veil;
+    return (q + std::sqrt(q * q + 4.0 * most2 * dark)) / (2.0 * most2);
 }
 
 CorrectedImage corrected(RawImage raw, const Lightmap& map, const Correction& correction) {
@@ -93,11 +97,16 @@ CorrectedImage corrected(RawImage raw, const Lightmap& map, const Correction& co
     require_finite(raw.samples, raw.width_px, "the image");
     const std::size_t pixels = raw.pixels();
     CorrectedImage result{.image = std::move(raw), .doubts = std::vector<std::uint8_t>(pixels)};
-    const double signal = least_signal(correction.limit);
+    const bool has_veil = !map.veil.empty();
+    std::array<double, kChannels> exposure{};
     std::array<float, kChannels> least{};
     std::array<float, kChannels> gain{};
     for (int c = 0; c < kChannels; ++c) {
         const std::size_t i = size_of(c);
+        exposure[i] = correction.middle[i] / correction.gain[i];
+        const double most_veil =
+            has_veil ? exposure[i] * std::ranges::max(plane_of(map.veil, c)) : 0.0;
+        const double signal = least_signal(correction.limit, most_veil);
         const double held = std::max(correction.limit.share * brightest(map, c),
                                      signal * correction.gain[i] / correction.middle[i]);
         const bool is_lit = held > 0.0;
@@ -116,13 +125,17 @@ CorrectedImage corrected(RawImage raw, const Lightmap& map, const Correction& co
         const float* const light = lights[size_of(run.channel)].data() + run.pixel;
         float* const samples = result.image.samples.data() + run.sample;
         std::uint8_t* const doubts = result.doubts.data() + run.pixel;
+        const float* const veil =
+            has_veil ? plane_of(map.veil, run.channel).data() + run.pixel : nullptr;
+        const auto of_veil = static_cast<float>(exposure[size_of(run.channel)]);
         for (std::size_t n = 0; n < run.count; ++n) {
             const std::size_t i = n * run.step;
             const float held = held_share(lights, least, run.pixel + i);
             const float taken = samples[i];
-            samples[i] = scale * ((taken - black) * held / std::max(light[i], held * floor));
+            const float dark = veil != nullptr ? black + of_veil * veil[i] : black;
+            samples[i] = scale * ((taken - dark) * held / std::max(light[i], held * floor));
             const int doubt = (held < 1.0F || light[i] < floor ? kDark : 0) |
-                              (taken >= white ? kSaturated : 0) | (taken <= black ? kBlack : 0);
+                              (taken >= white ? kSaturated : 0) | (taken <= dark ? kBlack : 0);
             doubts[i] |= static_cast<std::uint8_t>(doubt);
         }
     });

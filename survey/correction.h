@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A raw image divided by the map of its own light.
+// A raw image less the veil of its own light, divided by the map of it.
 //
-//   corrected_c = g_c (raw - black) h / max(map_c, h least_c),    h = min_k min(1, map_k / least_k)
+//   corrected_c = g_c (raw - black - v_c) h / max(map_c, h least_c),
+//   v_c = E_c veil_c,    E_c = middle_c / g_c,    h = min_k min(1, map_k / least_k)
 //
 // g      gain, one number a channel for the whole survey
+// veil   what the water scatters into the view (lightmap.h); 0 where it does not scatter
+// E      the camera's exposure: its numbers for a signal of 1
 // map    the rig's signal at the pixel (lightmap.h), of the image's own altitude and attitude
 // least  where the map is darker in any channel, the gain of all channels is held by one share h:
 //        noise is not blown up there, the pixel keeps its colour, and is marked as doubtful
@@ -13,17 +16,23 @@
 // g_c (raw - black) / least_c. In h only those channels count whose map is over 0: a map of 0 tells
 // nothing, as between the sites of an observed mosaic.
 //
-// Of a floor like the rig's, raw - black = E_c map_c with the camera's exposure E_c, so that
-// corrected_c = g_c E_c at every pixel. Where a thing reflects twice the light of the rig's floor
-// in a channel, twice that. The gain of a survey makes its middle come out as asked:
-// g_c = middle_c / (the median of (raw - black) / map_c).
+// Of a floor like the rig's, raw - black = E_c (map_c + veil_c), so that corrected_c = g_c E_c at
+// every pixel. Where a thing reflects twice the light of the rig's floor in a channel, twice that.
+// The gain of a survey makes its middle come out as asked:
+// g_c = middle_c / (the median of (raw - black) / (map_c + veil_c)).
 //
-// Noise. A sample s = raw - black has the standard deviation sqrt(r^2 + s / e): read noise r, and
-// the shot noise of e electrons a number. Relative to s it is under the limit L from
+// So the veil is told from the floor by the rig's floor: where the survey's middle reflects r times
+// as much, E is off by k = r + (1 - r) q_0, q_0 the veil's share of the signal there, and the
+// corrected floor, where that share is q, by (1 - r) (q - q_0) / (k (1 - q)) of itself.
 //
-//   s >= (q + sqrt(q^2 + 4 L^2 r^2)) / (2 L^2),      q = 1/e, 0 where shot noise is left aside
+// Noise. A sample of s = raw - black - v has the standard deviation sqrt(r^2 + (s + v) / e): read
+// noise r, and the shot noise of e electrons a number, the veil's among them. Relative to s it is
+// under the limit L from
 //
-// up: r / L where there is no shot noise, 1 / (e L^2) where there is no other. The middle gives
+//   s >= (q + sqrt(q^2 + 4 L^2 (r^2 + q v))) / (2 L^2),  q = 1/e, 0 where shot noise is left aside
+//
+// up: r / L where there is no shot noise, 1 / (e L^2) where there is no other. For v the channel's
+// largest of the image is taken. The middle gives
 // s = middle_c map_c / g_c, so that
 //
 //   least_c = max(share of the map's brightest, s g_c / middle_c)
@@ -45,7 +54,7 @@ using PerChannel = std::array<double, kChannels>;
 // Why a pixel is doubtful: bits of its mask.
 inline constexpr std::uint8_t kDark = 1;       // its gain is held
 inline constexpr std::uint8_t kSaturated = 2;  // the sample is at the white level or over it
-inline constexpr std::uint8_t kBlack = 4;      // it is at the black level or under it
+inline constexpr std::uint8_t kBlack = 4;      // it is at the black level, or the veil's, or under
 inline constexpr std::uint8_t kEdge = 8;       // the edge of a cone passes near (cone_edge.h)
 inline constexpr std::uint8_t kClipped = 16;  // the corrected sample does not fit the file's format
 inline constexpr std::array<std::pair<std::string_view, std::uint8_t>, 5> kDoubts{
@@ -62,8 +71,8 @@ struct NoiseLimit {
     double electrons_per_number = 0;  // e; 0: shot noise is left aside
 };
 
-// The least s that is within the limit, in the camera's numbers.
-[[nodiscard]] double least_signal(const NoiseLimit& limit);
+// The least s that is within the limit, beside a veil; both in the camera's numbers.
+[[nodiscard]] double least_signal(const NoiseLimit& limit, double veil = 0.0);
 
 struct Correction {
     PerChannel gain{};

@@ -59,6 +59,7 @@ Json settings_of(const Survey& survey,
         json["gain_images"] = options.gain_images;
     }
     if (format.srgb) json["encode"] = to_json(*format.srgb);
+    if (survey.light.has_veil) json["veil"] = *survey.light.has_veil;
     if (options.read_noise) json["read_noise"] = *options.read_noise;
     json.update(to_json(survey.camera));
     json["rig_scale"] = nullptr;

@@ -29,6 +29,13 @@ std::array<double, 4> sites_of_file(const SurveyImage& taken) {
     return of_file;
 }
 
+// What images look like: the veil is part of it.
+Lightmap as_signal(Lightmap map) {
+    map.samples = signal_of(map);
+    map.veil.clear();
+    return map;
+}
+
 ImageLook look_at_image(const ImageFile& file, const Survey& survey, double least_light) {
     ImageLook look;
     look.name = file.name.string();
@@ -41,14 +48,14 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     if (is_bayer(look.mosaic)) look.sites = sites_of_file(taken);
     if (!has_light) return look;
     require_light_for(taken.raw, survey.light);
-    const Lightmap map = survey.light.map(sled);
+    const Lightmap map = as_signal(survey.light.map(sled));
     if (survey.navigation) look.altitude_m = sled.altitude_m;
     look.quotient = middle_quotient(taken.raw, map, taken.levels, least_light);
     for (double& quotient : look.quotient) quotient /= taken.exposure;
     look.map_mean = means_of(map);
     if (const auto other =
             survey.light.map_as_radians ? survey.light.map_as_radians(sled) : std::nullopt) {
-        look.as_radians = likeness(taken.raw, taken.levels, map, *other);
+        look.as_radians = likeness(taken.raw, taken.levels, map, as_signal(*other));
     }
     return look;
 }

@@ -46,7 +46,10 @@ PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds) {
 
 using MapAsRadians = std::function<std::optional<Lightmap>(const Sled& sled)>;
 
-MapAsRadians map_as_radians(const Rig& rig, const Navigation& navigation, std::vector<Sled> sleds) {
+MapAsRadians map_as_radians(const Rig& rig,
+                            const Navigation& navigation,
+                            std::vector<Sled> sleds,
+                            const LightmapOptions& options) {
     const auto is_small = [](double tilt_rad) {
         return std::abs(tilt_rad) <= kSmall_deg * kRadiansPerDegree;
     };
@@ -66,8 +69,8 @@ MapAsRadians map_as_radians(const Rig& rig, const Navigation& navigation, std::v
     if (is_level) return {};
     try {
         // Of its own, so that the maps of a sled that is as steady as that stay as they are.
-        const auto maker = std::make_shared<const LightmapMaker>(
-            rig, paths_of_survey(rig, sleds), LightmapOptions{});
+        const auto maker =
+            std::make_shared<const LightmapMaker>(rig, paths_of_survey(rig, sleds), options);
         return [maker, in_radians](const Sled& sled) -> std::optional<Lightmap> {
             try {
                 return maker->map(in_radians(sled));
@@ -108,7 +111,8 @@ std::function<double(double)> light_on_its_way(const Rig& rig) {
 
 LightAt light_of_rig(const Rig& rig,
                      const Navigation& navigation,
-                     const std::vector<ImageFile>& files) {
+                     const std::vector<ImageFile>& files,
+                     bool has_veil) {
     std::vector<Sled> sleds;
     for (const ImageFile& file : files) {
         try {
@@ -117,18 +121,21 @@ LightAt light_of_rig(const Rig& rig,
             // It is said of the image when its turn comes.
         }
     }
-    const auto light = std::make_shared<const RigLight>(RigLight{
-        .edges = ConeEdges(rig), .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), {})});
+    const LightmapOptions options{.has_veil = has_veil};
+    const auto light = std::make_shared<const RigLight>(
+        RigLight{.edges = ConeEdges(rig),
+                 .maker = LightmapMaker(rig, paths_of_survey(rig, sleds), options)});
     return {.title = rig.title,
             .toml = rig.toml,
             .digest = rig.digest,
             .camera_digest = response_digest(rig.camera.sensor),
             .size = {rig.camera.width_px, rig.camera.height_px},
             .is_grey = rig.camera.sensor.is_mono(),
+            .has_veil = rig.water.scatters() ? std::optional(has_veil) : std::nullopt,
             .map = [light](const Sled& sled) { return light->maker.map(sled); },
             .edges = [light](const Sled& sled,
                              int within_px) { return light->edges.mask(sled, within_px); },
-            .map_as_radians = map_as_radians(rig, navigation, sleds),
+            .map_as_radians = map_as_radians(rig, navigation, sleds, options),
             .to_srgb = rig.camera.sensor.is_mono() ? std::function<CameraToSrgb()>()
                                                    : [rig] { return camera_to_srgb(rig); },
             .floor_colour = floor_colour(rig),
@@ -149,9 +156,11 @@ void require_light_for(const RawImage& raw, const LightAt& light) {
         "a mono camera");
 }
 
-LightAt light_of_map(const std::filesystem::path& map_file) {
+LightAt light_of_map(const std::filesystem::path& map_file, bool has_veil) {
     static const std::vector<std::string> kNames{"R", "G", "B"};
+    static const std::vector<std::string> kVeilNames{"veil.R", "veil.G", "veil.B"};
     Lightmap map;
+    bool knows_veil = false;
     try {
         ExrReader reader(map_file);
         const std::vector<std::string> channels = reader.channels();
@@ -160,11 +169,17 @@ LightAt light_of_map(const std::filesystem::path& map_file) {
             throw InputError("{}: has no channel {}; needed: R, G, B", map_file.string(), name);
         }
         map = {reader.width_px(), reader.height_px(), reader.planes(kNames)};
+        knows_veil = std::ranges::all_of(kVeilNames, [&](const std::string& name) {
+            return std::ranges::find(channels, name) != channels.end();
+        });
+        if (knows_veil && has_veil) map.veil = reader.planes(kVeilNames);
     } catch (const RunError& error) {
         throw InputError(error.what());  // the user named it
     }
-    for (float& sample : map.samples) {
-        if (!std::isfinite(sample) || sample < 0.0F) sample = 0.0F;
+    for (std::vector<float>* samples : {&map.samples, &map.veil}) {
+        for (float& sample : *samples) {
+            if (!std::isfinite(sample) || sample < 0.0F) sample = 0.0F;
+        }
     }
     const auto pixels = map.samples.size() / kNames.size();
     const std::span<const float> all(map.samples);
@@ -172,6 +187,7 @@ LightAt light_of_map(const std::filesystem::path& map_file) {
     return {.digest = sha256_of_file(map_file),
             .size = {map.width_px, map.height_px},
             .is_grey = is_grey,
+            .has_veil = knows_veil ? std::optional(has_veil) : std::nullopt,
             .map = [map](const Sled&) { return map; },
             .edges = [pixels](const Sled&, int) { return std::vector<std::uint8_t>(pixels); }};
 }

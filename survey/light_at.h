@@ -29,6 +29,8 @@ struct LightAt {
     PlaneSize size;
     std::optional<PlaneSize> rig_size{};  // where the rig has another than its images, scaled
     bool is_grey = false;                 // the maps have R, G and B alike: of a mono camera
+    // Whether the maps have the veil; none: the water does not scatter, as far as is known.
+    std::optional<bool> has_veil{};
     // These are called from several threads.
     std::function<Lightmap(const Sled& sled)> map;
     std::function<std::vector<std::uint8_t>(const Sled& sled, int within_px)> edges;
@@ -44,14 +46,15 @@ struct LightAt {
 // For the poses of these images: those that have none are passed over here.
 [[nodiscard]] LightAt light_of_rig(const Rig& rig,
                                    const Navigation& navigation,
-                                   const std::vector<ImageFile>& files);
+                                   const std::vector<ImageFile>& files,
+                                   bool has_veil = true);
 
 // An InputError unless its maps are for such an image: of its size, and grey for a mono camera.
 void require_light_for(const RawImage& raw, const LightAt& light);
 
-// One map, whatever the pose: channels R, G and B of an EXR. What is not finite in it, as where
-// nothing was observed, is dark.
-[[nodiscard]] LightAt light_of_map(const std::filesystem::path& map_file);
+// One map, whatever the pose: channels R, G and B of an EXR, and where it has them veil.R, veil.G
+// and veil.B. What is not finite in it, as where nothing was observed, is dark.
+[[nodiscard]] LightAt light_of_map(const std::filesystem::path& map_file, bool has_veil = true);
 
 // Of the rig's floor: how much of the lamps' own light, without water, it gives back to each
 // channel:  int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.

@@ -2,7 +2,7 @@
 //
 // The veil of maps against rig/veil.h's, whose own tests hold it against closed forms: with twice
 // the points of other renderers, at the pixel itself, wavelength by wavelength.
-#include "lightmap/veil_map.h"
+#include "rig/veil_map.h"
 
 #include "image/exr.h"
 #include "lightmap/atlas_plan.h"
@@ -112,8 +112,7 @@ TEST(VeilMap, IsInterpolatedWhereThatIsRight) {
     const Rig rig = coast(1360, 1024);
     const LightmapMaker maker(rig, std::nullopt, options());
     const Lightmap map = maker.map(rig.sled);
-    const VeilMap exact(
-        rig, path_range(rig), 1e-5, {rig.camera.range.first_nm}, [](auto...) { return 1.0; });
+    const VeilMap exact(rig, path_range(rig), 1e-5);
     const std::size_t plane = map.veil.size() / kChannels;
     VeilNodes nodes;
     double worst = 0.0;

@@ -662,7 +662,8 @@ TEST(RigReader, UnknownKeyNamesTheNearest) {
     EXPECT_EQ(
         error_of(with(9, "[water]\nsalinity_ppt = 35")),
         "rig.toml:10: water.salinity_ppt: is not a known key; did you mean 'salinity_psu'? Known "
-        "here: absorption, multiple, uniform_loss_per_m, salinity_psu, temperature_c");
+        "here: type, chlorophyll_mg_m3, absorption, scattering, attenuation, multiple, "
+        "uniform_loss_per_m, salinity_psu, temperature_c, cdom_440_per_m, particles, phase");
     EXPECT_EQ(
         error_of(with(10, "[seafloor]\nphong_sice = 35")),
         "rig.toml:11: seafloor.phong_sice: is not a known key; did you mean 'phong_size'? Known "

@@ -433,4 +433,66 @@ TEST(Integrator, DoesNotDependOnThreads) {
 }
 
 }  // namespace
+// Of two rows of two pixels, one wavelength that R sees twice.
+void add_veil(Render& render, const std::vector<float>& planes) {
+    const fs::path file = veil_path(render.folder());
+    ExrWriter writer(file, 2, 2, veil_channels(render.manifest()), {});
+    writer.write_rows(2, planes);
+    writer.finish();
+    render.manifest().veil = ManifestVeil{.sha256 = sha256_of_file(file)};
+}
+
+const std::vector<float> kVeilPlanes{
+    1.0F,
+    2.0F,
+    3.0F,
+    4.0F,  // R
+    0.5F,
+    0.5F,
+    0.5F,
+    0.5F,  // G
+    0.0F,
+    0.0F,
+    0.0F,
+    0.0F,  // B
+    10.0F,
+    20.0F,
+    30.0F,
+    40.0F,  // the wavelength
+};
+
+TEST(Integrator, TheVeilIsAddedToSignalsAndRadiance) {
+    Render render(2, 2);
+    render.add_frame("a", [](int, int row, int x) { return static_cast<float>(1 + x + 2 * row); });
+    render.add_wavelength(500.0, {2.0, 1.0, 0.0}, 0, "R", 0);
+    add_veil(render, kVeilPlanes);
+    const CameraImage image = render.integrate();
+    ExrReader signals(render.folder() / "image.exr");
+    EXPECT_EQ(signals.planes(std::vector<std::string>{"R"}),
+              (std::vector<float>{3.0F, 6.0F, 9.0F, 12.0F}));
+    EXPECT_EQ(signals.planes(std::vector<std::string>{"G"}),
+              (std::vector<float>{1.5F, 2.5F, 3.5F, 4.5F}));
+    EXPECT_EQ(signals.planes(std::vector<std::string>{"B"}),
+              (std::vector<float>{0.0F, 0.0F, 0.0F, 0.0F}));
+    ExrReader radiance(render.folder() / "spectral.exr");
+    const auto names = radiance.channels();
+    const auto plane = std::ranges::find_if(
+        names, [](const std::string& name) { return name.find("500") != std::string::npos; });
+    ASSERT_NE(plane, names.end());
+    EXPECT_EQ(radiance.planes(std::vector<std::string>{*plane}),
+              (std::vector<float>{11.0F, 22.0F, 33.0F, 44.0F}));
+}
+
+TEST(Integrator, AVeilThatIsMissingOrAnotherIsARunError) {
+    Render render(2, 2);
+    render.add_frame("a", [](int, int, int) { return 1.0F; });
+    render.add_wavelength(500.0, {2.0, 1.0, 0.0}, 0, "R", 0);
+    add_veil(render, kVeilPlanes);
+    const fs::path file = veil_path(render.folder());
+    render.manifest().veil->sha256 = "another";
+    EXPECT_EQ(render.error(), file.string() + ": is not the veil that the manifest notes");
+    fs::remove(file);
+    EXPECT_EQ(render.error(), file.string() + ": the veil is missing");
+}
+
 }  // namespace aphotic::integrator_test

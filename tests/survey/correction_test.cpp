@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <string>
 
@@ -212,6 +213,65 @@ TEST(Correction, TheLeastSignalIsWhereNoiseReachesTheLimit) {
     limit.read_noise = 3.0;
     const double s = least_signal(limit);
     EXPECT_NEAR(std::sqrt(9.0 + s / 4.0) / s, 0.1, 1e-12);
+    constexpr double kVeil = 500.0;
+    const double beside = least_signal(limit, kVeil);
+    EXPECT_NEAR(std::sqrt(9.0 + (beside + kVeil) / 4.0) / beside, 0.1, 1e-12);
+}
+
+// raw = black + E (rho map + veil): brighter in a corner than the floor is.
+Lightmap with_veil(Lightmap map) {
+    for (int c = 0; c < kChannels; ++c) {
+        for (int row = 0; row < kHeight; ++row) {
+            for (int column = 0; column < kWidth; ++column)
+                map.veil.push_back(0.02F * static_cast<float>(1 + c + row + 2 * column) / kWidth);
+        }
+    }
+    return map;
+}
+
+RawImage seen_through(const Lightmap& map, const std::vector<float>& reflectance) {
+    RawImage raw = seen(map, reflectance, Mosaic::None);
+    for (std::size_t i = 0; i < raw.samples.size(); ++i)
+        raw.samples[i] += static_cast<float>(kExposure * map.veil[i]);
+    return raw;
+}
+
+Correction of_exposure() {
+    Correction correction = plain();
+    correction.middle = {1.0, 1.0, 1.0};  // so that middle / gain is the exposure
+    return correction;
+}
+
+TEST(Correction, TheVeilIsTakenOff) {
+    const Lightmap map = with_veil(light_of_a_lamp());
+    const std::vector<float> reflectance = random_reflectance(31);
+    const RawImage raw = seen_through(map, reflectance);
+    const CorrectedImage result = corrected(raw, map, of_exposure());
+    double worst_without = 0.0;
+    const CorrectedImage without = corrected(
+        raw, {.width_px = kWidth, .height_px = kHeight, .samples = map.samples}, of_exposure());
+    for (std::size_t i = 0; i < reflectance.size(); ++i) {
+        const double floor = kExposure * reflectance[i] * map.samples[i];
+        const double raw_rounding = 2.0 * raw.samples[i] * 0x1p-23;
+        EXPECT_NEAR(result.image.samples[i],
+                    reflectance[i],
+                    reflectance[i] * (kRounding + raw_rounding / floor))
+            << i;
+        worst_without =
+            std::max(worst_without, static_cast<double>(without.image.samples[i] - reflectance[i]));
+    }
+    EXPECT_GT(worst_without, 1.0);
+    EXPECT_EQ(std::ranges::count(result.doubts, 0), std::ssize(result.doubts));
+}
+
+// Nothing is clamped: what is under the veil is negative, and doubtful.
+TEST(Correction, WhatIsUnderTheVeilIsBlack) {
+    const Lightmap map = with_veil(light_of_a_lamp());
+    RawImage raw = seen_through(map, std::vector<float>(kChannels * kPixels, 0.0F));
+    for (float& sample : raw.samples) sample -= 1.0F;
+    const CorrectedImage result = corrected(raw, map, of_exposure());
+    for (const std::uint8_t doubts : result.doubts) EXPECT_TRUE(doubts & kBlack);
+    for (const float sample : result.image.samples) EXPECT_LT(sample, 0.0F);
 }
 
 // Simulated noise where the map is just at the limit: the corrected floor's spread is what the

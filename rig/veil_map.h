@@ -23,18 +23,19 @@
 // by strobe, for edges of one are none of the others'. It depends on the cell alone: neither
 // threads nor the rows that are asked for change a bit.
 //
-// Behind a port the veil is that of the three rays that the floor's light is of (lightmap.h), by
-// the same interpolation over the water's index.
+// Behind a port the veil is that of a few rays, interpolated over the water's index
+// (rig/index_nodes.h).
 #pragma once
 
-#include "lightmap/path_table.h"
 #include "rig/path_range.h"
+#include "rig/path_table.h"
 #include "rig/rig.h"
 #include "rig/veil.h"
+#include "spectral/bands.h"
 
 #include <array>
 #include <cstddef>
-#include <functional>
+#include <span>
 #include <vector>
 
 namespace aphotic {
@@ -51,16 +52,20 @@ inline constexpr unsigned kVeilMapPoints = 3;  // rig/veil.h's, of a panel
 
 class VeilMap {
   public:
-    // The share that the ray of an index node has in a wavelength's.
-    using IndexShare = std::function<double(std::size_t, double)>;
-
-    // Of water that scatters. direct: what the floor's tables serve. error: relative, of the
-    // spectral integral and its table. Index nodes: by the wavelengths whose rays they are.
+    // Of water that scatters. direct: the floor's light's. error: relative, of the spectral
+    // integral and its table. points: of a panel (rig/veil.h).
     VeilMap(const Rig& rig,
             const PathRange& direct,
             double error,
-            std::vector<double> index_nodes_nm,
-            const IndexShare& share);
+            unsigned points = kVeilMapPoints);
+
+    // Of up to three wavelengths instead, one a plane: A of rig/veil.h, all by the ray of index_nm.
+    VeilMap(const Rig& rig,
+            const PathRange& direct,
+            double error,
+            unsigned points,
+            std::span<const double> lambda_nm,
+            double index_nm);
 
     // Rows whose floor must be known for these, which they are among.
     struct Rows {
@@ -69,7 +74,8 @@ class VeilMap {
     };
     [[nodiscard]] Rows rows_for(Rows wanted) const;
 
-    // R, G, B planar, of rows that rows_for() gave, beside the floor's signal.
+    // Three planes of rows that rows_for() gave, beside the floor's signal; all 0: as exact as the
+    // veil alone asks.
     void rows_into(const Sled& sled,
                    Rows rows,
                    const std::vector<float>& floor,
@@ -95,6 +101,9 @@ class VeilMap {
     };
     class Strip;
 
+    VeilMap(const Rig& rig, unsigned points, std::vector<double> index_nodes_nm);
+    using Grid = std::vector<WeightedWavelength>;
+    void tabulate(const PathRange& paths, const Water& lossy, const Grid& grid, double error);
     [[nodiscard]] Signal table_at(const std::vector<float>& table, double path_m) const;
 
     Rig rig_;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lightmap/veil_map.h"
+#include "rig/veil_map.h"
 
 #include "base/parallel.h"
 #include "rig/geometry.h"
+#include "rig/index_nodes.h"
 #include "spectral/light_family.h"
 
 #include <algorithm>
@@ -96,50 +97,72 @@ SpectralSum veil_sum(const Rig& rig,
 
 }  // namespace
 
-VeilMap::VeilMap(const Rig& rig,
-                 const PathRange& direct,
-                 double error,
-                 std::vector<double> index_nodes_nm,
-                 const IndexShare& share)
+VeilMap::VeilMap(const Rig& rig, unsigned points, std::vector<double> index_nodes_nm)
     : rig_(rig),
-      veil_(rig, kVeilMapPoints),
+      veil_(rig, points),
       across_(rig.camera.width_px, cell_px(rig.camera)),
       down_(rig.camera.height_px, cell_px(rig.camera)),
-      index_nodes_nm_(std::move(index_nodes_nm)) {
-    const Water water = lost_from_veil(rig);
-    const PathRange paths = veil_paths(rig, water, direct);
+      index_nodes_nm_(std::move(index_nodes_nm)) {}
+
+VeilMap::VeilMap(const Rig& rig, const PathRange& direct, double error, unsigned points)
+    : VeilMap(rig, points, index_nodes_nm(rig)) {
+    const Water lossy = lost_from_veil(rig);
+    const PathRange paths = veil_paths(rig, lossy, direct);
     LightFamily family{.sources = {},
-                       .water = water,
+                       .water = lossy,
                        .shortest_path_m = paths.shortest_m,
                        .longest_path_m = paths.longest_m};
     for (const Strobe& strobe : rig.strobes) {
         for (const Scatterer& scatterer : rig.water.scatterers)
             family.sources.push_back({strobe.spectrum, scatterer.scattering_per_m});
     }
-    const auto grid =
-        reference_grid(rig.camera.sensor, family, rig.camera.range, kVeilGridShare * error);
+    tabulate(paths,
+             lossy,
+             reference_grid(rig.camera.sensor, family, rig.camera.range, kVeilGridShare * error),
+             error);
+}
+
+VeilMap::VeilMap(const Rig& rig,
+                 const PathRange& direct,
+                 double error,
+                 unsigned points,
+                 std::span<const double> lambda_nm,
+                 double index_nm)
+    : VeilMap(rig, points, {index_nm}) {
+    const Water lossy = lost_from_veil(rig);
+    Grid grid;
+    for (std::size_t c = 0; c < lambda_nm.size(); ++c) {
+        grid.push_back({.lambda_nm = lambda_nm[c]});
+        grid.back().weight[c] = 1.0;
+    }
+    tabulate(veil_paths(rig, lossy, direct), lossy, grid, error);
+}
+
+void VeilMap::tabulate(const PathRange& paths, const Water& lossy, const Grid& grid, double error) {
     std::vector<const Spectrum*> lamps;
-    for (const Strobe& strobe : rig.strobes) {
+    for (const Strobe& strobe : rig_.strobes) {
         const auto known = std::ranges::find_if(
             lamps, [&](const Spectrum* lamp) { return is_same_curve(*lamp, strobe.spectrum); });
         lamp_of_strobe_.push_back(static_cast<std::size_t>(known - lamps.begin()));
         if (known == lamps.end()) lamps.push_back(&strobe.spectrum);
     }
-    const auto every = [&](double) { return 1.0; };
+    const auto every = [](double) { return 1.0; };
     const auto for_each_kind = [&](const auto& take) {
         for (const Spectrum* lamp : lamps) {
-            for (std::size_t i = 0; i < rig.water.scatterers.size(); ++i) take(*lamp, i);
+            for (std::size_t i = 0; i < rig_.water.scatterers.size(); ++i) take(*lamp, i);
         }
     };
     for_each_kind([&](const Spectrum& lamp, std::size_t i) {
-        const SpectralSum sum = veil_sum(rig, water, grid, lamp, i, every);
+        const SpectralSum sum = veil_sum(rig_, lossy, grid, lamp, i, every);
         const PathSteps steps = path_steps(sum, paths, kVeilTableShare * error);
         if (steps.count > steps_.count) steps_ = steps;
     });
     for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
         for_each_kind([&](const Spectrum& lamp, std::size_t i) {
-            const auto of_node = [&](double nm) { return share(j, nm); };
-            tables_.push_back(path_table(veil_sum(rig, water, grid, lamp, i, of_node), steps_));
+            const auto of_node = [&](double nm) {
+                return index_share(rig_, index_nodes_nm_, j, nm);
+            };
+            tables_.push_back(path_table(veil_sum(rig_, lossy, grid, lamp, i, of_node), steps_));
         });
     }
 }

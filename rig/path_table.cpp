@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lightmap/path_table.h"
+#include "rig/path_table.h"
 
 #include <algorithm>
 #include <cmath>

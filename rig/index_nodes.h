@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Light through a port, which every wavelength takes by a ray of its own, from the rays of a few:
+//
+//   L(n) = sum_j L(n_j) l_j(n),      l_j(n) = prod_{m != j} (n - n_m) / (n_j - n_m)
+//
+// n    the water's refractive index      n_j  kIndexNodes of Chebyshev's points of its range
+// l_j  Lagrange's polynomials: what light of node j's ray counts at another wavelength
+//
+// Without a port one node serves, and counts 1.
+#pragma once
+
+#include "rig/rig.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr std::size_t kIndexNodes = 3;
+
+// The wavelengths of the nodes; the middle one is in the middle.
+[[nodiscard]] std::vector<double> index_nodes_nm(const Rig& rig);
+
+// l_j at the water's index there.
+[[nodiscard]] double index_share(const Rig& rig,
+                                 const std::vector<double>& nodes_nm,
+                                 std::size_t node,
+                                 double lambda_nm);
+
+}  // namespace aphotic

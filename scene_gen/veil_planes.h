@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The veil (rig/veil.h) of a render's image, which is added to what POV-Ray's frames hold:
+//
+//   S_c         = sum_j w_cj 2^-e_j F_j + V_c
+//   L(lambda_j) = 2^-e_j F_j + A(lambda_j)
+//
+// V_c  the veil through channel c: an integral over all of the spectrum (rig/veil_map.h), not over
+//      the wavelengths of the frames, whose choice is the floor's light's alone
+// A    the veil at one wavelength, by the ray of its frame
+//
+// Both are planes of one file (veil_path() of spectral/manifest.h), of floats. They are of the bare
+// floor, and of no object's shadow. Off by no more than veil_plane_error() of a pixel's signal,
+// measured and no bound: of the interpolation, and of kVeilPoints a panel.
+#pragma once
+
+#include "rig/path_range.h"
+#include "rig/rig.h"
+#include "spectral/manifest.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+namespace aphotic {
+
+// Of water that scatters. Throws InputError where something other than the bare floor is in view.
+void require_bare_floor_under_veil(const Rig& rig);
+
+[[nodiscard]] double veil_plane_error(const Rig& rig);
+
+// The quality of a rule for the sum, of channels that see something.
+[[nodiscard]] std::array<RuleQuality, kChannels> with_veil(
+    std::array<RuleQuality, kChannels> quality, double veil_error);
+
+// Writes veil_path(folder) for the manifest's wavelengths, in blocks of rows; returns what a
+// manifest notes of it: nothing, and no file, where the water does not scatter.
+std::optional<ManifestVeil> write_veil(const std::filesystem::path& folder,
+                                       const Rig& rig,
+                                       const Manifest& manifest);
+
+// The same of R, G and B alone.
+std::optional<ManifestVeil> write_veil_of_signals(const std::filesystem::path& folder,
+                                                  const Rig& rig,
+                                                  const Manifest& manifest);
+
+}  // namespace aphotic
