@@ -195,7 +195,7 @@ void TracedVeil::add_lamp(const Source& source,
               .h_m = h_m,
               .foot_m = foot_m,
               .whole = std::vector<double>(2 * water_.phases().size(), 0.0)};
-    constexpr double kWidest = 0.5;
+    constexpr double kWidest = 0.25;
     struct Piece {
         double from;
         double to;

@@ -30,7 +30,7 @@
 
 namespace aphotic {
 
-inline constexpr double kVeilTolerance = 1e-8;
+inline constexpr double kVeilTolerance = 1e-10;
 inline constexpr unsigned kVeilLamps = 4;
 inline constexpr double kVeilBeside_m = 1e-6;
 

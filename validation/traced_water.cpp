@@ -101,7 +101,7 @@ double share_between(const PhaseFunction& phase, double from_rad, double to_rad)
 TracedPhase::TracedPhase(const PhaseFunction& phase) : phase_(phase) {
     if (const auto* table = std::get_if<PhaseTable>(&phase.kind)) {
         kinks_rad_ = table->angle_rad;
-        constexpr double kNoAngle = 1e-12;  // within which a table has no light to speak of
+        constexpr double kNoAngle = 1e-30;  // within which a table has no light to speak of
         scale_ = 1.0 / share_beyond(kNoAngle);
     }
 }

@@ -29,7 +29,7 @@ using std::numbers::pi;
 constexpr double kDegree_rad = pi / 180.0;
 constexpr double kNm = 500.0;
 constexpr double kOfClosedForms = 1e-10;
-// Of kVeilTolerance and of rig/veil.h's own 3e-9, room for what a beam's kinks add to either.
+// Where both take every kink; corners of blurred rectangles and columns add to either.
 constexpr double kOfTwoQuadratures = 1e-7;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
