@@ -23,14 +23,15 @@
 // soft edge is integrated by parts, 2 pi / (n + 1) times the integral of S'(u) (1 - u^(n + 1)) over
 // the cosine u.
 //
-// Limits: point lamps, no objects, a flat floor. Q_c is taken in double, for its table is double;
-// so is I of a pattern, or behind a window (traced_beam.h).
+// Limits: point lamps, no objects, a flat floor, no veil. Q_c is taken in double, for its table is
+// double; so is I of a pattern, or behind a window (traced_beam.h).
 #pragma once
 
 #include "rig/rig.h"
 #include "spectral/refractive_index.h"
 #include "spectral/sensor.h"
 #include "validation/traced_beam.h"
+#include "validation/traced_water.h"
 
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/quadrature/gauss.hpp>
@@ -51,7 +52,7 @@ namespace aphotic {
 template <typename Real>
 class ExactLight {
   public:
-    explicit ExactLight(const Rig& rig) : rig_(rig) {
+    explicit ExactLight(const Rig& rig) : rig_(rig), water_(rig.water) {
         using std::cos;
         using std::sin;
         const Real pitch = rig.sled.pitch_rad;
@@ -59,7 +60,11 @@ class ExactLight {
         down_ = {-sin(pitch), cos(pitch) * sin(roll), cos(pitch) * cos(roll)};
         std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
         curves.push_back(&rig.seafloor.reflectance);
-        if (rig.water.multiple != 0.0) curves.push_back(&rig.water.absorption_per_m);
+        if (rig.water.multiple != 0.0) {
+            curves.push_back(&rig.water.absorption_per_m);
+            for (const Scatterer& scatterer : rig.water.scatterers)
+                curves.push_back(&scatterer.scattering_per_m);
+        }
         for (const Strobe& strobe : rig.strobes) {
             curves.push_back(&strobe.spectrum);
             beams_.emplace_back(strobe.beam, strobe.axis);
@@ -137,7 +142,12 @@ class ExactLight {
     [[nodiscard]] Real attenuation_per_m(const Real& lambda_nm) const {
         const Water& water = rig_.water;
         if (water.multiple == 0.0) return water.uniform_loss_per_m;
-        return water.multiple * value(water.absorption_per_m, lambda_nm) + water.uniform_loss_per_m;
+        Real loss = value(water.absorption_per_m, lambda_nm);
+        for (std::size_t i = 0; i < water.scatterers.size(); ++i) {
+            loss += water_.beyond_direct_cut(i) *
+                    value(water.scatterers[i].scattering_per_m, lambda_nm);
+        }
+        return water.multiple * loss + water.uniform_loss_per_m;
     }
 
     // Height of a point over the floor, the plane through (0, 0, altitude).
@@ -339,6 +349,7 @@ class ExactLight {
     }
 
     Rig rig_;
+    TracedWater water_;
     Vector down_;
     std::vector<double> knots_nm_;
     // By strobe.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/full_spectrum.h"
 
+#include "validation/traced_water.h"
+
 #include <Eigen/Core>
 #include <boost/math/quadrature/gauss.hpp>
 
@@ -48,38 +50,60 @@ const std::array<std::vector<GaussPoint>, 8>& gauss_rules() {
     return kRules;
 }
 
-ArrayXd paths_of(const LightFamily& lights) {
-    if (!(lights.shortest_path_m > 0.0)) return ArrayXd::Constant(1, lights.longest_path_m);
-    return ArrayXd::LinSpaced(
-               kPaths, std::log(lights.shortest_path_m), std::log(lights.longest_path_m))
-        .exp();
+ArrayXd paths_between(double shortest_m, double longest_m) {
+    if (!(shortest_m > 0.0)) return ArrayXd::Constant(1, longest_m);
+    return ArrayXd::LinSpaced(kPaths, std::log(shortest_m), std::log(longest_m)).exp();
+}
+
+// Lights that lose alike.
+struct Group {
+    const std::vector<std::vector<Spectrum>>* sources;
+    ArrayXd paths_m;
+    double longest_path_m;
+    double (TracedWater::*loss_per_m)(double) const;
+    double least_loss_per_m = 0.0;
+};
+
+std::vector<Group> groups_of(const LightFamily& lights, const VeilLights& veil) {
+    std::vector<Group> groups{
+        {.sources = &lights.sources,
+         .paths_m = paths_between(lights.shortest_path_m, lights.longest_path_m),
+         .longest_path_m = lights.longest_path_m,
+         .loss_per_m = &TracedWater::direct_loss_per_m}};
+    if (!veil.sources.empty()) {
+        groups.push_back({.sources = &veil.sources,
+                          .paths_m = paths_between(veil.shortest_path_m, veil.longest_path_m),
+                          .longest_path_m = veil.longest_path_m,
+                          .loss_per_m = &TracedWater::veil_loss_per_m});
+    }
+    return groups;
 }
 
 // What some wavelengths add to the signals: channels by lights, relative to the least loss at the
 // longest path, so that no double ends.
 class Signals {
   public:
-    Signals(const Sensor& sensor, const LightFamily& lights, double least_loss_per_m)
-        : sensor_(sensor),
-          lights_(lights),
-          paths_m_(paths_of(lights)),
-          least_loss_per_m_(least_loss_per_m) {}
+    Signals(const Sensor& sensor, const TracedWater& water, const std::vector<Group>& groups)
+        : sensor_(sensor), water_(water), groups_(groups) {
+        for (const Group& group : groups_)
+            lights_ += static_cast<Index>(group.sources->size()) * group.paths_m.size();
+    }
 
     [[nodiscard]] MatrixXd of(std::span<const WeightedWavelength> wavelengths) const {
-        const Index paths = paths_m_.size();
-        const auto sources = static_cast<Index>(lights_.sources.size());
-        MatrixXd signals = MatrixXd::Zero(kChannels, sources * paths);
+        MatrixXd signals = MatrixXd::Zero(kChannels, lights_);
         for (const WeightedWavelength& w : wavelengths) {
-            const double loss_per_m =
-                lights_.water.attenuation_per_m(w.lambda_nm) - least_loss_per_m_;
-            const Eigen::RowVectorXd left = (-loss_per_m * paths_m_).exp();
             const Eigen::Map<const Eigen::Vector3d> weight(w.weight.data());
-            for (Index s = 0; s < sources; ++s) {
-                double light = 1.0;
-                for (const Spectrum& factor : lights_.sources[static_cast<std::size_t>(s)]) {
-                    light *= factor.at(w.lambda_nm);
+            Index column = 0;
+            for (const Group& group : groups_) {
+                const double loss_per_m =
+                    (water_.*group.loss_per_m)(w.lambda_nm) - group.least_loss_per_m;
+                const Eigen::RowVectorXd left = (-loss_per_m * group.paths_m).exp();
+                for (const auto& source : *group.sources) {
+                    double light = 1.0;
+                    for (const Spectrum& factor : source) light *= factor.at(w.lambda_nm);
+                    signals.middleCols(column, left.size()) += light * weight * left;
+                    column += left.size();
                 }
-                signals.middleCols(s * paths, paths) += light * weight * left;
             }
         }
         return signals;
@@ -103,27 +127,34 @@ class Signals {
 
   private:
     const Sensor& sensor_;
-    const LightFamily& lights_;
-    ArrayXd paths_m_;
-    double least_loss_per_m_;
+    const TracedWater& water_;
+    const std::vector<Group>& groups_;
+    Index lights_ = 0;
 };
 
 // Between neighbouring knots of all tables, cut where the longest path's light falls by kPanelFall.
 std::vector<WavelengthRange> panels_of(const Sensor& sensor,
-                                       const LightFamily& lights,
+                                       const TracedWater& water,
+                                       std::span<const Spectrum* const> of_water,
+                                       const std::vector<Group>& groups,
                                        WavelengthRange range) {
     constexpr double kPanelFall = 4.0;
     std::vector<const Spectrum*> tables = sensor.curves();
-    for (const auto& source : lights.sources) {
-        for (const Spectrum& factor : source) tables.push_back(&factor);
+    for (const Group& group : groups) {
+        for (const auto& source : *group.sources) {
+            for (const Spectrum& factor : source) tables.push_back(&factor);
+        }
     }
-    std::ranges::copy(lights.water.curves(), std::back_inserter(tables));
+    std::ranges::copy(of_water, std::back_inserter(tables));
     const std::vector<double> knots_nm = union_of_knots(tables, range);
     std::vector<WavelengthRange> panels;
     for (std::size_t i = 0; i + 1 < knots_nm.size(); ++i) {
-        const double rise_per_m = lights.water.attenuation_per_m(knots_nm[i + 1]) -
-                                  lights.water.attenuation_per_m(knots_nm[i]);
-        const double fall = std::abs(rise_per_m) * lights.longest_path_m;
+        double fall = 0.0;
+        for (const Group& group : groups) {
+            const double rise_per_m =
+                (water.*group.loss_per_m)(knots_nm[i + 1]) - (water.*group.loss_per_m)(knots_nm[i]);
+            fall = std::max(fall, std::abs(rise_per_m) * group.longest_path_m);
+        }
         const int pieces = std::max(1, static_cast<int>(std::ceil(fall / kPanelFall)));
         const auto cut_nm = [&](int k) {
             return std::lerp(knots_nm[i], knots_nm[i + 1], static_cast<double>(k) / pieces);
@@ -138,14 +169,20 @@ std::vector<WavelengthRange> panels_of(const Sensor& sensor,
 std::vector<WeightedWavelength> full_spectrum(const Sensor& sensor,
                                               const LightFamily& lights,
                                               WavelengthRange range,
-                                              double error) {
-    const std::vector<WavelengthRange> panels = panels_of(sensor, lights, range);
-    double least_loss_per_m = lights.water.attenuation_per_m(range.last_nm);
-    for (const WavelengthRange& panel : panels) {
-        least_loss_per_m =
-            std::min(least_loss_per_m, lights.water.attenuation_per_m(panel.first_nm));
+                                              double error,
+                                              const VeilLights& veil) {
+    const TracedWater water(lights.water);
+    std::vector<Group> groups = groups_of(lights, veil);
+    const std::vector<WavelengthRange> panels =
+        panels_of(sensor, water, lights.water.curves(), groups, range);
+    for (Group& group : groups) {
+        group.least_loss_per_m = (water.*group.loss_per_m)(range.last_nm);
+        for (const WavelengthRange& panel : panels) {
+            group.least_loss_per_m =
+                std::min(group.least_loss_per_m, (water.*group.loss_per_m)(panel.first_nm));
+        }
     }
-    const Signals signals(sensor, lights, least_loss_per_m);
+    const Signals signals(sensor, water, groups);
     std::vector<MatrixXd> exact;
     for (const WavelengthRange& panel : panels) {
         exact.push_back(signals.of(signals.on(panel, gauss_rules().back())));

@@ -10,7 +10,7 @@
 // most: an interval over which it falls farther is cut. Each panel gets the fewest points by which
 // no channel's signal of any of the lights is off what ten make of it by more than the panel's
 // share of `error`; a spent one gets none. Lights: every source, over kPaths paths in even ratios
-// from the shortest to the longest.
+// from the shortest to the longest; the veil's as well, where the water scatters.
 #pragma once
 
 #include "spectral/bands.h"
@@ -23,10 +23,18 @@ namespace aphotic {
 
 inline constexpr int kPaths = 7;
 
+// The veil's light: c' for K, b_i for a reflectance, and paths of its own. None: no sources.
+struct VeilLights {
+    std::vector<std::vector<Spectrum>> sources{};
+    double shortest_path_m = 0.0;
+    double longest_path_m = 0.0;
+};
+
 // Of a family without a tilt.
 [[nodiscard]] std::vector<WeightedWavelength> full_spectrum(const Sensor& sensor,
                                                             const LightFamily& lights,
                                                             WavelengthRange range,
-                                                            double error);
+                                                            double error,
+                                                            const VeilLights& veil = {});
 
 }  // namespace aphotic

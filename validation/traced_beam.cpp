@@ -545,6 +545,40 @@ bool TracedBeam::is_on_edge(const std::array<Vector3d, 2>& towards, double withi
     return std::ranges::any_of(edges_, [&](const Edge& edge) { return is_on(edge, aims); });
 }
 
+// On the circle a cap's rim is where r cos(x - x_0) = cos(radius).
+void TracedBeam::add_crossings(const Vector3d& e,
+                               const Vector3d& u,
+                               std::vector<double>& x_rad) const {
+    const auto add = [&](const Cap& cap) {
+        const double by_e = cap.centre.dot(e);
+        const double by_u = cap.centre.dot(u);
+        const double cosine = std::cos(cap.radius_rad) / std::hypot(by_e, by_u);
+        if (!(std::abs(cosine) < 1.0)) return;
+        for (const double off : {-std::acos(cosine), std::acos(cosine)})
+            x_rad.push_back(std::remainder(std::atan2(by_u, by_e) + off, 2.0 * kPi));
+    };
+    const auto add_ring = [&](double in_air_rad) {
+        if (!beam_.window) return add({axis_, in_air_rad});
+        if (in_air_rad <= kQuarterTurn)
+            add({axis_, std::asin(std::sin(in_air_rad) / beam_.window->water_index)});
+    };
+    add({axis_, kQuarterTurn});
+    if (end_of_window_) add(*end_of_window_);
+    if (!beam_.window) {
+        for (const Edge& edge : edges_) add(edge.cap);
+    }
+    if (const auto* table = std::get_if<BeamTable>(&beam_.pattern)) {
+        if (table->angles == TableAngles::TypeC) {
+            for (const double row_rad : table->vertical_rad) add_ring(row_rad);
+        }
+    } else if (std::holds_alternative<std::monostate>(beam_.pattern)) {
+        for (const Cone& cone : beam_.cones) {
+            add_ring(cone.half_angle_rad);
+            if (cone.edge_rad > 0.0) add_ring(cone.half_angle_rad - cone.edge_rad);
+        }
+    }
+}
+
 // ---- Steepness
 
 namespace {

@@ -47,6 +47,13 @@ class TracedBeam {
     // Of a direction of any length but 0.
     [[nodiscard]] double intensity(const Eigen::Vector3d& towards) const;
 
+    // Adds the angles x, from -pi to pi, at which cos(x) e + sin(x) u crosses a circle about the
+    // axis or an edge where I is not smooth; those of a pattern behind a window are left out. e and
+    // u: unit vectors, one across the other.
+    void add_crossings(const Eigen::Vector3d& e,
+                       const Eigen::Vector3d& u,
+                       std::vector<double>& x_rad) const;
+
     // Whether there may be light behind the plane across the axis: of a table alone.
     [[nodiscard]] bool shines_backwards() const { return shines_backwards_; }
 

@@ -83,6 +83,7 @@ Vector3d place_on_emitter(const Strobe& strobe, double x, double y) {
 
 Tracer::Tracer(const Rig& rig, const TraceOptions& options)
     : rig_(rig),
+      water_(rig.water),
       options_(options),
       lens_(rig.camera.lens ? std::optional<TracedLens>(*rig.camera.lens) : std::nullopt),
       pixel_rad_(widest_pixel_rad()),
@@ -99,6 +100,7 @@ Tracer::Tracer(const Rig& rig, const TraceOptions& options)
                              .phong_size = object.phong_size});
         shapes_.emplace_back(object.shape);
     }
+    if (water_.scatters()) veil_.emplace(rig_, water_);
     tabulate_spectra();
     place_lamps();
 }
@@ -278,7 +280,39 @@ std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
         }
     }
     if (family.longest_path_m == 0.0) family.shortest_path_m = 0.0;  // nothing in view
-    return full_spectrum(rig_.camera.sensor, family, rig_.camera.range, kSpectralError);
+    return full_spectrum(rig_.camera.sensor,
+                         family,
+                         rig_.camera.range,
+                         kSpectralError,
+                         veil_in_view(family, is_all_floor));
+}
+
+// From the lamp nearest to the pupil's side of the port; as far as the floor's light goes, or as
+// light goes at all where the image sees the horizon.
+VeilLights Tracer::veil_in_view(const LightFamily& family, bool is_all_floor) const {
+    constexpr double kRoom = 1.05;
+    constexpr double kSpentDepth = 20.0;  // of which kSpectralError / 4 is left
+    VeilLights veil;
+    if (!veil_) return veil;
+    const double port_m = rig_.camera.port ? rig_.camera.port->distance_m : 0.0;
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const Strobe& strobe : rig_.strobes) {
+        nearest_m = std::min(nearest_m, strobe.position_m.norm() - port_m);
+        for (std::size_t i = 0; i < water_.phases().size(); ++i)
+            veil.sources.push_back({strobe.spectrum, rig_.water.scatterers[i].scattering_per_m});
+    }
+    double least_per_m = std::numeric_limits<double>::infinity();
+    for (const double nm : union_of_knots(rig_.water.curves(), rig_.camera.range))
+        least_per_m = std::min(least_per_m, water_.veil_loss_per_m(nm));
+    constexpr double kNearest_m = 1e-2;
+    veil.shortest_path_m = std::max(nearest_m / kRoom, kNearest_m);
+    double longest_m = family.longest_path_m;
+    if (least_per_m > 0.0) {
+        const double spent_m = kSpentDepth / least_per_m;
+        longest_m = is_all_floor ? std::min(longest_m, spent_m) : spent_m;
+    }
+    veil.longest_path_m = std::max(veil.shortest_path_m, longest_m);
+    return veil;
 }
 
 void Tracer::tabulate_spectra() {
@@ -301,7 +335,7 @@ void Tracer::tabulate_spectra() {
     specular_.assign(rig_.strobes.size(), ArrayXd(count));
     for (Eigen::Index j = 0; j < count; ++j) {
         const double lambda_nm = lambda_nm_[static_cast<std::size_t>(j)];
-        attenuation_per_m_(j) = rig_.water.attenuation_per_m(lambda_nm);
+        attenuation_per_m_(j) = water_.direct_loss_per_m(lambda_nm);
         for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
             const Strobe& strobe = rig_.strobes[s];
             const double flux = strobe.spectrum.at(lambda_nm) * strobe.power;
@@ -311,6 +345,19 @@ void Tracer::tabulate_spectra() {
             }
         }
         indices_.push_back(index_at(lambda_nm));
+    }
+    if (!veil_) return;
+    veil_loss_per_m_.resize(count);
+    veil_light_.assign(rig_.strobes.size(),
+                       std::vector<ArrayXd>(water_.phases().size(), ArrayXd(count)));
+    for (Eigen::Index j = 0; j < count; ++j) {
+        const double lambda_nm = lambda_nm_[static_cast<std::size_t>(j)];
+        veil_loss_per_m_(j) = water_.veil_loss_per_m(lambda_nm);
+        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+            const double flux = rig_.strobes[s].spectrum.at(lambda_nm) * rig_.strobes[s].power;
+            for (std::size_t i = 0; i < water_.phases().size(); ++i)
+                veil_light_[s][i](j) = flux * water_.scattering_per_m(i, lambda_nm);
+        }
     }
 }
 
@@ -368,6 +415,9 @@ bool Tracer::look_along(const WideVector& sight, const Index& index, View& view)
     const double depth_m = height_m(origin_m);
     const bool meets_floor = approach > 0.0L && depth_m > 0.0;
     direction.normalize();
+    view.ray = {.origin_m = origin_m,
+                .direction = direction,
+                .length_m = std::numeric_limits<double>::infinity()};
     view.distance_m = meets_floor ? static_cast<double>(depth_m / approach)
                                   : std::numeric_limits<double>::infinity();
     view.normal = -down_;
@@ -382,6 +432,7 @@ bool Tracer::look_along(const WideVector& sight, const Index& index, View& view)
         view.face = hit->face;
     }
     if (!meets_floor && view.surface == 0) return false;
+    view.ray.length_m = view.distance_m;
     view.point_m = origin_m + view.distance_m * direction;
     view.mirrored = direction - 2.0 * direction.dot(view.normal) * view.normal;
     return true;
@@ -431,11 +482,47 @@ WavelengthRange Tracer::traced_range() const {
     return {.first_nm = *first, .last_nm = *last};
 }
 
+// Without a port all wavelengths share a ray.
+void Tracer::add_veil(const View& view, ArrayXd& radiance) const {
+    if (radiance.size() == 0) return;
+    const Losses losses{.least_per_m = veil_loss_per_m_.minCoeff(),
+                        .most_per_m = veil_loss_per_m_.maxCoeff()};
+    VeilPoints points;
+    ArrayXd left(radiance.size());
+    std::vector<ArrayXd> light(water_.phases().size());
+    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+        veil_->trace(s, view.ray, losses, points);
+        std::ranges::fill(light, ArrayXd::Zero(radiance.size()));
+        for (std::size_t n = 0; n < points.path_m.size(); ++n) {
+            left = light_left(points.path_m[n] * veil_loss_per_m_);
+            for (std::size_t i = 0; i < light.size(); ++i) light[i] += points.light[i][n] * left;
+        }
+        for (std::size_t i = 0; i < light.size(); ++i) radiance += veil_light_[s][i] * light[i];
+    }
+}
+
+double Tracer::veil_of(const View& view, Eigen::Index wavelength) const {
+    const double loss_per_m = veil_loss_per_m_(wavelength);
+    double sum = 0.0;
+    VeilPoints points;
+    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+        veil_->trace(s, view.ray, {loss_per_m, loss_per_m}, points);
+        for (std::size_t n = 0; n < points.path_m.size(); ++n) {
+            const double left = light_left(loss_per_m * points.path_m[n]);
+            for (std::size_t i = 0; i < points.light.size(); ++i)
+                sum += veil_light_[s][i](wavelength) * points.light[i][n] * left;
+        }
+    }
+    return sum;
+}
+
 // What its sight shows, at every wavelength.
 void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd& radiance) const {
     View view;
     if (!rig_.camera.port) {
-        if (!look_along(in_air, {.glass = 1.0, .water = 1.0}, view)) return;
+        const bool sees = look_along(in_air, {.glass = 1.0, .water = 1.0}, view);
+        if (veil_) add_veil(view, radiance);
+        if (!sees) return;
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
             if (lit.diffuse == 0.0 && lit.specular == 0.0) continue;
@@ -454,7 +541,9 @@ void Tracer::trace_sight(int column, int row, const WideVector& in_air, ArrayXd&
     // Told once, for every wavelength has its own ray.
     view.is_clear = is_clear_of_objects(column + 0.5, row + 0.5, traced_range(), 0.0);
     for (Eigen::Index j = 0; j < radiance.size(); ++j) {
-        if (!look_along(in_air, indices_[static_cast<std::size_t>(j)], view)) continue;
+        const bool sees = look_along(in_air, indices_[static_cast<std::size_t>(j)], view);
+        if (veil_) radiance(j) += veil_of(view, j);
+        if (!sees) continue;
         for (const Lamp& lamp : lamps_) {
             const Contribution lit = light(lamp, view);
             radiance(j) += (lit.diffuse * diffuse_[lamp.strobe][view.surface](j) +
@@ -563,7 +652,7 @@ bool Tracer::is_near_an_object(const View& view, double reach_m) const {
 
 // The logarithm of the change of light, each lamp's by its share of all.
 double Tracer::change_between(const View& from, const View& to, double lambda_nm) const {
-    const double K_per_m = rig_.water.attenuation_per_m(lambda_nm);
+    const double K_per_m = water_.direct_loss_per_m(lambda_nm);
     const Surface& surface = surfaces_[from.surface];
     const double reflectance = surface.reflectance.at(lambda_nm);
     double all = 0.0;

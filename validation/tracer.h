@@ -11,6 +11,8 @@
 //                    (rho cos(i) + phong max(0, m.l)^size) / pi  exp(-K (d + r))
 //   S_c       = sum_j w_cj L(lambda_j)
 //
+// and, of water that scatters, the veil before it, or before the horizon (traced_veil.h).
+//
 // I      the beam's intensity (traced_beam.h)              d  lamp to surface [m]
 // i      angle of incidence at the surface                 r  surface to port or pupil [m]
 // m      the camera's ray mirrored at the surface          l  from the surface to the lamp
@@ -28,10 +30,14 @@
 
 #include "rig/rig.h"
 #include "spectral/bands.h"
+#include "spectral/light_family.h"
+#include "validation/full_spectrum.h"
 #include "validation/shapes.h"
 #include "validation/traced_beam.h"
 #include "validation/traced_lens.h"
 #include "validation/traced_port.h"
+#include "validation/traced_veil.h"
+#include "validation/traced_water.h"
 
 #include <Eigen/Core>
 
@@ -153,6 +159,7 @@ class Tracer {
         double path_m = 0.0;    // d + r
     };
     struct View {
+        VeilRay ray;
         Eigen::Vector3d point_m;
         Eigen::Vector3d normal;    // towards the camera
         Eigen::Vector3d mirrored;  // the ray's direction
@@ -174,6 +181,7 @@ class Tracer {
     [[nodiscard]] double spacing_m(std::size_t strobe, double d_m, bool is_floor) const;
     void tabulate_spectra();
     [[nodiscard]] std::vector<WeightedWavelength> spectrum_in_view() const;
+    [[nodiscard]] VeilLights veil_in_view(const LightFamily& family, bool is_all_floor) const;
     // Over the floor.
     [[nodiscard]] double height_m(const Eigen::Vector3d& point_m) const;
     // Which way a point of the image looks in air, z = 1; none where the lens has no image.
@@ -185,6 +193,8 @@ class Tracer {
     [[nodiscard]] Contribution light(const Lamp& lamp, const View& view) const;
     void trace_pixel(int column, int row, Eigen::ArrayXd& radiance) const;
     void trace_sight(int column, int row, const WideVector& in_air, Eigen::ArrayXd& radiance) const;
+    void add_veil(const View& view, Eigen::ArrayXd& radiance) const;
+    [[nodiscard]] double veil_of(const View& view, Eigen::Index wavelength) const;
     void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const;
     // Of every plane, `stride` apart.
     void write_planes(const Eigen::ArrayXd& radiance, double* sample, std::size_t stride) const;
@@ -220,6 +230,7 @@ class Tracer {
     [[nodiscard]] double change_between(const View& from, const View& to, double lambda_nm) const;
 
     Rig rig_;
+    TracedWater water_;
     TraceOptions options_;
     std::optional<TracedLens> lens_;
     double pixel_rad_;
@@ -239,10 +250,13 @@ class Tracer {
     std::size_t signal_nodes_ = 0;
     std::vector<double> lambda_nm_;
     Eigen::ArrayXd attenuation_per_m_;
-    std::vector<std::vector<Eigen::ArrayXd>> diffuse_;  // by strobe, surface: Phi power rho / pi
-    std::vector<Eigen::ArrayXd> specular_;              // by strobe: Phi power / pi
-    Eigen::ArrayXXd weights_;                           // of the grid, by channel
-    std::vector<Index> indices_;                        // behind a port
+    Eigen::ArrayXd veil_loss_per_m_;                       // c', of water that scatters
+    std::vector<std::vector<Eigen::ArrayXd>> veil_light_;  // by strobe, scatterer: Phi power b
+    std::vector<std::vector<Eigen::ArrayXd>> diffuse_;     // by strobe, surface: Phi power rho / pi
+    std::vector<Eigen::ArrayXd> specular_;                 // by strobe: Phi power / pi
+    Eigen::ArrayXXd weights_;                              // of the grid, by channel
+    std::vector<Index> indices_;                           // behind a port
+    std::optional<TracedVeil> veil_;                       // of water that scatters
 };
 
 }  // namespace aphotic

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Water as the reference sees it: what the rig says of it (the tables of spectral/water.h, the
+// parameters of spectral/phase_function.h), and none of spectral/'s formulas.
+//
+//   K  = multiple (a + sum of b_i S_i(kDirectCut)) + uniform_loss                  [1/m]
+//   c' = multiple (a + sum of b_i S_i(kVeilCut)) + uniform_loss                    [1/m]
+//   S_i(psi) = 2 pi int_psi^pi p_i(x) sin(x) dx      share that is turned by more than psi
+//
+// by quadrature of p_i from the back, so that no forward peak is summed; a formula carries its own
+// scale, a table is scaled by its own integral. Fournier and Forand's formula is 0/0 at d = 1: it
+// is taken in long double, and within kForandNear of there from six places around, to 1e-11.
+#pragma once
+
+#include "spectral/water.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr double kForandNear = 1e-4;
+
+class TracedPhase {
+  public:
+    explicit TracedPhase(const PhaseFunction& phase);
+
+    [[nodiscard]] double at(double psi_rad) const;            // p  [1/sr]
+    [[nodiscard]] double share_beyond(double psi_rad) const;  // S
+    [[nodiscard]] const std::vector<double>& kinks_rad() const { return kinks_rad_; }
+
+  private:
+    PhaseFunction phase_;
+    double scale_ = 1.0;             // of a table
+    std::vector<double> kinks_rad_;  // a table's rows
+};
+
+class TracedWater {
+  public:
+    explicit TracedWater(const Water& water);
+
+    [[nodiscard]] double direct_loss_per_m(double lambda_nm) const;  // K
+    [[nodiscard]] double veil_loss_per_m(double lambda_nm) const;    // c'
+    // b_i, multiple included.
+    [[nodiscard]] double scattering_per_m(std::size_t scatterer, double lambda_nm) const;
+
+    [[nodiscard]] bool scatters() const { return !phases_.empty(); }
+    // One a scatterer; none where the water does not scatter.
+    [[nodiscard]] const std::vector<TracedPhase>& phases() const { return phases_; }
+    [[nodiscard]] double beyond_direct_cut(std::size_t scatterer) const {
+        return beyond_direct_cut_[scatterer];
+    }
+
+  private:
+    [[nodiscard]] double loss_per_m(const std::vector<double>& lost, double lambda_nm) const;
+
+    Water water_;
+    std::vector<TracedPhase> phases_;
+    std::vector<double> beyond_direct_cut_;
+    std::vector<double> beyond_veil_cut_;
+};
+
+}  // namespace aphotic
