@@ -126,7 +126,9 @@ TEST(VeilPlanes, ClearWaterHasNone) {
 
 TEST(VeilPlanes, OnlyTheBareFloorHasThem) {
     Rig rig = coast(68, 51);
-    rig.objects.push_back({.name = "rock"});
+    rig.objects.push_back({.name = "rock",
+                           .shape = Sphere{.centre_m = {0.0, 0.0, 1.8}, .radius_m = 0.1},
+                           .reflectance = rig.seafloor.reflectance});
     try {
         (void)plan_render(rig, {});
         FAIL() << "planned";

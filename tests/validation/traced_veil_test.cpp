@@ -29,8 +29,8 @@ using std::numbers::pi;
 constexpr double kDegree_rad = pi / 180.0;
 constexpr double kNm = 500.0;
 constexpr double kOfClosedForms = 1e-10;
-// A table's columns are kinks that the reference has no cut for: 3e-7 is measured. The rig's nodes
-// take four times their points: with their own they are off by up to 6e-6 here.
+// 3e-7 is measured, of a table by azimuths, at whose columns the reference does not cut. The rig's
+// nodes take four times their points: with their own they are off by up to 6e-6 here.
 constexpr double kOfTwoQuadratures = 1e-6;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
