@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A survey in coastal water: what the reference traced, veil included, over floors of known
+// reflectance, `correct` makes flat and right at every altitude; and not when it leaves the veil
+// in.
+#include "image/exr.h"
+#include "support/run_command.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace aphotic::veil_survey_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kAltitudes{"1.5", "2.0", "3.0"};
+// The aim of the survey's proof, of flatness and of colour.
+constexpr double kFlat = 0.02;
+// What the maps promise besides: measured is under 2e-4.
+constexpr double kRight = 1e-3;
+
+std::string rig_over(int percent, const std::string& altitude_m) {
+    return fmt::format(R"(title = "Coastal survey"
+[sled]
+altitude_m = {}
+pitch_deg = 5.0
+[camera]
+resolution = [34, 26]
+pixel_pitch_um = 258.0
+focal_length_mm = 12.0
+range_nm = [400, 700]
+response = "nikon-d5100"
+[water]
+type = "jerlov-1C"
+phase = {{ fournier_forand = {{ backscatter_ratio = 0.0135 }} }}
+[seafloor]
+reflectance = "grey{}.csv"
+[beam.lamp]
+cones = [{{ part = "all", half_angle_deg = 90.0, exponent = 3.0, weight = 1.0 }}]
+[[strobe]]
+name = "port"
+position_m = [0.0, -0.5, 0.0]
+aim = {{ tilt_deg = 26.0, toward = "axis" }}
+beam = "lamp"
+spectrum = "xenon-flash"
+[[strobe]]
+name = "starboard"
+position_m = [0.0, 0.5, 0.0]
+aim = {{ tilt_deg = 26.0, toward = "axis" }}
+beam = "lamp"
+spectrum = "xenon-flash"
+)",
+                       altitude_m,
+                       percent);
+}
+
+class VeilSurvey : public testing::Test {
+  protected:
+    void SetUp() override {
+        for (const int percent : {18, 30, 45}) {
+            const double rho = percent / 100.0;
+            write_file(folder_.path() / fmt::format("grey{}.csv", percent),
+                       fmt::format("wavelength_nm,reflectance\n300,{}\n900,{}\n", rho, rho));
+            const fs::path images = folder_.path() / std::to_string(percent);
+            fs::create_directory(images);
+            std::string navigation = "image,altitude_m\n";
+            for (const char* altitude_m : kAltitudes) {
+                write_file(folder_.path() / "rig.toml", rig_over(percent, altitude_m));
+                expect_done({"trace", "rig.toml", "-o", "traced"});
+                fs::rename(folder_.path() / "traced" / "image.exr",
+                           images / fmt::format("at-{}.exr", altitude_m));
+                fs::remove_all(folder_.path() / "traced");
+                navigation += fmt::format("at-{},{}\n", altitude_m, altitude_m);
+            }
+            write_file(folder_.path() / "nav.csv", navigation);
+        }
+        write_file(folder_.path() / "rig.toml", rig_over(30, "2.0"));
+    }
+
+    void expect_done(const std::vector<std::string>& arguments) {
+        const CommandResult run = run_aphotic(folder_.path(), arguments);
+        ASSERT_EQ(run.status, 0) << run.err;
+    }
+
+    // The survey over the rig's own floor has the gain, the charts take it.
+    void correct(int percent, std::vector<std::string> more) {
+        std::vector<std::string> arguments{"correct",
+                                           std::to_string(percent),
+                                           "--rig",
+                                           "rig.toml",
+                                           "--nav",
+                                           "nav.csv",
+                                           "--format",
+                                           "exr",
+                                           "-o",
+                                           result(percent)};
+        if (percent != 30) more.insert(more.end(), {"--gain-from", result(30)});
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expect_done(arguments);
+    }
+
+    static std::string result(int percent) { return fmt::format("corrected-{}", percent); }
+
+    // Over the altitudes, the worst of unevenness and of departure from the reflectance.
+    struct Off {
+        double uneven = 0.0;
+        double level = 0.0;
+    };
+    Off judge(int percent) {
+        Off off;
+        for (const char* altitude_m : kAltitudes) {
+            ExrReader reader(folder_.path() / result(percent) /
+                             fmt::format("at-{}.exr", altitude_m));
+            for (const char* channel : {"R", "G", "B"}) {
+                const std::vector<float> samples = reader.planes(std::vector<std::string>{channel});
+                double sum = 0.0;
+                double squares = 0.0;
+                for (const float sample : samples) {
+                    sum += sample;
+                    squares += static_cast<double>(sample) * sample;
+                }
+                const double mean = sum / static_cast<double>(samples.size());
+                const double variance = squares / static_cast<double>(samples.size()) - mean * mean;
+                off.uneven = std::max(off.uneven, std::sqrt(std::max(0.0, variance)) / mean);
+                off.level = std::max(off.level, std::abs(mean / (percent / 100.0) - 1.0));
+            }
+        }
+        RecordProperty(fmt::format("uneven_{}", percent), std::to_string(off.uneven));
+        RecordProperty(fmt::format("level_{}", percent), std::to_string(off.level));
+        return off;
+    }
+
+    TempFolder folder_;
+};
+
+TEST_F(VeilSurvey, ChartsAreFlatAndOfTheirReflectance) {
+    for (const int percent : {30, 18, 45}) {
+        correct(percent, {});
+        const Off off = judge(percent);
+        EXPECT_LT(off.uneven, kRight) << percent;
+        EXPECT_LT(off.level, kRight) << percent;
+    }
+}
+
+TEST_F(VeilSurvey, WithTheVeilLeftInTheyAreNot) {
+    for (const int percent : {30, 18, 45}) {
+        correct(percent, {"--no-veil"});
+        const Off off = judge(percent);
+        EXPECT_GT(off.uneven, kFlat) << percent;
+        EXPECT_GT(off.level, kFlat) << percent;
+    }
+}
+
+// Results of one kind are not continued as the other.
+TEST_F(VeilSurvey, ARunWithoutIsAnother) {
+    correct(30, {"--no-veil"});
+    const CommandResult again = run_aphotic(folder_.path(),
+                                            {"correct",
+                                             "30",
+                                             "--rig",
+                                             "rig.toml",
+                                             "--nav",
+                                             "nav.csv",
+                                             "--format",
+                                             "exr",
+                                             "-o",
+                                             result(30)});
+    EXPECT_NE(again.out.find("3 images corrected"), std::string::npos) << again.out << again.err;
+}
+
+}  // namespace
+}  // namespace aphotic::veil_survey_test
