@@ -7,6 +7,7 @@
 #include "image/frame_check.h"
 #include "image/traced_image.h"
 #include "scene_gen/user_scene.h"
+#include "scene_gen/veil_planes.h"
 
 #include <algorithm>
 #include <iterator>
@@ -102,6 +103,16 @@ void take_away_what_is_past(const fs::path& folder,
         take_away(folder / image);
 }
 
+enum class Frames { ToBeRendered, Done };
+
+// Of the bare floor it is known beforehand; else when the frames are there, of which one tells how
+// far each pixel sees.
+void note_veil(const fs::path& folder, const SceneSet& set, Frames frames, Manifest& manifest) {
+    if (!set.scattering) return;
+    if ((manifest.veil->fog_m > 0.0) != (frames == Frames::Done)) return;
+    manifest.veil = write_veil(folder, *set.scattering, manifest);
+}
+
 }  // namespace
 
 RenderResult render(const PovRay& povray,
@@ -124,7 +135,8 @@ RenderResult render(const PovRay& povray,
     result.kept = set.scenes.size() - missing.size();
     take_away_what_is_past(folder, earlier, result.manifest);
     for (const ManifestFrame& frame : missing) take_away(image_path(folder, frame));
-    result.manifest.veil = write_scenes(folder, set);
+    write_scenes(folder, set);
+    note_veil(folder, set, Frames::ToBeRendered, result.manifest);
     write_manifest(folder, result.manifest);
 
     RunOptions run = options;
@@ -144,6 +156,8 @@ RenderResult render(const PovRay& povray,
                set.manifest.width_px,
                set.manifest.height_px + set.manifest.rows_above(),
                run);
+    note_veil(folder, set, Frames::Done, result.manifest);
+    write_manifest(folder, result.manifest);
     return result;
 }
 
@@ -165,7 +179,8 @@ Manifest generate(const fs::path& folder, const SceneSet& set) {
         if (!may_be_this) take_away(image_path(folder, frame));
     }
     take_away_what_is_past(folder, earlier, manifest);
-    manifest.veil = write_scenes(folder, set);
+    write_scenes(folder, set);
+    note_veil(folder, set, Frames::ToBeRendered, manifest);
     write_manifest(folder, manifest);
     return manifest;
 }

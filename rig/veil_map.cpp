@@ -186,21 +186,38 @@ VeilMap::Signal VeilMap::table_at(const std::vector<float>& table, double path_m
 
 VeilMap::Signal VeilMap::at(const Rig& flown, double column, double row, VeilNodes& nodes) const {
     Signal sum{};
-    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
-        const Signal of_strobe = at(flown, s, column, row, nodes);
-        for (std::size_t c = 0; c < kChannels; ++c) sum[c] += of_strobe[c];
-    }
+    for (std::size_t s = 0; s < rig_.strobes.size(); ++s)
+        add(flown, s, column, row, std::nullopt, nodes, sum);
+    return sum;
+}
+
+VeilMap::Signal VeilMap::at(
+    const Rig& flown, double column, double row, double length_m, VeilNodes& nodes) const {
+    Signal sum{};
+    for (std::size_t s = 0; s < rig_.strobes.size(); ++s)
+        add(flown, s, column, row, length_m, nodes, sum);
     return sum;
 }
 
 VeilMap::Signal VeilMap::at(
     const Rig& flown, std::size_t strobe, double column, double row, VeilNodes& nodes) const {
     Signal sum{};
+    add(flown, strobe, column, row, std::nullopt, nodes, sum);
+    return sum;
+}
+
+void VeilMap::add(const Rig& flown,
+                  std::size_t strobe,
+                  double column,
+                  double row,
+                  std::optional<double> length_m,
+                  VeilNodes& nodes,
+                  Signal& sum) const {
     const std::size_t scatterers = rig_.water.scatterers.size();
     const std::size_t kinds = tables_.size() / index_nodes_nm_.size();
     for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
         const VeilSight sight = sight_of(flown, column, row, index_nodes_nm_[j]);
-        veil_.nodes(strobe, sight.ray, sight.length_m, nodes);
+        veil_.nodes(strobe, sight.ray, length_m.value_or(sight.length_m), nodes);
         for (std::size_t i = 0; i < scatterers; ++i) {
             const std::vector<float>& table =
                 tables_[j * kinds + lamp_of_strobe_[strobe] * scatterers + i];
@@ -214,7 +231,6 @@ VeilMap::Signal VeilMap::at(
                 sum[c] += rig_.strobes[strobe].power * of_scatterer[c];
         }
     }
-    return sum;
 }
 
 VeilMap::Axis::Axis(int count, double cell_px)

@@ -35,6 +35,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -85,6 +86,9 @@ class VeilMap {
     // At a place of the image, without interpolation; pixels' centres are at .5.
     using Signal = std::array<double, kChannels>;
     [[nodiscard]] Signal at(const Rig& flown, double column, double row, VeilNodes& nodes) const;
+    // Where the pixel sees so far, not to the floor.
+    [[nodiscard]] Signal at(
+        const Rig& flown, double column, double row, double length_m, VeilNodes& nodes) const;
     // Of one strobe.
     [[nodiscard]] Signal at(
         const Rig& flown, std::size_t strobe, double column, double row, VeilNodes& nodes) const;
@@ -104,6 +108,13 @@ class VeilMap {
     VeilMap(const Rig& rig, unsigned points, std::vector<double> index_nodes_nm);
     using Grid = std::vector<WeightedWavelength>;
     void tabulate(const PathRange& paths, const Water& lossy, const Grid& grid, double error);
+    void add(const Rig& flown,
+             std::size_t strobe,
+             double column,
+             double row,
+             std::optional<double> length_m,
+             VeilNodes& nodes,
+             Signal& sum) const;
     [[nodiscard]] Signal table_at(const std::vector<float>& table, double path_m) const;
 
     Rig rig_;

@@ -346,6 +346,18 @@ std::string scene_sdl(const Rig& rig,
            body_sdl(band_of(rig, parts, frame), parts, options, own);
 }
 
+// Nothing shines, and a fog tells how far each pixel sees.
+std::string fog_sdl(const Rig& rig,
+                    const Parts& parts,
+                    const PlannedWavelength& wavelength,
+                    const SceneOptions& options,
+                    double fog) {
+    const std::string version = "#version 3.7;\n";
+    std::string sdl = scene_sdl(rig, parts, kFogFrame, {&wavelength, 1}, options);
+    return sdl.insert(sdl.find(version) + version.size(),
+                      fmt::format("#declare Aphotic_Fog = {};\n", sdl_number(fog)));
+}
+
 Parts parts_of(const Rig& rig, std::span<const LampGrid> lamps, const SceneOptions& options) {
     Parts parts{.lamps = named_lamps_of(rig),
                 .reflectances = reflectances_of(rig, options),
@@ -369,6 +381,13 @@ double scene_unit_m(const Rig& rig) {
         least_m = std::min(least_m, bounds_m(object.shape).sizes().maxCoeff());
     }
     return least_m < kLeastInMetres_m ? std::exp2(std::floor(std::log2(least_m))) : 1.0;
+}
+
+double fog_m(const Rig& rig, const SceneOptions& options) {
+    constexpr double kPaths = 64.0;
+    if (!rig.water.scatters() || (rig.objects.empty() && !options.user_scene)) return 0.0;
+    const PathRange paths = options.user_scene ? options.user_scene->paths : path_range(rig);
+    return kPaths * (paths.shortest_m > 0.0 ? paths.shortest_m : 1.0);
 }
 
 std::vector<LampGrid> scene_lamps(const Rig& rig,
@@ -416,6 +435,10 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
         scenes.push_back(
             {.name = name,
              .sdl = scene_sdl(rig, parts, name, wavelengths.subspan(first, count), options)});
+    }
+    if (const double fog = fog_m(rig, options); fog > 0.0) {
+        scenes.push_back(
+            {.name = kFogFrame, .sdl = fog_sdl(rig, parts, wavelengths.front(), options, fog)});
     }
     return scenes;
 }

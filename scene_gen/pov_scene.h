@@ -61,6 +61,12 @@ struct SceneOptions {
     std::vector<std::string> ini_lines{};
 };
 
+// Of the frame that tells how far each pixel sees, by a white fog (spectral/manifest.h), in water
+// that scatters over anything but the rig's bare floor; else 0. So large that the fog is about
+// proportional to the distance, whose digits are a half float's.
+[[nodiscard]] double fog_m(const Rig& rig, const SceneOptions& options);
+inline constexpr auto kFogFrame = "distance";
+
 // By strobe of the rig, the lamps that stand for its emitter at these wavelengths.
 [[nodiscard]] std::vector<LampGrid> scene_lamps(const Rig& rig,
                                                 std::span<const PlannedWavelength> wavelengths,

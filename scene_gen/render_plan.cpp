@@ -210,7 +210,6 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
             "a pixel for it",
             request.scene.antialias);
     }
-    if (rig.water.scatters()) require_bare_floor_under_veil(rig);
     const WavelengthRange range = rig.camera.range;
     RenderPlan plan{.method = PlanMethod::Fitted,
                     .tolerance = 0.0,

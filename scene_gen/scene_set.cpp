@@ -10,7 +10,6 @@
 #include "rig/lens_model.h"
 #include "scene_gen/camera_rays.h"
 #include "scene_gen/include_library.h"
-#include "scene_gen/veil_planes.h"
 
 #include <fmt/format.h>
 
@@ -121,7 +120,10 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
         set.vignetting = vignetting_plane(rig.camera);
         manifest.camera->vignetting_sha256 = sha256_of_floats(set.vignetting);
     }
-    if (rig.water.scatters()) set.scattering = rig;
+    if (rig.water.scatters()) {
+        set.scattering = rig;
+        manifest.veil = ManifestVeil{.fog_m = fog_m(rig, plan.scene)};
+    }
     manifest.geometry = geometry_signature(own != nullptr ? rig_of_scene(rig, *own) : rig);
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         manifest.strobes.push_back({.name = rig.strobes[s].name,
@@ -192,7 +194,7 @@ void require_place_for_scenes(const std::filesystem::path& folder, const SceneSe
     if (!set.scene_file.empty()) require_place_in_settings(path_from_scene(folder / "povray", set));
 }
 
-std::optional<ManifestVeil> write_scenes(const std::filesystem::path& folder, const SceneSet& set) {
+void write_scenes(const std::filesystem::path& folder, const SceneSet& set) {
     const std::filesystem::path povray = folder / "povray";
     make_folder(povray / "frames");
     write_text_file(povray / "render.ini", ini_for(povray, set));
@@ -209,7 +211,6 @@ std::optional<ManifestVeil> write_scenes(const std::filesystem::path& folder, co
     for (std::size_t f = 0; f < set.scenes.size(); ++f) {
         write_text_file(scene_path(folder, set.manifest.frames[f]), set.scenes[f].sdl);
     }
-    return set.scattering ? write_veil(folder, *set.scattering, set.manifest) : std::nullopt;
 }
 
 }  // namespace aphotic

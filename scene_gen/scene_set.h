@@ -57,7 +57,7 @@ void require_light_that_counts(std::span<const PlannedWavelength> wavelengths, d
 void require_place_for_scenes(const std::filesystem::path& folder, const SceneSet& set);
 
 // Scenes, settings and an empty folder for the frames; not the manifest, in which whoever
-// renders first notes what is there already. Returns what the manifest notes of the veil.
-std::optional<ManifestVeil> write_scenes(const std::filesystem::path& folder, const SceneSet& set);
+// renders first notes what is there already.
+void write_scenes(const std::filesystem::path& folder, const SceneSet& set);
 
 }  // namespace aphotic

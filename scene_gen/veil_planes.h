@@ -9,9 +9,11 @@
 //      the wavelengths of the frames, whose choice is the floor's light's alone
 // A    the veil at one wavelength, by the ray of its frame
 //
-// Both are planes of one file (veil_path() of spectral/manifest.h), of floats. They are of the bare
-// floor, and of no object's shadow. Off by no more than veil_plane_error() of a pixel's signal,
-// measured and no bound: of the interpolation, and of kVeilPoints a panel.
+// Both are planes of one file (veil_path() of spectral/manifest.h), of floats, up to what the pixel
+// sees: the rig's floor, or as far as the frame of fog tells (spectral/manifest.h), to a half
+// float's digits. Shadows in the veil are left out. Off by no more than veil_plane_error() of a
+// pixel's signal over the floor, measured and no bound: of the interpolation, and of kVeilPoints a
+// panel.
 #pragma once
 
 #include "rig/path_range.h"
@@ -24,7 +26,8 @@
 
 namespace aphotic {
 
-// Of water that scatters. Throws InputError where something other than the bare floor is in view.
+// For a veil without frames of its own. Throws InputError where something other than the bare floor
+// is in view.
 void require_bare_floor_under_veil(const Rig& rig);
 
 [[nodiscard]] double veil_plane_error(const Rig& rig);

@@ -167,7 +167,10 @@ class VeilReader {
     VeilReader(const fs::path& file, const Manifest& manifest, std::size_t planes)
         : channels_(veil_channels(manifest)) {
         if (!manifest.veil) return;
-        if (!fs::exists(file)) throw RunError("{}: the veil is missing", file.string());
+        if (manifest.veil->sha256.empty() || !fs::exists(file)) {
+            throw RunError("{}: the veil is missing; `aphotic render` makes it of its frames",
+                           file.string());
+        }
         if (sha256_of_file(file) != manifest.veil->sha256)
             throw RunError("{}: is not the veil that the manifest notes", file.string());
         channels_.resize(kChannels + planes);

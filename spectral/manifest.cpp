@@ -263,6 +263,8 @@ void fields(const Visit& visit, Camera& camera) {
 template <typename Visit, Is<ManifestVeil> Veil>
 void fields(const Visit& visit, Veil& veil) {
     visit("sha256", veil.sha256);
+    visit("fog_m", veil.fog_m);
+    visit.require("fog_m", "0 or more", veil.fog_m >= 0.0);
 }
 
 template <typename Visit, Is<Manifest> Whole>

@@ -63,8 +63,12 @@ struct ManifestCamera {
 };
 
 // What the water scatters into the view, which no frame holds (veil_path).
+//
+// Where more than the bare floor is in view, the last frame holds no light but a white fog of the
+// distance fog_m: 1 - exp(-D / fog_m), which tells how far D each pixel sees.
 struct ManifestVeil {
-    std::string sha256;  // of the file
+    std::string sha256{};  // of the file; empty: not made yet
+    double fog_m = 0.0;    // 0: the bare floor, and no such frame
 };
 
 struct Manifest {

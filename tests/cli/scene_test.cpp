@@ -83,6 +83,25 @@ TEST_F(UserScenes, ValidateLikeAnyOther) {
     EXPECT_EQ(aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"}).status, 1);
 }
 
+// Up to where what the scene shows stands.
+TEST_F(UserScenes, HaveTheVeilOfWaterThatScatters) {
+    std::string rig = read_text_file(home_ / "rig.toml");
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        ASSERT_NE(rig.find(from), std::string::npos) << from;
+        rig.replace(rig.find(from), from.size(), to);
+    };
+    replace("absorption = \"pope-fry-1997\"",
+            "type = \"jerlov-1C\"\nphase = { fournier_forand = { backscatter_ratio = 0.0135 } }");
+    replace("[400, 720]", "[400, 700]");
+    put("rig.toml", rig);
+    put_scene(kFloor);
+    const CommandResult run = aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"});
+    EXPECT_EQ(run.status, 0) << run.out << run.err;
+    // A floor that stands nearer has less before it, and the reference's has not.
+    put_scene("Aphotic_Rig ()\nAphotic_Seafloor (1.95, 5, 0, \"sand\")\n");
+    EXPECT_EQ(aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"}).status, 1);
+}
+
 // Whose colours have no spectrum.
 TEST_F(UserScenes, AValidationThatRefusesOneLeavesNoPage) {
     put_scene(std::string(kFloor) + "light_source { <0, 0, 0> rgb 1 }\n");

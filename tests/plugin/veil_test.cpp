@@ -69,7 +69,8 @@ TEST(Veil, OfConesIsTheReferences) {
 }
 
 TEST(Veil, OfSmoothBeamsIsTheReferences) {
-    Rig rig = in_water(small_habcam(34, 26), {.name = "forward", .kind = HenyeyGreenstein{.g = 0.924}});
+    Rig rig =
+        in_water(small_habcam(34, 26), {.name = "forward", .kind = HenyeyGreenstein{.g = 0.924}});
     // Cosines to the fourth, whose edge is at 90 degrees and 0.
     for (Strobe& strobe : rig.strobes) {
         strobe.beam.cones = {{.part = "all",
@@ -77,6 +78,19 @@ TEST(Veil, OfSmoothBeamsIsTheReferences) {
                               .weight = 1.0,
                               .exponent = 4.0}};
     }
+    expect_agreement(rig);
+}
+
+// The veil ends where they stand, as a frame of fog tells.
+TEST(Veil, BeforeObjectsIsTheReferences) {
+    Rig rig = in_water(small_habcam(34, 26), fournier_forand(0.0183));
+    const Spectrum grey("grey", {300.0, 900.0}, {0.4, 0.4});
+    rig.objects.push_back({.name = "ball",
+                           .shape = Sphere{.centre_m = {0.3, 0.2, 1.2}, .radius_m = 0.25},
+                           .reflectance = grey});
+    rig.objects.push_back({.name = "far ball",
+                           .shape = Sphere{.centre_m = {-0.4, -0.2, 1.7}, .radius_m = 0.2},
+                           .reflectance = grey});
     expect_agreement(rig);
 }
 

@@ -124,14 +124,14 @@ TEST(VeilPlanes, ClearWaterHasNone) {
     EXPECT_FALSE(std::filesystem::exists(veil_path(folder.path())));
 }
 
-TEST(VeilPlanes, OnlyTheBareFloorHasThem) {
+TEST(VeilPlanes, WithoutFramesOnlyTheBareFloorHasThem) {
     Rig rig = coast(68, 51);
     rig.objects.push_back({.name = "rock",
                            .shape = Sphere{.centre_m = {0.0, 0.0, 1.8}, .radius_m = 0.1},
                            .reflectance = rig.seafloor.reflectance});
     try {
-        (void)plan_render(rig, {});
-        FAIL() << "planned";
+        require_bare_floor_under_veil(rig);
+        FAIL() << "allowed";
     } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()),
                   "found the object 'rock'; allowed with water that scatters: the bare floor");
