@@ -492,7 +492,8 @@ TEST(Integrator, AVeilThatIsMissingOrAnotherIsARunError) {
     render.manifest().veil->sha256 = "another";
     EXPECT_EQ(render.error(), file.string() + ": is not the veil that the manifest notes");
     fs::remove(file);
-    EXPECT_EQ(render.error(), file.string() + ": the veil is missing; `aphotic render` makes it of its frames");
+    EXPECT_EQ(render.error(),
+              file.string() + ": the veil is missing; `aphotic render` makes it of its frames");
 }
 
 }  // namespace aphotic::integrator_test
