@@ -54,10 +54,10 @@ constexpr double kVeilEndRad = 1e-9;
 // On the ray itself a lamp's light has no end; a micrometre beside it has.
 constexpr double kVeilNear_m = 1e-6;
 
-double least_veil_attenuation_per_m(const Rig& rig) {
+double least_loss_in_view_per_m(const Rig& rig) {
     const std::vector<double> knots_nm = union_of_knots(rig.water.curves(), rig.camera.range);
     double least = std::numeric_limits<double>::infinity();
-    for (const double nm : knots_nm) least = std::min(least, rig.water.veil_attenuation_per_m(nm));
+    for (const double nm : knots_nm) least = std::min(least, rig.water.attenuation_per_m(nm));
     return least;
 }
 
@@ -198,7 +198,7 @@ Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(r
         }
         phases_.push_back(std::move(phase));
     }
-    const double least_per_m = rig.water.scatters() ? least_veil_attenuation_per_m(rig) : 0.0;
+    const double least_per_m = rig.water.scatters() ? least_loss_in_view_per_m(rig) : 0.0;
     longest_m_ =
         least_per_m > 0.0 ? kVeilDepth / least_per_m : std::numeric_limits<double>::infinity();
 }
@@ -355,7 +355,7 @@ void Veil::add_piece(const Light& light,
 
 double Veil::radiance(const WaterRay& ray, double length_m, double lambda_nm) const {
     const Rig& rig = *rig_;
-    const double loss_per_m = rig.water.veil_attenuation_per_m(lambda_nm);
+    const double loss_per_m = rig.water.attenuation_per_m(lambda_nm);
     double sum = 0.0;
     VeilNodes found;
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {

@@ -3,12 +3,13 @@
 // The veil: light that the water scatters into the view, on its way from a lamp to the floor or
 // beside it. Single scattering, along the ray of a pixel:
 //
-//   A(lambda) = Phi(lambda) sum_i b_i(lambda) int p_i(psi) I(w) exp(-c' (t + d)) / d^2 dt
+//   A(lambda) = Phi(lambda) sum_i b_i(lambda) int p_i(psi) I(w) exp(-K (t + d)) / d^2 dt
 //
 // t         along the ray, from where it enters the water to what it meets      [m]
 // d, w      from the lamp to that point of the ray: distance [m] and direction
-// psi       the angle by which light is turned there, kVeilCut or more
-// b_i, p_i  of each scatterer; c' what the veil loses (spectral/water.h)
+// psi       the angle by which light is turned there, kVeilCut or more: what is turned by less is
+//           seen beside its lamp, and left out
+// b_i, p_i  of each scatterer; K what light loses (spectral/water.h)
 // I         the beam's intensity (rig/beam.h)                                   [1/sr]
 //
 // With h the lamp's distance from the ray, t_0 its foot point on it, and phi the angle at the lamp
@@ -21,7 +22,7 @@
 // form (rig/beam_crease.h). Between these, the kinks of a tabulated phase function and the cut,
 // Gauss-Legendre's rule takes panels no wider than kVeilPanelRad, nor than they are far from
 // +-90 degrees, where scattered light has its poles: forward there (Henyey and Greenstein's lies at
-// -90 degrees +- i ln(1/g)), and exp(-c' l) an essential one here. So the integrand is analytic
+// -90 degrees +- i ln(1/g)), and exp(-K l) an essential one here. So the integrand is analytic
 // within the ellipse of Bernstein of rho = 3 + sqrt(8) about each panel, and n points err by no
 // more than
 //
@@ -54,7 +55,7 @@ inline constexpr unsigned kVeilPoints = 8;  // of a panel
 // Light that the water leaves less than e^-kVeilDepth of is left out.
 inline constexpr double kVeilDepth = 40.0;
 
-// What one strobe of power 1 adds: A = Phi sum_n sum_i b_i weight[i][n] exp(-c' path_m[n]).
+// What one strobe of power 1 adds: A = Phi sum_n sum_i b_i weight[i][n] exp(-K path_m[n]).
 struct VeilNodes {
     std::vector<double> path_m;                 // t + d
     std::vector<std::vector<double>> weight{};  // by scatterer  [1/(m sr)]

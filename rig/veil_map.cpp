@@ -35,33 +35,19 @@ std::array<double, 4> lagrange_weights(double a) {
     return {-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0};
 }
 
-// A water whose direct light is lost at this one's c'.
-Water lost_from_veil(const Rig& rig) {
-    const std::vector<double> knots_nm = union_of_knots(rig.water.curves(), rig.camera.range);
-    std::vector<double> loss_per_m;
-    for (const double nm : knots_nm) {
-        loss_per_m.push_back((rig.water.veil_attenuation_per_m(nm) - rig.water.uniform_loss_per_m) /
-                             rig.water.multiple);
-    }
-    Water water = rig.water;
-    water.absorption_per_m = Spectrum("loss of the veil", knots_nm, loss_per_m);
-    water.scatterers.clear();
-    return water;
-}
-
 // Of the wavelengths that are scattered.
-double least_loss_per_m(const Rig& rig, const Water& water) {
+double least_loss_per_m(const Rig& rig) {
     double least = std::numeric_limits<double>::infinity();
-    for (const double nm : water.absorption_per_m.lambda_nm()) {
+    for (const double nm : union_of_knots(rig.water.curves(), rig.camera.range)) {
         for (std::size_t i = 0; i < rig.water.scatterers.size(); ++i) {
             if (rig.water.scattering_per_m(i, nm) > 0.0)
-                least = std::min(least, water.attenuation_per_m(nm));
+                least = std::min(least, rig.water.attenuation_per_m(nm));
         }
     }
     return least;
 }
 
-PathRange veil_paths(const Rig& rig, const Water& water, const PathRange& direct) {
+PathRange veil_paths(const Rig& rig, const PathRange& direct) {
     double shortest_m = std::numeric_limits<double>::infinity();
     for (const Strobe& strobe : rig.strobes) {
         shortest_m = std::min(
@@ -69,7 +55,7 @@ PathRange veil_paths(const Rig& rig, const Water& water, const PathRange& direct
     }
     PathRange paths{.shortest_m = std::max(0.0, shortest_m), .longest_m = direct.longest_m};
     if (direct.has_horizon || direct.longest_m == 0.0) {
-        const double least_per_m = least_loss_per_m(rig, water);
+        const double least_per_m = least_loss_per_m(rig);
         if (std::isfinite(least_per_m)) paths.longest_m = kVeilDepth / least_per_m;
     }
     paths.longest_m = std::max(paths.longest_m, paths.shortest_m + 1.0);
@@ -77,7 +63,6 @@ PathRange veil_paths(const Rig& rig, const Water& water, const PathRange& direct
 }
 
 SpectralSum veil_sum(const Rig& rig,
-                     const Water& water,
                      const std::vector<WeightedWavelength>& grid,
                      const Spectrum& lamp,
                      std::size_t scatterer,
@@ -86,7 +71,7 @@ SpectralSum veil_sum(const Rig& rig,
     SpectralSum sum{.K_per_m = Eigen::ArrayXd(count), .weights = Eigen::ArrayXXd(count, kChannels)};
     for (Eigen::Index i = 0; i < count; ++i) {
         const WeightedWavelength& node = grid[static_cast<std::size_t>(i)];
-        sum.K_per_m(i) = water.attenuation_per_m(node.lambda_nm);
+        sum.K_per_m(i) = rig.water.attenuation_per_m(node.lambda_nm);
         const double light = share(node.lambda_nm) * lamp.at(node.lambda_nm) *
                              rig.water.scattering_per_m(scatterer, node.lambda_nm);
         for (Eigen::Index c = 0; c < kChannels; ++c)
@@ -106,10 +91,9 @@ VeilMap::VeilMap(const Rig& rig, unsigned points, std::vector<double> index_node
 
 VeilMap::VeilMap(const Rig& rig, const PathRange& direct, double error, unsigned points)
     : VeilMap(rig, points, index_nodes_nm(rig)) {
-    const Water lossy = lost_from_veil(rig);
-    const PathRange paths = veil_paths(rig, lossy, direct);
+    const PathRange paths = veil_paths(rig, direct);
     LightFamily family{.sources = {},
-                       .water = lossy,
+                       .water = rig.water,
                        .shortest_path_m = paths.shortest_m,
                        .longest_path_m = paths.longest_m};
     for (const Strobe& strobe : rig.strobes) {
@@ -117,7 +101,6 @@ VeilMap::VeilMap(const Rig& rig, const PathRange& direct, double error, unsigned
             family.sources.push_back({strobe.spectrum, scatterer.scattering_per_m});
     }
     tabulate(paths,
-             lossy,
              reference_grid(rig.camera.sensor, family, rig.camera.range, kVeilGridShare * error),
              error);
 }
@@ -129,16 +112,15 @@ VeilMap::VeilMap(const Rig& rig,
                  std::span<const double> lambda_nm,
                  double index_nm)
     : VeilMap(rig, points, {index_nm}) {
-    const Water lossy = lost_from_veil(rig);
     Grid grid;
     for (std::size_t c = 0; c < lambda_nm.size(); ++c) {
         grid.push_back({.lambda_nm = lambda_nm[c]});
         grid.back().weight[c] = 1.0;
     }
-    tabulate(veil_paths(rig, lossy, direct), lossy, grid, error);
+    tabulate(veil_paths(rig, direct), grid, error);
 }
 
-void VeilMap::tabulate(const PathRange& paths, const Water& lossy, const Grid& grid, double error) {
+void VeilMap::tabulate(const PathRange& paths, const Grid& grid, double error) {
     std::vector<const Spectrum*> lamps;
     for (const Strobe& strobe : rig_.strobes) {
         const auto known = std::ranges::find_if(
@@ -153,7 +135,7 @@ void VeilMap::tabulate(const PathRange& paths, const Water& lossy, const Grid& g
         }
     };
     for_each_kind([&](const Spectrum& lamp, std::size_t i) {
-        const SpectralSum sum = veil_sum(rig_, lossy, grid, lamp, i, every);
+        const SpectralSum sum = veil_sum(rig_, grid, lamp, i, every);
         const PathSteps steps = path_steps(sum, paths, kVeilTableShare * error);
         if (steps.count > steps_.count) steps_ = steps;
     });
@@ -162,7 +144,7 @@ void VeilMap::tabulate(const PathRange& paths, const Water& lossy, const Grid& g
             const auto of_node = [&](double nm) {
                 return index_share(rig_, index_nodes_nm_, j, nm);
             };
-            tables_.push_back(path_table(veil_sum(rig_, lossy, grid, lamp, i, of_node), steps_));
+            tables_.push_back(path_table(veil_sum(rig_, grid, lamp, i, of_node), steps_));
         });
     }
 }

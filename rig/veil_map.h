@@ -4,10 +4,10 @@
 // length instead of the exponential,
 //
 //   V_c = sum_s sum_n sum_i weight_i[n] T_sic(path[n]),
-//   T_sic(l) = Phi_s int f_s b_i Q_c exp(-c' l) dlambda
+//   T_sic(l) = Phi_s int f_s b_i Q_c exp(-K l) dlambda
 //
 // s, i  strobe and scatterer          f_s, Phi_s  its lamp spectrum and power
-// Q_c   response of channel c         c', b_i     spectral/water.h
+// Q_c   response of channel c         K, b_i      spectral/water.h
 //
 // T is tabulated once per water as the floor's is (path_table.h), for paths from the lamp straight
 // to the camera to the longest that the floor's direct light takes, or where less than
@@ -107,7 +107,7 @@ class VeilMap {
 
     VeilMap(const Rig& rig, unsigned points, std::vector<double> index_nodes_nm);
     using Grid = std::vector<WeightedWavelength>;
-    void tabulate(const PathRange& paths, const Water& lossy, const Grid& grid, double error);
+    void tabulate(const PathRange& paths, const Grid& grid, double error);
     void add(const Rig& flown,
              std::size_t strobe,
              double column,

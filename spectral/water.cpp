@@ -8,26 +8,15 @@
 #include <algorithm>
 
 namespace aphotic {
-namespace {
-
-double loss_per_m(const Water& water, double cut_rad, double lambda_nm) {
-    if (water.multiple == 0.0) return water.uniform_loss_per_m;
-    double loss = water.absorption_per_m.at(lambda_nm);
-    for (const Scatterer& scatterer : water.scatterers) {
-        loss += scatterer.scattering_per_m.at(lambda_nm) *
-                (1.0 - scatterer.phase.share_within(cut_rad));
-    }
-    return water.multiple * loss + water.uniform_loss_per_m;
-}
-
-}  // namespace
 
 double Water::attenuation_per_m(double lambda_nm) const {
-    return loss_per_m(*this, kDirectCut, lambda_nm);
-}
-
-double Water::veil_attenuation_per_m(double lambda_nm) const {
-    return loss_per_m(*this, kVeilCut, lambda_nm);
+    if (multiple == 0.0) return uniform_loss_per_m;
+    double loss = absorption_per_m.at(lambda_nm);
+    for (const Scatterer& scatterer : scatterers) {
+        loss += scatterer.scattering_per_m.at(lambda_nm) *
+                (1.0 - scatterer.phase.share_within(kLossCut));
+    }
+    return multiple * loss + uniform_loss_per_m;
 }
 
 double Water::scattering_per_m(std::size_t scatterer, double lambda_nm) const {
@@ -35,13 +24,12 @@ double Water::scattering_per_m(std::size_t scatterer, double lambda_nm) const {
     return multiple * scatterers[scatterer].scattering_per_m.at(lambda_nm);
 }
 
-// K is no more than c', for kDirectCut is the wider.
 double Water::least_attenuation_per_m() const {
     if (multiple == 0.0) return uniform_loss_per_m;
     double least = *std::ranges::min_element(absorption_per_m.values());
     for (const Scatterer& scatterer : scatterers) {
         least += *std::ranges::min_element(scatterer.scattering_per_m.values()) *
-                 (1.0 - scatterer.phase.share_within(kDirectCut));
+                 (1.0 - scatterer.phase.share_within(kLossCut));
     }
     return uniform_loss_per_m + multiple * least;
 }

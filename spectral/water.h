@@ -2,22 +2,19 @@
 //
 // What a metre of this water does to light.
 //
-//   K  = multiple (a + sum of b_i (1 - F_i(psi_d))) + uniform_loss     what direct light loses
-//   c' = multiple (a + sum of b_i (1 - F_i(psi_c))) + uniform_loss     what the veil loses
+//   K = multiple (a + sum of b_i (1 - F_i(psi_K))) + uniform_loss
 //
-// K, c'         losses along a path of length l: the light that is left is exp(-K l)    [1/m]
+// K             loss along a path of length l: the light that is left is exp(-K l)      [1/m]
 // a             absorption coefficient, a table                                         [1/m]
 // b_i, F_i      scattering coefficient of a scatterer, a table, and the share that it
 //               scatters within an angle (spectral/phase_function.h)                    [1/m], [1]
-// psi_d, psi_c  kDirectCut, kVeilCut: light that is turned by less counts as not scattered, for it
-//               arrives all the same
+// psi_K         kLossCut: light that is turned by less counts as not scattered, for it arrives all
+//               the same, on its way to the floor, from there to the camera, and in the veil
 // multiple      0 is air-like, 0.5 half water, 1 water (the source paper's figure 6)    [1]
 // uniform_loss  scattering as one wavelength-free loss (the paper's assumption 1)       [1/m]
 //
-// Neither is the beam attenuation c = a + b, nor the diffuse attenuation K_d of daylight. The two
-// cuts differ, for the floor is lit by light that was turned a little, while light that is turned
-// towards the camera has been turned by much: docs/water.md has the Monte Carlo that they are
-// chosen by.
+// K is neither the beam attenuation c = a + b nor the diffuse attenuation K_d of daylight. The cut
+// is chosen by the light of all orders (validation/monte_carlo.h): docs/water.md has the table.
 //
 // With multiple = 0 no table is read, so none need cover the range.
 // K = 0 at every wavelength is bare air: is_clear() holds.
@@ -35,7 +32,8 @@
 namespace aphotic {
 
 // [rad]
-inline constexpr double kDirectCut = 45.0 * std::numbers::pi / 180.0;
+inline constexpr double kLossCut = 45.0 * std::numbers::pi / 180.0;
+// What is turned by less is seen beside its lamp, and no part of the veil (rig/veil.h).
 inline constexpr double kVeilCut = 10.0 * std::numbers::pi / 180.0;
 
 // One kind of what scatters: the water itself, or the particles in it.
@@ -52,19 +50,18 @@ struct Water {
     double temperature_c = 10.0;
     std::vector<Scatterer> scatterers{};
 
-    [[nodiscard]] double attenuation_per_m(double lambda_nm) const;       // K
-    [[nodiscard]] double veil_attenuation_per_m(double lambda_nm) const;  // c'
+    [[nodiscard]] double attenuation_per_m(double lambda_nm) const;  // K
 
     // Of one scatterer, multiple included: b_i.
     [[nodiscard]] double scattering_per_m(std::size_t scatterer, double lambda_nm) const;
 
-    // No more than K, or than c', at any wavelength of the tables.
+    // No more than K at any wavelength of the tables.
     [[nodiscard]] double least_attenuation_per_m() const;
 
     [[nodiscard]] bool scatters() const { return multiple != 0.0 && !scatterers.empty(); }
     [[nodiscard]] bool is_clear() const { return multiple == 0.0 && uniform_loss_per_m == 0.0; }
 
-    // The tables that K and c' are read from, as long as the water lives.
+    // The tables that K is read from, as long as the water lives.
     [[nodiscard]] std::vector<const Spectrum*> curves() const;
 
     // Relative to air.

@@ -144,8 +144,7 @@ class ExactLight {
         if (water.multiple == 0.0) return water.uniform_loss_per_m;
         Real loss = value(water.absorption_per_m, lambda_nm);
         for (std::size_t i = 0; i < water.scatterers.size(); ++i) {
-            loss += water_.beyond_direct_cut(i) *
-                    value(water.scatterers[i].scattering_per_m, lambda_nm);
+            loss += water_.lost(i) * value(water.scatterers[i].scattering_per_m, lambda_nm);
         }
         return water.multiple * loss + water.uniform_loss_per_m;
     }

@@ -55,26 +55,22 @@ ArrayXd paths_between(double shortest_m, double longest_m) {
     return ArrayXd::LinSpaced(kPaths, std::log(shortest_m), std::log(longest_m)).exp();
 }
 
-// Lights that lose alike.
+// Lights of the same paths.
 struct Group {
     const std::vector<std::vector<Spectrum>>* sources;
     ArrayXd paths_m;
     double longest_path_m;
-    double (TracedWater::*loss_per_m)(double) const;
-    double least_loss_per_m = 0.0;
 };
 
 std::vector<Group> groups_of(const LightFamily& lights, const VeilLights& veil) {
     std::vector<Group> groups{
         {.sources = &lights.sources,
          .paths_m = paths_between(lights.shortest_path_m, lights.longest_path_m),
-         .longest_path_m = lights.longest_path_m,
-         .loss_per_m = &TracedWater::direct_loss_per_m}};
+         .longest_path_m = lights.longest_path_m}};
     if (!veil.sources.empty()) {
         groups.push_back({.sources = &veil.sources,
                           .paths_m = paths_between(veil.shortest_path_m, veil.longest_path_m),
-                          .longest_path_m = veil.longest_path_m,
-                          .loss_per_m = &TracedWater::veil_loss_per_m});
+                          .longest_path_m = veil.longest_path_m});
     }
     return groups;
 }
@@ -83,8 +79,11 @@ std::vector<Group> groups_of(const LightFamily& lights, const VeilLights& veil) 
 // longest path, so that no double ends.
 class Signals {
   public:
-    Signals(const Sensor& sensor, const TracedWater& water, const std::vector<Group>& groups)
-        : sensor_(sensor), water_(water), groups_(groups) {
+    Signals(const Sensor& sensor,
+            const TracedWater& water,
+            double least_loss_per_m,
+            const std::vector<Group>& groups)
+        : sensor_(sensor), water_(water), least_loss_per_m_(least_loss_per_m), groups_(groups) {
         for (const Group& group : groups_)
             lights_ += static_cast<Index>(group.sources->size()) * group.paths_m.size();
     }
@@ -93,10 +92,9 @@ class Signals {
         MatrixXd signals = MatrixXd::Zero(kChannels, lights_);
         for (const WeightedWavelength& w : wavelengths) {
             const Eigen::Map<const Eigen::Vector3d> weight(w.weight.data());
+            const double loss_per_m = water_.loss_per_m(w.lambda_nm) - least_loss_per_m_;
             Index column = 0;
             for (const Group& group : groups_) {
-                const double loss_per_m =
-                    (water_.*group.loss_per_m)(w.lambda_nm) - group.least_loss_per_m;
                 const Eigen::RowVectorXd left = (-loss_per_m * group.paths_m).exp();
                 for (const auto& source : *group.sources) {
                     double light = 1.0;
@@ -128,6 +126,7 @@ class Signals {
   private:
     const Sensor& sensor_;
     const TracedWater& water_;
+    double least_loss_per_m_;
     const std::vector<Group>& groups_;
     Index lights_ = 0;
 };
@@ -147,14 +146,12 @@ std::vector<WavelengthRange> panels_of(const Sensor& sensor,
     }
     std::ranges::copy(of_water, std::back_inserter(tables));
     const std::vector<double> knots_nm = union_of_knots(tables, range);
+    const double longest_path_m =
+        std::ranges::max_element(groups, {}, &Group::longest_path_m)->longest_path_m;
     std::vector<WavelengthRange> panels;
     for (std::size_t i = 0; i + 1 < knots_nm.size(); ++i) {
-        double fall = 0.0;
-        for (const Group& group : groups) {
-            const double rise_per_m =
-                (water.*group.loss_per_m)(knots_nm[i + 1]) - (water.*group.loss_per_m)(knots_nm[i]);
-            fall = std::max(fall, std::abs(rise_per_m) * group.longest_path_m);
-        }
+        const double rise_per_m = water.loss_per_m(knots_nm[i + 1]) - water.loss_per_m(knots_nm[i]);
+        const double fall = std::abs(rise_per_m) * longest_path_m;
         const int pieces = std::max(1, static_cast<int>(std::ceil(fall / kPanelFall)));
         const auto cut_nm = [&](int k) {
             return std::lerp(knots_nm[i], knots_nm[i + 1], static_cast<double>(k) / pieces);
@@ -172,17 +169,13 @@ std::vector<WeightedWavelength> full_spectrum(const Sensor& sensor,
                                               double error,
                                               const VeilLights& veil) {
     const TracedWater water(lights.water);
-    std::vector<Group> groups = groups_of(lights, veil);
+    const std::vector<Group> groups = groups_of(lights, veil);
     const std::vector<WavelengthRange> panels =
         panels_of(sensor, water, lights.water.curves(), groups, range);
-    for (Group& group : groups) {
-        group.least_loss_per_m = (water.*group.loss_per_m)(range.last_nm);
-        for (const WavelengthRange& panel : panels) {
-            group.least_loss_per_m =
-                std::min(group.least_loss_per_m, (water.*group.loss_per_m)(panel.first_nm));
-        }
-    }
-    const Signals signals(sensor, water, groups);
+    double least_loss_per_m = water.loss_per_m(range.last_nm);
+    for (const WavelengthRange& panel : panels)
+        least_loss_per_m = std::min(least_loss_per_m, water.loss_per_m(panel.first_nm));
+    const Signals signals(sensor, water, least_loss_per_m, groups);
     std::vector<MatrixXd> exact;
     for (const WavelengthRange& panel : panels) {
         exact.push_back(signals.of(signals.on(panel, gauss_rules().back())));

@@ -23,7 +23,7 @@ namespace aphotic {
 
 inline constexpr int kPaths = 7;
 
-// The veil's light: c' for K, b_i for a reflectance, and paths of its own. None: no sources.
+// The veil's light: b_i for a reflectance, and paths of its own. None: no sources.
 struct VeilLights {
     std::vector<std::vector<Spectrum>> sources{};
     double shortest_path_m = 0.0;

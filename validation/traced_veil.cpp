@@ -229,7 +229,7 @@ void TracedVeil::trace(std::size_t strobe,
 }
 
 double TracedVeil::radiance(const VeilRay& ray, double lambda_nm) const {
-    const double loss_per_m = water_.veil_loss_per_m(lambda_nm);
+    const double loss_per_m = water_.loss_per_m(lambda_nm);
     double sum = 0.0;
     VeilPoints points;
     for (std::size_t s = 0; s < sources_.size(); ++s) {

@@ -2,7 +2,7 @@
 //
 // The veil as the reference takes it: light of a strobe that the water turns into the camera's ray,
 //
-//   A = Phi power sum_i b_i int p_i(psi) I(w) exp(-c' (t + d)) / d^2 dt,     psi >= kVeilCut
+//   A = Phi power sum_i b_i int p_i(psi) I(w) exp(-K (t + d)) / d^2 dt,     psi >= kVeilCut
 //
 // from t = 0 where the ray enters the water to what it meets; the letters are rig/veil.h's, of
 // which it has no formula. With x the angle at the lamp between its nearest point of the ray, h
@@ -12,7 +12,7 @@
 //
 // Over x, from edge to edge of the beam and of a table's rows, panels of Gauss and Kronrod are
 // halved until the 15 and the 7 points of each agree to kVeilTolerance of the whole, for each
-// scatterer and for the least and the largest c'. Those in between lie between them: the points
+// scatterer and for the least and the largest K. Those in between lie between them: the points
 // serve every wavelength.
 //
 // An emitter of a size is kVeilLamps x kVeilLamps lamps by Gauss's rule. A lamp on the ray is
@@ -34,7 +34,7 @@ inline constexpr double kVeilTolerance = 1e-10;
 inline constexpr unsigned kVeilLamps = 4;
 inline constexpr double kVeilBeside_m = 1e-6;
 
-// Of one strobe: A = Phi power sum_n sum_i b_i light[i][n] exp(-c' path_m[n]).
+// Of one strobe: A = Phi power sum_n sum_i b_i light[i][n] exp(-K path_m[n]).
 struct VeilPoints {
     std::vector<double> path_m;              // t + d
     std::vector<std::vector<double>> light;  // by scatterer  [1/(m sr)]

@@ -125,25 +125,16 @@ TracedWater::TracedWater(const Water& water) : water_(water) {
     if (water.multiple == 0.0) return;
     for (const Scatterer& scatterer : water.scatterers) {
         phases_.emplace_back(scatterer.phase);
-        beyond_direct_cut_.push_back(phases_.back().share_beyond(kDirectCut));
-        beyond_veil_cut_.push_back(phases_.back().share_beyond(kVeilCut));
+        lost_.push_back(phases_.back().share_beyond(kLossCut));
     }
 }
 
-double TracedWater::loss_per_m(const std::vector<double>& lost, double lambda_nm) const {
+double TracedWater::loss_per_m(double lambda_nm) const {
     if (water_.multiple == 0.0) return water_.uniform_loss_per_m;
     double loss = water_.absorption_per_m.at(lambda_nm);
-    for (std::size_t i = 0; i < lost.size(); ++i)
-        loss += lost[i] * water_.scatterers[i].scattering_per_m.at(lambda_nm);
+    for (std::size_t i = 0; i < lost_.size(); ++i)
+        loss += lost_[i] * water_.scatterers[i].scattering_per_m.at(lambda_nm);
     return water_.multiple * loss + water_.uniform_loss_per_m;
-}
-
-double TracedWater::direct_loss_per_m(double lambda_nm) const {
-    return loss_per_m(beyond_direct_cut_, lambda_nm);
-}
-
-double TracedWater::veil_loss_per_m(double lambda_nm) const {
-    return loss_per_m(beyond_veil_cut_, lambda_nm);
 }
 
 double TracedWater::scattering_per_m(std::size_t scatterer, double lambda_nm) const {

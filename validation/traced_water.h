@@ -3,8 +3,7 @@
 // Water as the reference sees it: what the rig says of it (the tables of spectral/water.h, the
 // parameters of spectral/phase_function.h), and none of spectral/'s formulas.
 //
-//   K  = multiple (a + sum of b_i S_i(kDirectCut)) + uniform_loss                  [1/m]
-//   c' = multiple (a + sum of b_i S_i(kVeilCut)) + uniform_loss                    [1/m]
+//   K = multiple (a + sum of b_i S_i(kLossCut)) + uniform_loss                   [1/m]
 //   S_i(psi) = 2 pi int_psi^pi p_i(x) sin(x) dx      share that is turned by more than psi
 //
 // by quadrature of p_i from the back, so that no forward peak is summed; a formula carries its own
@@ -39,25 +38,20 @@ class TracedWater {
   public:
     explicit TracedWater(const Water& water);
 
-    [[nodiscard]] double direct_loss_per_m(double lambda_nm) const;  // K
-    [[nodiscard]] double veil_loss_per_m(double lambda_nm) const;    // c'
+    [[nodiscard]] double loss_per_m(double lambda_nm) const;  // K
     // b_i, multiple included.
     [[nodiscard]] double scattering_per_m(std::size_t scatterer, double lambda_nm) const;
 
     [[nodiscard]] bool scatters() const { return !phases_.empty(); }
     // One a scatterer; none where the water does not scatter.
     [[nodiscard]] const std::vector<TracedPhase>& phases() const { return phases_; }
-    [[nodiscard]] double beyond_direct_cut(std::size_t scatterer) const {
-        return beyond_direct_cut_[scatterer];
-    }
+    // The share that a scatterer turns by more than kLossCut.
+    [[nodiscard]] double lost(std::size_t scatterer) const { return lost_[scatterer]; }
 
   private:
-    [[nodiscard]] double loss_per_m(const std::vector<double>& lost, double lambda_nm) const;
-
     Water water_;
     std::vector<TracedPhase> phases_;
-    std::vector<double> beyond_direct_cut_;
-    std::vector<double> beyond_veil_cut_;
+    std::vector<double> lost_;
 };
 
 }  // namespace aphotic

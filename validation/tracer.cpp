@@ -303,7 +303,7 @@ VeilLights Tracer::veil_in_view(const LightFamily& family, bool is_all_floor) co
     }
     double least_per_m = std::numeric_limits<double>::infinity();
     for (const double nm : union_of_knots(rig_.water.curves(), rig_.camera.range))
-        least_per_m = std::min(least_per_m, water_.veil_loss_per_m(nm));
+        least_per_m = std::min(least_per_m, water_.loss_per_m(nm));
     constexpr double kNearest_m = 1e-2;
     veil.shortest_path_m = std::max(nearest_m / kRoom, kNearest_m);
     double longest_m = family.longest_path_m;
@@ -335,7 +335,7 @@ void Tracer::tabulate_spectra() {
     specular_.assign(rig_.strobes.size(), ArrayXd(count));
     for (Eigen::Index j = 0; j < count; ++j) {
         const double lambda_nm = lambda_nm_[static_cast<std::size_t>(j)];
-        attenuation_per_m_(j) = water_.direct_loss_per_m(lambda_nm);
+        attenuation_per_m_(j) = water_.loss_per_m(lambda_nm);
         for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
             const Strobe& strobe = rig_.strobes[s];
             const double flux = strobe.spectrum.at(lambda_nm) * strobe.power;
@@ -347,12 +347,10 @@ void Tracer::tabulate_spectra() {
         indices_.push_back(index_at(lambda_nm));
     }
     if (!veil_) return;
-    veil_loss_per_m_.resize(count);
     veil_light_.assign(rig_.strobes.size(),
                        std::vector<ArrayXd>(water_.phases().size(), ArrayXd(count)));
     for (Eigen::Index j = 0; j < count; ++j) {
         const double lambda_nm = lambda_nm_[static_cast<std::size_t>(j)];
-        veil_loss_per_m_(j) = water_.veil_loss_per_m(lambda_nm);
         for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
             const double flux = rig_.strobes[s].spectrum.at(lambda_nm) * rig_.strobes[s].power;
             for (std::size_t i = 0; i < water_.phases().size(); ++i)
@@ -401,6 +399,12 @@ double Tracer::widest_pixel_rad() const {
 bool Tracer::look(double column, double row, const Index& index, View& view) const {
     const std::optional<WideVector> in_air = sight(column, row);
     return in_air && look_along(*in_air, index, view);
+}
+
+std::optional<VeilRay> Tracer::ray(double column, double row, double lambda_nm) const {
+    View view;
+    if (!look(column, row, index_at(lambda_nm), view)) return std::nullopt;
+    return view.ray;
 }
 
 bool Tracer::look_along(const WideVector& sight, const Index& index, View& view) const {
@@ -485,8 +489,8 @@ WavelengthRange Tracer::traced_range() const {
 // Without a port all wavelengths share a ray.
 void Tracer::add_veil(const View& view, ArrayXd& radiance) const {
     if (radiance.size() == 0) return;
-    const Losses losses{.least_per_m = veil_loss_per_m_.minCoeff(),
-                        .most_per_m = veil_loss_per_m_.maxCoeff()};
+    const Losses losses{.least_per_m = attenuation_per_m_.minCoeff(),
+                        .most_per_m = attenuation_per_m_.maxCoeff()};
     VeilPoints points;
     ArrayXd left(radiance.size());
     std::vector<ArrayXd> light(water_.phases().size());
@@ -494,7 +498,7 @@ void Tracer::add_veil(const View& view, ArrayXd& radiance) const {
         veil_->trace(s, view.ray, losses, points);
         std::ranges::fill(light, ArrayXd::Zero(radiance.size()));
         for (std::size_t n = 0; n < points.path_m.size(); ++n) {
-            left = light_left(points.path_m[n] * veil_loss_per_m_);
+            left = light_left(points.path_m[n] * attenuation_per_m_);
             for (std::size_t i = 0; i < light.size(); ++i) light[i] += points.light[i][n] * left;
         }
         for (std::size_t i = 0; i < light.size(); ++i) radiance += veil_light_[s][i] * light[i];
@@ -502,7 +506,7 @@ void Tracer::add_veil(const View& view, ArrayXd& radiance) const {
 }
 
 double Tracer::veil_of(const View& view, Eigen::Index wavelength) const {
-    const double loss_per_m = veil_loss_per_m_(wavelength);
+    const double loss_per_m = attenuation_per_m_(wavelength);
     double sum = 0.0;
     VeilPoints points;
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
@@ -652,7 +656,7 @@ bool Tracer::is_near_an_object(const View& view, double reach_m) const {
 
 // The logarithm of the change of light, each lamp's by its share of all.
 double Tracer::change_between(const View& from, const View& to, double lambda_nm) const {
-    const double K_per_m = water_.direct_loss_per_m(lambda_nm);
+    const double K_per_m = water_.loss_per_m(lambda_nm);
     const Surface& surface = surfaces_[from.surface];
     const double reflectance = surface.reflectance.at(lambda_nm);
     double all = 0.0;

@@ -129,6 +129,10 @@ class Tracer {
     [[nodiscard]] std::vector<unsigned char> on_edges_of(std::span<const std::size_t> which,
                                                          WavelengthRange range) const;
 
+    // Where a point of the image looks at a wavelength, up to what it sees; none where it sees
+    // nothing.
+    [[nodiscard]] std::optional<VeilRay> ray(double column, double row, double lambda_nm) const;
+
     // Of the full spectrum; 0 without signals.
     [[nodiscard]] std::size_t grid_size() const { return signal_nodes_; }
 
@@ -250,7 +254,6 @@ class Tracer {
     std::size_t signal_nodes_ = 0;
     std::vector<double> lambda_nm_;
     Eigen::ArrayXd attenuation_per_m_;
-    Eigen::ArrayXd veil_loss_per_m_;                       // c', of water that scatters
     std::vector<std::vector<Eigen::ArrayXd>> veil_light_;  // by strobe, scatterer: Phi power b
     std::vector<std::vector<Eigen::ArrayXd>> diffuse_;     // by strobe, surface: Phi power rho / pi
     std::vector<Eigen::ArrayXd> specular_;                 // by strobe: Phi power / pi

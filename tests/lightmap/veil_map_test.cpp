@@ -63,7 +63,7 @@ std::array<double, kChannels> by_wavelengths(const Rig& rig, double column, doub
         for (int k = 0; k <= kSteps; ++k) {
             const double nm = range.first_nm + k * step_nm;
             const double rule = (k == 0 || k == kSteps ? 1.0 : k % 2 == 1 ? 4.0 : 2.0) / 3.0;
-            const double loss_per_m = rig.water.veil_attenuation_per_m(nm);
+            const double loss_per_m = rig.water.attenuation_per_m(nm);
             double light = 0.0;
             for (std::size_t i = 0; i < nodes.weight.size(); ++i) {
                 double left = 0.0;

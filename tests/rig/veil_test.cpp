@@ -67,7 +67,7 @@ double sum_of_weights(const Rig& rig, const WaterRay& ray, double length_m) {
 // The definition, term by term, over t.
 double by_definition(const Rig& rig, const WaterRay& ray, double length_m) {
     using Kronrod = boost::math::quadrature::gauss_kronrod<double, 31>;
-    const double loss_per_m = rig.water.veil_attenuation_per_m(kNm);
+    const double loss_per_m = rig.water.attenuation_per_m(kNm);
     double sum = 0.0;
     for (const Strobe& strobe : rig.strobes) {
         const BeamFrame frame = frame_about(strobe.axis);
@@ -123,7 +123,7 @@ TEST(Veil, OfAnEvenLampInLossyWaterIsSunsFunction) {
     for (const double h : {0.02, 0.5, 3.0}) {
         for (const double t_0 : {-0.3, 0.0, 0.1}) {
             Rig rig = one_lamp({0.0, h, t_0}, -Vector3d::UnitY(), half_isotropic(), isotropic());
-            const double loss_per_m = rig.water.veil_attenuation_per_m(kNm);
+            const double loss_per_m = rig.water.attenuation_per_m(kNm);
             const double length_m = 2.5;
             const double from = std::max(std::atan(-t_0 / h), kVeilCut - 0.5 * pi);
             const double to = std::atan((length_m - t_0) / h);

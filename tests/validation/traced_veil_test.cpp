@@ -71,7 +71,7 @@ double veil_of(const Rig& rig, const VeilRay& ray) {
 
 }  // namespace
 
-// b I / (4 pi h) (x_1 - x_0): next to no loss, for c' has b in it.
+// b I / (4 pi h) (x_1 - x_0): next to no loss, for K has b in it.
 TEST(TracedVeil, OfAnEvenLampAndEvenScatteringIsAnAngle) {
     const double h = 0.5;
     const double b = 1e-13;
@@ -95,7 +95,7 @@ TEST(TracedVeil, OfAnEvenLampInLossyWaterIsSunsFunction) {
             [u](double xi) { return std::exp(-u * std::tan(xi)); }, 0.0, v, 15, 1e-14);
     };
     // Even scattering: (1 + cos(cut))/2 is turned by more.
-    const double loss_per_m = 0.2 + 0.3 * 0.5 * (1.0 + std::cos(10.0 * kDegree_rad));
+    const double loss_per_m = 0.2 + 0.3 * 0.5 * (1.0 + std::cos(45.0 * kDegree_rad));
     for (const double h : {0.02, 0.5, 3.0}) {
         for (const double t_0 : {-0.3, 0.0, 0.1}) {
             const Rig rig =

@@ -123,24 +123,23 @@ TEST(TracedWater, TablesAreScaledAlike) {
     }
 }
 
-TEST(TracedWater, LosesWhatIsTurnedBeyondTheCuts) {
+TEST(TracedWater, LosesWhatIsTurnedBeyondTheCut) {
     Water water{.absorption_per_m = flat(0.1), .multiple = 0.5, .uniform_loss_per_m = 0.02};
     EXPECT_FALSE(TracedWater(water).scatters());
-    EXPECT_EQ(TracedWater(water).direct_loss_per_m(kNm), water.attenuation_per_m(kNm));
+    EXPECT_EQ(TracedWater(water).loss_per_m(kNm), water.attenuation_per_m(kNm));
     water.scatterers = {{flat(0.4), {.name = "even", .kind = HenyeyGreenstein{.g = 0.0}}},
                         {flat(0.002), {.name = "sea", .kind = MolecularScattering{}}}};
     const TracedWater traced(water);
     // Even scattering: (1 + cos)/2 is beyond.
-    const double sea = 0.002 * traced.phases()[1].share_beyond(kDirectCut);
-    EXPECT_NEAR(traced.direct_loss_per_m(kNm),
+    const double sea = 0.002 * traced.phases()[1].share_beyond(kLossCut);
+    EXPECT_NEAR(traced.loss_per_m(kNm),
                 0.5 * (0.1 + 0.2 * (1.0 + std::cos(45.0 * kDegree)) + sea) + 0.02,
                 kOfQuadrature);
-    EXPECT_NEAR(traced.direct_loss_per_m(kNm), water.attenuation_per_m(kNm), kOfQuadrature);
-    EXPECT_NEAR(traced.veil_loss_per_m(kNm), water.veil_attenuation_per_m(kNm), kOfQuadrature);
+    EXPECT_NEAR(traced.loss_per_m(kNm), water.attenuation_per_m(kNm), kOfQuadrature);
     EXPECT_NEAR(traced.scattering_per_m(0, kNm), 0.2, kOfQuadrature);
     water.multiple = 0.0;
     EXPECT_FALSE(TracedWater(water).scatters());
-    EXPECT_EQ(TracedWater(water).veil_loss_per_m(kNm), 0.02);
+    EXPECT_EQ(TracedWater(water).loss_per_m(kNm), 0.02);
 }
 
 }  // namespace aphotic::traced_water_test
