@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/model_error.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -151,6 +152,7 @@ struct AtlasCommandOptions {
     std::string folder;
     AxisTexts axes;
     double tolerance = 0.0;  // 0: every value of the axes
+    double model_tolerance = kModelTolerance;
     std::vector<std::string> exports;
     LightmapOptions map{.error = 1e-5, .threads = all_cores()};
     bool ignore_needs = false;
@@ -240,6 +242,7 @@ struct MadeAtlas {
     Rig rig;
     fs::path folder;
     ChosenAxes chosen;
+    std::optional<ManifestModel> model{};  // of its highest map, in the thickest water
     std::size_t computed = 0;
     AtlasExports exports{};
     double tolerance = 0.0;  // 0: none
@@ -265,15 +268,17 @@ nlohmann::ordered_json to_json(const MadeAtlas& made) {
             {"file", made.fits().string()}, {"rms", fit->rms}, {"worst", fit->worst}};
     }
     if (made.exports.oplab) exports["oplab"] = to_json(*made.exports.oplab);
-    return {{"title", made.rig.title},
-            {"rig_sha256", made.rig.digest},
-            {"folder", made.folder.string()},
-            {"bins", bin_count(made.chosen.axes)},
-            {"computed", made.computed},
-            {"interpolation", interpolation_json(made.chosen.interpolation)},
-            {"holds_tolerance", made.holds()},
-            {"exports", exports},
-            {"atlas_s", made.seconds}};
+    nlohmann::ordered_json json{{"title", made.rig.title},
+                                {"rig_sha256", made.rig.digest},
+                                {"folder", made.folder.string()},
+                                {"bins", bin_count(made.chosen.axes)},
+                                {"computed", made.computed},
+                                {"interpolation", interpolation_json(made.chosen.interpolation)},
+                                {"holds_tolerance", made.holds()},
+                                {"exports", exports},
+                                {"atlas_s", made.seconds}};
+    put_model_error(json, made.model);
+    return json;
 }
 
 void print(const MadeAtlas& made) {
@@ -297,6 +302,7 @@ void print(const MadeAtlas& made) {
         error.whole_limit,
         counted(error.whole_cells, "cell"),
         kPercent * error.crossed_share);
+    print_model_error(made.model);
     if (!made.exports.bayer.empty()) {
         fmt::print("  {}  RGGB mosaics of {}\n",
                    made.mosaics().string(),
@@ -330,10 +336,15 @@ MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes
     require_over_floor(rig, finest);
     if (is_exported(options, "exponential") || is_exported(options, "oplab"))
         AltitudeFitter{finest.altitude_m};  // or it says why not
+    Rig darkest = rig;
+    darkest.sled.altitude_m = finest.altitude_m.back();
+    darkest.water.multiple = finest.water_multiple.back();
     MadeAtlas made{.rig = rig,
                    .folder = options.folder,
-                   .chosen = choose(options, rig, finest),
+                   .chosen = {},
+                   .model = model_error(darkest, options.rig_file, options.model_tolerance),
                    .tolerance = options.tolerance};
+    made.chosen = choose(options, rig, finest);
     announce(options, made.chosen.axes, work_of(options, rig, finest), rig.water.scatters());
     set_exr_threads(options.map.threads);
     const FolderLock lock = claim_folder(options.folder);
@@ -383,6 +394,7 @@ Action configure_atlas(CLI::App& app) {
         ->delimiter(',')
         ->check(CLI::IsMember({"bayer", "exponential", "oplab"}))
         ->option_text("bayer,exponential,oplab");
+    add_model_tolerance(app, options->model_tolerance);
     add_jobs(app, options->map.threads, "Map with N threads");
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cli/command.h"
+#include "cli/model_error.h"
 #include "image/preview.h"
 #include "lightmap/lightmap.h"
 
@@ -28,6 +29,7 @@ struct LightmapCommandOptions {
     std::string preview_file;
     PreviewOptions preview;
     bool ignore_needs = false;
+    double model_tolerance = kModelTolerance;
     bool json = false;
 };
 

@@ -8,6 +8,7 @@
 #include "base/words.h"
 #include "cli/allowed_skips.h"
 #include "cli/command.h"
+#include "cli/model_error.h"
 #include "cli/navigation_options.h"
 #include "cli/options.h"
 #include "cli/survey_command.h"
@@ -35,6 +36,7 @@ struct CorrectCommandOptions {
     NavigationOptions navigation;
     std::string map;
     bool no_veil = false;
+    double model_tolerance = kModelTolerance;
     std::string ifdo;
     CameraNumbers camera;
     std::vector<double> altitudes_m;
@@ -96,7 +98,22 @@ void keep_memory() {
 #endif
 }
 
-Survey survey_of(const CorrectCommandOptions& options) {
+// Where the sled was highest, and most is left out.
+std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options,
+                                            Rig rig,
+                                            const Survey& survey) {
+    if (options.no_veil || !rig.water.scatters()) return std::nullopt;
+    rig.sled = highest_pose(*survey.navigation, survey.files).value_or(rig.sled);
+    return model_error(rig, options.rig, options.model_tolerance);
+}
+
+// What is asked for, and of water that scatters what the model leaves out.
+struct Task {
+    Survey survey;
+    std::optional<ManifestModel> model{};
+};
+
+Task task_of(const CorrectCommandOptions& options) {
     if (options.rig.empty() == options.map.empty()) {
         throw InputError("--rig with --nav, or --map: one of them is needed");
     }
@@ -113,7 +130,7 @@ Survey survey_of(const CorrectCommandOptions& options) {
     if (!options.map.empty()) {
         survey.camera = camera_of(survey.camera, survey.files, nullptr);
         survey.light = light_of_map(options.map, !options.no_veil);
-        return survey;
+        return {.survey = std::move(survey)};
     }
     Rig rig = read_rig(options.rig);
     survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
@@ -130,7 +147,8 @@ Survey survey_of(const CorrectCommandOptions& options) {
         return light_of_rig(rig, *survey.navigation, survey.files, !options.no_veil);
     });
     survey.light.rig_size = own;
-    return survey;
+    const auto model = model_error_of(options, rig, survey);
+    return {.survey = std::move(survey), .model = model};
 }
 
 // Read before anything is corrected, that a fault in it costs nothing.
@@ -165,14 +183,17 @@ ExitStatus correct(CorrectCommandOptions options) {
     if (options.navigation.source.empty() && !options.rig.empty())
         options.navigation.source = options.ifdo;
     const std::optional<IfdoTask> task = ifdo_task(options);
-    const Survey survey = survey_of(options);
+    const auto [survey, model] = task_of(options);
     const CorrectionReport report =
         correct_survey(survey, options.correction, terminal_watch(options.strict));
     if (options.json) {
-        fmt::print("{}", json_text(to_json(report)));
+        nlohmann::ordered_json json = to_json(report);
+        put_model_error(json, model);
+        fmt::print("{}", json_text(json));
     } else {
         print_report(report, survey, options.correction.run.folder, options.correction.report);
         print_navigation(survey.navigation);
+        print_model_error(model);
     }
     if (task) write_ifdo(*task, options, survey, report);
     return status_of_skips(report.run->skipped.size(), survey.files.size(), options.allowed_skips);
@@ -274,6 +295,7 @@ Action configure_correct(CLI::App& app) {
     add_images(app, options->images);
     add_light_options(app, *options);
     add_output_folder(app, options->correction.run.folder)->required();
+    add_model_tolerance(app, options->model_tolerance);
     add_raw_options(app, *options);
     const Settle settle = add_result_options(app, *options);
     add_jobs(app, options->correction.run.jobs, "Correct N images at a time");

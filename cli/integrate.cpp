@@ -5,6 +5,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "cli/command.h"
+#include "cli/model_error.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -28,6 +29,7 @@ struct IntegrateCommandOptions {
     std::string rig_file;
     std::string images_folder;
     double tolerance = 1e-3;
+    double model_tolerance = kModelTolerance;
     PreviewOptions preview;
     bool ignore_needs = false;
     bool json = false;
@@ -63,7 +65,10 @@ Manifest manifest_of(const IntegrateCommandOptions& options) {
         scene.materials = scene_materials(manifest.scene->materials, rig, manifest.scene->file);
         rig = rig_of_scene(std::move(rig), scene);
     }
-    return naming(options.rig_file, [&] { return reintegrate(rig, manifest, options.tolerance); });
+    manifest =
+        naming(options.rig_file, [&] { return reintegrate(rig, manifest, options.tolerance); });
+    manifest.model = model_error(rig, options.rig_file, options.model_tolerance);
+    return manifest;
 }
 
 // What the image is made of, for whoever finds it later.
@@ -75,6 +80,7 @@ Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest
                  {"frame_error", manifest.frame_error},
                  {"wavelengths", Json::array()}};
     put_promises(account, manifest);
+    put_model_error(account, manifest.model);
     for (const PlannedWavelength& w : manifest.wavelengths) {
         account["wavelengths"].push_back({{"lambda_nm", w.lambda_nm}, {"weight", w.weight}});
     }
@@ -118,6 +124,7 @@ Action configure_integrate(CLI::App& app) {
         ->needs(rig)
         ->option_text("E")
         ->capture_default_str();
+    add_model_tolerance(app, options->model_tolerance);
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json);
     add_preview_options(app, options->preview);

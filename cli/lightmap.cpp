@@ -57,37 +57,40 @@ struct MadeLightmap {
     Rig rig;
     WrittenLightmap written{};
     MapPromise promise{};
+    std::optional<ManifestModel> model{};  // of the map with its veil
 };
 
 nlohmann::ordered_json to_json(const MadeLightmap& made) {
-    const auto& [options, rig, written, promise] = made;
-    return {{"title", rig.title},
-            {"rig_sha256", rig.digest},
-            {"file", options.file},
-            {"width_px", rig.camera.width_px},
-            {"height_px", rig.camera.height_px},
-            {"altitude_m", rig.sled.altitude_m},
-            {"pitch_deg", rig.sled.pitch_rad / kRadiansPerDegree},
-            {"roll_deg", rig.sled.roll_rad / kRadiansPerDegree},
-            {"channels", written.channels},
-            {"peak", written.peaks},
-            {"normalised", options.normalised},
-            {"error", options.map.error},
-            {"promise",
-             {{"error", promise.error},
-              {"bounded", promise.is_bounded},
-              {"of_lamp_grids", promise.is_of_lamp_grids}}},
-            {"paths_m", {written.paths.shortest_m, written.paths.longest_m}},
-            {"grid", written.grid_size},
-            {"table_steps", written.table_steps},
-            {"threads", options.map.threads},
-            {"tables_s", written.tables_s},
-            {"map_s", written.map_s}};
+    const auto& [options, rig, written, promise, model] = made;
+    nlohmann::ordered_json json{{"title", rig.title},
+                                {"rig_sha256", rig.digest},
+                                {"file", options.file},
+                                {"width_px", rig.camera.width_px},
+                                {"height_px", rig.camera.height_px},
+                                {"altitude_m", rig.sled.altitude_m},
+                                {"pitch_deg", rig.sled.pitch_rad / kRadiansPerDegree},
+                                {"roll_deg", rig.sled.roll_rad / kRadiansPerDegree},
+                                {"channels", written.channels},
+                                {"peak", written.peaks},
+                                {"normalised", options.normalised},
+                                {"error", options.map.error},
+                                {"promise",
+                                 {{"error", promise.error},
+                                  {"bounded", promise.is_bounded},
+                                  {"of_lamp_grids", promise.is_of_lamp_grids}}},
+                                {"paths_m", {written.paths.shortest_m, written.paths.longest_m}},
+                                {"grid", written.grid_size},
+                                {"table_steps", written.table_steps},
+                                {"threads", options.map.threads},
+                                {"tables_s", written.tables_s},
+                                {"map_s", written.map_s}};
+    put_model_error(json, model);
+    return json;
 }
 
 void print(const MadeLightmap& made) {
     constexpr double kMilli = 1e3;
-    const auto& [options, rig, written, promise] = made;
+    const auto& [options, rig, written, promise, model] = made;
     fmt::print(
         "{}: {} x {} pixels in {:.0f} ms,\n"
         "  {};\n"
@@ -102,16 +105,20 @@ void print(const MadeLightmap& made) {
         written.paths.shortest_m,
         written.paths.longest_m,
         counted(written.grid_size, "wavelength"));
+    print_model_error(model);
     print_peaks(written.peaks, options.normalised);
     fmt::print("  {}  {}\n", options.file, counted(written.channels.size(), "channel"));
 }
 
-WrittenLightmap write_map(const LightmapCommandOptions& options, const Rig& rig) {
+WrittenLightmap write_map(const LightmapCommandOptions& options,
+                          const Rig& rig,
+                          const std::optional<ManifestModel>& model) {
     LightmapRequest request{.file = options.file,
                             .parts = parts_of(options, rig),
                             .is_normalised = options.normalised,
                             .map = options.map,
-                            .version = APHOTIC_VERSION};
+                            .version = APHOTIC_VERSION,
+                            .model = model};
     // As many planes again, of the whole and of each part.
     const bool has_veil = rig.water.scatters() && options.map.has_veil;
     const std::size_t planes_of_veil = has_veil ? 1 + request.parts.size() : 0;
@@ -126,7 +133,9 @@ WrittenLightmap write_map(const LightmapCommandOptions& options, const Rig& rig)
 
 ExitStatus make_lightmap(const LightmapCommandOptions& options) {
     MadeLightmap made{.options = options, .rig = rig_of(options)};
-    made.written = naming(options.source, [&] { return write_map(options, made.rig); });
+    if (options.map.has_veil)
+        made.model = model_error(made.rig, options.source, options.model_tolerance);
+    made.written = naming(options.source, [&] { return write_map(options, made.rig, made.model); });
     made.promise = map_promise(made.rig, options.map);
     if (!options.preview_file.empty()) {
         const Lightmap& map = made.written.map;
@@ -207,6 +216,7 @@ Action configure_lightmap(CLI::App& app) {
         "--no-veil",
         [options] { options->map.has_veil = false; },
         "Leave out the light that the water scatters into the view");
+    add_model_tolerance(app, options->model_tolerance);
     add_jobs(app, options->map.threads, "Map with N threads");
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json);

@@ -103,6 +103,7 @@ void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
         ->expected(2)
         ->check(in_range(kLeastPath_m, kMostPath_m))
         ->option_text("FROM,TO");
+    add_model_tolerance(app, options.model_tolerance);
 }
 
 void add_planning_options(CLI::App& app, PlanningOptions& options) {

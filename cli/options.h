@@ -4,6 +4,7 @@
 // that --help shows; the others are those of version 0.1.
 #pragma once
 
+#include "cli/model_error.h"
 #include "cli/option_checks.h"
 #include "image/preview.h"
 #include "plugin/povray.h"
@@ -79,6 +80,7 @@ struct PlanningOptions {
     std::string povray;
     bool ignore_needs = false;
     double stall_timeout_s = kStall_s;
+    double model_tolerance = kModelTolerance;
 };
 
 // Which POV-Ray, and how long it may be silent.

@@ -4,6 +4,7 @@
 #include "base/interruption.h"
 #include "base/progress.h"
 #include "base/words.h"
+#include "cli/model_error.h"
 #include "image/exr.h"
 #include "spectral/integrator.h"
 
@@ -94,6 +95,7 @@ Json to_json(const Integration& integration) {
     json["frames"] = manifest.frames.size();
     json["frame_error"] = manifest.frame_error;
     put_promises(json, manifest);
+    put_model_error(json, manifest.model);
     json["integration_s"] = integration.seconds;
     json["title"] = manifest.rig_title;
     return json;
@@ -116,6 +118,7 @@ void print(const Integration& integration) {
     } else {
         print_no_promise(manifest.no_promise);
     }
+    print_model_error(manifest.model);
     print(integration.images);
 }
 

@@ -133,6 +133,7 @@ Json to_json(const Planned& made) {
               {"omissions", Json::array()},
               {"needs", json_of(planned_needs(scenes))}};
     put_promises(json, manifest);
+    put_model_error(json, planned.model);
     if (planned.rig.camera.port) {
         const PortCost cost = port_cost(planned);
         json["port"] = {{"spread_px", cost.spread_px},
@@ -222,6 +223,10 @@ void print(const Planned& made) {
                plan.family.shortest_path_m,
                plan.family.longest_path_m);
     print_promise(plan);
+    if (planned.model) {
+        print_model_error(planned.model);
+        fmt::print("\n");
+    }
     print_wavelengths(manifest);
     if (planned.rig.camera.port) print_port(planned);
     print_needs(planned_needs(scenes), manifest.frames.size());

@@ -124,11 +124,16 @@ PlannedRender plan_rig(const PlanningOptions& options) {
     request.scene.user_scene = surveyed(rig, options);
     const std::chrono::duration<double> probe = std::chrono::steady_clock::now() - start;
     RenderPlan plan = naming(options.rig_file, [&] { return plan_render(rig, request); });
-    return {.rig = std::move(rig), .plan = std::move(plan), .probe_s = probe.count()};
+    const auto model = model_error(rig, options.rig_file, options.model_tolerance);
+    return {
+        .rig = std::move(rig), .plan = std::move(plan), .probe_s = probe.count(), .model = model};
 }
 
 SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options) {
-    return naming(options.rig_file, [&] { return make_scene_set(planned.rig, planned.plan); });
+    SceneSet scenes =
+        naming(options.rig_file, [&] { return make_scene_set(planned.rig, planned.plan); });
+    scenes.manifest.model = planned.model;
+    return scenes;
 }
 
 PovRay povray_for(const PlannedRender& planned,

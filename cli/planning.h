@@ -3,6 +3,7 @@
 // A rig, its plan, its scenes and its frames, the same for every command that plans a render.
 #pragma once
 
+#include "cli/model_error.h"
 #include "cli/options.h"
 #include "plugin/render.h"
 #include "scene_gen/render_plan.h"
@@ -16,11 +17,12 @@ namespace aphotic::cli {
 struct PlannedRender {
     Rig rig;
     RenderPlan plan;
-    double probe_s = 0.0;  // that the probe of the user's own scene took
+    double probe_s = 0.0;                  // that the probe of the user's own scene took
+    std::optional<ManifestModel> model{};  // of water that scatters
 };
 
-// Reads the rig, surveys the user's own scene where there is one, and plans. Messages name the
-// rig's file.
+// Reads the rig, surveys the user's own scene where there is one, plans, and estimates what the
+// model leaves out. Messages name the rig's file.
 [[nodiscard]] PlannedRender plan_rig(const PlanningOptions& options);
 
 [[nodiscard]] SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options);

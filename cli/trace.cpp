@@ -54,6 +54,7 @@ struct Traced {
     std::size_t grid = 0;         // wavelengths of the signals
     std::vector<TracedEmitter> emitters;
     std::size_t on_edges = 0;  // pixels for which the errors do not hold
+    std::optional<ManifestModel> model{};
     int threads = 1;
     double seconds = 0.0;
 };
@@ -71,6 +72,7 @@ nlohmann::ordered_json to_json(const Traced& traced) {
                                     {"lamps_across", emitter.lamps.across},
                                     {"lamps_along", emitter.lamps.along}});
     }
+    put_model_error(json, traced.model);
     json["on_edges"] = traced.on_edges;
     json["threads"] = traced.threads;
     json["trace_s"] = traced.seconds;
@@ -100,6 +102,7 @@ void print(const Traced& traced) {
             "one: no such bound there\n",
             counted(traced.on_edges, "pixel"));
     }
+    print_model_error(traced.model);
     print(traced.images);
 }
 
@@ -139,7 +142,7 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
     const CameraImage image = [&] {
         ProgressLine line;
         return write_traced_images(
-            tracer, request, options.folder, APHOTIC_VERSION, [&](double share) {
+            tracer, request, options.folder, APHOTIC_VERSION, planned.model, [&](double share) {
                 line.show("tracing", share);
             });
     }();
@@ -158,6 +161,7 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
         .grid = tracer.grid_size(),
         .emitters = traced_emitters(tracer),
         .on_edges = marks.size() - static_cast<std::size_t>(std::ranges::count(marks, 0)),
+        .model = planned.model,
         .threads = options.threads,
         .seconds = elapsed.count()};
     write_text_file(std::filesystem::path(options.folder) / "trace.json",

@@ -26,6 +26,7 @@ struct ValidateCommandOptions {
     PlanningOptions planning;
     std::string folder;
     std::string rendered_folder;
+    std::size_t monte_carlo = 0;  // paths of a place; 0: none
     int jobs = all_cores();
     bool json = false;
 };
@@ -69,6 +70,37 @@ Manifest rendered_manifest(const std::string& folder, const Rig& rig) {
                      manifest.height_px,
                      rig.camera.width_px,
                      rig.camera.height_px);
+}
+
+// Of a place, model over truth, with the truth's standard error.
+void print_model(const ModelCheck& model) {
+    if (model.places.empty()) return;
+    const auto ratio = [](double of_model, const Estimate& truth) {
+        if (!(truth.mean > 0.0)) return std::string("-");
+        return fmt::format(
+            "{:.4f} +- {:.4f}", of_model / truth.mean, truth.standard_error / truth.mean);
+    };
+    fmt::print("  The reference over light of all orders, {} paths a place:\n", model.paths);
+    fmt::print("  {:>3}  {:>6}  {:>14}  {:>6}  {:>18}  {:>18}  {:>18}\n",
+               "",
+               "nm",
+               "column, row",
+               "veil",
+               "floor",
+               "veil",
+               "sum");
+    for (const ModelPlace& place : model.places) {
+        fmt::print("  {:>3}  {:6.1f}  {:>14}  {:6.3f}  {:>18}  {:>18}  {:>18}\n",
+                   kChannelNames[place.channel],
+                   place.lambda_nm,
+                   fmt::format("{}, {}", place.column, place.row),
+                   place.veil / (place.floor + place.veil),
+                   ratio(place.floor, place.truth.floor),
+                   ratio(place.veil, place.truth.veil),
+                   ratio(place.floor + place.veil, place.truth.sum));
+    }
+    const auto rms = model.rms();
+    fmt::print("  off by {:.2g} (R), {:.2g} (G), {:.2g} (B), rms\n", rms[0], rms[1], rms[2]);
 }
 
 // Of the largest share of pixels that one comparison leaves to its edges, and the largest error
@@ -129,6 +161,7 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
                worst.row,
                worst.max_error,
                worst.bound);
+    print_model(report.model);
     fmt::print(
         "  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);
 }
@@ -178,6 +211,13 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
                         options.jobs,
                         [&](double share) { line.show("tracing", share); });
     }();
+    if (options.monte_carlo > 0) {
+        ProgressLine line;
+        report.model =
+            check_model(planned.rig, options.monte_carlo, options.jobs, [&](double share) {
+                line.show("following light of all orders", share);
+            });
+    }
     if (rendering.manifest.scene) report.scene_file = rendering.manifest.scene->file;
     report.aphotic_version = APHOTIC_VERSION;
     report.povray_version = rendering.manifest.povray_version;
@@ -204,6 +244,12 @@ Action configure_validate(CLI::App& app) {
                    options->rendered_folder,
                    "Validate this finished render, with its wavelengths, instead of rendering")
         ->type_name("DIR");
+    constexpr double kMostPaths = 1e9;
+    app.add_option("--monte-carlo",
+                   options->monte_carlo,
+                   "In water that scatters: also hold the reference against light of all orders of "
+                   "scattering, by N random paths at each of 9 places")
+        ->check(in_range(1, kMostPaths));
     add_jobs(app, options->jobs, "Render N frames at a time, trace with N threads");
     add_needs_option(app, options->planning.ignore_needs);
     add_json(app, options->json, "Print validation.json");

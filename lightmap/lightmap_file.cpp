@@ -32,20 +32,19 @@ struct NamedPlanes {
 };
 
 void write_planes(const Rig& rig, const LightmapRequest& request, const NamedPlanes& planes) {
+    ExrAttributes attributes{
+        {"aphotic:version", request.version},
+        {"aphotic:rig_title", rig.title},
+        {"aphotic:rig_sha256", rig.digest},
+        {"aphotic:renderer", "lightmap"},
+        {"aphotic:altitude_m", fmt::format("{}", rig.sled.altitude_m)},
+        {"aphotic:pitch_deg", fmt::format("{}", rig.sled.pitch_rad / kRadiansPerDegree)},
+        {"aphotic:roll_deg", fmt::format("{}", rig.sled.roll_rad / kRadiansPerDegree)},
+        {"aphotic:normalised", request.is_normalised ? "yes" : "no"},
+        {"aphotic:error", fmt::format("{}", request.map.error)}};
+    if (request.model) attributes.emplace_back(kModelErrorAttribute, attribute_of(*request.model));
     ExrWriter writer(
-        request.file,
-        rig.camera.width_px,
-        rig.camera.height_px,
-        planes.names,
-        {{"aphotic:version", request.version},
-         {"aphotic:rig_title", rig.title},
-         {"aphotic:rig_sha256", rig.digest},
-         {"aphotic:renderer", "lightmap"},
-         {"aphotic:altitude_m", fmt::format("{}", rig.sled.altitude_m)},
-         {"aphotic:pitch_deg", fmt::format("{}", rig.sled.pitch_rad / kRadiansPerDegree)},
-         {"aphotic:roll_deg", fmt::format("{}", rig.sled.roll_rad / kRadiansPerDegree)},
-         {"aphotic:normalised", request.is_normalised ? "yes" : "no"},
-         {"aphotic:error", fmt::format("{}", request.map.error)}});
+        request.file, rig.camera.width_px, rig.camera.height_px, planes.names, attributes);
     writer.write_rows(rig.camera.height_px, planes.samples);
     writer.finish();
 }

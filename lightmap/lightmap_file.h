@@ -6,9 +6,11 @@
 #pragma once
 
 #include "lightmap/planes.h"
+#include "spectral/manifest.h"
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,7 @@ struct LightmapRequest {
         false;  // each channel is divided by its largest value, parts by the whole's
     LightmapOptions map;
     std::string version;  // of the program that makes it
+    std::optional<ManifestModel> model{};
 };
 
 struct WrittenLightmap {

@@ -132,11 +132,15 @@ std::vector<double> wavelengths_of(const Manifest& manifest) {
 }
 
 ExrAttributes attributes_of(const Manifest& manifest) {
-    return {{"aphotic:version", manifest.aphotic_version},
-            {"aphotic:rig_title", manifest.rig_title},
-            {"aphotic:rig_sha256", manifest.rig_sha256},
-            {"aphotic:wavelengths_nm", fmt::format("{}", fmt::join(wavelengths_of(manifest), " "))},
-            {"aphotic:promise", promise_in_words(manifest)}};
+    ExrAttributes attributes{
+        {"aphotic:version", manifest.aphotic_version},
+        {"aphotic:rig_title", manifest.rig_title},
+        {"aphotic:rig_sha256", manifest.rig_sha256},
+        {"aphotic:wavelengths_nm", fmt::format("{}", fmt::join(wavelengths_of(manifest), " "))},
+        {"aphotic:promise", promise_in_words(manifest)}};
+    if (manifest.model)
+        attributes.emplace_back(kModelErrorAttribute, attribute_of(*manifest.model));
+    return attributes;
 }
 
 // What the lens takes off, by pixel; empty: nothing.

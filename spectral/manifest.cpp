@@ -267,6 +267,11 @@ void fields(const Visit& visit, Veil& veil) {
     visit.require("fog_m", "0 or more", veil.fog_m >= 0.0);
 }
 
+template <typename Visit, Is<ManifestModel> Model>
+void fields(const Visit& visit, Model& model) {
+    visit("error", model.error);
+}
+
 template <typename Visit, Is<Manifest> Whole>
 void fields(const Visit& visit, Whole& manifest) {
     visit("aphotic_version", manifest.aphotic_version);
@@ -286,6 +291,7 @@ void fields(const Visit& visit, Whole& manifest) {
     visit.list("strobes", manifest.strobes);
     visit.optional("scene", manifest.scene);
     visit.optional("veil", manifest.veil);
+    visit.optional("model", manifest.model);
     std::set<std::string> names;
     visit.list("frames", manifest.frames, names);
     Before before{.frames = static_cast<int>(manifest.frames.size())};
@@ -294,6 +300,10 @@ void fields(const Visit& visit, Whole& manifest) {
 }
 
 }  // namespace
+
+std::string attribute_of(const ManifestModel& model) {
+    return fmt::format("{}", fmt::join(model.error, " "));
+}
 
 double Manifest::black(std::size_t channel) const {
     constexpr double kRoom = 64.0;

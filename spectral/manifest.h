@@ -71,6 +71,16 @@ struct ManifestVeil {
     double fog_m = 0.0;    // 0: the bare floor, and no such frame
 };
 
+// What the model of water that scatters leaves out, as estimated (docs/water.md): of each channel's
+// signal, rms over the image. No part of the promise.
+struct ManifestModel {
+    std::array<double, kChannels> error{};
+};
+
+// Of images and maps that have it: beside aphotic:promise.
+inline constexpr const char* kModelErrorAttribute = "aphotic:model_error";
+[[nodiscard]] std::string attribute_of(const ManifestModel& model);
+
 struct Manifest {
     std::string aphotic_version;
     std::string povray_version;  // empty: not rendered by us
@@ -98,6 +108,7 @@ struct Manifest {
     std::vector<ManifestStrobe> strobes{};  // those of every wavelength's flux
     std::optional<ManifestScene> scene{};   // none: the rig's own floor
     std::optional<ManifestVeil> veil{};     // none: the water does not scatter
+    std::optional<ManifestModel> model{};   // none: nor that, or not estimated
     std::vector<ManifestFrame> frames;
     std::vector<PlannedWavelength> wavelengths;  // increasing
 

@@ -3,7 +3,6 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
-#include "survey/image_files.h"
 #include "survey/vehicle_pose.h"
 
 #include <fmt/format.h>
@@ -118,6 +117,19 @@ void Navigation::mount(const Mounting& mounting) {
 void Navigation::limit_altitude(double least_m, double most_m) {
     least_m_ = least_m;
     most_m_ = most_m;
+}
+
+std::optional<Sled> highest_pose(const Navigation& navigation,
+                                 const std::vector<ImageFile>& files) {
+    std::optional<Sled> highest;
+    for (const ImageFile& file : files) {
+        try {
+            const Sled& sled = navigation.pose_of(file.source).sled;
+            if (!highest || sled.altitude_m > highest->altitude_m) highest = sled;
+        } catch (const InputError&) {  // it is skipped, with the reason, when its turn comes
+        }
+    }
+    return highest;
 }
 
 }  // namespace aphotic

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "rig/rig.h"
+#include "survey/image_files.h"
 #include "survey/navigation_notes.h"
 
 #include <cstddef>
@@ -87,5 +88,9 @@ class Navigation {
     double most_m_ = std::numeric_limits<double>::infinity();
     std::unordered_map<std::string, ImagePose> poses_;  // by the image's key
 };
+
+// Of these images' poses the highest; none where no image has one.
+[[nodiscard]] std::optional<Sled> highest_pose(const Navigation& navigation,
+                                               const std::vector<ImageFile>& files);
 
 }  // namespace aphotic

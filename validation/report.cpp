@@ -28,6 +28,27 @@ Json json_of(const Comparison& comparison) {
     return json;
 }
 
+Json json_of(const Estimate& estimate) {
+    return {{"mean", estimate.mean}, {"standard_error", estimate.standard_error}};
+}
+
+Json json_of(const ModelCheck& model) {
+    Json places = Json::array();
+    for (const ModelPlace& place : model.places) {
+        places.push_back({{"column", place.column},
+                          {"row", place.row},
+                          {"channel", kChannelNames[place.channel]},
+                          {"lambda_nm", place.lambda_nm},
+                          {"floor", place.floor},
+                          {"veil", place.veil},
+                          {"floor_of_all_orders", json_of(place.truth.floor)},
+                          {"veil_of_all_orders", json_of(place.truth.veil)},
+                          {"sum_of_all_orders", json_of(place.truth.sum)},
+                          {"error", place.error()}});
+    }
+    return {{"paths", model.paths}, {"rms", model.rms()}, {"places", places}};
+}
+
 }  // namespace
 
 double share_of_bound(const Comparison& comparison) {
@@ -102,7 +123,7 @@ std::string validation_json(const ValidationReport& report) {
     }
     Json channels = Json::array();
     for (const Comparison& channel : report.channels) channels.push_back(json_of(channel));
-    const Json json{
+    Json json{
         {"holds", report.holds()},
         {"worst",
          {{"name", worst.name},
@@ -129,6 +150,7 @@ std::string validation_json(const ValidationReport& report) {
          {{"render", report.render_s},
           {"integrate", report.integrate_s},
           {"trace", report.trace_s}}}};
+    if (!report.model.places.empty()) json["model"] = json_of(report.model);
     return json_text(json);
 }
 

@@ -7,6 +7,7 @@
 #include "rig/rig.h"
 #include "spectral/integrator.h"
 #include "validation/comparison.h"
+#include "validation/model_check.h"
 
 #include <array>
 #include <filesystem>
@@ -37,6 +38,8 @@ struct ValidationReport {
     // Signed relative errors of the signals, R, G, B planes; NaN on edges and where a sample is
     // not finite.
     std::vector<float> channel_errors{};
+    // The reference against light of all orders, of water that scatters, if asked for.
+    ModelCheck model{};
     std::size_t frames = 0;
     std::size_t grid_size = 0;  // wavelengths of the reference
     int jobs = 1;

@@ -243,6 +243,32 @@ std::string numbers(const ValidationReport& report) {
            "<h3>Wavelengths</h3>\n" + table("wavelengths", "wavelength", report.wavelengths);
 }
 
+// With the standard error of the truth.
+std::string ratio_to(double model, const Estimate& truth) {
+    if (!(truth.mean > 0.0)) return "–";
+    return fmt::format("{:.4f} ± {:.4f}", model / truth.mean, truth.standard_error / truth.mean);
+}
+
+std::string model_check(const ModelCheck& model) {
+    std::vector<HtmlRow> rows;
+    for (const ModelPlace& place : model.places) {
+        rows.push_back({.style = "holds",
+                        .cells = {std::string(kChannelNames[place.channel]),
+                                  fmt::format("{:.1f}", place.lambda_nm),
+                                  fmt::format("{}, {}", place.column, place.row),
+                                  fmt::format("{:.3f}", place.veil / (place.floor + place.veil)),
+                                  ratio_to(place.floor, place.truth.floor),
+                                  ratio_to(place.veil, place.truth.veil),
+                                  ratio_to(place.floor + place.veil, place.truth.sum)}});
+    }
+    return html_paragraph(fmt::format(
+               "The reference’s single scattering over light of all orders, by {} random paths "
+               "for each place: 1 is a model that leaves nothing out. ± is one standard error.",
+               grouped(model.paths))) +
+           html_table(
+               "all-orders", "channel;nm;column, row;share of the veil;floor;veil;sum", rows);
+}
+
 // What no rig file says: how much of the floor is in view, where that is level.
 std::string field_of_view(const Rig& rig) {
     const Camera& camera = rig.camera;
@@ -324,6 +350,8 @@ void write_validation_html(const ValidationReport& report, const std::filesystem
     page += map_section(report);
     page += html_section("profiles", "Profiles", profiles(report));
     page += html_section("numbers", "Errors", numbers(report));
+    if (!report.model.places.empty())
+        page += html_section("model", "Light of all orders", model_check(report.model));
     page += html_section("rig", "The rig", rig_as_read(report));
     page += html_section("made-with", "Made with", made_with(report));
     const std::string title =

@@ -5,10 +5,12 @@
 #pragma once
 
 #include "image/output_images.h"
+#include "spectral/manifest.h"
 #include "validation/tracer.h"
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,7 @@ namespace aphotic {
                                               const TraceOptions& options,
                                               const std::filesystem::path& folder,
                                               const std::string& version,
+                                              const std::optional<ManifestModel>& model,
                                               const std::function<void(double)>& progress);
 
 // The planes R, G, B of a tracer that was asked for signals alone.

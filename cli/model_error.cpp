@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/model_error.h"
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "cli/option_checks.h"
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace aphotic::cli {
+
+void add_model_tolerance(CLI::App& app, double& tolerance) {
+    constexpr double kAny = 1e9;
+    app.add_option("--model-tolerance",
+                   tolerance,
+                   "In water that scatters: refuse when what the model leaves out is estimated at "
+                   "more than this share of the signal")
+        ->check(in_range(0.0, kAny))
+        ->option_text("E")
+        ->capture_default_str();
+}
+
+std::optional<ManifestModel> model_error(const Rig& rig,
+                                         const std::string& rig_file,
+                                         double tolerance) {
+    if (!rig.water.scatters()) return std::nullopt;
+    ProgressLine line;
+    const ModelCheck check = check_model(rig, kModelPaths, all_cores(), [&](double share) {
+        line.show("estimating what the model leaves out", share);
+    });
+    const ManifestModel model{.error = check.rms()};
+    const auto worst = std::ranges::max_element(model.error);
+    if (*worst > tolerance) {
+        throw InputError(
+            "{}: found water in which light that is scattered more than once, which the model "
+            "leaves out, changes {} by an estimated {:.2g} (rms, at {} m); allowed: "
+            "--model-tolerance {}. Less water between sled and floor has less of it",
+            rig_file,
+            kChannelNames[static_cast<std::size_t>(worst - model.error.begin())],
+            *worst,
+            rig.sled.altitude_m,
+            tolerance);
+    }
+    return model;
+}
+
+void print_model_error(const std::optional<ManifestModel>& model) {
+    if (!model) return;
+    fmt::print(
+        "  what the model of scattering leaves out is estimated at {:.2g} (R), {:.2g} (G), {:.2g} "
+        "(B), rms\n",
+        model->error[0],
+        model->error[1],
+        model->error[2]);
+}
+
+void put_model_error(nlohmann::ordered_json& json, const std::optional<ManifestModel>& model) {
+    if (!model) return;
+    for (std::size_t c = 0; c < kChannels; ++c)
+        json["model_error"][std::string(kChannelNames[c])] = model->error[c];
+}
+
+}  // namespace aphotic::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The model error estimate (validation/model_check.h) of the commands that make images and maps:
+// printed beside the promise, never added to it, and refused where it is over --model-tolerance.
+#pragma once
+
+#include "spectral/manifest.h"
+#include "validation/model_check.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+
+namespace aphotic::cli {
+
+inline constexpr double kModelTolerance = 0.1;
+
+void add_model_tolerance(CLI::App& app, double& tolerance);
+
+// None for water that does not scatter. Throws InputError over the tolerance.
+[[nodiscard]] std::optional<ManifestModel> model_error(const Rig& rig,
+                                                       const std::string& rig_file,
+                                                       double tolerance);
+
+void print_model_error(const std::optional<ManifestModel>& model);
+void put_model_error(nlohmann::ordered_json& json, const std::optional<ManifestModel>& model);
+
+}  // namespace aphotic::cli

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the model of water that scatters leaves out: light that is turned more than once on its way
+// into the view, blur, the floor's light that the water sends back to it. The model, as the
+// reference has it, is held against light of all orders (monte_carlo.h) at kPlacesAcross x
+// kPlacesDown even places of the image, for each channel at the mean wavelength of its light from a
+// level floor:
+//
+//   error = (floor + veil) / truth - 1      of one place
+//   rms   = sqrt(mean of error^2)           of a channel: the model error estimate
+//
+// The truth's own noise is part of rms, so that it is no less than it can be told. It is an
+// estimate and no bound, and never added to the promise, which is of the formulas.
+//
+// Of the bare floor: objects, highlights and vignetting are set aside.
+#pragma once
+
+#include "image/camera_image.h"
+#include "rig/rig.h"
+#include "validation/monte_carlo.h"
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr int kPlacesAcross = 3;
+inline constexpr int kPlacesDown = 3;
+inline constexpr std::size_t kModelPaths = 500;
+
+struct ModelPlace {
+    double column = 0.0;
+    double row = 0.0;
+    std::size_t channel = 0;
+    double lambda_nm = 0.0;
+    double floor = 0.0;  // the model's
+    double veil = 0.0;
+    LightOfAllOrders truth;
+
+    [[nodiscard]] double error() const { return (floor + veil) / truth.sum.mean - 1.0; }
+    [[nodiscard]] double noise() const { return truth.sum.standard_error / truth.sum.mean; }
+};
+
+struct ModelCheck {
+    std::size_t paths = 0;           // of each place
+    std::vector<ModelPlace> places;  // that see the floor's light or a veil; by channel
+
+    [[nodiscard]] std::array<double, kChannels> rms() const;
+};
+
+// Of water that scatters; without places for any other. Threads change no bit.
+[[nodiscard]] ModelCheck check_model(const Rig& rig,
+                                     std::size_t paths,
+                                     int threads,
+                                     const std::function<void(double)>& progress = {});
+
+}  // namespace aphotic
