@@ -71,6 +71,7 @@ nlohmann::ordered_json to_json(const MadeLightmap& made) {
             {"roll_deg", rig.sled.roll_rad / kRadiansPerDegree},
             {"channels", written.channels},
             {"peak", written.peaks},
+            {"veil_in_the_middle", veil_share_of(written.map)},
             {"normalised", options.normalised},
             {"error", options.map.error},
             {"promise",
@@ -103,6 +104,7 @@ void print(const MadeLightmap& made) {
         written.paths.longest_m,
         counted(written.grid_size, "wavelength"));
     print_peaks(written.peaks, options.normalised);
+    if (!written.map.veil.empty()) fmt::print("  {}\n", veil_in_words(veil_share_of(written.map)));
     fmt::print("  {}  {}\n", options.file, counted(written.channels.size(), "channel"));
 }
 

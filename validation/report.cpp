@@ -102,7 +102,7 @@ std::string validation_json(const ValidationReport& report) {
     }
     Json channels = Json::array();
     for (const Comparison& channel : report.channels) channels.push_back(json_of(channel));
-    const Json json{
+    Json json{
         {"holds", report.holds()},
         {"worst",
          {{"name", worst.name},
@@ -129,6 +129,7 @@ std::string validation_json(const ValidationReport& report) {
          {{"render", report.render_s},
           {"integrate", report.integrate_s},
           {"trace", report.trace_s}}}};
+    if (report.has_veil()) json["veil_in_the_middle"] = report.veil_share;
     return json_text(json);
 }
 

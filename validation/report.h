@@ -6,6 +6,7 @@
 
 #include "rig/rig.h"
 #include "spectral/integrator.h"
+#include "spectral/veil_share.h"
 #include "validation/comparison.h"
 
 #include <array>
@@ -37,6 +38,7 @@ struct ValidationReport {
     // Signed relative errors of the signals, R, G, B planes; NaN on edges and where a sample is
     // not finite.
     std::vector<float> channel_errors{};
+    VeilShare veil_share{};  // by the reference; 0 where the water does not scatter
     std::size_t frames = 0;
     std::size_t grid_size = 0;  // wavelengths of the reference
     int jobs = 1;
@@ -44,6 +46,7 @@ struct ValidationReport {
     double integrate_s = 0.0;
     double trace_s = 0.0;
 
+    [[nodiscard]] bool has_veil() const { return rig.water.scatters(); }
     // Wavelengths, then channels.
     [[nodiscard]] std::vector<const Comparison*> all() const;
     // Every comparison holds, and there is one.
