@@ -72,6 +72,7 @@ nlohmann::ordered_json to_json(const MadeLightmap& made) {
                                 {"roll_deg", rig.sled.roll_rad / kRadiansPerDegree},
                                 {"channels", written.channels},
                                 {"peak", written.peaks},
+                                {"veil_in_the_middle", veil_share_of(written.map)},
                                 {"normalised", options.normalised},
                                 {"error", options.map.error},
                                 {"promise",
@@ -107,6 +108,7 @@ void print(const MadeLightmap& made) {
         counted(written.grid_size, "wavelength"));
     print_model_error(model);
     print_peaks(written.peaks, options.normalised);
+    if (!written.map.veil.empty()) fmt::print("  {}\n", veil_in_words(veil_share_of(written.map)));
     fmt::print("  {}  {}\n", options.file, counted(written.channels.size(), "channel"));
 }
 

@@ -161,6 +161,7 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
                worst.row,
                worst.max_error,
                worst.bound);
+    if (report.has_veil()) fmt::print("  {}\n", veil_in_words(report.veil_share));
     print_model(report.model);
     fmt::print(
         "  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);

@@ -212,6 +212,18 @@ std::vector<float> signal_of(const Lightmap& map) {
     return signal;
 }
 
+VeilShare veil_share_of(const Lightmap& map) {
+    VeilShare share{};
+    if (map.veil.empty()) return share;
+    const std::size_t plane = map.samples.size() / kChannels;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const std::size_t i = c * plane + middle_pixel(map.width_px, map.height_px);
+        const double veil = map.veil[i];
+        share[c] = veil_share(veil, veil + map.samples[i]);
+    }
+    return share;
+}
+
 PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds) {
     constexpr double kRoom = 1.02;
     PathRange all{.shortest_m = std::numeric_limits<double>::infinity()};

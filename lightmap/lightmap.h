@@ -30,6 +30,7 @@
 #include "rig/rig.h"
 #include "rig/veil_map.h"
 #include "spectral/bands.h"
+#include "spectral/veil_share.h"
 
 #include <array>
 #include <memory>
@@ -75,6 +76,8 @@ struct Lightmap {
 
 // samples + veil: what a camera gets.
 [[nodiscard]] std::vector<float> signal_of(const Lightmap& map);
+
+[[nodiscard]] VeilShare veil_share_of(const Lightmap& map);
 
 class LightmapMaker {
   public:

@@ -86,6 +86,10 @@ void read_tables(Section& section, RigFiles& files, Water& water) {
         const std::string allowed =
             "a .csv file beside the rig, or \"sea-water\" for what water itself scatters";
         if (section.text("scattering", allowed) == "sea-water") {
+            if (section.has("phase"))
+                section.fail_at("phase",
+                                "found for what sea water itself scatters, whose phase function "
+                                "is known; allowed: with particles");
             water.scatterers.push_back(seawater_scatterer(water.salinity_psu, water.temperature_c));
             return;
         }

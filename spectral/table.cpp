@@ -5,6 +5,7 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "base/words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -155,7 +156,62 @@ bool header_fits(const Table& table, const RoleRule& rule) {
     return std::count(rule.headers.begin(), rule.headers.end(), table.columns) > 0;
 }
 
+// K_d by its name: kd, Kd(490), K_d_per_m; not kdye.
+bool names_daylights_loss(std::string_view words) {
+    const std::string text = lower_case(std::string(words));
+    const auto is_letter = [&](std::size_t i) {
+        return i < text.size() && std::isalpha(static_cast<unsigned char>(text[i])) != 0;
+    };
+    for (const std::string_view name : {"kd", "k_d"}) {
+        for (std::size_t at = text.find(name); at != std::string::npos;
+             at = text.find(name, at + 1)) {
+            const bool begins = at == 0 || !is_letter(at - 1);
+            if (begins && !is_letter(at + name.size())) return true;
+        }
+    }
+    return text.find("diffuse attenuation") != std::string::npos ||
+           text.find("diffuse_attenuation") != std::string::npos;
+}
+
+bool is_of_water(CurveRole role) {
+    return role == CurveRole::WaterAbsorption || role == CurveRole::WaterScattering ||
+           role == CurveRole::WaterAttenuation || role == CurveRole::WaterType;
+}
+
+constexpr std::string_view kDaylightsLoss =
+    "K_d, the diffuse attenuation of daylight, is neither absorption nor beam attenuation: "
+    "docs/water.md";
+
+// The most common of mistakes, and one that no image shows: where a table says so itself, it is
+// said. Not asked of a title, which may tell what a was derived from.
+void refuse_daylights_loss(const Table& table, const RoleRule& rule) {
+    if (!is_of_water(rule.role)) return;
+    for (const std::string& column : table.columns) {
+        if (!names_daylights_loss(column)) continue;
+        fail_at_line(table.name,
+                     table.header_line,
+                     "found the column {}; allowed for {}: {}. {}",
+                     column,
+                     rule.name,
+                     fmt::join(rule.headers.front(), ","),
+                     kDaylightsLoss);
+    }
+    for (const char* key : {"quantity", "role"}) {
+        const std::string words = table.text_of(key);
+        if (!names_daylights_loss(words)) continue;
+        fail_at_line(table.name,
+                     table.header_line,
+                     "found the {} '{}' over the column {}; allowed: {}. {}",
+                     key,
+                     words,
+                     table.columns.back(),
+                     rule.name,
+                     kDaylightsLoss);
+    }
+}
+
 void check_header(const Table& table, const RoleRule& rule) {
+    refuse_daylights_loss(table, rule);
     if (header_fits(table, rule)) return;
     std::vector<std::string> allowed;
     for (const auto& header : rule.headers) {
@@ -279,6 +335,7 @@ std::vector<CurveRole> roles_of(const Table& table) {
     }
     if (!roles.empty()) return roles;
     if (fault) throw *fault;
+    refuse_daylights_loss(table, rule_of(CurveRole::WaterAbsorption));
     fail_at_line(table.name,
                  table.header_line,
                  "found the header row {}; allowed: {}",

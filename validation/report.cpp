@@ -150,6 +150,7 @@ std::string validation_json(const ValidationReport& report) {
          {{"render", report.render_s},
           {"integrate", report.integrate_s},
           {"trace", report.trace_s}}}};
+    if (report.has_veil()) json["veil_in_the_middle"] = report.veil_share;
     if (!report.model.places.empty()) json["model"] = json_of(report.model);
     return json_text(json);
 }

@@ -6,6 +6,7 @@
 
 #include "rig/rig.h"
 #include "spectral/integrator.h"
+#include "spectral/veil_share.h"
 #include "validation/comparison.h"
 #include "validation/model_check.h"
 
@@ -38,6 +39,7 @@ struct ValidationReport {
     // Signed relative errors of the signals, R, G, B planes; NaN on edges and where a sample is
     // not finite.
     std::vector<float> channel_errors{};
+    VeilShare veil_share{};  // by the reference; 0 where the water does not scatter
     // The reference against light of all orders, of water that scatters, if asked for.
     ModelCheck model{};
     std::size_t frames = 0;
@@ -47,6 +49,7 @@ struct ValidationReport {
     double integrate_s = 0.0;
     double trace_s = 0.0;
 
+    [[nodiscard]] bool has_veil() const { return rig.water.scatters(); }
     // Wavelengths, then channels.
     [[nodiscard]] std::vector<const Comparison*> all() const;
     // Every comparison holds, and there is one.

@@ -76,6 +76,13 @@ std::string edges_in_words(const ValidationReport& report) {
     return words;
 }
 
+std::string veil_paragraph(const ValidationReport& report) {
+    if (!report.has_veil()) return "";
+    std::string words = veil_in_words(report.veil_share);
+    words.front() = 'V';
+    return html_paragraph(words + ".");
+}
+
 std::string verdict(const ValidationReport& report) {
     const std::vector<const Comparison*> all = report.all();
     const auto held = static_cast<std::size_t>(std::ranges::count_if(all, &Comparison::holds));
@@ -89,7 +96,8 @@ std::string verdict(const ValidationReport& report) {
         report.holds(),
         report.holds() ? "✓ Holds" : "✗ Does not hold",
         fmt::format(
-            "<p>{} {}</p>\n<p>{}</p>\n", summary, worst_in_words(report), edges_in_words(report)));
+            "<p>{} {}</p>\n<p>{}</p>\n", summary, worst_in_words(report), edges_in_words(report)) +
+            veil_paragraph(report));
 }
 
 // That two different scenes were compared has to be known before any number.

@@ -182,6 +182,31 @@ void compare_signals(const Rig& rig,
 
 }  // namespace
 
+namespace {
+
+// Nothing but the veil is left where all is black.
+VeilShare traced_veil_share(Rig rig, const CameraImage& traced) {
+    VeilShare share{};
+    if (!rig.water.scatters()) return share;
+    const auto blacken = [](Spectrum& reflectance, double& phong) {
+        reflectance = {reflectance.name(),
+                       {reflectance.lambda_nm().begin(), reflectance.lambda_nm().end()},
+                       std::vector<double>(reflectance.values().size(), 0.0)};
+        phong = 0.0;
+    };
+    blacken(rig.seafloor.reflectance, rig.seafloor.phong);
+    for (Object& object : rig.objects) blacken(object.reflectance, object.phong);
+    const std::size_t middle = middle_pixel(traced.width_px, traced.height_px);
+    const std::vector<double> veil =
+        Tracer(rig, {.signals = true, .planes_nm = {}}).pixels({&middle, 1});
+    const std::size_t plane = traced.samples.size() / kChannels;
+    for (std::size_t c = 0; c < kChannels; ++c)
+        share[c] = veil_share(veil[c], traced.samples[c * plane + middle]);
+    return share;
+}
+
+}  // namespace
+
 ValidationReport validate(const Rig& rig,
                           const RenderedImages& rendered,
                           int threads,
@@ -192,6 +217,7 @@ ValidationReport validate(const Rig& rig,
     report.rendered = rendered.signals;
     compare_signals(rig, rendered, threads, progress, report);
     compare_radiance(rig, rendered, threads, progress, report);
+    report.veil_share = traced_veil_share(rig, report.traced);
     report.trace_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return report;

@@ -2,6 +2,11 @@
 //
 // `aphotic validate` must be able to say no. Each entry spoils a render in one way that leaves a
 // plausible picture; the command must end with status 1 and name the worst wavelength or channel.
+#include "base/sha256.h"
+#include "image/exr.h"
+#include "rig/rig_reader.h"
+#include "rig/veil.h"
+#include "scene_gen/veil_planes.h"
 #include "spectral/manifest.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
@@ -9,7 +14,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <numbers>
 #include <regex>
 
 namespace aphotic::sabotage_test {
@@ -69,6 +77,14 @@ std::string ies_of_type(int type) {
            std::to_string(type) +
            " 2 0 0 0\n1 1 10\n0 30 60 90\n0 45 90\n"
            "900 700 200 0\n800 500 100 0\n600 300 50 0\n";
+}
+
+constexpr double kScattering_per_m = 0.3;
+
+std::string rig_in_scattering_water() {
+    return replaced(honest_rig(),
+                    "multiple   = 1.0",
+                    "scattering = \"b.csv\"\nphase = { henyey_greenstein = 0.8 }");
 }
 
 // Of the edges that an emitter softens: many times any bound.
@@ -167,6 +183,37 @@ class Sabotage : public testing::Test {
         write_manifest(folder_.path() / "spoilt", manifest);
         ASSERT_EQ(run_aphotic(folder_.path(), {"integrate", "spoilt"}).status, 0);
         expect_no(worst, validate({"--rendered", "spoilt"}));
+    }
+
+    // The frames are right; the veil beside them is another. redo: the honest veil, made anew by
+    // what spoils it, must pass.
+    using VeilMaker = std::function<std::optional<ManifestVeil>(
+        const std::filesystem::path& folder, const Rig& rig, const Manifest& manifest)>;
+    void expect_no_when_the_veil_is(const VeilMaker& spoil, const VeilMaker& redo = write_veil) {
+        write_file(folder_.path() / "b.csv", "wavelength_nm,scattering_per_m\n400,0.3\n720,0.3\n");
+        write_file(folder_.path() / "rig.toml", rig_in_scattering_water());
+        render("rig.toml", "spoilt", kWavelengths);
+        take_veil(redo);
+        EXPECT_EQ(validate({"--rendered", "spoilt"}).status, 0) << "the honest render must pass";
+        take_veil(spoil);
+        expect_no(kAllOfThem, validate({"--rendered", "spoilt"}));
+    }
+
+    void take_veil(const VeilMaker& make) {
+        const std::filesystem::path folder = folder_.path() / "spoilt";
+        Manifest manifest = read_manifest(folder);
+        manifest.veil = make(folder, read_rig(folder_.path() / "rig.toml"), manifest);
+        write_manifest(folder, manifest);
+        const CommandResult run = run_aphotic(folder_.path(), {"integrate", "spoilt"});
+        ASSERT_EQ(run.status, 0) << run.err;
+    }
+
+    // The veil of another rig.
+    static VeilMaker veil_of(const std::function<void(Rig&)>& spoil) {
+        return [spoil](const std::filesystem::path& folder, Rig rig, const Manifest& manifest) {
+            spoil(rig);
+            return write_veil(folder, rig, manifest);
+        };
     }
 
     // scenes/objects.toml, in a folder that has its mesh.
@@ -375,6 +422,147 @@ TEST_F(Sabotage, TypeBReadAsC) {
     write_file(folder_.path() / "c.ies", ies_of_type(1));
     const std::string honest = rig_with_beam("table = \"b.ies\"");
     expect_no_when_rendered_from(kAllOfThem, replaced(honest, "b.ies", "c.ies"), honest);
+}
+
+ManifestVeil put_veil(const std::filesystem::path& folder,
+                      const Manifest& manifest,
+                      std::span<const float> planes) {
+    const std::filesystem::path file = veil_path(folder);
+    ExrWriter writer(file, manifest.width_px, manifest.height_px, veil_channels(manifest), {});
+    writer.write_rows(manifest.height_px, planes);
+    writer.finish();
+    return {.sha256 = sha256_of_file(file)};
+}
+
+// Point by point along each pixel's ray, the channels by a rule of 1 nm; lamp_leg: the share of the
+// way from the lamp that is lost on.
+ManifestVeil veil_by_points(const std::filesystem::path& folder,
+                            const Rig& rig,
+                            const Manifest& manifest,
+                            double lamp_leg) {
+    const Veil veil(rig);
+    std::vector<double> lambda_nm;
+    for (double nm = rig.camera.range.first_nm + 0.5; nm < rig.camera.range.last_nm; nm += 1.0)
+        lambda_nm.push_back(nm);
+    const std::size_t first_plane = lambda_nm.size();
+    for (const PlannedWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
+    const auto pixels =
+        static_cast<std::size_t>(manifest.width_px) * static_cast<std::size_t>(manifest.height_px);
+    std::vector<float> planes(veil_channels(manifest).size() * pixels);
+    VeilNodes nodes;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const auto width = static_cast<std::size_t>(manifest.width_px);
+        const auto [ray, length_m] = sight_of(rig,
+                                              static_cast<double>(i % width) + 0.5,
+                                              static_cast<double>(i / width) + 0.5,
+                                              lambda_nm.front());
+        std::vector<double> radiance(lambda_nm.size());
+        for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+            const Strobe& strobe = rig.strobes[s];
+            veil.nodes(s, ray, length_m, nodes);
+            const Eigen::Vector3d lamp = strobe.position_m - ray.origin_m;
+            std::vector<double> lost_m;
+            for (const double path_m : nodes.path_m) {
+                // t of t + d, where d^2 = |lamp|^2 - 2 t u.lamp + t^2
+                const double t = (path_m * path_m - lamp.squaredNorm()) /
+                                 (2.0 * (path_m - ray.direction.dot(lamp)));
+                lost_m.push_back(t + lamp_leg * (path_m - t));
+            }
+            for (std::size_t j = 0; j < lambda_nm.size(); ++j) {
+                const double loss_per_m = rig.water.veil_attenuation_per_m(lambda_nm[j]);
+                double sum = 0.0;
+                for (std::size_t n = 0; n < lost_m.size(); ++n)
+                    sum += nodes.weight[0][n] * std::exp(-loss_per_m * lost_m[n]);
+                radiance[j] += strobe.power * strobe.spectrum.at(lambda_nm[j]) *
+                               rig.water.scattering_per_m(0, lambda_nm[j]) * sum;
+            }
+        }
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            double signal = 0.0;
+            for (std::size_t j = 0; j < first_plane; ++j) {
+                signal +=
+                    radiance[j] * rig.camera.sensor.response(static_cast<int>(c), lambda_nm[j]);
+            }
+            planes[c * pixels + i] = static_cast<float>(signal);
+        }
+        for (std::size_t j = first_plane; j < radiance.size(); ++j) {
+            planes[(kChannels + j - first_plane) * pixels + i] = static_cast<float>(radiance[j]);
+        }
+    }
+    return put_veil(folder, manifest, planes);
+}
+
+TEST_F(Sabotage, FourPiDroppedFromThePhaseFunction) {
+    expect_no_when_the_veil_is(
+        [](const std::filesystem::path& folder, const Rig&, const Manifest& manifest) {
+            std::vector<float> planes =
+                ExrReader(veil_path(folder)).planes(veil_channels(manifest));
+            for (float& sample : planes) sample *= 4.0F * std::numbers::pi_v<float>;
+            return put_veil(folder, manifest, planes);
+        });
+}
+
+TEST_F(Sabotage, TheSignOfG) {
+    expect_no_when_the_veil_is(veil_of([](Rig& rig) {
+        auto& phase = std::get<HenyeyGreenstein>(rig.water.scatterers.front().phase.kind);
+        phase.g = -phase.g;
+    }));
+}
+
+// The share that is turned by less than the cut is taken for lost.
+TEST_F(Sabotage, TheVeilLosesAllOfC) {
+    expect_no_when_the_veil_is(veil_of([](Rig& rig) {
+        const double share = rig.water.scatterers.front().phase.share_within(kVeilCut);
+        const Spectrum& a = rig.water.absorption_per_m;
+        std::vector<double> values(a.values().begin(), a.values().end());
+        for (double& value : values) value += kScattering_per_m * share;
+        rig.water.absorption_per_m = {
+            a.name(), {a.lambda_nm().begin(), a.lambda_nm().end()}, std::move(values)};
+    }));
+}
+
+TEST_F(Sabotage, TheLampsLegOfTheVeilIsNotLost) {
+    const auto with_leg = [](double lamp_leg) {
+        return [lamp_leg](
+                   const std::filesystem::path& folder, const Rig& rig, const Manifest& manifest) {
+            return veil_by_points(folder, rig, manifest, lamp_leg);
+        };
+    };
+    expect_no_when_the_veil_is(with_leg(0.0), with_leg(1.0));
+}
+
+// As bright on the axis, and without an end.
+TEST_F(Sabotage, ConesAreNotCutInTheVeil) {
+    expect_no_when_the_veil_is(veil_of([](Rig& rig) {
+        for (Strobe& strobe : rig.strobes) {
+            strobe.beam.weights = ConeWeights::Literal;
+            for (Cone& cone : strobe.beam.cones) {
+                const double sine = std::sin(cone.half_angle_rad);
+                cone.weight /= std::numbers::pi * sine * sine;
+                cone.half_angle_rad = 0.5 * std::numbers::pi;
+            }
+        }
+    }));
+}
+
+TEST_F(Sabotage, TheVeilGoesOnBehindTheFloor) {
+    expect_no_when_the_veil_is(veil_of([](Rig& rig) { rig.sled.altitude_m *= 100.0; }));
+}
+
+// Jerlov's K_d of type 3C (1976), as a user's absorption, for the type. Both renderers take the
+// rig's word for it, so nothing but another rig can tell; what calls itself K_d is refused by the
+// reader (CurvesOf.RefusesDaylightsAttenuation).
+TEST_F(Sabotage, DaylightsAttenuationTakenForAbsorption) {
+    write_file(folder_.path() / "kd.csv",
+               "wavelength_nm,absorption_per_m\n400,0.78\n425,0.54\n450,0.39\n475,0.29\n500,0.22\n"
+               "525,0.2\n550,0.19\n575,0.21\n600,0.33\n625,0.4\n650,0.46\n675,0.56\n700,0.71\n");
+    const std::string range = replaced(honest_rig(), "[400, 720]", "[400, 700]");
+    const std::string honest =
+        replaced(replaced(range, "absorption = \"pope-fry-1997\"", "type = \"jerlov-3C\""),
+                 "multiple   = 1.0",
+                 "");
+    expect_no_when_rendered_from(
+        kAllOfThem, replaced(range, "\"pope-fry-1997\"", "\"kd.csv\""), honest);
 }
 
 }  // namespace

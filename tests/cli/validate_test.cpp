@@ -37,6 +37,30 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
+// The reference's share of veil is the lightmap's, and stands on the page.
+TEST(Validate, TellsHowMuchIsVeil) {
+    constexpr double kOfBoth = 1e-3;  // of the share: both know the veil to 1e-4
+    const TempFolder folder;
+    std::string rig = small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    rig.replace(rig.find("[400, 720]"), 10, "[400, 700]");
+    const std::string clear = "absorption = \"pope-fry-1997\"";
+    rig.replace(rig.find(clear), clear.size(), "type = \"jerlov-1C\"");
+    write_file(folder.path() / "rig.toml", rig);
+    const CommandResult run =
+        run_aphotic(folder.path(), {"validate", "rig.toml", "-o", "out", "--json"});
+    ASSERT_EQ(run.status, 0) << run.out << run.err;
+    const auto traced = nlohmann::json::parse(run.out).at("veil_in_the_middle");
+    const CommandResult map =
+        run_aphotic(folder.path(), {"lightmap", "rig.toml", "-o", "map.exr", "--json"});
+    const auto mapped = nlohmann::json::parse(map.out).at("veil_in_the_middle");
+    for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_GT(mapped[c].get<double>(), 0.1);
+        EXPECT_NEAR(traced[c].get<double>() / mapped[c].get<double>(), 1.0, kOfBoth) << c;
+    }
+    EXPECT_NE(read_text_file(folder.path() / "out" / "report.html").find("Veil in the middle"),
+              std::string::npos);
+}
+
 // Wavelengths that share a frame behind a port may be shifted, and their bound is the wider for it.
 // Each in a frame of its own has none of that.
 TEST(Validate, APortWithoutSharedFramesIsHeldToTheHalfFloatsAlone) {

@@ -167,6 +167,40 @@ TEST(CurvesOf, RefusesAHeaderInAnotherUnit) {
               "spectrum: wavelength_nm,relative_power or wavelength_nm,radiant_flux_w_per_nm");
 }
 
+// By the column's name, and by what a table says of itself.
+TEST(CurvesOf, RefusesDaylightsAttenuation) {
+    const std::string why =
+        "K_d, the diffuse attenuation of daylight, is neither absorption nor beam attenuation: "
+        "docs/water.md";
+    for (const char* column : {"Kd_per_m", "K_d", "kd490", "diffuse_attenuation_per_m"}) {
+        const std::string header = std::string("wavelength_nm,") + column;
+        EXPECT_EQ(curve_error(header + "\n400,0.1\n", CurveRole::WaterAbsorption),
+                  std::string("t.csv:1: found the column ") + column +
+                      "; allowed for water absorption: wavelength_nm,absorption_per_m. " + why);
+    }
+    EXPECT_EQ(curve_error("# quantity: diffuse attenuation Kd\nwavelength_nm,absorption_per_m\n"
+                          "400,0.1\n500,0.1\n",
+                          CurveRole::WaterAbsorption),
+              "t.csv:2: found the quantity 'diffuse attenuation Kd' over the column "
+              "absorption_per_m; allowed: water absorption. " +
+                  why);
+    EXPECT_EQ(message_of([] {
+                  static_cast<void>(roles_of(parse_table("t.csv", "wavelength_nm,Kd\n400,1\n")));
+              }),
+              "t.csv:1: found the column Kd; allowed for water absorption: "
+              "wavelength_nm,absorption_per_m. " +
+                  why);
+    // It may be what a was derived from, and no other table is asked.
+    EXPECT_EQ(curve_error("# title: a from Kd by Lee\nwavelength_nm,absorption_per_m\n400,0.1\n"
+                          "500,0.1\n",
+                          CurveRole::WaterAbsorption),
+              "no error");
+    EXPECT_EQ(curve_error("# quantity: of weekday kdye\nwavelength_nm,absorption_per_m\n400,0.1\n"
+                          "500,0.1\n",
+                          CurveRole::WaterAbsorption),
+              "no error");
+}
+
 TEST(CurvesOf, RefusesWavelengthsThatDoNotIncrease) {
     EXPECT_EQ(
         curve_error("wavelength_nm,reflectance\n400,0.1\n\n400,0.2\n", CurveRole::Reflectance),
