@@ -144,6 +144,7 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
                         lacking(fitter, changed, frames, manifest.frame_error, tolerance)));
     }
     now.veil.reset();  // the frames' own rig's
+    for (PlannedWavelength& w : now.wavelengths) w.veil.reset();
     now.rig_title = changed.title;
     now.rig_sha256 = changed.digest;
     now.method = "fitted to frames of another rig";
