@@ -58,13 +58,13 @@ nlohmann::ordered_json to_json(const Generated& made) {
 std::string povray_loop(const Generated& made) {
     if (made.own_scene.empty()) {
         return fmt::format(
-            "(cd {}/povray && for scene in band_*.pov; do povray render.ini +I$scene; done)",
+            "(cd {}/povray && for scene in *.pov; do povray render.ini +I$scene; done)",
             shell_word(made.folder));
     }
     const fs::path home = made.own_scene.parent_path();
     const std::string here = fs::relative(made.folder, home).generic_string();
     return fmt::format(
-        "(cd {} && for scene in {}/povray/band_*.pov; do povray {} \"+I\\\"$scene\\\"\"; done)",
+        "(cd {} && for scene in {}/povray/*.pov; do povray {} \"+I\\\"$scene\\\"\"; done)",
         shell_word(home.string()),
         shell_word(here),
         shell_word(fmt::format("\"{}/povray/render.ini\"", here)));

@@ -109,6 +109,7 @@ void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
 void add_planning_options(CLI::App& app, PlanningOptions& options) {
     constexpr int kMostLamps = 64;
     constexpr int kMostAntialias = 9;
+    constexpr int kMostVeilSamples = 100'000;
     constexpr double kMostShift_px = 100.0;
     constexpr double kMostClock = 1e6;
     add_wavelength_options(app, options);
@@ -145,6 +146,18 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
                  "Render a scene with radiosity, photons or its own media anyway; the result has "
                  "no error bound");
     app.option_defaults()->group(kPovRayOptions);
+    app.add_option("--veil",
+                   options.veil,
+                   "What makes the light that the water scatters into the view: quadrature, or "
+                   "povray, slow and with shadows in it")
+        ->check(CLI::IsMember(std::vector<std::string>(kVeilMakers.begin(), kVeilMakers.end())))
+        ->option_text("HOW")
+        ->capture_default_str();
+    app.add_option("--veil-samples",
+                   options.veil_samples,
+                   "With --veil povray, take N samples along each piece of a ray")
+        ->check(in_range(1, kMostVeilSamples))
+        ->capture_default_str();
     app.add_option("--antialias",
                    options.antialias,
                    "Trace N x N extra rays through each pixel: smooths edges, which then differ "

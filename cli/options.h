@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,9 @@ void add_jobs(CLI::App& app, Count& jobs, const std::string& words) {
 
 void add_preview_options(CLI::App& app, PreviewOptions& options);
 
+// What makes the veil of water that scatters.
+inline constexpr std::array kVeilMakers{"quadrature", "povray"};
+
 struct PlanningOptions {
     std::string rig_file;
     double tolerance = 1e-3;
@@ -75,6 +79,8 @@ struct PlanningOptions {
     std::vector<std::string> library_paths;
     bool unchecked = false;
     double clock = 0.0;
+    std::string veil{kVeilMakers.front()};
+    int veil_samples = kVeilSamples;
     int antialias = 0;
     std::vector<std::string> povray_ini;
     std::string povray;

@@ -119,10 +119,18 @@ void print(const Integration& integration) {
         print_no_promise(manifest.no_promise);
     }
     print_model_error(manifest.model);
+    fmt::print("{}", povray_veil_in_words(manifest));
     print(integration.images);
 }
 
 void put_promises(Json& json, const Manifest& manifest) {
+    if (manifest.veil && manifest.veil->povray) {
+        const ManifestPovrayVeil& veil = *manifest.veil->povray;
+        json["veil"] = {{"by", "povray"},
+                        {"samples", veil.samples},
+                        {"lobes", veil.lobes},
+                        {"error", veil.error}};
+    }
     if (!manifest.has_promise()) {
         json["promise"] = nullptr;
         json["no_promise"] = manifest.no_promise;
@@ -134,6 +142,17 @@ void put_promises(Json& json, const Manifest& manifest) {
                                                           {"amplification", quality.amplification},
                                                           {"promise", manifest.promise(c)}};
     }
+}
+
+std::string povray_veil_in_words(const Manifest& manifest) {
+    if (!manifest.veil || !manifest.veil->povray) return "";
+    const ManifestPovrayVeil& veil = *manifest.veil->povray;
+    return fmt::format(
+        "  the veil is POV-Ray's, of {} and {} to a ray: off by {:.2g} where it was measured, over "
+        "the\n  bare floor, which is no bound\n",
+        counted(veil.lobes.size(), "lobe"),
+        counted(static_cast<std::size_t>(veil.samples), "sample"),
+        veil.error);
 }
 
 void print_no_promise(const std::vector<std::string>& reasons) {

@@ -67,4 +67,7 @@ void put_promises(nlohmann::ordered_json& json, const Manifest& manifest);
 // Why there is no error bound, for people.
 void print_no_promise(const std::vector<std::string>& reasons);
 
+// A line on the veil, where POV-Ray makes it.
+[[nodiscard]] std::string povray_veil_in_words(const Manifest& manifest);
+
 }  // namespace aphotic::cli

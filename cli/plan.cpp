@@ -162,6 +162,12 @@ void print_promise(const RenderPlan& plan) {
                    q.amplification,
                    q.promise(plan.frame_error));
     }
+    if (plan.scene.povray_veil) {
+        fmt::print(
+            "No pixel's signal should be off the full spectrum by more than the promise, for which "
+            "the\nveil was measured.\n");
+        return;
+    }
     fmt::print(
         "No pixel's signal will be off the full spectrum by more than the promise, which is the\n"
         "error of the wavelengths and their weights plus the frames' own {:.3g}, amplified.\n\n",
@@ -227,6 +233,8 @@ void print(const Planned& made) {
         print_model_error(planned.model);
         fmt::print("\n");
     }
+    if (const std::string veil = povray_veil_in_words(manifest); !veil.empty())
+        fmt::print("{}\n", veil);
     print_wavelengths(manifest);
     if (planned.rig.camera.port) print_port(planned);
     print_needs(planned_needs(scenes), manifest.frames.size());

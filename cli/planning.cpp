@@ -66,6 +66,7 @@ PlanRequest request_of(const PlanningOptions& options) {
                                   .pixel_shift = options.pixel_shift,
                                   .emitter_lamps = std::nullopt}};
     request.scene.antialias = options.antialias;
+    if (options.veil == "povray") request.scene.veil_samples = options.veil_samples;
     for (const std::string& setting : options.povray_ini) {
         request.scene.ini_lines.push_back(ini_line(setting));
     }

@@ -52,6 +52,7 @@ RenderedImages images_in(const fs::path& folder,
         images.promise[c] = manifest.promise(c);
         images.black[c] = manifest.black(c);
     }
+    if (manifest.veil && manifest.veil->povray) images.veil_error = manifest.veil->povray->error;
     images.radiance = [folder, channels](std::size_t first, std::size_t count) {
         const auto from = channels.begin() + static_cast<std::ptrdiff_t>(first);
         return ExrReader(folder / "spectral.exr").planes({from, count});

@@ -170,9 +170,9 @@ void print_verdict(const ValidationReport& report, const std::string& folder) {
 ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const bool is_rendered = !options.rendered_folder.empty();
-    if (const UserScene* scene = planned.plan.scene.user_scene.get()) {
-        require_promise(scene->file.string(), scene->no_promise);
-    }
+    const UserScene* const scene = planned.plan.scene.user_scene.get();
+    require_promise(scene != nullptr ? scene->file.string() : options.planning.rig_file,
+                    planned.plan.no_promise);
     // All that can be refused is refused before there is a folder.
     PovRay povray;
     if (is_rendered) {

@@ -23,14 +23,15 @@ std::string array_sdl(std::string_view name, const std::vector<std::string>& ele
 
 std::string spectra_sdl(std::string_view kind,
                         const std::vector<NamedSpectrum>& spectra,
-                        const Channels& lambda_nm) {
+                        const Channels& lambda_nm,
+                        bool is_black) {
     std::vector<std::string> names;
     std::vector<std::string> values;
     for (const NamedSpectrum& named : spectra) {
         names.push_back(sdl_text(named.name));
         Channels value{};
         for (std::size_t c = 0; c < value.size(); ++c) {
-            value[c] = named.spectrum.at(lambda_nm[c]);
+            if (!is_black) value[c] = named.spectrum.at(lambda_nm[c]);
         }
         values.push_back(sdl_vector(value));
     }
@@ -98,8 +99,16 @@ std::string band_sdl(const Band& band) {
         sdl +=
             array_sdl("Aphotic_Glass_Names", names) + array_sdl("Aphotic_Glass_Indices", indices);
     }
-    return sdl + spectra_sdl("Lamp", band.lamps, band.lambda_nm) +
-           spectra_sdl("Reflectance", band.reflectances, band.lambda_nm);
+    if (band.scattering) {
+        const BandScattering& scattering = *band.scattering;
+        declare("Scattering", sdl_vector(scattering.per_m));
+        if (scattering.eccentricity) declare("Eccentricity", sdl_number(*scattering.eccentricity));
+        declare("Samples", fmt::format("{}", scattering.samples));
+        declare("Sight", sdl_number(scattering.sight_m));
+    }
+    return sdl + spectra_sdl("Lamp", band.lamps, band.lambda_nm, false) +
+           spectra_sdl(
+               "Reflectance", band.reflectances, band.lambda_nm, band.scattering.has_value());
 }
 
 }  // namespace aphotic

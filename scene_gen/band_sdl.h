@@ -7,6 +7,7 @@
 #include "scene_gen/sdl.h"
 #include "spectral/spectrum.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +40,15 @@ struct GlassIndex {
     double index;
 };
 
+// Of a frame that shows what the water scatters into the view, and nothing else: everything is
+// black.
+struct BandScattering {
+    Channels per_m{};                    // of light that goes as the phase function says
+    std::optional<double> eccentricity;  // Henyey and Greenstein's g; none: Rayleigh's
+    int samples = 1;
+    double sight_m = 0.0;  // up to which a ray is sampled as one
+};
+
 struct Band {
     Channels lambda_nm{};
     Channels exposure{};  // factor on radiance
@@ -47,6 +57,7 @@ struct Band {
     std::vector<GlassIndex> glasses{};  // relative to air; none: no port
     std::vector<NamedSpectrum> lamps;
     std::vector<NamedSpectrum> reflectances;
+    std::optional<BandScattering> scattering{};
 };
 
 [[nodiscard]] std::string band_sdl(const Band& band);

@@ -194,15 +194,21 @@ void require_place(const Rig& rig, std::span<const LampGrid> lamps) {
     }
 }
 
-// By strobe of the rig. A user's own scene may hold anything, so there all that shines is in it.
+// What a frame shows.
+enum class Shown { Surfaces, Water };
+
+// By strobe of the rig. A user's own scene may hold anything, and water is everywhere, so there all
+// that shines is in it.
 std::vector<StrobeInScene> strobes_in_scene(const Rig& rig,
                                             std::span<const LampGrid> lamps,
-                                            const SceneOptions& options) {
+                                            const SceneOptions& options,
+                                            Shown shown) {
+    const bool may_light_anything = options.user_scene || shown == Shown::Water;
     std::vector<StrobeInScene> strobes;
     for (const Strobe& strobe : rig.strobes) {
         const auto is_wanted = [&](const Beam& part) {
             const bool shines = strobe.power > 0.0 && !is_dark(part) &&
-                                (options.user_scene || lights_the_view(rig, strobe, part));
+                                (may_light_anything || lights_the_view(rig, strobe, part));
             return shines || !options.omit;
         };
         StrobeInScene in_scene{.beam = parts_that(strobe.beam, is_wanted),
@@ -256,6 +262,10 @@ struct Parts {
     double unit_m;  // of the scene; in a user's own, that scene's word
     bool has_rays;  // of the camera, in a file of their own
 };
+
+// Of the veil's brightest: room above for what the coarse grid of its bound missed, and for strobes
+// of a user's scene that stand elsewhere.
+constexpr int kVeilTargetLog2 = 8;
 
 // The wavelengths of one frame.
 using Frame = std::span<const PlannedWavelength>;
@@ -339,11 +349,35 @@ std::string scene_sdl(const Rig& rig,
                       const Parts& parts,
                       const std::string& name,
                       Frame frame,
-                      const SceneOptions& options) {
+                      const SceneOptions& options,
+                      const std::optional<BandScattering>& scattering = {}) {
     const std::string own =
         options.user_scene ? options.user_scene->file.filename().string() : std::string();
+    Band band = band_of(rig, parts, frame);
+    band.scattering = scattering;
     return header_of(rig, name, frame, options, parts.unit_m) + "\n#version 3.7;\n" +
-           body_sdl(band_of(rig, parts, frame), parts, options, own);
+           body_sdl(band, parts, options, own);
+}
+
+// The wavelengths of a frame as the veil is rendered at them.
+std::vector<PlannedWavelength> in_veil(Frame frame) {
+    std::vector<PlannedWavelength> wavelengths(frame.begin(), frame.end());
+    for (PlannedWavelength& w : wavelengths) {
+        w.exposure_log2 = w.veil->exposure_log2;
+    }
+    return wavelengths;
+}
+
+// Of one lobe; none: of no scattering at all.
+BandScattering scattering_of(const PovrayVeil& veil, std::optional<std::size_t> lobe, Frame frame) {
+    BandScattering scattering{
+        .eccentricity = 0.0, .samples = veil.sampling.samples, .sight_m = veil.sampling.sight_m};
+    if (!lobe) return scattering;
+    for (std::size_t c = 0; c < scattering.per_m.size(); ++c)
+        scattering.per_m[c] = std::abs(in_channel(frame, c).veil->scattering_per_m[*lobe]);
+    const auto* hg = std::get_if<HenyeyGreenstein>(&veil.sampling.lobes[*lobe].kind);
+    scattering.eccentricity = hg != nullptr ? std::optional(hg->g) : std::nullopt;
+    return scattering;
 }
 
 // Nothing shines, and a fog tells how far each pixel sees.
@@ -358,14 +392,17 @@ std::string fog_sdl(const Rig& rig,
                       fmt::format("#declare Aphotic_Fog = {};\n", sdl_number(fog)));
 }
 
-Parts parts_of(const Rig& rig, std::span<const LampGrid> lamps, const SceneOptions& options) {
+Parts parts_of(const Rig& rig,
+               std::span<const LampGrid> lamps,
+               const SceneOptions& options,
+               Shown shown = Shown::Surfaces) {
     Parts parts{.lamps = named_lamps_of(rig),
                 .reflectances = reflectances_of(rig, options),
                 .fade_m = fade_distance_m(rig, options),
                 .unit_m = options.user_scene ? 1.0 : unit_with_shells_m(rig, lamps),
                 .has_rays = rig.camera.lens.has_value()};
     parts.rig = rig_sdl(rig,
-                        strobes_in_scene(rig, lamps, options),
+                        strobes_in_scene(rig, lamps, options, shown),
                         parts.lamps,
                         parts.reflectances,
                         options.user_scene ? SceneAuthor::User : SceneAuthor::Ours);
@@ -385,7 +422,8 @@ double scene_unit_m(const Rig& rig) {
 
 double fog_m(const Rig& rig, const SceneOptions& options) {
     constexpr double kPaths = 64.0;
-    if (!rig.water.scatters() || (rig.objects.empty() && !options.user_scene)) return 0.0;
+    if (!rig.water.scatters() || options.povray_veil) return 0.0;
+    if (rig.objects.empty() && !options.user_scene) return 0.0;
     const PathRange paths = options.user_scene ? options.user_scene->paths : path_range(rig);
     return kPaths * (paths.shortest_m > 0.0 ? paths.shortest_m : 1.0);
 }
@@ -423,18 +461,45 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
                                  : options.user_scene->brightest_radiance(rig, w.lambda_nm);
         w.exposure_log2 = exposure_log2(
             w.radiance_bound, brightest_colour(rig, w.lambda_nm, parts.fade_m), options.peak_log2);
+        if (w.veil) {
+            w.veil->exposure_log2 = exposure_log2(w.veil->radiance_bound,
+                                                  brightest_colour(rig, w.lambda_nm, parts.fade_m),
+                                                  kVeilTargetLog2);
+        }
     }
+    std::vector<std::string> names;
+    std::vector<Frame> frames;
     for (std::size_t first = 0, count = 0; first < wavelengths.size(); first += count) {
         const auto is_of_it = [&](const PlannedWavelength& w) {
             return w.frame == wavelengths[first].frame;
         };
         const auto rest = wavelengths.subspan(first);
         count = static_cast<std::size_t>(std::ranges::find_if_not(rest, is_of_it) - rest.begin());
-        const std::string name =
-            fmt::format("band_{}nm", fmt::join(std::span(labels).subspan(first, count), "_"));
+        frames.push_back(wavelengths.subspan(first, count));
+        names.push_back(
+            fmt::format("{}nm", fmt::join(std::span(labels).subspan(first, count), "_")));
+        const std::string name = "band_" + names.back();
         scenes.push_back(
-            {.name = name,
-             .sdl = scene_sdl(rig, parts, name, wavelengths.subspan(first, count), options)});
+            {.name = name, .sdl = scene_sdl(rig, parts, name, frames.back(), options)});
+    }
+    if (options.povray_veil) {
+        const PovrayVeil& veil = *options.povray_veil;
+        const Parts of_water = parts_of(rig, lamps, options, Shown::Water);
+        const auto add_frames = [&](const std::string& what, std::optional<std::size_t> lobe) {
+            for (std::size_t f = 0; f < frames.size(); ++f) {
+                const std::string name = fmt::format("veil_{}_{}", what, names[f]);
+                scenes.push_back({.name = name,
+                                  .sdl = scene_sdl(rig,
+                                                   of_water,
+                                                   name,
+                                                   in_veil(frames[f]),
+                                                   options,
+                                                   scattering_of(veil, lobe, frames[f]))});
+            }
+        };
+        for (std::size_t m = 0; m < veil.sampling.lobes.size(); ++m)
+            add_frames(fmt::format("{}", m + 1), m);
+        if (options.user_scene) add_frames("surfaces", std::nullopt);
     }
     if (const double fog = fog_m(rig, options); fog > 0.0) {
         scenes.push_back(

@@ -23,6 +23,7 @@
 #include "rig/rig.h"
 #include "scene_gen/exposure.h"
 #include "scene_gen/frame_groups.h"
+#include "scene_gen/povray_veil.h"
 #include "scene_gen/user_scene.h"
 #include "spectral/planned_wavelength.h"
 
@@ -55,6 +56,9 @@ struct SceneOptions {
     std::shared_ptr<const UserScene> user_scene{};  // none: the rig's own floor
     // The share of a pixel's light under which rays between a user's mirrors and glasses end.
     double bailout = kRayShare * kTargetError;
+    // In water that scatters: POV-Ray makes the veil, of so many samples a ray. None: rig/veil.h.
+    std::optional<int> veil_samples{};
+    std::optional<PovrayVeil> povray_veil{};  // as the plan has it
     int antialias = 0;  // n x n rays to a pixel, beside the one through its centre
     // Lines for POV-Ray's INI file: of keys that change how fast it is and no pixel, and a scene's
     // clock.
@@ -62,7 +66,8 @@ struct SceneOptions {
 };
 
 // Of the frame that tells how far each pixel sees, by a white fog (spectral/manifest.h), in water
-// that scatters over anything but the rig's bare floor; else 0. So large that the fog is about
+// that scatters over anything but the rig's bare floor, unless POV-Ray makes the veil; else 0. So
+// large that the fog is about
 // proportional to the distance, whose digits are a half float's.
 [[nodiscard]] double fog_m(const Rig& rig, const SceneOptions& options);
 inline constexpr auto kFogFrame = "distance";
@@ -72,7 +77,9 @@ inline constexpr auto kFogFrame = "distance";
                                                 std::span<const PlannedWavelength> wavelengths,
                                                 const SceneOptions& options);
 
-// The scene of each frame; sets how each of the wavelengths is exposed. Throws InputError when a
+// The scene of each frame: those of the direct light, then by lobe those of a veil that POV-Ray
+// makes, and of a user's scene what shines in them without the water's, to be taken off. Or the one
+// of fog. Sets how each of the wavelengths is exposed. Throws InputError when a
 // strobe stands where it cannot light from (at or under the floor, inside the camera's housing), or
 // when there are more lights than POV-Ray takes in water.
 [[nodiscard]] std::vector<FrameScene> make_scenes(const Rig& rig,

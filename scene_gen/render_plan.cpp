@@ -4,6 +4,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "scene_gen/certificate.h"
+#include "scene_gen/povray_veil.h"
 #include "scene_gen/veil_planes.h"
 #include "spectral/wavelength_search.h"
 
@@ -155,6 +156,24 @@ void plan_to_tolerance(const Rig& rig,
         why));
 }
 
+// What POV-Ray's samples find of a shadow's edge has no bound.
+void add_povray_veil(const Rig& rig, int samples, RenderPlan& plan) {
+    const bool is_user_scene = plan.scene.user_scene != nullptr;
+    const std::vector<LampGrid> lamps = scene_lamps(rig, plan.wavelengths, plan.scene);
+    plan.scene.povray_veil =
+        plan_povray_veil(rig,
+                         plan.family,
+                         {.samples = samples,
+                          .lamps = lamps,
+                          .is_user_scene = is_user_scene,
+                          .fits_weights = plan.method != PlanMethod::EqualBands,
+                          .frame_error = plan.frame_error},
+                         plan.wavelengths);
+    plan.quality = with_povray_veil(plan.quality, *plan.scene.povray_veil);
+    if (is_user_scene || !rig.objects.empty())
+        plan.no_promise.push_back("POV-Ray samples the veil, whose shadows have no error bound");
+}
+
 }  // namespace
 
 double frame_error(const Rig& rig) {
@@ -202,7 +221,9 @@ void take_weights(const FittedRule& rule, std::span<PlannedWavelength> wavelengt
     }
 }
 
-RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
+namespace {
+
+RenderPlan plan_direct_light(const Rig& rig, const PlanRequest& request) {
     if (rig.camera.lens && request.scene.antialias > 0) {
         throw InputError(
             "--antialias: found {} with a calibrated lens; allowed: none, since POV-Ray has one "
@@ -215,7 +236,9 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
                     .tolerance = 0.0,
                     .family = family_of(rig, request),
                     .frame_error = frame_error(rig),
-                    .veil_error = rig.water.scatters() ? veil_plane_error(rig) : 0.0,
+                    .veil_error = rig.water.scatters() && !request.scene.veil_samples
+                                      ? veil_plane_error(rig)
+                                      : 0.0,
                     .scene = request.scene,
                     .omissions = omissions(rig, request.scene.user_scene != nullptr)};
     plan.scene.pixel_shift = pixel_shift(rig, request.scene);
@@ -243,6 +266,30 @@ RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
     }
     plan.scene.bailout = kRayShare * plan.frame_error;
     share_frames(rig, fitter, lambda_nm, plan, bands);
+    return plan;
+}
+
+}  // namespace
+
+RenderPlan plan_render(const Rig& rig, const PlanRequest& request) {
+    RenderPlan plan = plan_direct_light(rig, request);
+    if (!rig.water.scatters() || !request.scene.veil_samples) return plan;
+    const int samples = *request.scene.veil_samples;
+    add_povray_veil(rig, samples, plan);
+    // As many more wavelengths as the veil takes, whose paths differ more.
+    constexpr int kMostMore = 9;
+    const int fewest = static_cast<int>(plan.wavelengths.size());
+    const int step = wavelengths_per_step(rig, request.scene);
+    PlanRequest more = request;
+    for (int n = fewest + step; n <= fewest + kMostMore && plan.tolerance > 0.0 &&
+                                worst_error(plan.scene.povray_veil->quality) > request.tolerance;
+         n += step) {
+        more.fitted = n;
+        plan = plan_direct_light(rig, more);
+        plan.tolerance = request.tolerance;
+        plan.scene.bailout = kRayShare * request.tolerance;
+        add_povray_veil(rig, samples, plan);
+    }
     return plan;
 }
 

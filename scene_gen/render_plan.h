@@ -11,6 +11,10 @@
 // stand for an emitter. It holds for every pixel off the edges of beams and objects that is
 // brighter than black (1e-8 of the brightest), relative to its own signal. A scene of the user's
 // may hold what voids it: no_promise says what.
+//
+// Of a veil that POV-Ray makes, the promise is measured and may be over the tolerance, to which the
+// direct light alone is planned (scene_gen/povray_veil.h). Where objects or a scene of the user's
+// may cast shadows in it, it has none.
 #pragma once
 
 #include "scene_gen/light_culling.h"
@@ -48,7 +52,7 @@ struct RenderPlan {
     std::array<RuleQuality, kChannels> quality{};
     double frame_error = 0.0;
     double veil_error = 0.0;  // of what is added for water that scatters; part of quality's
-    SceneOptions scene;
+    SceneOptions scene;       // with the veil that POV-Ray makes, where that is asked for
     std::vector<Omission> omissions;
     std::vector<std::string> no_promise{};  // why what the scene shows has none; empty: it has
 

@@ -145,6 +145,7 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
     }
     now.veil.reset();  // the frames' own rig's
     now.model.reset();
+    for (PlannedWavelength& w : now.wavelengths) w.veil.reset();
     now.rig_title = changed.title;
     now.rig_sha256 = changed.digest;
     now.method = "fitted to frames of another rig";

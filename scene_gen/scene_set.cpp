@@ -120,7 +120,13 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
         set.vignetting = vignetting_plane(rig.camera);
         manifest.camera->vignetting_sha256 = sha256_of_floats(set.vignetting);
     }
-    if (rig.water.scatters()) {
+    if (const auto& veil = plan.scene.povray_veil) {
+        ManifestPovrayVeil& note = manifest.veil.emplace().povray.emplace();
+        note.samples = veil->sampling.samples;
+        for (const PhaseFunction& lobe : veil->sampling.lobes) note.lobes.push_back(lobe.name);
+        note.takes_surfaces_off = own != nullptr;
+        note.error = veil->error;
+    } else if (rig.water.scatters()) {
         set.scattering = rig;
         manifest.veil = ManifestVeil{.fog_m = fog_m(rig, plan.scene)};
     }

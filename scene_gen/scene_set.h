@@ -21,12 +21,13 @@
 namespace aphotic {
 
 struct SceneSet {
-    std::vector<FrameScene> scenes;      // in the order of manifest.frames
-    Manifest manifest;                   // nothing rendered yet
-    std::string ini;                     // less the paths, which change no pixel
-    std::optional<Camera> camera{};      // with a lens, whose rays are written; none: a pinhole
-    std::vector<float> vignetting{};     // by pixel; empty: none
-    std::optional<Rig> scattering{};     // whose veil is written beside the frames; none: none
+    std::vector<FrameScene> scenes;   // in the order of manifest.frames
+    Manifest manifest;                // nothing rendered yet
+    std::string ini;                  // less the paths, which change no pixel
+    std::optional<Camera> camera{};   // with a lens, whose rays are written; none: a pinhole
+    std::vector<float> vignetting{};  // by pixel; empty: none
+    // Whose veil is written beside the frames; none: none, or POV-Ray makes it.
+    std::optional<Rig> scattering{};
     std::filesystem::path scene_file{};  // of the user's own, absolute; none: the rig's floor
     std::string scene_files_digest{};    // of the user's own, as it was planned for
     bool scene_writes_files = false;     // the user's own

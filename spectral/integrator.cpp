@@ -44,7 +44,7 @@ void read_radiance(const fs::path& folder, const Manifest& manifest, Block& bloc
                                                          kChannelNames.end());
     // All channels at once: OpenEXR unpacks them together, whichever are asked for.
     std::vector<float> samples(kFrameChannels.size() * block.plane);
-    for (std::size_t f = 0; f < manifest.frames.size(); ++f) {
+    for (std::size_t f = 0; f < manifest.direct_frames(); ++f) {
         const fs::path file = image_path(folder, manifest.frames[f]);
         ExrReader reader(file);
         const int above = manifest.rows_above();
@@ -82,6 +82,72 @@ void sum_signals(const Manifest& manifest, Block& block) {
         std::transform(sum.begin(), sum.end(), block.signal(c).begin(), [](double value) {
             return static_cast<float>(value);
         });
+    }
+}
+
+// How a frame of the veil counts at a wavelength: what a lobe takes off, and what is none of the
+// water's, of which every lobe's frame has as much.
+std::vector<double> signs_of(const PlannedWavelength& w, const ManifestPovrayVeil& veil) {
+    std::vector<double> signs;
+    double sum = 0.0;
+    for (const double scattering_per_m : w.veil->scattering_per_m) {
+        signs.push_back(scattering_per_m < 0.0 ? -1.0 : 1.0);
+        sum += signs.back();
+    }
+    if (veil.takes_surfaces_off) signs.push_back(-sum);
+    return signs;
+}
+
+// The veil that POV-Ray made, to radiance and signals.
+void add_povray_veil(const fs::path& folder,
+                     const Manifest& manifest,
+                     const std::vector<float>& vignetting,
+                     Block& block) {
+    if (!manifest.veil || !manifest.veil->povray) return;
+    static const std::vector<std::string> kFrameChannels(kChannelNames.begin(),
+                                                         kChannelNames.end());
+    const auto first_pixel =
+        static_cast<std::size_t>(block.first_row) * static_cast<std::size_t>(manifest.width_px);
+    const std::size_t direct = manifest.direct_frames();
+    const std::size_t sets = manifest.frames.size() / direct - 1;
+    std::vector<float> samples(kFrameChannels.size() * block.plane);
+    for (std::size_t f = 0; f < direct; ++f) {
+        std::vector<std::vector<double>> veil(manifest.wavelengths.size());
+        for (std::size_t set = 0; set < sets; ++set) {
+            const fs::path file = image_path(folder, manifest.frames[(1 + set) * direct + f]);
+            ExrReader reader(file);
+            const int above = manifest.rows_above();
+            check_size(file,
+                       reader.width_px(),
+                       reader.height_px(),
+                       manifest.width_px,
+                       manifest.height_px + above);
+            reader.read_rows(block.first_row + above, block.rows, kFrameChannels, samples);
+            for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
+                const PlannedWavelength& w = manifest.wavelengths[j];
+                if (w.frame != f) continue;
+                const auto from =
+                    std::span<const float>(samples).subspan(w.channel * block.plane, block.plane);
+                check_samples(
+                    file, kFrameChannels[w.channel], from, manifest.width_px, block.first_row);
+                const double sign = signs_of(w, *manifest.veil->povray)[set];
+                veil[j].resize(block.plane);
+                for (std::size_t i = 0; i < block.plane; ++i) veil[j][i] += sign * from[i];
+            }
+        }
+        for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
+            if (veil[j].empty()) continue;
+            const PlannedVeil& planned = *manifest.wavelengths[j].veil;
+            const double scale = std::ldexp(1.0, -planned.exposure_log2);
+            for (std::size_t i = 0; i < block.plane; ++i) {
+                veil[j][i] *= vignetting.empty() ? scale : scale * vignetting[first_pixel + i];
+                block.radiance(j)[i] += static_cast<float>(veil[j][i]);
+            }
+            for (std::size_t c = 0; c < kChannels; ++c) {
+                for (std::size_t i = 0; i < block.plane; ++i)
+                    block.signal(c)[i] += static_cast<float>(planned.weight[c] * veil[j][i]);
+            }
+        }
     }
 }
 
@@ -165,12 +231,12 @@ void take_off(const std::vector<float>& vignetting, const Manifest& manifest, Bl
     }
 }
 
-// What the water scatters into the view, beside the frames' light.
+// What the water scatters into the view, in a file beside the frames.
 class VeilReader {
   public:
     VeilReader(const fs::path& file, const Manifest& manifest, std::size_t planes)
         : channels_(veil_channels(manifest)) {
-        if (!manifest.veil) return;
+        if (!manifest.veil || manifest.veil->povray) return;
         if (manifest.veil->sha256.empty() || !fs::exists(file)) {
             throw RunError("{}: the veil is missing; `aphotic render` makes it of its frames",
                            file.string());
@@ -225,6 +291,7 @@ CameraImage integrate_into(const fs::path& images_folder,
         if (!vignetting.empty()) take_off(vignetting, manifest, block);
         sum_signals(manifest, block);
         veil.add_to(block, vignetting);
+        add_povray_veil(folder, manifest, vignetting, block);
         require_finite(folder, manifest, block);
         images.write_rows(block.rows, std::move(block.samples));
         if (report) report(static_cast<double>(row + block.rows) / height_px);

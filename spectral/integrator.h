@@ -5,6 +5,8 @@
 //   L(lambda_j) = 2^-e_j F_j
 //   S_c         = sum_j w_cj L(lambda_j)        and the veil's, where the water scatters
 //
+// The veil is a file's, or POV-Ray's, whose frames add up likewise, with weights of their own.
+//
 // F_j   what the frame of wavelength j holds, in its channel      e_j   the frame's exposure
 // L     spectral radiance       [unit of the lamp's spectrum / (m^2 sr)]
 // w_cj  weight of wavelength j in channel c: band width times response, or fitted

@@ -87,6 +87,8 @@ constexpr std::string_view kWords<std::string> = "a text";
 template <>
 constexpr std::string_view kWords<double> = "a number";
 template <>
+constexpr std::string_view kWords<bool> = "true or false";
+template <>
 constexpr std::string_view kWords<std::vector<std::string>> = "a list of texts";
 template <>
 constexpr std::string_view kWords<std::array<double, kChannels>> = "three numbers";
@@ -233,6 +235,14 @@ struct Before {
     std::set<std::pair<std::size_t, std::size_t>> taken{};  // frames and channels
 };
 
+template <typename Visit, Is<PlannedVeil> Veil>
+void fields(const Visit& visit, Veil& veil) {
+    visit("scattering_per_m", veil.scattering_per_m);
+    visit("weight", veil.weight);
+    visit("exposure_log2", veil.exposure_log2, -kMostExposureLog2, kMostExposureLog2);
+    visit("radiance_bound", veil.radiance_bound);
+}
+
 template <typename Visit, Is<PlannedWavelength> Wavelength>
 void fields(const Visit& visit, Wavelength& w, Before& before) {
     visit("lambda_nm", w.lambda_nm);
@@ -251,6 +261,7 @@ void fields(const Visit& visit, Wavelength& w, Before& before) {
     visit("exposure_log2", w.exposure_log2, -kMostExposureLog2, kMostExposureLog2);
     visit("radiance_bound", w.radiance_bound);
     visit.require("radiance_bound", "0 or more", w.radiance_bound >= 0.0);
+    visit.optional("veil", w.veil);
 }
 
 template <typename Visit, Is<ManifestCamera> Camera>
@@ -260,11 +271,32 @@ void fields(const Visit& visit, Camera& camera) {
     visit("vignetting_sha256", camera.vignetting_sha256);
 }
 
+template <typename Visit, Is<ManifestPovrayVeil> Veil>
+void fields(const Visit& visit, Veil& veil) {
+    constexpr int kMostSamples = 1'000'000;
+    visit("samples", veil.samples, 1, kMostSamples);
+    visit("lobes", veil.lobes);
+    visit("takes_surfaces_off", veil.takes_surfaces_off);
+    visit("error", veil.error);
+}
+
 template <typename Visit, Is<ManifestVeil> Veil>
 void fields(const Visit& visit, Veil& veil) {
     visit("sha256", veil.sha256);
     visit("fog_m", veil.fog_m);
     visit.require("fog_m", "0 or more", veil.fog_m >= 0.0);
+    visit.optional("povray", veil.povray);
+}
+
+// Whether each wavelength's veil is in frames that are there.
+bool has_veil_frames(const Manifest& manifest) {
+    if (!manifest.veil || !manifest.veil->povray) return true;
+    const ManifestPovrayVeil& veil = *manifest.veil->povray;
+    const std::size_t sets = 1 + veil.lobes.size() + (veil.takes_surfaces_off ? 1 : 0);
+    return manifest.frames.size() == sets * manifest.direct_frames() &&
+           std::ranges::all_of(manifest.wavelengths, [&](const PlannedWavelength& w) {
+               return w.veil && w.veil->scattering_per_m.size() == veil.lobes.size();
+           });
 }
 
 template <typename Visit, Is<ManifestModel> Model>
@@ -297,12 +329,19 @@ void fields(const Visit& visit, Whole& manifest) {
     Before before{.frames = static_cast<int>(manifest.frames.size())};
     visit.list("wavelengths", manifest.wavelengths, before);
     visit.require("wavelengths", "at least one", !manifest.wavelengths.empty());
+    visit.require("frames", "as many as the lobes of the veil ask for", has_veil_frames(manifest));
 }
 
 }  // namespace
 
 std::string attribute_of(const ManifestModel& model) {
     return fmt::format("{}", fmt::join(model.error, " "));
+}
+
+std::size_t Manifest::direct_frames() const {
+    std::size_t count = 0;
+    for (const PlannedWavelength& w : wavelengths) count = std::max(count, w.frame + 1);
+    return count;
 }
 
 double Manifest::black(std::size_t channel) const {

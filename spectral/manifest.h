@@ -62,13 +62,25 @@ struct ManifestCamera {
     std::string vignetting_sha256{};
 };
 
-// What the water scatters into the view, which no frame holds (veil_path).
+// A veil that POV-Ray makes. Behind the frames of the wavelengths' direct light come as many of
+// each lobe, in their order, and then those of what shines without the water's scattering, to be
+// taken off.
+struct ManifestPovrayVeil {
+    int samples = 0;                   // of a ray
+    std::vector<std::string> lobes{};  // of the phase functions
+    bool takes_surfaces_off = false;
+    double error = 0.0;  // measured beforehand, relative to the veil; no bound
+};
+
+// What the water scatters into the view: a file beside the frames (veil_path), or frames of
+// POV-Ray's.
 //
 // Where more than the bare floor is in view, the last frame holds no light but a white fog of the
 // distance fog_m: 1 - exp(-D / fog_m), which tells how far D each pixel sees.
 struct ManifestVeil {
-    std::string sha256{};  // of the file; empty: not made yet
+    std::string sha256{};  // of the file; empty: not made yet, or POV-Ray makes it
     double fog_m = 0.0;    // 0: the bare floor, and no such frame
+    std::optional<ManifestPovrayVeil> povray{};
 };
 
 // What the model of water that scatters leaves out, as estimated (docs/water.md): of each channel's
@@ -111,6 +123,9 @@ struct Manifest {
     std::optional<ManifestModel> model{};   // none: nor that, or not estimated
     std::vector<ManifestFrame> frames;
     std::vector<PlannedWavelength> wavelengths;  // increasing
+
+    // Of the wavelengths' direct light, which are the first.
+    [[nodiscard]] std::size_t direct_frames() const;
 
     [[nodiscard]] int rows_above() const { return camera ? camera->rows_above : 0; }
     [[nodiscard]] bool has_promise() const { return no_promise.empty(); }

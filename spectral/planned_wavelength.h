@@ -5,6 +5,8 @@
 //
 //   S_c = sum_j w_cj L(lambda_j),     L(lambda_j) = 2^-e_j F_j
 //
+// and the same of the veil, where it has frames.
+//
 // S_c  signal of channel c      L  spectral radiance      F_j  what the frame holds, in its channel
 #pragma once
 
@@ -12,6 +14,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace aphotic {
@@ -25,6 +28,15 @@ struct SourceLight {
     std::vector<double> reflectance{};  // of the floor, then of each further material
 };
 
+// Of a veil that POV-Ray makes, in frames of its own: one for each lobe of the water's phase
+// functions (spectral/phase_lobes.h).
+struct PlannedVeil {
+    std::vector<double> scattering_per_m{};  // by lobe; of either sign, which the sum takes
+    std::array<double, kChannels> weight{};  // of the veil's radiance
+    int exposure_log2 = 0;
+    double radiance_bound = 0.0;  // of what it is exposed for
+};
+
 struct PlannedWavelength {
     double lambda_nm = 0.0;
     std::array<double, kChannels> weight{};  // w_cj
@@ -34,6 +46,7 @@ struct PlannedWavelength {
     SourceLight light{};                     // with which the frame is rendered
     int exposure_log2 = 0;                   // e_j
     double radiance_bound = 0.0;             // of L(lambda_j) in view
+    std::optional<PlannedVeil> veil{};       // none: POV-Ray makes no veil
 };
 
 }  // namespace aphotic

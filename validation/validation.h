@@ -40,6 +40,7 @@ struct RenderedImages {
     // By wavelength: whose refractive indices its frame has, and what that may change.
     std::vector<double> index_nm;
     std::vector<double> shift_error;
+    double veil_error = 0.0;  // of the radiance of wavelengths
     std::array<double, kChannels> promise{};
     std::array<double, kChannels> black{};
     // The planes of radiance of wavelengths [first, first + count), one after another.

@@ -469,7 +469,7 @@ ManifestVeil veil_by_points(const std::filesystem::path& folder,
                 lost_m.push_back(t + lamp_leg * (path_m - t));
             }
             for (std::size_t j = 0; j < lambda_nm.size(); ++j) {
-                const double loss_per_m = rig.water.veil_attenuation_per_m(lambda_nm[j]);
+                const double loss_per_m = rig.water.attenuation_per_m(lambda_nm[j]);
                 double sum = 0.0;
                 for (std::size_t n = 0; n < lost_m.size(); ++n)
                     sum += nodes.weight[0][n] * std::exp(-loss_per_m * lost_m[n]);
@@ -512,7 +512,7 @@ TEST_F(Sabotage, TheSignOfG) {
 // The share that is turned by less than the cut is taken for lost.
 TEST_F(Sabotage, TheVeilLosesAllOfC) {
     expect_no_when_the_veil_is(veil_of([](Rig& rig) {
-        const double share = rig.water.scatterers.front().phase.share_within(kVeilCut);
+        const double share = rig.water.scatterers.front().phase.share_within(kLossCut);
         const Spectrum& a = rig.water.absorption_per_m;
         std::vector<double> values(a.values().begin(), a.values().end());
         for (double& value : values) value += kScattering_per_m * share;

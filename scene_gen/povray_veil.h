@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The veil (rig/veil.h) as POV-Ray's scattering media make it, with the shadows of objects in it.
+//
+//   A(lambda) ~ sum_m S_m(lambda) A_m        S_m = sum_i b_i share_im
+//
+// A medium of POV-Ray has one phase function at all wavelengths. So the veil has frames of its own
+// beside those of the direct light: lamps shine, floor and objects are black, and each lobe m of
+// the water's phase functions (spectral/phase_lobes.h) has a frame, of which the one with a
+// negative S_m is taken off.
+//
+// The wavelengths are those of the direct light; their weights for the veil are fitted to it as if
+// b_i were a floor's reflectance, on paths from lamp to water to camera.
+//
+// What is known beforehand of its error, in water over the bare floor, is measured over a coarse
+// grid of the image against rig/veil.h: the lobes, the samples (scene_gen/media_samples.h), and how
+// far lobes that cancel amplify the half floats. Light that is turned by less than kVeilCut is not
+// cut off, which the measure includes. It is no bound.
+#pragma once
+
+#include "rig/geometry.h"
+#include "rig/rig.h"
+#include "scene_gen/media_samples.h"
+#include "spectral/light_family.h"
+#include "spectral/planned_wavelength.h"
+#include "spectral/quadrature_fit.h"
+
+#include <array>
+#include <span>
+
+namespace aphotic {
+
+// Of smooth light off by 5e-4 where HabCam sees it, of cones by a tenth of that.
+inline constexpr int kVeilSamples = 50;
+
+struct PovrayVeil {
+    MediaSampling sampling;
+    double error = 0.0;                            // of the veil's radiance, relative
+    std::array<RuleQuality, kChannels> quality{};  // of the weights
+};
+
+struct PovrayVeilRequest {
+    int samples = kVeilSamples;
+    std::span<const LampGrid> lamps;
+    bool is_user_scene = false;  // whose strobes may stand anywhere
+    bool fits_weights = true;    // false: the wavelengths' own
+    double frame_error = 0.0;
+};
+
+// family: of the direct light, for its longest path and a port's tilt. Sets the wavelengths' veil
+// but for its exposure.
+[[nodiscard]] PovrayVeil plan_povray_veil(const Rig& rig,
+                                          const LightFamily& family,
+                                          const PovrayVeilRequest& request,
+                                          std::span<PlannedWavelength> wavelengths);
+
+// The quality of a rule for floor and veil together: a pixel is no worse than the worse of the two.
+[[nodiscard]] std::array<RuleQuality, kChannels> with_povray_veil(
+    std::array<RuleQuality, kChannels> quality, const PovrayVeil& veil);
+
+}  // namespace aphotic
