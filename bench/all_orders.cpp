@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The table of docs/water.md: the model of water that scatters over light of all orders, in waters
+// The tables of docs/water.md: the model of water that scatters over light of all orders, in waters
 // from clear to harbour, by phase functions, altitudes and beams.
 //
-//   all_orders [PATHS]        a line a rig, as Markdown
+//   all_orders [PATHS]        a line a rig, as Markdown, and then a line a cut
 //
 // floor, veil, sum  the model over the truth, in the mean over nine places, and the standard error
 // rms               of the sum's error over the places, less the truth's noise
 // estimate          what `aphotic plan` tells, by kModelPaths
+// cuts              in place of kLossCut: rms of floor's and veil's errors over all rigs of a water
 #include "rig/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "validation/model_check.h"
+#include "validation/traced_water.h"
+#include "validation/tracer.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -74,18 +78,67 @@ std::string words(const Over& over) {
     return fmt::format("{:.3f} ± {:.3f}", over.mean, over.noise);
 }
 
+// Of the model with another cut, by water that loses so much more or less.
+constexpr std::array<double, 7> kCuts_deg{5, 10, 20, 30, 45, 60, 90};
+
+struct Squares {
+    double floor = 0.0;
+    double veil = 0.0;
+    double count = 0.0;
+};
+using SquaresByCut = std::array<Squares, kCuts_deg.size()>;
+
+Rig with_cut(Rig rig, double cut_rad) {
+    const TracedPhase phase(rig.water.scatterers.front().phase);
+    const double b = rig.water.scatterers.front().scattering_per_m.at(550.0);
+    const double a = rig.water.absorption_per_m.at(550.0);
+    const double more = phase.share_beyond(cut_rad) - phase.share_beyond(kLossCut);
+    rig.water.absorption_per_m = flat(a + b * more);
+    return rig;
+}
+
+void add_cuts(const Rig& rig, const ModelCheck& check, SquaresByCut& squares) {
+    for (std::size_t k = 0; k < kCuts_deg.size(); ++k) {
+        const Rig cut = with_cut(rig, kCuts_deg[k] * std::numbers::pi / 180.0);
+        const TracedVeil veil(cut, TracedWater(cut.water));
+        for (const ModelPlace& place : check.places) {
+            const double nm = place.lambda_nm;
+            const Tracer tracer(cut, {.signals = false, .planes_nm = {nm}});
+            const std::size_t pixel = static_cast<std::size_t>(place.row) *
+                                          static_cast<std::size_t>(rig.camera.width_px) +
+                                      static_cast<std::size_t>(place.column);
+            const double of_veil = veil.radiance(*tracer.ray(place.column, place.row, nm), nm);
+            const double of_floor = tracer.pixels({&pixel, 1}).front() - of_veil;
+            squares[k].floor += std::pow(of_floor / place.truth.floor.mean - 1.0, 2.0);
+            squares[k].veil += std::pow(of_veil / place.truth.veil.mean - 1.0, 2.0);
+            squares[k].count += 1.0;
+        }
+    }
+}
+
+void print_cuts(const std::string& water, const SquaresByCut& squares) {
+    for (std::size_t k = 0; k < kCuts_deg.size(); ++k) {
+        fmt::print("| {} | {:.0f}° | {:.3f} | {:.3f} |\n",
+                   water,
+                   kCuts_deg[k],
+                   std::sqrt(squares[k].floor / squares[k].count),
+                   std::sqrt(squares[k].veil / squares[k].count));
+    }
+}
+
 void print_row(const char* water,
                const std::string& phase,
                double fwhm_deg,
                const Rig& rig,
-               std::size_t paths) {
+               std::size_t paths,
+               SquaresByCut& squares) {
     const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     const ModelCheck check = check_model(rig, paths, threads);
     const ModelCheck estimate = check_model(rig, kModelPaths, threads);
-    double squares = 0.0;
+    double sum = 0.0;
     double share = 0.0;
     for (const ModelPlace& place : check.places) {
-        squares += place.error() * place.error() - place.noise() * place.noise();
+        sum += place.error() * place.error() - place.noise() * place.noise();
         share += place.truth.veil.mean / place.truth.sum.mean;
     }
     const auto count = static_cast<double>(check.places.size());
@@ -108,9 +161,10 @@ void print_row(const char* water,
                                 [](const ModelPlace& p) {
                                     return Compared{p.floor + p.veil, p.truth.sum};
                                 })),
-               std::sqrt(std::max(0.0, squares / count)),
+               std::sqrt(std::max(0.0, sum / count)),
                *std::ranges::max_element(by_channel));
     std::fflush(stdout);
+    add_cuts(rig, check, squares);
 }
 
 void print_table(std::size_t paths) {
@@ -121,7 +175,9 @@ void print_table(std::size_t paths) {
     fmt::print(
         "| water | phase | beam | m | veil | floor | veil | sum | rms | estimate |\n"
         "|---|---|---|---|---|---|---|---|---|---|\n");
-    for (const WaterRow& water : waters) {
+    std::vector<SquaresByCut> squares(waters.size());
+    for (std::size_t w = 0; w < waters.size(); ++w) {
+        const WaterRow& water = waters[w];
         const std::vector<PhaseFunction> phases{
             builtin_phase(water.petzold),
             fournier_forand(0.0183),
@@ -134,11 +190,13 @@ void print_table(std::size_t paths) {
                     rig.water.scatterers = {{flat(water.b), phase}};
                     rig.sled.altitude_m = altitude_m;
                     for (Strobe& strobe : rig.strobes) strobe.beam = of_width(fwhm_deg);
-                    print_row(water.name, phase.name, fwhm_deg, rig, paths);
+                    print_row(water.name, phase.name, fwhm_deg, rig, paths, squares[w]);
                 }
             }
         }
     }
+    fmt::print("\n| water | cut | floor | veil |\n|---|---|---|---|\n");
+    for (std::size_t w = 0; w < waters.size(); ++w) print_cuts(waters[w].name, squares[w]);
 }
 
 }  // namespace

@@ -466,8 +466,10 @@ TEST(Integrator, TheVeilIsAddedToSignalsAndRadiance) {
     render.add_frame("a", [](int, int row, int x) { return static_cast<float>(1 + x + 2 * row); });
     render.add_wavelength(500.0, {2.0, 1.0, 0.0}, 0, "R", 0);
     add_veil(render, kVeilPlanes);
+    render.manifest().model = ManifestModel{.error = {0.5, 0.25, 0.125}};
     const CameraImage image = render.integrate();
     ExrReader signals(render.folder() / "image.exr");
+    EXPECT_EQ(signals.attribute("aphotic:model_error"), "0.5 0.25 0.125");
     EXPECT_EQ(signals.planes(std::vector<std::string>{"R"}),
               (std::vector<float>{3.0F, 6.0F, 9.0F, 12.0F}));
     EXPECT_EQ(signals.planes(std::vector<std::string>{"G"}),

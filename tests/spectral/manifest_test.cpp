@@ -31,6 +31,7 @@ Manifest some_manifest() {
     manifest.quality = {{{.error = 1.0 / 7.0, .amplification = 1.2}, {}, {.error = 1e-300}}};
     manifest.frame_error = 1.0 / 2048.0;
     manifest.geometry = {{"sled.altitude_m", "2"}, {"strobe 'fore \"x\"'", "at 0.5 0 0 m"}};
+    manifest.model = ManifestModel{.error = {0.01, 1.0 / 3.0, 0.0}};
     manifest.strobes = {{.name = "fore \"x\"", .lamps_across = 5, .lamps_along = 3},
                         {.name = "aft"}};
     manifest.frames = {
@@ -106,6 +107,8 @@ TEST(Manifest, ComesBackWhole) {
     EXPECT_EQ(read.width_px, written.width_px);
     EXPECT_EQ(read.height_px, written.height_px);
     EXPECT_EQ(read.lamp_signal, written.lamp_signal);
+    ASSERT_TRUE(read.model);
+    EXPECT_EQ(read.model->error, written.model->error);
     EXPECT_EQ(read.method, written.method);
     EXPECT_EQ(read.tolerance, written.tolerance);
     EXPECT_EQ(read.frame_error, written.frame_error);

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The model error estimate, as the commands tell it.
+#include "base/atomic_file.h"
+#include "image/exr.h"
+#include "support/run_command.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace aphotic::model_error_test {
+namespace {
+
+constexpr int kBadInput = 2;
+
+class ModelError : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string text =
+            read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml");
+        text = std::regex_replace(
+            text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [24, 15]");
+        text = std::regex_replace(
+            text, std::regex(R"(\n\s*pixel_pitch_um\s*=[^\n]*)"), "\npixel_pitch_um = 470.0");
+        clear_ = text;
+        water_is(R"(type = "jerlov-1C")");
+    }
+
+    void water_is(const std::string& keys) const {
+        write_file(folder_.path() / "rig.toml",
+                   std::regex_replace(
+                       clear_, std::regex(R"(\nabsorption = "pope-fry-1997")"), "\n" + keys));
+    }
+
+    [[nodiscard]] CommandResult run(const std::vector<std::string>& arguments) const {
+        return run_aphotic(folder_.path(), arguments);
+    }
+
+    TempFolder folder_;
+    std::string clear_;
+};
+
+}  // namespace
+
+TEST_F(ModelError, IsToldBesideThePromiseAndNotedInTheMap) {
+    const CommandResult plan = run({"plan", "rig.toml", "--json"});
+    ASSERT_EQ(plan.status, 0) << plan.err;
+    const auto json = nlohmann::json::parse(plan.out);
+    const CommandResult map = run({"lightmap", "rig.toml", "-o", "map.exr"});
+    ASSERT_EQ(map.status, 0) << map.err;
+    EXPECT_NE(map.out.find("what the model of scattering leaves out is estimated at 0.0"),
+              std::string::npos)
+        << map.out;
+    const std::string noted =
+        ExrReader(folder_.path() / "map.exr").attribute("aphotic:model_error");
+    double red = 0.0;
+    double green = 0.0;
+    double blue = 0.0;
+    std::istringstream(noted) >> red >> green >> blue;
+    EXPECT_EQ(json["model_error"]["R"], red);  // the same seed
+    EXPECT_EQ(json["model_error"]["G"], green);
+    EXPECT_EQ(json["model_error"]["B"], blue);
+    EXPECT_GT(red, 0.0);
+}
+
+TEST_F(ModelError, IsRefusedOverTheTolerance) {
+    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+             {"plan", "rig.toml"},
+             {"trace", "rig.toml", "-o", "out"},
+             {"lightmap", "rig.toml", "-o", "map.exr"},
+             {"atlas", "rig.toml", "-o", "out", "--altitude", "1:2:1"}}) {
+        std::vector<std::string> arguments = command;
+        arguments.insert(arguments.end(), {"--model-tolerance", "1e-9"});
+        const CommandResult refused = run(arguments);
+        EXPECT_EQ(refused.status, kBadInput) << command.front();
+        EXPECT_NE(refused.err.find("rig.toml: found water in which light that is scattered more "
+                                   "than once"),
+                  std::string::npos)
+            << refused.err;
+        EXPECT_NE(refused.err.find("allowed: --model-tolerance 1e-09"), std::string::npos)
+            << refused.err;
+        EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out")) << command.front();
+        EXPECT_FALSE(std::filesystem::exists(folder_.path() / "map.exr")) << command.front();
+    }
+}
+
+TEST_F(ModelError, IsOfTheHighestMapOfAnAtlas) {
+    const auto error_at = [&](const std::string& altitude) {
+        const CommandResult map =
+            run({"lightmap", "rig.toml", "-o", "map.exr", "--json", "--altitude", altitude});
+        return nlohmann::json::parse(map.out)["model_error"];
+    };
+    const CommandResult atlas =
+        run({"atlas", "rig.toml", "-o", "out", "--json", "--altitude", "1:3:1"});
+    ASSERT_EQ(atlas.status, 0) << atlas.err;
+    EXPECT_EQ(nlohmann::json::parse(atlas.out)["model_error"], error_at("3"));
+}
+
+TEST_F(ModelError, IsNoneOfWaterThatDoesNotScatterNorWithoutItsVeil) {
+    EXPECT_EQ(run({"lightmap", "rig.toml", "-o", "map.exr", "--no-veil"}).out.find("leaves out"),
+              std::string::npos);
+    water_is(R"(absorption = "pope-fry-1997")");
+    const CommandResult plan = run({"plan", "rig.toml", "--json", "--model-tolerance", "1e-9"});
+    ASSERT_EQ(plan.status, 0) << plan.err;
+    EXPECT_FALSE(nlohmann::json::parse(plan.out).contains("model_error"));
+}
+
+}  // namespace aphotic::model_error_test
