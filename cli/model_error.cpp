@@ -35,12 +35,13 @@ std::optional<ManifestModel> model_error(const Rig& rig,
     const auto worst = std::ranges::max_element(model.error);
     if (*worst > tolerance) {
         throw InputError(
-            "{}: found water in which light that is scattered more than once, which the model "
-            "leaves out, changes {} by an estimated {:.2g} (rms, at {} m); allowed: "
-            "--model-tolerance {}. Less water between sled and floor has less of it",
+            "{}: found an estimated {:.2g} of {}'s signal (rms, at {} m) in what the model of "
+            "water "
+            "that scatters leaves out: light that is turned more than once, and blur; allowed: "
+            "--model-tolerance {}. Lower altitudes and wider beams have less of it",
             rig_file,
-            kChannelNames[static_cast<std::size_t>(worst - model.error.begin())],
             *worst,
+            kChannelNames[static_cast<std::size_t>(worst - model.error.begin())],
             rig.sled.altitude_m,
             tolerance);
     }
