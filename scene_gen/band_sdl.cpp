@@ -105,6 +105,7 @@ std::string band_sdl(const Band& band) {
         if (scattering.eccentricity) declare("Eccentricity", sdl_number(*scattering.eccentricity));
         declare("Samples", fmt::format("{}", scattering.samples));
         declare("Sight", sdl_number(scattering.sight_m));
+        if (scattering.cuts_edges) declare("Cut_Edges", "true");
     }
     return sdl + spectra_sdl("Lamp", band.lamps, band.lambda_nm, false) +
            spectra_sdl(

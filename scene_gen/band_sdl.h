@@ -46,7 +46,8 @@ struct BandScattering {
     Channels per_m{};                    // of light that goes as the phase function says
     std::optional<double> eccentricity;  // Henyey and Greenstein's g; none: Rayleigh's
     int samples = 1;
-    double sight_m = 0.0;  // up to which a ray is sampled as one
+    double sight_m = 0.0;     // up to which a ray is sampled as one
+    bool cuts_edges = false;  // but for the edges of cones
 };
 
 struct Band {

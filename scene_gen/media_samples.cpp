@@ -66,7 +66,9 @@ std::optional<Interval> within_cone(const Piece& piece,
 // The piece, cut where it crosses a cone's edge that is a step.
 std::vector<Interval> between_steps(const Rig& rig,
                                     std::span<const Lamp> lamps,
-                                    const Piece& piece) {
+                                    const Piece& piece,
+                                    bool cuts_edges) {
+    if (!cuts_edges) return {piece.all};
     std::vector<double> cuts{piece.all.from_m, piece.all.to_m};
     for (const Lamp& lamp : lamps) {
         const Strobe& strobe = rig.strobes[lamp.strobe];
@@ -142,7 +144,7 @@ std::vector<VeilNodes> media_samples(const Rig& rig,
         if (2.0 * from_m >= sampling.most_m) break;
         const Piece piece{.ray = ray, .all = {from_m, std::min(end_m, length_m)}};
         std::vector<Interval> all_lit;
-        for (const Interval& part : between_steps(rig, lamps, piece)) {
+        for (const Interval& part : between_steps(rig, lamps, piece, sampling.cuts_edges)) {
             const std::vector<Interval> lit = lit_intervals(rig, lamps, {.ray = ray, .all = part});
             all_lit.insert(all_lit.end(), lit.begin(), lit.end());
         }

@@ -6,8 +6,9 @@
 // each interval of the ray that is lit: of a spotlight what its cone cuts out, of a point light all
 // of it, merged where they overlap. A cone's edge inside another's light would lie inside an
 // interval and err by the first order of 1/N, smooth light by the second. So surfaces that nobody
-// sees cut the ray at edges that are steps (plugin/include/aphotic.inc). Steps of tables and
-// images, and behind windows, are not cut.
+// sees cut the ray at edges that are steps (plugin/include/aphotic.inc), unless the scene is a
+// user's, where they would bend rays in glass. Steps of tables and images, and behind windows, are
+// not cut.
 //
 // Objects and their shadows are left out.
 #pragma once
@@ -30,6 +31,7 @@ struct MediaSampling {
     // the first from half of most_m on.
     double sight_m = 0.0;
     double most_m = 0.0;
+    bool cuts_edges = true;  // of cones
 };
 
 // By strobe, the samples as nodes, weights by lobe. lamps: what stands for each strobe's emitter.

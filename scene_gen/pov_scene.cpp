@@ -370,8 +370,10 @@ std::vector<PlannedWavelength> in_veil(Frame frame) {
 
 // Of one lobe; none: of no scattering at all.
 BandScattering scattering_of(const PovrayVeil& veil, std::optional<std::size_t> lobe, Frame frame) {
-    BandScattering scattering{
-        .eccentricity = 0.0, .samples = veil.sampling.samples, .sight_m = veil.sampling.sight_m};
+    BandScattering scattering{.eccentricity = 0.0,
+                              .samples = veil.sampling.samples,
+                              .sight_m = veil.sampling.sight_m,
+                              .cuts_edges = veil.sampling.cuts_edges};
     if (!lobe) return scattering;
     for (std::size_t c = 0; c < scattering.per_m.size(); ++c)
         scattering.per_m[c] = std::abs(in_channel(frame, c).veil->scattering_per_m[*lobe]);

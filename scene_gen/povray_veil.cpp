@@ -215,7 +215,8 @@ PovrayVeil plan_povray_veil(const Rig& rig,
     PovrayVeil veil{.sampling = {.lobes = lobes.lobes,
                                  .samples = request.samples,
                                  .sight_m = of_veil.longest_path_m,
-                                 .most_m = longest_in_water_m(rig)},
+                                 .most_m = longest_in_water_m(rig),
+                                 .cuts_edges = !request.is_user_scene},
                     .quality = fitted.quality};
     veil.error = measured_error(rig, veil, request, wavelengths);
     return veil;

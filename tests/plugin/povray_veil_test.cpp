@@ -142,11 +142,16 @@ TEST(PovrayVeil, OfConesIsTheQuadratures) {
     EXPECT_LE(worst_of(in_water(small_habcam(17, 13))), kMethodTwo);
 }
 
-TEST(PovrayVeil, BehindAPortIsTheQuadratures) {
-    Rig rig = in_water(small_habcam(17, 13));
-    Dice dice(17);
-    give_port(kPortKinds.front(), dice, rig.camera);
-    EXPECT_LE(worst_of(rig), kMethodTwo);
+// Whose air the camera stays in, whatever cuts the rays; the third lamp's cones cross its housing.
+TEST(PovrayVeil, BehindPortsIsTheQuadratures) {
+    for (const PortKind kind : kPortKinds) {
+        Rig rig = in_water(small_habcam(9, 7));
+        rig.strobes[2].position_m = {0.02, 0.03, -0.6};
+        rig.strobes[2].axis = {0.0, 0.0, 1.0};
+        Dice dice(17);
+        give_port(kind, dice, rig.camera);
+        EXPECT_LE(worst_of(rig), kMethodTwo) << static_cast<int>(kind);
+    }
 }
 
 TEST(PovrayVeil, IsOffByTheSecondOrderOfItsSamples) {
@@ -224,19 +229,24 @@ TEST(PovrayVeil, HasShadows) {
                 const Eigen::Vector3d& u = sight.ray.direction;
                 const Eigen::Vector3d a = sight.ray.origin_m - lamp_m;
                 const auto up_to = [&](double length_m) {
-                    return veil.radiance(sight.ray, std::clamp(length_m, 0.0, sight.length_m), nm);
+                    return veil.radiance(sight.ray, length_m, nm);
                 };
                 const double lit = up_to(sight.length_m);
                 // (axis . (a + t u))^2 = cos^2 |a + t u|^2
                 const double A = std::pow(axis.dot(u), 2) - cos2;
                 const double B = axis.dot(a) * axis.dot(u) - cos2 * a.dot(u);
                 const double C = std::pow(axis.dot(a), 2) - cos2 * a.squaredNorm();
-                double lost = 0.0;
+                std::vector<double> ends_m{0.0, sight.length_m};
                 if (const double root2 = B * B - A * C; root2 > 0.0) {
-                    const double t1_m = (-B + std::sqrt(root2)) / A;
-                    const double t2_m = (-B - std::sqrt(root2)) / A;
-                    if (axis.dot(a + 0.5 * (t1_m + t2_m) * u) > 0.0)
-                        lost = std::abs(up_to(t2_m) - up_to(t1_m));
+                    for (const double root : {-std::sqrt(root2), std::sqrt(root2)})
+                        ends_m.push_back(std::clamp((-B + root) / A, 0.0, sight.length_m));
+                }
+                std::ranges::sort(ends_m);
+                double lost = 0.0;
+                for (std::size_t k = 0; k + 1 < ends_m.size(); ++k) {
+                    const Eigen::Vector3d middle = a + 0.5 * (ends_m[k] + ends_m[k + 1]) * u;
+                    if (axis.dot(middle) > middle.norm() * std::cos(half_angle_rad))
+                        lost += up_to(ends_m[k + 1]) - up_to(ends_m[k]);
                 }
                 const auto at = static_cast<std::size_t>(row * rig.camera.width_px + column);
                 ASSERT_NEAR(found[j][at] / lit, 1.0 - lost / lit, kShadowEdge)

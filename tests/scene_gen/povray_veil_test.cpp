@@ -4,10 +4,12 @@
 // tests/plugin/povray_veil_test.cpp renders it.
 #include "scene_gen/povray_veil.h"
 
+#include "base/atomic_file.h"
 #include "rig/rig_reader.h"
 #include "scene_gen/pov_scene.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
+#include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +17,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <regex>
 
 namespace aphotic::povray_veil_test {
 namespace {
@@ -112,8 +115,14 @@ TEST(PovrayVeil, LeavesTheFramesOfTheDirectLightAsTheyAre) {
     EXPECT_EQ(with.manifest.direct_frames(), 2U);
 }
 
+// Which differ more than the direct light's.
 TEST(PovrayVeil, HasWavelengthsEnoughForItsPaths) {
-    const Rig rig = in_water(fournier_forand(0.0183));
+    const TempFolder folder;
+    std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    text = std::regex_replace(text, std::regex("absorption = .*"), "type = \"jerlov-1C\"");
+    text = std::regex_replace(text, std::regex(R"(\[400, 720\])"), "[400, 700]");
+    write_text_file(folder.path() / "rig.toml", text);
+    const Rig rig = read_rig(folder.path() / "rig.toml");
     const RenderPlan plan = planned(rig, kVeilSamples);
     EXPECT_GT(plan.wavelengths.size(), planned(rig, std::nullopt).wavelengths.size());
     EXPECT_LE(worst_error(plan.scene.povray_veil->quality), 1e-3);
