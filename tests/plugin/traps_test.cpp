@@ -54,7 +54,7 @@ const std::vector<Trap> kTraps{
     {"DefaultRight", {{"right x *", "right x * 1.33 * Focal_Length //"}}},
     {"RightOfTheWrongSign", {{"right x *", "right -x *"}}},
     {"GammaOfTheDisplay", {{"assumed_gamma 1.0", "assumed_gamma 2.2"}}},
-    {"SoftConeEdge", {{"falloff min(90, Half_Angle", "falloff min(90, 5 + Half_Angle"}}},
+    {"SoftConeEdge", {{"falloff min(Widest, Half_Angle", "falloff min(Widest, 5 + Half_Angle"}}},
     {"NoCosineInTheCone", {{"tightness Exponent", "tightness 0"}}},
     {"PointAtIsNoDirection", {{"point_at Position + Axis", "point_at Axis"}}},
     {"WaterInTheHousing", {{"no_shadow\n", "no_shadow hollow\n"}}, give_port},
