@@ -509,7 +509,7 @@ TEST_F(Sabotage, TheSignOfG) {
     }));
 }
 
-// The share that is turned by less than the cut is taken for lost.
+// c for K: what is turned by less than the cut is taken for lost, too.
 TEST_F(Sabotage, TheVeilLosesAllOfC) {
     expect_no_when_the_veil_is(veil_of([](Rig& rig) {
         const double share = rig.water.scatterers.front().phase.share_within(kLossCut);
