@@ -46,12 +46,13 @@ TEST(Validate, TellsHowMuchIsVeil) {
     const std::string clear = "absorption = \"pope-fry-1997\"";
     rig.replace(rig.find(clear), clear.size(), "type = \"jerlov-1C\"");
     write_file(folder.path() / "rig.toml", rig);
-    const CommandResult run =
-        run_aphotic(folder.path(), {"validate", "rig.toml", "-o", "out", "--json"});
+    const CommandResult run = run_aphotic(
+        folder.path(), {"validate", "rig.toml", "-o", "out", "--json", "--model-tolerance", "1"});
     ASSERT_EQ(run.status, 0) << run.out << run.err;
     const auto traced = nlohmann::json::parse(run.out).at("veil_in_the_middle");
     const CommandResult map =
-        run_aphotic(folder.path(), {"lightmap", "rig.toml", "-o", "map.exr", "--json"});
+        run_aphotic(folder.path(),
+                    {"lightmap", "rig.toml", "-o", "map.exr", "--json", "--model-tolerance", "1"});
     const auto mapped = nlohmann::json::parse(map.out).at("veil_in_the_middle");
     for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_GT(mapped[c].get<double>(), 0.1);
