@@ -100,14 +100,17 @@ Running start(const PovRay& povray,
     return {.frame = frame, .log = log, .part = std::move(part), .process = std::move(process)};
 }
 
-// The last share of a frame that POV-Ray reported, from the end of its log.
+// The last share of a frame that POV-Ray reported, from the end of its log: no more of it, for a
+// log that is written faster than it is read has no end.
 double reported_share(const fs::path& log) {
     constexpr std::streamoff kTail = 400;
     std::ifstream in(log, std::ios::binary | std::ios::ate);
     const std::streamoff size = in.tellg();
     if (size <= 0) return 0.0;
-    in.seekg(std::max<std::streamoff>(0, size - kTail));
-    const std::string tail{std::istreambuf_iterator<char>(in), {}};
+    std::string tail(static_cast<std::size_t>(std::min(size, kTail)), '\0');
+    in.seekg(size - static_cast<std::streamoff>(tail.size()));
+    in.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+    tail.resize(static_cast<std::size_t>(in.gcount()));
     return share_in_log(tail);
 }
 
