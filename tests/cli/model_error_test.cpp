@@ -26,7 +26,9 @@ class CommandModelError : public testing::Test {
             text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [24, 15]");
         text = std::regex_replace(
             text, std::regex(R"(\n\s*pixel_pitch_um\s*=[^\n]*)"), "\npixel_pitch_um = 470.0");
-        clear_ = text;
+        // The range of Jerlov's types.
+        clear_ = std::regex_replace(
+            text, std::regex(R"(\n\s*range_nm\s*=[^\n]*)"), "\nrange_nm = [400, 700]");
         water_is(R"(type = "jerlov-1C")");
     }
 
