@@ -186,7 +186,7 @@ Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(r
         const auto& kind = scatterer.phase.kind;
         if (const auto* table = std::get_if<PhaseTable>(&kind)) {
             for (const double angle_rad : table->angle_rad)
-                if (points >= kVeilPoints && angle_rad > kVeilCut)
+                if (points >= kVeilPointsBetweenKinks && angle_rad > kVeilCut)
                     kinks_rad_.push_back(angle_rad - kPoleRad);
         }
         if (std::holds_alternative<PhaseTable>(kind) ||

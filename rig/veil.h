@@ -52,6 +52,9 @@ namespace aphotic {
 
 inline constexpr double kVeilPanelRad = 0.35;
 inline constexpr unsigned kVeilPoints = 8;  // of a panel
+// Of so many and more, panels end at the kinks of tabulated phase functions. Fewer are off by more
+// at each kink than they would be without.
+inline constexpr unsigned kVeilPointsBetweenKinks = 4;
 // Light that the water leaves less than e^-kVeilDepth of is left out.
 inline constexpr double kVeilDepth = 40.0;
 
@@ -66,7 +69,8 @@ struct VeilNodes {
 
 class Veil {
   public:
-    // points: of a panel; another number than kVeilPoints is for those who measure the error.
+    // points: of a panel; another number than kVeilPoints is for those who measure or state the
+    // error.
     explicit Veil(const Rig& rig, unsigned points = kVeilPoints);
 
     // Over the whole length of the ray, which may be infinite; adds nothing to nodes that are

@@ -31,16 +31,21 @@ struct FrameMap {
 std::vector<FrameMap> maps_of(const Rig& rig, const Manifest& manifest, bool may_see_far) {
     PathRange paths = path_range(rig);
     paths.has_horizon |= may_see_far;
-    std::vector<FrameMap> maps{{VeilMap(rig, paths, kTableError, kVeilPoints), kChannels}};
+    std::vector<FrameMap> maps{
+        {VeilMap(rig, paths, kTableError, kVeilPointsBetweenKinks), kChannels}};
     std::span<const PlannedWavelength> rest = manifest.wavelengths;
     while (!rest.empty()) {
         std::vector<double> lambda_nm;
         for (const PlannedWavelength& w : rest) {
             if (w.frame == rest.front().frame) lambda_nm.push_back(w.lambda_nm);
         }
-        maps.push_back(
-            {VeilMap(rig, paths, kTableError, kVeilPoints, lambda_nm, rest.front().index_nm),
-             lambda_nm.size()});
+        maps.push_back({VeilMap(rig,
+                                paths,
+                                kTableError,
+                                kVeilPointsBetweenKinks,
+                                lambda_nm,
+                                rest.front().index_nm),
+                        lambda_nm.size()});
         rest = rest.subspan(lambda_nm.size());
     }
     return maps;
@@ -132,7 +137,7 @@ void require_bare_floor_under_veil(const Rig& rig) {
 }
 
 double veil_plane_error(const Rig& rig) {
-    return kVeilOfSignal + veil_error(rig, kVeilPoints);
+    return kVeilOfSignal + veil_error(rig, kVeilPointsBetweenKinks);
 }
 
 std::array<RuleQuality, kChannels> with_veil(std::array<RuleQuality, kChannels> quality,

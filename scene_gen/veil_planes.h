@@ -12,8 +12,8 @@
 // Both are planes of one file (veil_path() of spectral/manifest.h), of floats, up to what the pixel
 // sees: the rig's floor, or as far as the frame of fog tells (spectral/manifest.h), to a half
 // float's digits. Shadows in the veil are left out. Off by no more than veil_plane_error() of a
-// pixel's signal over the floor, measured and no bound: of the interpolation, and of kVeilPoints a
-// panel.
+// pixel's signal over the floor, measured and no bound: of the interpolation, and of
+// kVeilPointsBetweenKinks a panel.
 #pragma once
 
 #include "rig/path_range.h"
