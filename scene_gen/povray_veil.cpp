@@ -184,6 +184,17 @@ double measured_error(const Rig& rig,
     return worst;
 }
 
+// Near enough for the samples to serve what is near. Where the cut might lie in glass, beyond all
+// that is lit.
+double first_piece_m(const Rig& rig,
+                     const LightFamily& direct,
+                     const LightFamily& of_veil,
+                     const PovrayVeilRequest& request) {
+    if (rig.camera.port || request.is_user_scene || !(direct.shortest_path_m > 0.0))
+        return of_veil.longest_path_m;
+    return std::min(of_veil.longest_path_m, direct.shortest_path_m);
+}
+
 }  // namespace
 
 PovrayVeil plan_povray_veil(const Rig& rig,
@@ -214,7 +225,7 @@ PovrayVeil plan_povray_veil(const Rig& rig,
     }
     PovrayVeil veil{.sampling = {.lobes = lobes.lobes,
                                  .samples = request.samples,
-                                 .sight_m = of_veil.longest_path_m,
+                                 .sight_m = first_piece_m(rig, family, of_veil, request),
                                  .most_m = longest_in_water_m(rig),
                                  .cuts_edges = !request.is_user_scene},
                     .quality = fitted.quality};
