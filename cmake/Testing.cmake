@@ -1,24 +1,22 @@
 # aphotic_tests(LABEL folder/name ...)
 #
 # Builds tests/folder/name_test.cpp ... into one test program a folder, folder_LABEL_tests, and gives
-# its tests to CTest as folder/Suite.Case, under a label:
+# its suites to CTest as folder/Suite, under a label. A suite is one process: to start one for each of
+# two thousand cases took longer than most of them, and what a suite shares, a plan or a rendered survey,
+# was made anew for each. A case that fails is named at the end of its suite's output. The labels:
 #
 #   unit    no other program needed; milliseconds each. Under the name unit_that_computes it gets the
 #           same label and is optimised, see below
 #   povray  runs POV-Ray. Under the name povray_of_few_pixels it gets the same label and weighs half
 #   cli     runs the command as a user would
-#   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser
+#   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser. Under the
+#           name slow_that_waits, for POV-Ray, it gets the same label and weighs half
 #
-# Under the names unit_as_one and slow_as_one the program is one test to CTest, folder/all_LABEL, which
-# would else start it anew for each: for tests that share what takes long, a plan or a rendered survey.
-#
-# A test weighs two of CTest's processors, one where it mostly waits: POV-Ray spends two thirds of a
-# second on a few pixels, asleep. So scripts/test gives CTest twice as many as there are cores.
+# POV-Ray takes two thirds of a second for a few pixels, most of it asleep. So scripts/test gives CTest
+# four processors for each core: what computes weighs four, renders two, those of few pixels one.
 #
 # A file's tests stand in a namespace of its name, aphotic::name_test: in a unity build the unnamed
 # namespaces of all files are one.
-include(GoogleTest)
-
 function(aphotic_tests label)
     set(program ${label})
     # Half of the time to build tests went into making those fast that run for an instant. What they
@@ -26,19 +24,24 @@ function(aphotic_tests label)
     # people's templates, of which the linker takes the test's. So tests that follow much light through
     # Eigen are a program of their own, optimised too.
     set(optimisation -O0)
-    set(limits TIMEOUT 300 PROCESSORS 2)  # for what hangs: with sanitizers on a busy machine some take 120
-    string(REGEX REPLACE "_as_one$" "" label ${label})
+    set(limits TIMEOUT 1800)  # for what hangs: with sanitizers on a busy machine some take 300
+    set(weight 4)
     if(label STREQUAL "unit_that_computes")
         set(label unit)
         set(optimisation -O2)
     elseif(label STREQUAL "povray")
-        set(limits TIMEOUT 600 PROCESSORS 2)
+        set(weight 2)
+        list(APPEND limits COST 50)  # early, to wait while others compute
     elseif(label STREQUAL "povray_of_few_pixels")
         set(label povray)
-        set(limits TIMEOUT 600)
-    elseif(label STREQUAL "slow" OR program MATCHES "_as_one$")
-        # First, so that none is left over at the end. The table of extremes takes 260 s beside others.
-        set(limits TIMEOUT 1200 PROCESSORS 2 COST 100)
+        set(weight 1)
+        list(APPEND limits COST 50)
+    elseif(label MATCHES "^slow")
+        list(APPEND limits COST 100)  # first, so that none is left over at the end
+        if(label STREQUAL "slow_that_waits")
+            set(label slow)
+            set(weight 2)
+        endif()
     endif()
 
     set(folders ${ARGN})
@@ -64,16 +67,13 @@ function(aphotic_tests label)
             aphotic_sanitizers aphotic_warnings)
         add_dependencies(${target} aphotic)
 
-        if(program MATCHES "_as_one$")
-            add_test(NAME ${folder}/all_${label} COMMAND ${target})
-            set_tests_properties(${folder}/all_${label} PROPERTIES LABELS ${label} ${limits})
-            continue()
-        endif()
-        # Discovered when CTest starts, so that a test program that crashes fails as a test
-        # and not as a build.
-        gtest_discover_tests(${target}
-            DISCOVERY_MODE PRE_TEST
-            TEST_PREFIX ${folder}/
-            PROPERTIES LABELS ${label} ${limits})
+        # What CTest reads when it starts.
+        set(suites ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
+        file(GENERATE OUTPUT ${suites} CONTENT "set(program [[$<TARGET_FILE:${target}>]])
+set(folder ${folder})
+set(properties LABELS ${label} PROCESSORS ${weight} ${limits})
+include([[${PROJECT_SOURCE_DIR}/cmake/Suites.cmake]])
+")
+        set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${suites})
     endforeach()
 endfunction()

@@ -19,6 +19,7 @@
 #include <functional>
 #include <numbers>
 #include <regex>
+#include <set>
 
 namespace aphotic::sabotage_test {
 namespace {
@@ -130,13 +131,21 @@ class Sabotage : public testing::Test {
         return run_aphotic(folder_.path(), arguments, environment);
     }
 
+    // Several tests spoil the same rig, whose honest render need pass but once.
+    static bool is_first(const std::string& command, const std::string& rig) {
+        static std::set<std::pair<std::string, std::string>> seen;
+        return seen.emplace(command, rig).second;
+    }
+
     // Scenes are changed on their way into POV-Ray, by a POV-Ray that edits them with sed.
     void expect_no_when_scenes_are(const std::string& worst,
                                    const std::string& sed_program,
                                    const std::string& rig = honest_rig()) {
         write_file(folder_.path() / "rig.toml", rig);
-        EXPECT_EQ(validate(kWavelengths).status, 0) << "the honest render must pass";
-        std::filesystem::remove_all(folder_.path() / "out");
+        if (is_first("validate", rig)) {
+            EXPECT_EQ(validate(kWavelengths).status, 0) << "the honest render must pass";
+            std::filesystem::remove_all(folder_.path() / "out");
+        }
         // The first of several at once edits, the others wait.
         write_script(folder_.path() / "povray",
                      "if [ -f aphotic.inc ]; then\n"
@@ -162,8 +171,11 @@ class Sabotage : public testing::Test {
                                       const std::vector<std::string>& wavelengths = kWavelengths) {
         write_file(folder_.path() / "rig.toml", honest);
         write_file(folder_.path() / "spoilt.toml", spoilt);
-        render("rig.toml", "honest", wavelengths);
-        EXPECT_EQ(validate({"--rendered", "honest"}).status, 0) << "the honest render must pass";
+        if (is_first("render", honest)) {
+            render("rig.toml", "honest", wavelengths);
+            EXPECT_EQ(validate({"--rendered", "honest"}).status, 0)
+                << "the honest render must pass";
+        }
         render("spoilt.toml", "spoilt", wavelengths);
         expect_no(worst, validate({"--rendered", "spoilt"}));
     }

@@ -7,6 +7,7 @@
 #include "base/sha256.h"
 #include "support/rendered.h"
 #include "support/run_command.h"
+#include "support/variable.h"
 
 namespace aphotic::frame_runner_test {
 namespace {
@@ -83,12 +84,9 @@ TEST_F(FrameRunner, UsersIniIsNotInherited) {
     write_file(folder_.path() / "povray" / "povray.ini", hostile);
 
     const Difference clean = against_closed_form(rig_, set_);
-    ::setenv("POVINI", (home.path() / "povray.ini").c_str(), 1);
-    const std::string home_before = std::getenv("HOME");
-    ::setenv("HOME", home.path().c_str(), 1);
+    const Variable users_ini("POVINI", home.path() / "povray.ini");
+    const Variable users_home("HOME", home.path());
     const Difference found = against_closed_form(rig_, set_);
-    ::setenv("HOME", home_before.c_str(), 1);
-    ::unsetenv("POVINI");
     EXPECT_EQ(found.worst, clean.worst);
     EXPECT_LE(found.worst, kHalfFloatError);
 }

@@ -2,6 +2,7 @@
 #include "plugin/library_paths.h"
 
 #include "support/temp_folder.h"
+#include "support/variable.h"
 
 #include <gtest/gtest.h>
 
@@ -33,7 +34,7 @@ TEST(LibraryPaths, AreOfTheFileThatPovrayWouldRead) {
     std::filesystem::create_directories(home.path() / ".povray" / "3.7");
     write_file(home.path() / ".povray" / "3.7" / "povray.ini", "Library_Path=home\n");
     write_file(home.path() / "mine.ini", "Library_Path=mine\n");
-    ::setenv("HOME", home.path().c_str(), 1);
+    const Variable users_home("HOME", home.path());
     ::unsetenv("POVINI");
     EXPECT_EQ(library_paths(scene.path(), "3.7.0.10"), Paths{"here"});
     std::filesystem::remove(scene.path() / "povray.ini");

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "support/run_command.h"
 #include "support/temp_folder.h"
+#include "support/variable.h"
 
 #include <gtest/gtest.h>
 
@@ -30,23 +31,6 @@ std::string message_of(const std::function<void()>& action) {
     }
     return "no error";
 }
-
-// Sets a variable for the length of a test.
-class Variable {
-  public:
-    Variable(const char* name, const std::string& value) : name_(name) {
-        const char* before = std::getenv(name);
-        if (before != nullptr) before_ = before;
-        ::setenv(name, value.c_str(), 1);
-    }
-    ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
-    Variable(const Variable&) = delete;
-    Variable& operator=(const Variable&) = delete;
-
-  private:
-    const char* name_;
-    std::optional<std::string> before_;
-};
 
 TEST(PovRay, VersionIsReadFromWhatItPrints) {
     EXPECT_EQ(version_from(kPrinted), "3.7.0.10.unofficial");
