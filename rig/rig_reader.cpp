@@ -130,7 +130,8 @@ class RigReader {
     Strobe read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled);
     std::vector<Strobe> read_strobes(Section& top,
                                      const std::vector<Beam>& beams,
-                                     const Sled& sled);
+                                     const Sled& sled,
+                                     const Water& water);
     Object read_object(Section section, const std::vector<Strobe>& strobes);
     Shape read_shape(Section& object, std::string_view key);
     Mesh read_mesh_of(Section& object);
@@ -786,7 +787,8 @@ std::vector<Beam> RigReader::read_beams(Section& top, const Water& water) {
 
 std::vector<Strobe> RigReader::read_strobes(Section& top,
                                             const std::vector<Beam>& beams,
-                                            const Sled& sled) {
+                                            const Sled& sled,
+                                            const Water& water) {
     std::vector<Strobe> strobes;
     std::set<std::string> names;
     std::size_t cones = 0;
@@ -794,6 +796,12 @@ std::vector<Strobe> RigReader::read_strobes(Section& top,
         strobes.push_back(read_strobe(section, beams, sled));
         if (!names.insert(strobes.back().name).second)
             section.found_but("name", "a name that no other strobe has");
+        if (water.scatters() && strobes.back().position_m.norm() < kLeastDistance_m) {
+            section.found_but("position_m",
+                              fmt::format("in water that scatters, a point at least {} m from the "
+                                          "camera's pupil, for the veil has no end there",
+                                          kLeastDistance_m));
+        }
         cones += strobes.back().beam.cones.size();
         if (cones <= kMostCones) continue;
         section.found_but("beam",
@@ -811,7 +819,7 @@ Rig RigReader::read(Section top) {
     Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"));
 
     const std::vector<Beam> beams = read_beams(top, water);
-    std::vector<Strobe> strobes = read_strobes(top, beams, sled);
+    std::vector<Strobe> strobes = read_strobes(top, beams, sled, water);
     std::vector<Spectrum> materials = read_materials(top);
     std::vector<Object> objects = read_objects(top, strobes);
     fs::path scene;

@@ -20,9 +20,10 @@ constexpr double kVeilTableShare = 0.5;
 constexpr int kVeilStencil = 4;
 constexpr std::size_t kMostCell_px = 18;
 
-// The veil knows no pixels: of a small image a cell is smaller.
+// The veil knows no pixels: of a small image a cell is smaller, down to a pixel, whose veil is then
+// not interpolated.
 double cell_px(const Camera& camera) {
-    constexpr double kLeast_px = 4.0;
+    constexpr double kLeast_px = 1.0;
     return std::clamp(
         std::max(camera.width_px, camera.height_px) / kVeilCells, kLeast_px, kVeilCell_px);
 }
@@ -217,7 +218,9 @@ void VeilMap::add(const Rig& flown,
 
 VeilMap::Axis::Axis(int count, double cell_px)
     : pixels(count),
-      cells(std::max(kVeilStencil - 1, static_cast<int>(std::ceil((count - 1) / cell_px)))),
+      cells(count == 3
+                ? kVeilStencil  // so that the middle one is a node
+                : std::max(kVeilStencil - 1, static_cast<int>(std::ceil((count - 1) / cell_px)))),
       apart_px(std::max(1, count - 1) / static_cast<double>(cells)) {}
 
 int VeilMap::Axis::first_pixel(int cell) const {
@@ -314,7 +317,17 @@ class VeilMap::Strip {
         return true;
     }
 
-    // Third differences: where an edge crosses the nodes, they stand out.
+    // Third differences: where an edge crosses the nodes, they stand out. Of nodes that are as
+    // bright on the left as on the right, as seen past a lamp on the camera's axis, there are none,
+    // whatever lies between; they tell nothing.
+    static bool is_straight(const std::array<double, kSide>& line, double most) {
+        const double outer = line[3] - line[0];
+        const double inner = line[1] - line[2];
+        if (!(std::abs(outer + 3.0 * inner) <= most)) return false;
+        const bool is_even = std::abs(outer) <= most && std::abs(inner) <= most;
+        return !is_even || std::abs(line[1] - line[0]) <= most;
+    }
+
     bool is_straight(const Stencil& nodes, const Scope& scope) const {
         const int row = scope.rows.first + scope.rows.count / 2;
         const int column = scope.columns.first + scope.columns.count / 2;
@@ -322,11 +335,11 @@ class VeilMap::Strip {
             const double most =
                 kVeilBend * (scope.veil[c] + static_cast<double>(floor_[index(c, row, column)]));
             for (std::size_t k = 0; k < kSide; ++k) {
-                const auto& line = nodes[k];
-                const double along = line[3][c] - line[0][c] + 3.0 * (line[1][c] - line[2][c]);
-                const double down =
-                    nodes[3][k][c] - nodes[0][k][c] + 3.0 * (nodes[1][k][c] - nodes[2][k][c]);
-                if (!(std::abs(along) <= most && std::abs(down) <= most)) return false;
+                const std::array along{
+                    nodes[k][0][c], nodes[k][1][c], nodes[k][2][c], nodes[k][3][c]};
+                const std::array down{
+                    nodes[0][k][c], nodes[1][k][c], nodes[2][k][c], nodes[3][k][c]};
+                if (!is_straight(along, most) || !is_straight(down, most)) return false;
             }
         }
         return true;
@@ -388,6 +401,8 @@ class VeilMap::Strip {
         const Place place{across.node_px(left), down.node_px(top), across.apart_px, down.apart_px};
         const Place own{
             across.node_px(cell), down.node_px(cell_row), across.apart_px, down.apart_px};
+        // Then pixels' centres are nodes.
+        const bool is_every_pixel = across.apart_px <= 1.0 && down.apart_px <= 1.0;
         Scope scope{.rows = rows, .columns = columns};
         for (std::size_t s = 0; s < map_.rig_.strobes.size(); ++s) {
             for (std::size_t c = 0; c < kChannels; ++c) scope.veil[c] += node(s, cell_row, cell)[c];
@@ -402,7 +417,7 @@ class VeilMap::Strip {
                 }
             }
             scope.strobe = s;
-            if (!fits(nodes, place, own, scope, room)) {
+            if (!is_every_pixel && !fits(nodes, place, own, scope, room)) {
                 refine(cell_row, cell, scope, room);
                 continue;
             }

@@ -42,8 +42,8 @@
 namespace aphotic {
 
 inline constexpr double kVeilCell_px = 16.0;
-inline constexpr double kVeilCells =
-    85.0;                             // at least, along the longer side, down to 4 pixels each
+// At least, along the longer side, down to a pixel each.
+inline constexpr double kVeilCells = 85.0;
 inline constexpr int kVeilParts = 4;  // of a cell, each way
 inline constexpr double kVeilOff = 4e-5;
 inline constexpr double kVeilBend = 8e-5;

@@ -126,6 +126,16 @@ void plan_to_tolerance(const Rig& rig,
                        const QuadratureFitter& fitter,
                        const PlanRequest& request,
                        RenderPlan& plan) {
+    const double least = plan.frame_error + plan.veil_error;
+    if (plan.veil_error > 0.0 && request.tolerance <= least) {
+        throw InputError(
+            fmt::format("tolerance: found {}; allowed: over {:.3g}, for the veil is off by {:.2g}, "
+                        "whatever the wavelengths, and half floats by {:.2g}",
+                        request.tolerance,
+                        least,
+                        plan.veil_error,
+                        plan.frame_error));
+    }
     if (keeps(request.tolerance, rig, fitter, request, plan)) return;
     constexpr double kNext = 1.3;
     double kept = kNext * request.tolerance;

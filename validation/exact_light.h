@@ -5,6 +5,7 @@
 //
 //   L(lambda) = sum  Phi power I / (pi d^2)
 //                    (rho cos(i) + phong max(0, m.l)^size)  exp(-K (d + r))
+//               + veil
 //   S_c       = sum over panels of Gauss-Legendre of L(lambda) Q_c(lambda)
 //
 // with the letters of tracer.h. It is as slow and as plain as the formula: nothing is tabulated,
@@ -23,14 +24,25 @@
 // soft edge is integrated by parts, 2 pi / (n + 1) times the integral of S'(u) (1 - u^(n + 1)) over
 // the cosine u.
 //
-// Limits: point lamps, no objects, a flat floor, no veil. Q_c is taken in double, for its table is
-// double; so is I of a pattern, or behind a window (traced_beam.h).
+// The veil of a strobe, by u along the ray from the lamp's nearest point at t_0, h away:
+//
+//   x = h sinh(u),   dt/d^2 = du / (h cosh(u)),   t + d = t_0 + h e^u,   psi = 2 atan(e^u)
+//
+// A unit of u is a panel of kVeilPoints of Gauss's, the nearest pole i pi/2 away, and less where
+// light is lost faster than by kVeilDepth a panel. Panels end where cones do, by the roots of
+// (k.(P - L))^2 = cos^2 d^2, and at a tabulated phase function's rows. A lamp on the ray is
+// kVeilBeside_m beside it (traced_veil.h).
+//
+// Limits: point lamps, no objects, a flat floor; in water that scatters, beams of cones. Q_c is
+// taken in double, for its table is double; so are phase functions, and I of a pattern, or behind a
+// window (traced_beam.h).
 #pragma once
 
 #include "rig/rig.h"
 #include "spectral/refractive_index.h"
 #include "spectral/sensor.h"
 #include "validation/traced_beam.h"
+#include "validation/traced_veil.h"
 #include "validation/traced_water.h"
 
 #include <boost/math/constants/constants.hpp>
@@ -76,18 +88,26 @@ class ExactLight {
             }
         }
         knots_nm_ = union_of_knots(curves, rig.camera.range);
+        if (!water_.scatters()) return;
+        least_loss_per_m_ = attenuation_per_m(knots_nm_.front());
+        most_loss_per_m_ = least_loss_per_m_;
+        for (const double nm : knots_nm_) {
+            const Real loss = attenuation_per_m(nm);
+            least_loss_per_m_ = std::min(least_loss_per_m_, loss);
+            most_loss_per_m_ = std::max(most_loss_per_m_, loss);
+        }
     }
 
     // Of the point (column, row) of the image; pixel (0, 0)'s centre is (0.5, 0.5).
     [[nodiscard]] Real radiance(double column, double row, double lambda_nm) const {
-        return radiance_of(lit_at(column, row, lambda_nm), lambda_nm);
+        return radiance_of(sight_at(column, row, lambda_nm), lambda_nm);
     }
 
     [[nodiscard]] std::array<Real, kChannels> signals(double column, double row) const {
         const Pixel pixel{column, row};
-        const std::vector<Lit> lit = lit_at(column, row, middle_nm(0, knots_nm_.size() - 1));
+        const Sight sight = sight_at(column, row, middle_nm(0, knots_nm_.size() - 1));
         std::array<Real, kChannels> sum{};
-        for (std::size_t k = 0; k + 1 < knots_nm_.size(); ++k) add_interval(pixel, lit, k, sum);
+        for (std::size_t k = 0; k + 1 < knots_nm_.size(); ++k) add_interval(pixel, sight, k, sum);
         return sum;
     }
 
@@ -97,16 +117,28 @@ class ExactLight {
     static constexpr int kPanelPoints = 10;
     static constexpr double kPanelDepth = 2.0;
     static constexpr double kNothing = 80.0;
+    static constexpr int kVeilPoints = 20;
+    static constexpr double kVeilDepth = 8.0;
+    static constexpr double kVeilNothing = 45.0;  // of depth from its beginning: 3e-20 is left
+    // Of u, over the lamp's nearest point: beyond, sech(u) is e^-kVeilFar.
+    static constexpr double kVeilFar = 60.0;
 
     struct Pixel {
         double column;
         double row;
     };
 
+    // In water, to the floor; sky has no length.
     struct View {
-        Vector point_m;
+        Vector origin_m;
         Vector direction;
-        Real distance_m;  // in water
+        std::optional<Real> length_m;
+
+        [[nodiscard]] Vector at(const Real& distance_m) const {
+            Vector point_m = origin_m;
+            for (std::size_t i = 0; i < 3; ++i) point_m[i] += distance_m * direction[i];
+            return point_m;
+        }
     };
 
     // What one strobe does to a point as the camera sees it, without wavelength.
@@ -115,6 +147,18 @@ class ExactLight {
         Real diffuse;   // sum of power I cos(i) / (pi d^2)
         Real specular;  // the same with phong max(0, m.l)^size for cos(i)
         Real path_m;    // d + r
+    };
+
+    // What the water turns of one strobe's light into the view.
+    struct Turned {
+        const Strobe* strobe;
+        std::vector<Real> path_m;              // t + d
+        std::vector<std::vector<Real>> light;  // by scatterer, power and quadrature included
+    };
+
+    struct Sight {
+        std::vector<Lit> lit;  // none where the image sees no floor
+        std::vector<Turned> turned;
     };
 
     [[nodiscard]] double middle_nm(std::size_t first, std::size_t last) const {
@@ -155,21 +199,20 @@ class ExactLight {
                down_[1] * point_m[1];
     }
 
-    [[nodiscard]] std::optional<View> look(double column, double row, double lambda_nm) const {
+    [[nodiscard]] View look(double column, double row, double lambda_nm) const {
         using std::sqrt;
         const Camera& camera = rig_.camera;
         const Real pitch_m = camera.pixel_pitch_m;
         const Real right = (column - Real(camera.width_px) / 2) * pitch_m / camera.focal_length_m;
         const Real up = (Real(camera.height_px) / 2 - row) * pitch_m / camera.focal_length_m;
         const Real length = sqrt(right * right + up * up + 1);
-        Vector origin_m{0, 0, 0};
-        Vector direction{up / length, right / length, 1 / length};
-        if (camera.port) enter_water(*camera.port, lambda_nm, origin_m, direction);
-        const Real approach = dot(direction, down_);
-        const Real height = height_m(origin_m);
-        if (!(approach > 0) || !(height > 0)) return std::nullopt;
-        View view{.point_m = origin_m, .direction = direction, .distance_m = height / approach};
-        for (std::size_t i = 0; i < 3; ++i) view.point_m[i] += view.distance_m * direction[i];
+        View view{.origin_m = {0, 0, 0},
+                  .direction = {up / length, right / length, 1 / length},
+                  .length_m = std::nullopt};
+        if (camera.port) enter_water(*camera.port, lambda_nm, view.origin_m, view.direction);
+        const Real approach = dot(view.direction, down_);
+        const Real height = height_m(view.origin_m);
+        if (approach > 0 && height > 0) view.length_m = height / approach;
         return view;
     }
 
@@ -190,13 +233,14 @@ class ExactLight {
         direction = {direction[0] / water, direction[1] / water, sqrt(1 - sine2 / (water * water))};
     }
 
-    // Nothing where the image sees no floor.
-    [[nodiscard]] std::vector<Lit> lit_at(double column, double row, double lambda_nm) const {
-        std::vector<Lit> lit;
-        const auto view = look(column, row, lambda_nm);
-        if (!view) return lit;
-        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) lit.push_back(lit_by(s, *view));
-        return lit;
+    [[nodiscard]] Sight sight_at(double column, double row, double lambda_nm) const {
+        Sight sight;
+        const View view = look(column, row, lambda_nm);
+        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+            if (view.length_m) sight.lit.push_back(lit_by(s, view));
+            if (water_.scatters()) sight.turned.push_back(turned_by(s, view));
+        }
+        return sight;
     }
 
     [[nodiscard]] Lit lit_by(std::size_t s, const View& view) const {
@@ -204,11 +248,11 @@ class ExactLight {
         using std::sqrt;
         const Strobe& strobe = rig_.strobes[s];
         const Vector lamp_m = from(strobe.position_m);
-        Vector path_m{};
-        for (std::size_t i = 0; i < 3; ++i) path_m[i] = view.point_m[i] - lamp_m[i];
+        Vector path_m = view.at(*view.length_m);
+        for (std::size_t i = 0; i < 3; ++i) path_m[i] -= lamp_m[i];
         const Real d = sqrt(dot(path_m, path_m));
         const Real cos_incidence = height_m(lamp_m) / d;
-        Lit lit{.strobe = &strobe, .diffuse = 0, .specular = 0, .path_m = d + view.distance_m};
+        Lit lit{.strobe = &strobe, .diffuse = 0, .specular = 0, .path_m = d + *view.length_m};
         if (!(cos_incidence > 0)) return lit;
         const Real pi = boost::math::constants::pi<Real>();
         const Real arriving = strobe.power * intensity(s, path_m, d) / (pi * d * d);
@@ -221,6 +265,134 @@ class ExactLight {
                 arriving * rig_.seafloor.phong * pow(aligned, Real(rig_.seafloor.phong_size));
         }
         return lit;
+    }
+
+    // A lamp from the ray: the foot of its perpendicular is t_0 along, h away.
+    struct Beside {
+        Vector across_m;  // from the lamp to the foot
+        Vector along;
+        Real foot_m;
+        Real away_m;
+    };
+
+    [[nodiscard]] Beside beside(const Vector& lamp_m, const View& view) const {
+        using std::abs;
+        using std::sqrt;
+        Vector to_lamp_m = lamp_m;
+        for (std::size_t i = 0; i < 3; ++i) to_lamp_m[i] -= view.origin_m[i];
+        Beside found{.across_m = {},
+                     .along = view.direction,
+                     .foot_m = dot(to_lamp_m, view.direction),
+                     .away_m = 0};
+        for (std::size_t i = 0; i < 3; ++i)
+            found.across_m[i] = found.foot_m * view.direction[i] - to_lamp_m[i];
+        found.away_m = sqrt(dot(found.across_m, found.across_m));
+        if (found.away_m >= kVeilBeside_m) return found;
+        // Any way across.
+        const std::size_t least = abs(view.direction[0]) < Real(0.5) ? 0 : 1;
+        Vector across{};
+        across[least] = 1;
+        const Real aside = dot(across, view.direction);
+        for (std::size_t i = 0; i < 3; ++i) across[i] -= aside * view.direction[i];
+        const Real length = sqrt(dot(across, across));
+        for (std::size_t i = 0; i < 3; ++i) found.across_m[i] = across[i] / length * kVeilBeside_m;
+        found.away_m = kVeilBeside_m;
+        return found;
+    }
+
+    // Where the ray crosses the cone of the half angle, and the plane across its axis, as x.
+    void add_crossings(const Beside& lamp,
+                       const Vector& axis,
+                       const Real& half_angle_rad,
+                       std::vector<Real>& x_m) const {
+        using std::cos;
+        using std::sqrt;
+        const Real to_foot = dot(axis, lamp.across_m);
+        const Real along = dot(axis, lamp.along);
+        const Real cosine = cos(half_angle_rad);
+        const Real a = along * along - cosine * cosine;
+        const Real b = to_foot * along;
+        const Real c = to_foot * to_foot - cosine * cosine * lamp.away_m * lamp.away_m;
+        if (along != 0) x_m.push_back(-to_foot / along);
+        const Real inside = b * b - a * c;
+        if (inside < 0) return;
+        const Real q = b < 0 ? Real(sqrt(inside) - b) : Real(-sqrt(inside) - b);
+        if (a != 0) x_m.push_back(q / a);
+        if (q != 0) x_m.push_back(c / q);
+    }
+
+    [[nodiscard]] Turned turned_by(std::size_t s, const View& view) const {
+        using std::asinh;
+        using std::exp;
+        using std::tan;
+        const Strobe& strobe = rig_.strobes[s];
+        const Beside lamp = beside(from(strobe.position_m), view);
+        const auto u_of = [&](const Real& x_m) { return Real(asinh(x_m / lamp.away_m)); };
+        std::vector<Real> x_m;
+        for (const Cone& cone : strobe.beam.cones) {
+            for (const double edge_rad : {0.0, cone.edge_rad})
+                add_crossings(lamp, from(strobe.axis), Real(cone.half_angle_rad) - edge_rad, x_m);
+        }
+        for (const TracedPhase& phase : water_.phases()) {
+            for (const double psi_rad : phase.kinks_rad())
+                x_m.push_back(-lamp.away_m / tan(Real(psi_rad)));
+        }
+        const Real first = std::max(u_of(-lamp.foot_m), u_of(-lamp.away_m / tan(Real(kVeilCut))));
+        const Real last = view.length_m ? u_of(*view.length_m - lamp.foot_m)
+                                        : std::max(first, Real(0)) + kVeilFar;
+        std::vector<Real> cuts{first};
+        for (const Real& x : x_m) {
+            const Real u = u_of(x);
+            if (u > first && u < last) cuts.push_back(u);
+        }
+        std::ranges::sort(cuts);
+        cuts.push_back(last);
+        Turned turned{.strobe = &strobe,
+                      .path_m = {},
+                      .light = std::vector<std::vector<Real>>(water_.phases().size())};
+        const Real first_path_m = lamp.foot_m + lamp.away_m * exp(first);
+        for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+            for (Real u = cuts[k]; u < cuts[k + 1];) {
+                const Real reach_m = lamp.away_m * exp(u);
+                if (least_loss_per_m_ * (lamp.foot_m + reach_m - first_path_m) > kVeilNothing)
+                    return turned;
+                const Real depth = most_loss_per_m_ * reach_m;
+                const Real widest = depth > kVeilDepth ? Real(kVeilDepth / depth) : Real(1);
+                const Real to = std::min(cuts[k + 1], Real(u + widest));
+                add_turned(s, lamp, u, to, turned);
+                u = to;
+            }
+        }
+        return turned;
+    }
+
+    void add_turned(std::size_t s,
+                    const Beside& lamp,
+                    const Real& first,
+                    const Real& last,
+                    Turned& turned) const {
+        using std::atan;
+        using std::cosh;
+        using std::exp;
+        using std::sinh;
+        using Gauss = boost::math::quadrature::gauss<Real, kVeilPoints>;
+        const Real half = (last - first) / 2;
+        const auto add_node = [&](const Real& u, const Real& weight) {
+            const Real d = lamp.away_m * cosh(u);
+            Vector path_m = lamp.across_m;
+            for (std::size_t i = 0; i < 3; ++i) path_m[i] += lamp.away_m * sinh(u) * lamp.along[i];
+            const Real arriving =
+                rig_.strobes[s].power * intensity(s, path_m, d) * weight * half / d;
+            const auto psi_rad = static_cast<double>(2 * atan(exp(u)));
+            turned.path_m.push_back(lamp.foot_m + lamp.away_m * exp(u));
+            for (std::size_t i = 0; i < turned.light.size(); ++i)
+                turned.light[i].push_back(arriving * water_.phases()[i].at(psi_rad));
+        };
+        for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+            const Real step = half * Gauss::abscissa()[i];
+            add_node(first + half + step, Gauss::weights()[i]);
+            add_node(first + half - step, Gauss::weights()[i]);
+        }
     }
 
     // The integral of cos^n S: 2 pi (1 - cos^(n + 1)) / (n + 1) of a sharp edge, without a small
@@ -285,47 +457,112 @@ class ExactLight {
         return lobe * t * t * (3 - 2 * t);
     }
 
-    [[nodiscard]] Real radiance_of(const std::vector<Lit>& lit, const Real& lambda_nm) const {
+    [[nodiscard]] Real radiance_of(const Sight& sight, const Real& lambda_nm) const {
+        return floor_of(sight, lambda_nm) + veil_of(sight, lambda_nm);
+    }
+
+    [[nodiscard]] Real floor_of(const Sight& sight, const Real& lambda_nm) const {
         using std::exp;
         const Real attenuation = attenuation_per_m(lambda_nm);
         const Real reflectance = value(rig_.seafloor.reflectance, lambda_nm);
         Real sum = 0;
-        for (const Lit& one : lit) {
+        for (const Lit& one : sight.lit) {
             sum += value(one.strobe->spectrum, lambda_nm) *
                    (reflectance * one.diffuse + one.specular) * exp(-attenuation * one.path_m);
         }
         return sum;
     }
 
-    // Between the knots k and k + 1, from the end where the water is clearer.
+    [[nodiscard]] Real veil_of(const Sight& sight, const Real& lambda_nm) const {
+        using std::exp;
+        if (sight.turned.empty()) return 0;
+        const Real attenuation = attenuation_per_m(lambda_nm);
+        const std::vector<Scatterer>& scatterers = rig_.water.scatterers;
+        std::vector<Real> b;
+        for (const Scatterer& scatterer : scatterers)
+            b.push_back(rig_.water.multiple * value(scatterer.scattering_per_m, lambda_nm));
+        Real sum = 0;
+        for (const Turned& turned : sight.turned) {
+            Real of_strobe = 0;
+            for (std::size_t n = 0; n < turned.path_m.size(); ++n) {
+                Real scattered = 0;
+                for (std::size_t i = 0; i < b.size(); ++i) scattered += b[i] * turned.light[i][n];
+                of_strobe += scattered * exp(-attenuation * turned.path_m[n]);
+            }
+            sum += value(turned.strobe->spectrum, lambda_nm) * of_strobe;
+        }
+        return sum;
+    }
+
+    // Between the knots k and k + 1: the floor's light from the end where the water is clearer, the
+    // veil all over, for its short paths are lit there.
     void add_interval(const Pixel& pixel,
-                      const std::vector<Lit>& lit,
+                      const Sight& sight,
                       std::size_t k,
                       std::array<Real, kChannels>& sum) const {
         using std::abs;
         const Real first = attenuation_per_m(knots_nm_[k]);
         const Real last = attenuation_per_m(knots_nm_[k + 1]);
         Real longest_m = 0;
-        for (const Lit& one : lit) longest_m = std::max(longest_m, one.path_m);
-        const double panels = std::max(
-            1.0, std::ceil(static_cast<double>(abs(last - first) * longest_m) / kPanelDepth));
-        const Real width_nm = (Real(knots_nm_[k + 1]) - knots_nm_[k]) / panels;
+        for (const Lit& one : sight.lit) longest_m = std::max(longest_m, one.path_m);
+        const double panels = panels_of(abs(last - first) * longest_m);
         const auto counted = static_cast<int>(std::min(panels, kNothing / kPanelDepth));
+        const auto floor = [this](const Sight& seen, const Real& nm) { return floor_of(seen, nm); };
+        add_panels(pixel, sight, k, panels, counted, first <= last, floor, sum);
+        if (sight.turned.empty()) return;
+        const double of_veil = panels_of(change_of_veil(sight, k));
+        const auto veil = [this](const Sight& seen, const Real& nm) { return veil_of(seen, nm); };
+        add_panels(pixel, sight, k, of_veil, static_cast<int>(of_veil), true, veil, sum);
+    }
+
+    [[nodiscard]] static double panels_of(const Real& change) {
+        return std::max(1.0, std::ceil(static_cast<double>(change) / kPanelDepth));
+    }
+
+    // Of the longest path that something is left of.
+    [[nodiscard]] Real change_of_veil(const Sight& sight, std::size_t k) const {
+        using std::abs;
+        const Real first = attenuation_per_m(knots_nm_[k]);
+        const Real last = attenuation_per_m(knots_nm_[k + 1]);
+        Real longest_m = 0;
+        for (const Turned& turned : sight.turned) {
+            if (!turned.path_m.empty()) longest_m = std::max(longest_m, turned.path_m.back());
+        }
+        const Real change = abs(last - first) * longest_m;
+        const Real least = std::min(first, last);
+        return least > 0 ? std::min(change, Real(abs(last - first) * (kVeilNothing / least)))
+                         : change;
+    }
+
+    // The first so many of the panels from one end.
+    template <typename Light>
+    void add_panels(const Pixel& pixel,
+                    const Sight& sight,
+                    std::size_t k,
+                    double panels,
+                    int counted,
+                    bool from_first,
+                    const Light& light,
+                    std::array<Real, kChannels>& sum) const {
+        const Real width_nm = (Real(knots_nm_[k + 1]) - knots_nm_[k]) / panels;
         for (int p = 0; p < counted; ++p) {
-            const Real from_clear_nm = width_nm * (2 * p + 1) / 2;
+            const Real from_end_nm = width_nm * (2 * p + 1) / 2;
             add_panel(pixel,
-                      lit,
-                      first <= last ? Real(knots_nm_[k] + from_clear_nm)
-                                    : Real(knots_nm_[k + 1] - from_clear_nm),
+                      sight,
+                      from_first ? Real(knots_nm_[k] + from_end_nm)
+                                 : Real(knots_nm_[k + 1] - from_end_nm),
                       width_nm / 2,
+                      light,
                       sum);
         }
     }
 
+    template <typename Light>
     void add_panel(const Pixel& pixel,
-                   const std::vector<Lit>& lit,
+                   const Sight& sight,
                    const Real& middle_nm,
                    const Real& half_nm,
+                   const Light& light,
                    std::array<Real, kChannels>& sum) const {
         using Gauss = boost::math::quadrature::gauss<Real, kPanelPoints>;
         const auto add_node = [&](const Real& lambda_nm, const Real& weight) {
@@ -334,8 +571,7 @@ class ExactLight {
             // Behind a port every wavelength has its own ray.
             const Real arriving =
                 weight * half_nm *
-                radiance_of(rig_.camera.port ? lit_at(pixel.column, pixel.row, nm) : lit,
-                            lambda_nm);
+                light(rig_.camera.port ? sight_at(pixel.column, pixel.row, nm) : sight, lambda_nm);
             for (int c = 0; c < kChannels; ++c) {
                 sum[static_cast<std::size_t>(c)] += arriving * rig_.camera.sensor.response(c, nm);
             }
@@ -351,6 +587,8 @@ class ExactLight {
     TracedWater water_;
     Vector down_;
     std::vector<double> knots_nm_;
+    Real least_loss_per_m_ = 0;
+    Real most_loss_per_m_ = 0;
     // By strobe.
     std::vector<TracedBeam> beams_;
     std::vector<std::vector<Real>> on_axis_;  // A_k

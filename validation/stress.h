@@ -29,6 +29,9 @@ namespace aphotic {
 // signals its spectral grid's (tracer.h).
 inline constexpr double kTracedRadianceBound = 1e-11;
 inline constexpr double kTracedSignalBound = 2e-8;
+// Where the water scatters: kVeilTolerance, and the rounding of distances of 100 m beside
+// kVeilBeside_m.
+inline constexpr double kTracedVeilBound = 1e-8;
 // The tracer's light ends where the water has left e^-700 of it (tracer.h); the rest is for the
 // brightest lamps that a rig may have.
 inline constexpr double kTracedFloor = 1e-280;

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <regex>
+
 namespace aphotic::study_test {
 namespace {
 
@@ -54,6 +56,36 @@ TEST_F(Study, MeasuresRecommendsAndGoesOnWhereItStopped) {
         EXPECT_EQ(traced.status, 0) << traced.err;
         EXPECT_NE(read_text_file(reference), half);
     }
+}
+
+// Errors are of the sum of floor and veil, settings' and the reference's alike: half floats' and
+// the veil's own for fitted wavelengths. Enlarged images blur the cones' edges, whatever the veil.
+TEST_F(Study, KnowsTheVeil) {
+    std::string rig = read_text_file(folder_.path() / "rig.toml");
+    rig.replace(rig.find("[400, 720]"), 10, "[400, 700]");
+    const std::string clear = "absorption = \"pope-fry-1997\"";
+    rig.replace(rig.find(clear), clear.size(), "type = \"jerlov-1C\"");
+    write_file(folder_.path() / "rig.toml", rig);
+    const CommandResult run_of_it = run({"study", "rig.toml", "-o", "out", "--quick", "--json"});
+    ASSERT_EQ(run_of_it.status, 0) << run_of_it.err;
+    for (const auto& measure : nlohmann::json::parse(run_of_it.out).at("measures")) {
+        const auto name = measure.at("name").get<std::string>();
+        if (!name.starts_with("fitted-3") || name.find("half") != std::string::npos) continue;
+        EXPECT_LT(measure.at("max_error").get<double>(), 6e-4) << measure.dump(2);
+    }
+}
+
+// Before objects a frame of fog tells where the veil ends; where the sky is in view, it is white,
+// in PNG too.
+TEST_F(Study, KnowsTheVeilBeforeObjectsAndTheSky) {
+    put_small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/objects.toml", folder_.path());
+    std::string rig = read_text_file(folder_.path() / "rig.toml");
+    rig = std::regex_replace(rig, std::regex(R"(\npitch_deg\s*=[^\n]*)"), "\npitch_deg = 75.0");
+    rig = std::regex_replace(
+        rig, std::regex(R"(\n\[water\][^\[]*)"), "\n[water]\nscattering = \"sea-water\"\n\n");
+    write_file(folder_.path() / "rig.toml", rig);
+    const CommandResult run_of_it = run({"study", "rig.toml", "-o", "out", "--quick"});
+    EXPECT_EQ(run_of_it.status, 0) << run_of_it.err;
 }
 
 TEST_F(Study, APlanIsAPictureToo) {

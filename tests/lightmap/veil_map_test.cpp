@@ -107,6 +107,27 @@ TEST(VeilMap, IsTheVeilOfEachPixel) {
     expect_right(rig, LightmapMaker(rig, std::nullopt, options()).map(rig.sled), 150, "habcam");
 }
 
+// Past a lamp on the camera's axis the veil is as bright on the left as on the right, so that nodes
+// show no third difference; on the axis it has a needle, or none where the lamp is behind.
+TEST(VeilMap, IsTheVeilOfEachPixelAboutALampOnTheAxis) {
+    for (const double along_m : {1.0, -0.3}) {
+        Rig rig = coast(5, 3);
+        rig.sled.pitch_rad = 0.0;
+        rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+        rig.strobes[0].position_m = {1e-3, 0.0, along_m};
+        rig.strobes[0].axis = {0.0, 0.0, 1.0};
+        expect_right(rig,
+                     LightmapMaker(rig, std::nullopt, options()).map(rig.sled),
+                     40,
+                     "lamp at " + std::to_string(along_m));
+        rig.strobes[0].position_m.x() = 0.0;
+        expect_right(rig,
+                     LightmapMaker(rig, std::nullopt, options()).map(rig.sled),
+                     40,
+                     "lamp on the axis at " + std::to_string(along_m));
+    }
+}
+
 // Every pixel of one, edges of cones in the water and on the floor included.
 TEST(VeilMap, IsInterpolatedWhereThatIsRight) {
     const Rig rig = coast(1360, 1024);

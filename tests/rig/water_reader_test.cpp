@@ -130,6 +130,26 @@ TEST_F(WaterReader, RefusesWhatSaysTwoThings) {
     }
 }
 
+// There the veil's 1/d^2 has no end. The rig's strobe is half a metre off.
+TEST_F(WaterReader, RefusesALampAtThePupilWhereItScatters) {
+    const std::string at_the_pupil =
+        "[sled]\naltitude_m = 2\n[camera]\nresolution = [4, 3]\nfov_deg = 40\n"
+        "range_nm = [400, 700]\nresponse = \"nikon-d5100\"\n[seafloor]\n[beam.wide]\n"
+        "fwhm_deg = 90\n[[strobe]]\nname = \"fore\"\nposition_m = [0, 0, 0]\n"
+        "direction = [0, 0, 1]\nbeam = \"wide\"\n[water]\n";
+    EXPECT_NO_THROW(static_cast<void>(parse_rig(at_the_pupil, "rig.toml", folder_.path())));
+    try {
+        static_cast<void>(
+            parse_rig(at_the_pupil + "type = \"jerlov-II\"\n", "rig.toml", folder_.path()));
+        ADD_FAILURE() << "it was taken";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "rig.toml:13: strobe[0].position_m: found [0, 0, 0]; allowed: in water that "
+                     "scatters, a point at least 0.001 m from the camera's pupil, for the veil has "
+                     "no end there");
+    }
+}
+
 TEST_F(WaterReader, RefusesDaylightsAttenuation) {
     put("kd.csv", "wavelength_nm,kd_per_m\n400,0.5\n700,0.7\n");
     const std::string error = error_of("absorption = \"kd.csv\"");

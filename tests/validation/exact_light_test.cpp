@@ -8,6 +8,7 @@
 #include "support/closed_form.h"
 
 #include <gtest/gtest.h>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include <cmath>
@@ -156,6 +157,80 @@ TEST(ExactLight, LongDoubleHoldsTowardsTheHorizonAndForGrazingLight) {
     rig.strobes[0].axis = {0.0, -1.0, 0.0};
     rig.water.multiple = 0.0;
     EXPECT_LT(worst_of_long_double(rig, 550.0), kLongRounding);
+}
+
+// Of a black floor: nothing but the veil along the camera's axis.
+Rig in_scattering_water(const Eigen::Vector3d& lamp_m, double half_angle_rad, double b_per_m) {
+    const auto flat = [](double value) { return Spectrum("flat", {300.0, 900.0}, {value, value}); };
+    Rig rig = habcam();
+    rig.sled = {.altitude_m = 2.5, .pitch_rad = 0.0, .roll_rad = 0.0};
+    rig.seafloor.reflectance = flat(0.0);
+    rig.water.absorption_per_m = flat(0.0);
+    rig.water.scatterers = {{flat(b_per_m), {.name = "even", .kind = HenyeyGreenstein{.g = 0.0}}}};
+    rig.strobes.erase(rig.strobes.begin() + 1, rig.strobes.end());
+    rig.strobes[0].position_m = lamp_m;
+    rig.strobes[0].axis = Eigen::Vector3d(-lamp_m.x(), -lamp_m.y(), 0.0).normalized();
+    rig.strobes[0].spectrum = flat(1.0);
+    rig.strobes[0].beam = {.name = "even", .weights = ConeWeights::Literal, .cones = {}};
+    rig.strobes[0].beam.cones = {
+        {.part = "even", .half_angle_rad = half_angle_rad, .weight = 1.0, .exponent = 0.0}};
+    return rig;
+}
+
+double veil_on_the_axis(const Rig& rig) {
+    return static_cast<double>(ExactLight<long double>(rig).radiance(2.5, 2.0, 550.0));
+}
+
+// b I / (4 pi h) times the angle under which the lamp lights the ray; what is lost is b's own.
+TEST(ExactLight, TheVeilOfAnEvenLampIsAnAngle) {
+    const double b = 1e-15;
+    for (const double h : {0.01, 0.5, 3.0}) {
+        for (const double along_m : {-0.2, 0.0, 0.7}) {
+            Rig rig = in_scattering_water({h, 0.0, along_m}, 0.5 * std::numbers::pi, b);
+            const double begin = std::max(std::atan(-along_m / h), -80.0 * std::numbers::pi / 180);
+            const double angle = std::atan((2.5 - along_m) / h) - begin;
+            EXPECT_NEAR(
+                veil_on_the_axis(rig) / (b * angle / (4.0 * std::numbers::pi * h)), 1.0, kRounding)
+                << h << ", " << along_m;
+        }
+    }
+    const double half_angle = 0.3;
+    const Rig rig = in_scattering_water({0.7, 0.0, 1.0}, half_angle, b);
+    EXPECT_NEAR(veil_on_the_axis(rig) / (b * 2.0 * half_angle / (4.0 * std::numbers::pi * 0.7)),
+                1.0,
+                kRounding);
+}
+
+// Sun, Ramamoorthi, Narasimhan and Nayar (2005): F(u, v) = int_0^v exp(-u tan(xi)) dxi.
+TEST(ExactLight, TheVeilInLossyWaterIsSunsFunction) {
+    using Kronrod = boost::math::quadrature::gauss_kronrod<double, 61>;
+    const auto F = [](double u, double v) {
+        return Kronrod::integrate(
+            [u](double xi) { return std::exp(-u * std::tan(xi)); }, 0.0, v, 15, 1e-15);
+    };
+    const double b = 0.3;
+    const double loss_per_m = b * 0.5 * (1.0 + std::cos(45.0 * std::numbers::pi / 180.0));
+    for (const double h : {0.02, 0.5, 3.0}) {
+        const Rig rig = in_scattering_water({0.0, h, 0.1}, 0.5 * std::numbers::pi, b);
+        const double from = std::max(std::atan(-0.1 / h), -80.0 * std::numbers::pi / 180.0);
+        const double to = std::atan(2.4 / h);
+        const double expected = b * std::exp(-loss_per_m * 0.1) / (2.0 * std::numbers::pi * h) *
+                                (F(loss_per_m * h, 0.25 * std::numbers::pi + 0.5 * to) -
+                                 F(loss_per_m * h, 0.25 * std::numbers::pi + 0.5 * from));
+        constexpr double kOfQuadrature = 1e-11;  // of the expected, whose integrand is steep
+        EXPECT_NEAR(veil_on_the_axis(rig) / expected, 1.0, kOfQuadrature) << h;
+    }
+}
+
+// A phase function is a double's, of an angle that is one.
+TEST(ExactLight, LongDoubleIsGoodForThirteenDigitsOfTheVeil) {
+    constexpr long double kOfPhase = 1e-13L;
+    Rig rig = habcam();
+    rig.camera.range = {.first_nm = 549.0, .last_nm = 551.0};
+    const Spectrum b("b", {300.0, 900.0}, {0.4, 0.2});
+    rig.water.scatterers = {{b, {.name = "forward", .kind = HenyeyGreenstein{.g = 0.924}}},
+                            {b, {.name = "sea", .kind = MolecularScattering{}}}};
+    EXPECT_LT(worst_of_long_double(rig, 550.0), kOfPhase);
 }
 
 }  // namespace

@@ -70,9 +70,10 @@ TEST_F(Stress, EveryCaseHasAFolderOfItsOwnAndAllGroupsAreThere) {
         EXPECT_FALSE(one.value.empty()) << one.name;
     }
     EXPECT_EQ(names.size(), cases_.size());
-    EXPECT_EQ(groups,
-              (std::set<std::string>{
-                  "water", "geometry", "cones", "spectra", "images", "frames", "sums"}));
+    EXPECT_EQ(
+        groups,
+        (std::set<std::string>{
+            "water", "scattering", "geometry", "cones", "spectra", "images", "frames", "sums"}));
 }
 
 TEST_F(Stress, APerfectRenderHolds) {
