@@ -154,6 +154,18 @@ TEST(PovrayVeil, BehindPortsIsTheQuadratures) {
     }
 }
 
+// Where rays end in the dark, piece by piece.
+TEST(PovrayVeil, TowardOpenWaterIsOffByNoMoreThanIsSaid) {
+    Rig rig = with_smooth_beams(in_water(small_habcam(9, 7)));
+    rig.sled.pitch_rad = 82.0 * std::numbers::pi / 180.0;
+    rig.sled.altitude_m = 10.0;
+    ASSERT_TRUE(std::isinf(sight_of(rig, 4.5, 0.5, 550.0).length_m));
+    const SceneSet set = veil_set(rig, kSamples);
+    const double said = set.manifest.veil->povray->error;
+    EXPECT_LE(said, 3e-3);
+    EXPECT_LE(against_quadrature(rig, set).worst, said + kHalfFloat);
+}
+
 TEST(PovrayVeil, IsOffByTheSecondOrderOfItsSamples) {
     constexpr double kOrder = 4.0;
     constexpr double kNearly = 0.15;  // the half floats' rounding, in the mean
