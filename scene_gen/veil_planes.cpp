@@ -27,7 +27,8 @@ struct FrameMap {
     std::size_t planes;  // that count
 };
 
-// One for R, G, B, and one for each frame's wavelengths, in the manifest's order.
+// One for R, G, B, and one for each frame's wavelengths, in the manifest's order; behind a port for
+// each by itself, for it has its own ray.
 std::vector<FrameMap> maps_of(const Rig& rig, const Manifest& manifest, bool may_see_far) {
     PathRange paths = path_range(rig);
     paths.has_horizon |= may_see_far;
@@ -37,14 +38,15 @@ std::vector<FrameMap> maps_of(const Rig& rig, const Manifest& manifest, bool may
     while (!rest.empty()) {
         std::vector<double> lambda_nm;
         for (const PlannedWavelength& w : rest) {
-            if (w.frame == rest.front().frame) lambda_nm.push_back(w.lambda_nm);
+            const bool same_ray = lambda_nm.empty() || !rig.camera.port;
+            if (w.frame == rest.front().frame && same_ray) lambda_nm.push_back(w.lambda_nm);
         }
         maps.push_back({VeilMap(rig,
                                 paths,
                                 kTableError,
                                 kVeilPointsBetweenKinks,
                                 lambda_nm,
-                                rest.front().index_nm),
+                                rest.front().lambda_nm),
                         lambda_nm.size()});
         rest = rest.subspan(lambda_nm.size());
     }

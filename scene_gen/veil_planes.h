@@ -7,7 +7,7 @@
 //
 // V_c  the veil through channel c: an integral over all of the spectrum (rig/veil_map.h), not over
 //      the wavelengths of the frames, whose choice is the floor's light's alone
-// A    the veil at one wavelength, by the ray of its frame
+// A    the veil at one wavelength, by its own ray, whichever its frame has
 //
 // Both are planes of one file (veil_path() of spectral/manifest.h), of floats, up to what the pixel
 // sees: the rig's floor, or as far as the frame of fog tells (spectral/manifest.h), to a half
