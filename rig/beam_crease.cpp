@@ -131,10 +131,10 @@ void add_crossings(const Crease& crease,
             phi_rad.push_back(std::abs(phi) <= pi ? phi : std::remainder(phi, 2.0 * pi));
         return;
     }
-    const Vector3d Qe = crease.Q * e;
-    const double a = e.dot(Qe);
+    const Vector3d turned = crease.Q * e;
+    const double a = e.dot(turned);
     const double b = u.dot(crease.Q * u);
-    const double c = 2.0 * u.dot(Qe);
+    const double c = 2.0 * u.dot(turned);
     const double size = std::hypot(a - b, c);
     const double at = 2.0 * crease.at - a - b;
     if (std::abs(at) >= size) return;

@@ -303,11 +303,11 @@ class VeilMap::Strip {
     }
 
     // Whether the cubic is right there, as far as the signal of the nearest of these pixels asks.
-    bool holds(const Signal& found,
-               const Signal& exact,
-               const Scope& scope,
-               double column,
-               double row) const {
+    [[nodiscard]] bool holds(const Signal& found,
+                             const Signal& exact,
+                             const Scope& scope,
+                             double column,
+                             double row) const {
         const int y = nearest(row, scope.rows);
         const int x = nearest(column, scope.columns);
         for (std::size_t c = 0; c < kChannels; ++c) {
@@ -328,7 +328,7 @@ class VeilMap::Strip {
         return !is_even || std::abs(line[1] - line[0]) <= most;
     }
 
-    bool is_straight(const Stencil& nodes, const Scope& scope) const {
+    [[nodiscard]] bool is_straight(const Stencil& nodes, const Scope& scope) const {
         const int row = scope.rows.first + scope.rows.count / 2;
         const int column = scope.columns.first + scope.columns.count / 2;
         for (std::size_t c = 0; c < kChannels; ++c) {
@@ -433,7 +433,7 @@ class VeilMap::Strip {
     void refine(int cell_row, int cell, const Scope& scope, VeilNodes& room) const {
         const Axis& across = map_.across_;
         const Axis& down = map_.down_;
-        constexpr auto kNodes = static_cast<std::size_t>(kVeilParts + 1);
+        constexpr auto kNodes = std::size_t{kVeilParts} + 1;
         const Place own{across.node_px(cell),
                         down.node_px(cell_row),
                         across.apart_px / kVeilParts,
@@ -516,7 +516,7 @@ class VeilMap::Strip {
     }
 
     [[nodiscard]] const Signal& node(std::size_t strobe, int row, int column) const {
-        const auto stride = static_cast<std::size_t>(map_.across_.cells + 1);
+        const auto stride = static_cast<std::size_t>(map_.across_.cells) + 1;
         return nodes_[(static_cast<std::size_t>(row - first_node_row_) * stride +
                        static_cast<std::size_t>(column)) *
                           map_.rig_.strobes.size() +
@@ -548,17 +548,18 @@ void VeilMap::rows_into(const Sled& sled,
     const int first_node = std::clamp(first_cell - 1, 0, down_.cells + 1 - kVeilStencil);
     const int last_node =
         std::min(down_.cells, std::max(end_cell + 1, first_node + kVeilStencil - 1));
-    const auto stride = static_cast<std::size_t>(across_.cells + 1);
-    const auto node_rows = static_cast<std::size_t>(last_node - first_node + 1);
+    const auto stride = static_cast<std::size_t>(across_.cells) + 1;
+    const auto node_rows = static_cast<std::size_t>(last_node - first_node) + 1;
     const std::size_t strobes = rig_.strobes.size();
     std::vector<Signal> nodes(node_rows * stride * strobes);
     std::vector<VeilNodes> rooms(static_cast<std::size_t>(threads));
     parallel_for(node_rows, rooms.size(), [&](std::size_t row, std::size_t thread) {
         for (std::size_t i = 0; i < stride * strobes; ++i) {
+            const std::size_t column = i / strobes;
             nodes[row * stride * strobes + i] =
                 at(flown,
                    i % strobes,
-                   across_.node_px(static_cast<double>(i / strobes)),
+                   across_.node_px(static_cast<double>(column)),
                    down_.node_px(static_cast<double>(row) + first_node),
                    rooms[thread]);
         }

@@ -22,6 +22,13 @@ namespace {
 constexpr double kTableError = 0.1 * kVeilOfSignal;
 constexpr int kBlockRows = 256;
 
+// Few points where they do: not where light is lost within a panel, as in water like milk.
+unsigned points_of(const Rig& rig) {
+    constexpr double kRight = 1e-6;  // beside kVeilOfSignal
+    return veil_error(rig, kVeilPointsBetweenKinks) <= kRight ? kVeilPointsBetweenKinks
+                                                              : kVeilPoints;
+}
+
 struct FrameMap {
     VeilMap map;
     std::size_t planes;  // that count
@@ -32,8 +39,8 @@ struct FrameMap {
 std::vector<FrameMap> maps_of(const Rig& rig, const Manifest& manifest, bool may_see_far) {
     PathRange paths = path_range(rig);
     paths.has_horizon |= may_see_far;
-    std::vector<FrameMap> maps{
-        {VeilMap(rig, paths, kTableError, kVeilPointsBetweenKinks), kChannels}};
+    const unsigned points = points_of(rig);
+    std::vector<FrameMap> maps{{VeilMap(rig, paths, kTableError, points), kChannels}};
     std::span<const PlannedWavelength> rest = manifest.wavelengths;
     while (!rest.empty()) {
         std::vector<double> lambda_nm;
@@ -41,12 +48,7 @@ std::vector<FrameMap> maps_of(const Rig& rig, const Manifest& manifest, bool may
             const bool same_ray = lambda_nm.empty() || !rig.camera.port;
             if (w.frame == rest.front().frame && same_ray) lambda_nm.push_back(w.lambda_nm);
         }
-        maps.push_back({VeilMap(rig,
-                                paths,
-                                kTableError,
-                                kVeilPointsBetweenKinks,
-                                lambda_nm,
-                                rest.front().lambda_nm),
+        maps.push_back({VeilMap(rig, paths, kTableError, points, lambda_nm, rest.front().lambda_nm),
                         lambda_nm.size()});
         rest = rest.subspan(lambda_nm.size());
     }
@@ -139,7 +141,7 @@ void require_bare_floor_under_veil(const Rig& rig) {
 }
 
 double veil_plane_error(const Rig& rig) {
-    return kVeilOfSignal + veil_error(rig, kVeilPointsBetweenKinks);
+    return kVeilOfSignal + veil_error(rig, points_of(rig));
 }
 
 std::array<RuleQuality, kChannels> with_veil(std::array<RuleQuality, kChannels> quality,

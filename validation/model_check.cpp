@@ -74,7 +74,7 @@ ModelCheck check_model(const Rig& rig,
         const double nm = mean_wavelength_nm(floor, c);
         const Tracer tracer(floor, {.signals = false, .planes_nm = {nm}, .threads = 1});
         const MonteCarlo light(floor, nm, {.paths = paths, .seed = kSeed});
-        constexpr auto kPlaces = static_cast<std::size_t>(kPlacesAcross * kPlacesDown);
+        constexpr std::size_t kPlaces = std::size_t{kPlacesAcross} * kPlacesDown;
         std::array<std::optional<ModelPlace>, kPlaces> found;
         std::atomic<std::size_t> done = 0;
         parallel_for(
