@@ -7,11 +7,11 @@
 
 #include "base/error.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <initializer_list>
