@@ -43,6 +43,7 @@ extern const Command kLightmap;
 extern const Command kAtlas;
 extern const Command kCorrect;
 extern const Command kObserve;
+extern const Command kFit;
 extern const Command kBaseline;
 extern const Command kValidate;
 extern const Command kStudy;

@@ -7,6 +7,7 @@
 #include "rig/rig.h"
 #include "spectral/table.h"
 
+#include <Eigen/Cholesky>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -30,10 +31,7 @@ double factor(const NaturalVignetting&, const Camera& camera, double column, dou
 }
 
 double factor(const RadialVignetting& radial, const Camera& camera, double column, double row) {
-    const Vector2d image_px(camera.width_px, camera.height_px);
-    const Vector2d centre_px = camera.lens ? camera.lens->centre_px : Vector2d(0.5 * image_px);
-    const double q =
-        (Vector2d(column, row) - centre_px).squaredNorm() / (0.25 * image_px.squaredNorm());
+    const double q = radial_square(camera, column, row);
     return 1.0 + q * (radial.a[0] + q * (radial.a[1] + q * radial.a[2]));
 }
 
@@ -57,10 +55,36 @@ double factor(const TabulatedVignetting& table, const Camera& camera, double col
 
 }  // namespace
 
+double radial_square(const Camera& camera, double column, double row) {
+    const Vector2d image_px(camera.width_px, camera.height_px);
+    const Vector2d centre_px = camera.lens ? camera.lens->centre_px : Vector2d(0.5 * image_px);
+    return (Vector2d(column, row) - centre_px).squaredNorm() / (0.25 * image_px.squaredNorm());
+}
+
 double vignetting_at(const Camera& camera, double column, double row) {
     if (!camera.vignetting) return 1.0;
     return std::visit([&](const auto& kind) { return factor(kind, camera, column, row); },
                       *camera.vignetting);
+}
+
+RadialVignetting radial_like(const Camera& camera) {
+    if (!camera.vignetting) return {};
+    if (const auto* radial = std::get_if<RadialVignetting>(&*camera.vignetting)) return *radial;
+    constexpr int kSteps = 24;
+    Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (int i = 0; i <= kSteps; ++i) {
+        for (int j = 0; j <= kSteps; ++j) {
+            const double column = static_cast<double>(camera.width_px) * i / kSteps;
+            const double row = static_cast<double>(camera.height_px) * j / kSteps;
+            const double q = radial_square(camera, column, row);
+            const Eigen::Vector3d powers(q, q * q, q * q * q);
+            G += powers * powers.transpose();
+            b += powers * (vignetting_at(camera, column, row) - 1.0);
+        }
+    }
+    const Eigen::Vector3d a = G.ldlt().solve(b);
+    return {.a = {a(0), a(1), a(2)}};
 }
 
 std::vector<float> vignetting_plane(const Camera& camera) {

@@ -41,8 +41,14 @@ struct TabulatedVignetting {
 
 using Vignetting = std::variant<NaturalVignetting, RadialVignetting, TabulatedVignetting>;
 
+// p^2 of the point (column, row) of the image.
+[[nodiscard]] double radial_square(const Camera& camera, double column, double row);
+
 // V of the point (column, row) of the image; 1 without vignetting.
 [[nodiscard]] double vignetting_at(const Camera& camera, double column, double row);
+
+// The radial form that comes closest to the camera's own over its image; 0 without vignetting.
+[[nodiscard]] RadialVignetting radial_like(const Camera& camera);
 
 // Of every pixel's centre, row by row.
 [[nodiscard]] std::vector<float> vignetting_plane(const Camera& camera);

@@ -61,7 +61,17 @@ Spectrum besides(const Spectrum& all, const std::function<double(double)>& water
     });
 }
 
+constexpr double kPeak_nm = 440.0;
+
+double of_plankton_per_m(double chlorophyll_mg_m3) {
+    return 0.06 * std::pow(chlorophyll_mg_m3, 0.65);
+}
+
 }  // namespace
+
+double case_1_cdom_440_per_m(double chlorophyll_mg_m3) {
+    return 0.2 * (pure_water().at(kPeak_nm) + of_plankton_per_m(chlorophyll_mg_m3));
+}
 
 Scatterer seawater_scatterer(double salinity_psu, double temperature_c) {
     return {sampled("scattering of sea water",
@@ -89,16 +99,14 @@ void take_type(const Spectrum& absorption,
 }
 
 void take_constituents(const Constituents& constituents, Water& water) {
-    constexpr double kPeak_nm = 440.0;
     constexpr double kParticles_nm = 550.0;
     constexpr double kClear = 2.0;  // Chl from which b_p has no slope
     const double chl = constituents.chlorophyll_mg_m3;
     const double log_chl = std::log10(chl);
     const Spectrum pure = pure_water();
     const Spectrum shape = phytoplankton();
-    const double of_plankton = 0.06 * std::pow(chl, 0.65);
-    const double a_440 =
-        constituents.cdom_440_per_m.value_or(0.2 * (pure.at(kPeak_nm) + of_plankton));
+    const double of_plankton = of_plankton_per_m(chl);
+    const double a_440 = constituents.cdom_440_per_m.value_or(case_1_cdom_440_per_m(chl));
     const std::array<const Spectrum*, 2> both{&pure, &shape};
     water.absorption_per_m = sampled(
         "absorption of case-1 water", union_of_knots(both, kPhytoplankton_nm), [&](double nm) {

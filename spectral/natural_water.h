@@ -44,6 +44,9 @@ struct Constituents {
     double particles = 1.0;
 };
 
+// a_440 where it is not told.
+[[nodiscard]] double case_1_cdom_440_per_m(double chlorophyll_mg_m3);
+
 // Sea water alone, over the range of its index.
 [[nodiscard]] Scatterer seawater_scatterer(double salinity_psu, double temperature_c);
 

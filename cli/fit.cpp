@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic fit RIG --maps MAP... | --images IMAGE... --nav FILE  -o DIR: the rig that explains a
+// survey, with errors.
+#include "survey/fit.h"
+#include "base/atomic_file.h"
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/json_text.h"
+#include "base/words.h"
+#include "cli/allowed_skips.h"
+#include "cli/command.h"
+#include "cli/navigation_options.h"
+#include "cli/options.h"
+#include "cli/survey_command.h"
+#include "survey/fit_json.h"
+#include "survey/fit_page.h"
+#include "survey/fit_samples.h"
+#include "survey/fitted_rig.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+
+namespace aphotic::cli {
+namespace {
+
+const std::map<std::string, FitBeamKind> kBeams{{"table", FitBeamKind::Table},
+                                                {"cones", FitBeamKind::Cones},
+                                                {"cosine", FitBeamKind::Cosine},
+                                                {"optics", FitBeamKind::Optics}};
+
+struct FitCommandOptions {
+    std::string rig;
+    std::vector<std::string> maps;
+    std::vector<std::string> images;
+    NavigationOptions navigation;
+    CameraNumbers camera;
+    std::filesystem::path folder;
+    FitOptions fit;
+    std::vector<std::string> free;
+    double attitude_error_deg = 0.5;
+    int blocks = kBlocksAcross;
+    bool strict = false;
+    AllowedSkips allowed_skips;
+    bool json = false;
+};
+
+FitSamples samples_for(const FitCommandOptions& options, const Rig& rig, const RunWatch& watch) {
+    const PlaneSize size{rig.camera.width_px, rig.camera.height_px};
+    if (!options.maps.empty()) return samples_of_maps(options.maps, size, options.blocks);
+    Survey survey{.files = image_files(options.images, options.folder), .camera = options.camera};
+    survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
+    survey.navigation = read_navigation_with(options.rig, options.navigation, survey.files);
+    return samples_of_images(
+        survey, size, options.blocks, static_cast<std::size_t>(options.fit.threads), watch);
+}
+
+void require_one_source(const CLI::App& app) {
+    const bool has_maps = app.count("--maps") > 0;
+    const bool has_images = app.count("--images") > 0;
+    if (has_maps == has_images) {
+        throw InputError("found {}; allowed: either --maps or --images",
+                         has_maps ? "--maps and --images" : "neither --maps nor --images");
+    }
+    if (has_images && app.count("--nav") == 0)
+        throw InputError("--images: found no navigation; allowed: with --nav FILE");
+}
+
+void print_result(const FitResult& result, const std::filesystem::path& folder) {
+    for (const FittedNumber& one : result.numbers) {
+        fmt::print("  {:<34} {:>10.4g} +- {:.2g}{}\n",
+                   one.key,
+                   one.value,
+                   one.error,
+                   one.is_at_bound ? "  at the end of its range" : "");
+    }
+    for (const NotTold& one : result.held) fmt::print("held: {}\n", words_of(one));
+    for (const Confounded& pair : result.confounded)
+        fmt::print("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
+    for (const FitDoubt& doubt : result.doubts)
+        fmt::print("looks wrong: {}: {:.2g}\n", doubt.what, doubt.size);
+    fmt::print(
+        "what is left of {}: {:.2g} rms, of which {:.2g} stays in place from image to image\n",
+        counted(result.blocks, "block"),
+        result.residual,
+        result.pattern);
+    fmt::print("{}\n", (folder / kFittedRig).string());
+}
+
+ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
+    require_one_source(app);
+    const RigText text(std::filesystem::path(options.rig));
+    const Rig rig = text.rig();
+    const RunWatch watch = terminal_watch(options.strict);
+    const FitSamples samples = samples_for(options, rig, watch);
+    FitOptions fit_options = options.fit;
+    fit_options.attitude_error_rad = options.attitude_error_deg * kRadiansPerDegree;
+    if (app.count("--free") > 0) fit_options.free = options.free;
+    const FitResult result = fit(text, samples, fit_options, watch);
+    make_folder(options.folder);
+    write_fitted_rig(text, result, options.folder);
+    const nlohmann::ordered_json json = to_json(result);
+    write_text_file(options.folder / "fit.json", json_text(json));
+    write_fit_page(options.folder / "report.html", text, samples, result);
+    if (options.json) {
+        fmt::print("{}", json_text(json));
+    } else {
+        print_result(result, options.folder);
+    }
+    return status_of_skips(samples.skipped.size(),
+                           samples.skipped.size() + samples.images.size(),
+                           options.allowed_skips);
+}
+
+Action configure_fit(CLI::App& app) {
+    const auto options = std::make_shared<FitCommandOptions>();
+    options->fit.threads = all_cores();
+    add_rig(app, options->rig);
+    add_output_folder(app, options->folder)->required();
+    app.add_option("--maps", options->maps, "Fit to maps by observe, of several altitudes")
+        ->type_name("MAP.exr");
+    app.add_option("--images", options->images, "Fit to images, or folders of them")
+        ->type_name("IMAGES");
+    add_navigation_options(app, options->navigation);
+    app.add_option("--beam", options->fit.beam, "Fit the beam as table, cones, cosine or optics")
+        ->transform(word_of(kBeams))
+        ->type_name("table|cones|cosine|optics")
+        ->default_str("table");
+    app.add_flag("--beam-each", options->fit.has_beam_each, "Fit each strobe's beam by itself");
+    app.add_option("--parts", options->fit.parts, "Splines of a beam's table")
+        ->check(in_range(4, 200))
+        ->capture_default_str();
+    app.add_option("--free",
+                   options->free,
+                   "Fit these alone: beam, aim, power, water, vignetting, altitude, attitude, or a "
+                   "key of [water]")
+        ->delimiter(',')
+        ->type_name("WHAT,...");
+    app.add_option("--altitude-error",
+                   options->fit.altitude_error_m,
+                   "Standard deviation of an image's altitude, in metres")
+        ->check(not_negative())
+        ->capture_default_str();
+    app.add_option("--attitude-error",
+                   options->attitude_error_deg,
+                   "Standard deviation of its pitch and roll, in degrees")
+        ->check(not_negative())
+        ->capture_default_str();
+    app.add_option("--blocks", options->blocks, "Average each image in N blocks across")
+        ->check(in_range(8, 1000))
+        ->capture_default_str();
+    add_camera_options(app, options->camera);
+    add_white_level_option(app, options->camera);
+    add_jobs(app, options->fit.threads, "Compute with N threads");
+    add_strict_option(app, options->strict);
+    add_allow_skipped(app, options->allowed_skips);
+    add_json(app, options->json);
+    app.footer(
+        "Leaves fitted.toml, a rig with the beam's table beside it, fit.json with errors and "
+        "covariance, and report.html. Without --free, fits beam, aim, power, water and vignetting, "
+        "and holds what the images cannot tell.");
+    return [&app, options] { return fit_survey(app, *options); };
+}
+
+}  // namespace
+
+const Command kFit{
+    "fit", kSurveyCommands, "Find the rig that explains a survey, with errors", configure_fit};
+
+}  // namespace aphotic::cli

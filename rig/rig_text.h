@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A rig file as text whose keys can be set, for whoever looks for a better rig or makes many of
+// one. Keys are paths as a user would say them, a strobe, material or object by its name or number:
+//
+//   water.multiple      sled.altitude_m      strobe.fore.power      strobe.1.position_m
+//   beam.fresnel.cones  camera.vignetting.radial
+//
+// Comments and the order of keys are lost with the first key that is set.
+#pragma once
+
+#include "rig/rig.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+class RigText {
+  public:
+    explicit RigText(const std::filesystem::path& file);
+    RigText(std::string_view toml, std::string name, std::filesystem::path folder);
+    RigText(const RigText& other);
+    RigText& operator=(const RigText& other);
+    RigText(RigText&&) noexcept;
+    RigText& operator=(RigText&&) noexcept;
+    ~RigText();
+
+    [[nodiscard]] bool has(std::string_view key) const;
+    // None where the key is not there or no number.
+    [[nodiscard]] std::optional<double> number(std::string_view key) const;
+
+    // Makes the tables on the way to it. An InputError where there is no such strobe or object, or
+    // what should be a table is none.
+    void set(std::string_view key, double value);
+    void set(std::string_view key, const std::string& value);
+    void set(std::string_view key, const std::vector<double>& values);
+    // Whatever it holds.
+    void erase(std::string_view key);
+
+    // Files that the text names are found here.
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+    [[nodiscard]] std::string text() const;
+    // As rig/rig_reader.h reads it.
+    [[nodiscard]] Rig rig() const;
+
+  private:
+    struct Tree;
+    std::string name_;
+    std::filesystem::path folder_;
+    std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace aphotic

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The signal of places of an image as a linear function of the shares of the beams' parts, and its
+// derivatives over all else that a fit looks for:
+//
+//   S_c = g_c V sum_s P_s sum_m beta_m [ f_m(w) cos(i)/(pi d^2) T_c(d + r)
+//                                        + sum_i int p_i(psi) f_m(w) V_ic(t + d) / d^2 dt ]
+//
+// g_c    the channel's gain, 1 of green      V     vignetting: the rig's, or 1 + a1 p^2 + ...
+// P_s    the strobe's power                  f_m   parts of the beam (fit_beam.h), w in the frame
+// T, V   survey/path_light.h                       of the strobe as it is aimed
+//
+// All else is rig/veil.h's and docs/physics.md's. Lamps are points, the floor is flat and matt.
+// Behind a port each channel has the ray of its mean wavelength. The veil is integrated by
+// kFitVeilPoints of Gauss and Legendre's over the angle at the lamp.
+//
+// Aim is turned by two small angles, towards `along` and `across` of the rig's own frame of the
+// strobe (rig/beam.h). Offsets are added to the altitude, pitch and roll that the navigation tells.
+#pragma once
+
+#include "rig/rig.h"
+#include "survey/fit_beam.h"
+#include "survey/path_light.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr unsigned kFitVeilPoints = 20;
+
+// Places of the image, pixels' centres at .5.
+struct FitPlaces {
+    int width_px = 0;
+    int height_px = 0;
+    std::vector<double> columns{};
+    std::vector<double> rows{};
+
+    [[nodiscard]] std::size_t size() const { return columns.size(); }
+};
+
+// What the fit looks for besides the shares.
+struct FitState {
+    std::vector<FitBeam> beams;                  // one of all strobes, or each its own
+    std::vector<std::size_t> beam_of;            // by strobe
+    std::vector<std::array<double, 2>> aim_rad;  // by strobe, off the rig's: along, across
+    std::vector<double> power;                   // by strobe
+    std::vector<WaterNumber> water;
+    std::vector<double> vignetting;  // a1, a2, a3; empty: the rig's own
+    std::array<double, kChannels> gain{1.0, 1.0, 1.0};
+    Sled offset;
+};
+
+enum class FitPart { Water, Aim, Power, BeamShape, LensFactor, Offset, Gain };
+
+// One number of the state that is free.
+struct FitNumber {
+    FitPart part{};
+    std::size_t of = 0;     // strobe, beam, channel or number of the water
+    std::size_t which = 0;  // of aim, shapes, offsets
+};
+[[nodiscard]] double& number_in(FitState& state, const FitNumber& number);
+
+// The axis of a strobe as the state aims it.
+[[nodiscard]] Eigen::Vector3d aimed_axis(const Rig& rig, const FitState& state, std::size_t strobe);
+
+class FitLight {
+  public:
+    FitLight(const Rig& rig, const FitPlaces& places);
+
+    // Rows: by place, then channel. Columns of parts: by beam, then part.
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    [[nodiscard]] static std::size_t part_columns(const FitState& state);
+
+    void parts_into(const FitState& state,
+                    const PathLight& light,
+                    const Sled& sled,
+                    Rows& rows) const;
+
+    // By number, and after those by altitude, pitch and roll, of the signal with these shares.
+    static constexpr std::size_t kPoseColumns = 3;
+    void slopes_into(const FitState& state,
+                     const PathLight& light,
+                     const Sled& sled,
+                     const Eigen::VectorXd& shares,
+                     const std::vector<FitNumber>& numbers,
+                     Rows& rows) const;
+
+    // The paths that these sleds can show, with room for offsets of the altitude.
+    [[nodiscard]] PathRange paths(const std::vector<Sled>& sleds) const;
+    // The widest angle off any strobe's axis of what the places see, on the floor and, where the
+    // water scatters, before it.
+    [[nodiscard]] double widest_rad(const std::vector<Sled>& sleds) const;
+
+    [[nodiscard]] std::size_t rows() const { return kChannels * places_.size(); }
+    [[nodiscard]] const FitPlaces& places() const { return places_; }
+
+  private:
+    struct Place {
+        std::vector<WaterRay> rays;  // one, or by channel
+        double from_middle2 = 0.0;   // p^2 of vignetting
+        double vignetting = 1.0;     // the rig's own
+    };
+    template <typename Add>
+    void light_up(const FitState& state,
+                  const PathLight& light,
+                  const Sled& sled,
+                  bool has_slopes,
+                  const Add& add) const;
+
+    Rig rig_;
+    FitPlaces places_;
+    std::vector<Place> sights_;
+};
+
+}  // namespace aphotic

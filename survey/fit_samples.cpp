@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/fit_samples.h"
+
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/in_order.h"
+#include "image/exr.h"
+#include "survey/survey_image.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace aphotic {
+namespace {
+
+// Of one block and channel.
+struct Mean {
+    double sum = 0.0;
+    std::size_t count = 0;
+    std::size_t saturated = 0;
+    std::size_t sites = 0;
+
+    [[nodiscard]] float signal() const {
+        const auto all = static_cast<double>(sites);
+        const bool is_told = count > 0 && 2 * count >= sites &&
+                             static_cast<double>(saturated) <= kMostSaturated * all;
+        return is_told ? static_cast<float>(sum / static_cast<double>(count))
+                       : std::numeric_limits<float>::quiet_NaN();
+    }
+};
+
+// Of places in rows from the top left.
+std::size_t blocks_along(int size_px, int block_px) {
+    return static_cast<std::size_t>(std::max(1, size_px / block_px));
+}
+
+void average(const RawImage& raw, float white, int block_px, FitImage& image) {
+    const std::size_t across = blocks_along(raw.width_px, block_px);
+    const std::size_t down = blocks_along(raw.height_px, block_px);
+    std::vector<Mean> means(across * down * kChannels);
+    std::size_t saturated = 0;
+    for (int plane = 0; plane < raw.planes(); ++plane) {
+        for (int row = 0; row < raw.height_px; ++row) {
+            const auto j = static_cast<std::size_t>(row / block_px);
+            if (j >= down) break;
+            const float* samples = &raw.samples[(static_cast<std::size_t>(plane) * raw.pixels()) +
+                                                static_cast<std::size_t>(row) *
+                                                    static_cast<std::size_t>(raw.width_px)];
+            for (int column = 0; column < raw.width_px; ++column) {
+                const auto i = static_cast<std::size_t>(column / block_px);
+                if (i >= across) break;
+                const int channel =
+                    raw.mosaic == Mosaic::None ? plane : channel_at(raw.mosaic, column, row);
+                Mean& mean =
+                    means[(j * across + i) * kChannels + static_cast<std::size_t>(channel)];
+                const float sample = samples[column];
+                ++mean.sites;
+                if (!std::isfinite(sample)) continue;
+                if (sample >= white) {
+                    ++mean.saturated;
+                    ++saturated;
+                    continue;
+                }
+                mean.sum += sample;
+                ++mean.count;
+            }
+        }
+    }
+    for (const Mean& mean : means) image.signal.push_back(mean.signal());
+    image.saturated_share = static_cast<double>(saturated) /
+                            static_cast<double>(std::max<std::size_t>(1, raw.samples.size()));
+}
+
+double number_of(const ExrReader& reader, const std::string& name, const std::string& map) {
+    const std::string text = reader.attribute(name);
+    double value = 0.0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (fault != std::errc{} || !std::isfinite(value)) {
+        throw InputError(
+            "{}: {}: found '{}'; allowed: a number, as `aphotic observe` writes where "
+            "the navigation tells it",
+            map,
+            name,
+            text);
+    }
+    return value;
+}
+
+FitImage image_of_map(const std::string& map, PlaneSize size, int block_px) {
+    ExrReader reader(map);
+    const std::vector<std::string> names{kChannelNames.begin(), kChannelNames.end()};
+    const std::vector<std::string> channels = reader.channels();
+    for (const std::string& name : names) {
+        if (std::ranges::find(channels, name) == channels.end())
+            throw InputError("{}: has no channel {}; needed: R, G, B", map, name);
+    }
+    RawImage raw{.width_px = reader.width_px(), .height_px = reader.height_px()};
+    require_size(raw, size.width_px, size.height_px, map + ": the rig's camera has");
+    raw.samples = reader.planes(names);
+    FitImage image{
+        .name = map,
+        .sled = {.altitude_m = number_of(reader, "aphotic:altitude_m", map),
+                 .pitch_rad = number_of(reader, "aphotic:pitch_deg", map) / kDegreesPerRadian,
+                 .roll_rad = number_of(reader, "aphotic:roll_deg", map) / kDegreesPerRadian}};
+    if (!reader.attribute("aphotic:images").empty())
+        image.images = std::max(1.0, number_of(reader, "aphotic:images", map));
+    average(raw, std::numeric_limits<float>::infinity(), block_px, image);
+    return image;
+}
+
+}  // namespace
+
+FitPlaces fit_places(int width_px, int height_px, int blocks_across, int& block_px) {
+    // Even, so that a block of a mosaic holds as many sites of each kind everywhere.
+    block_px = std::max(1, width_px / std::max(1, blocks_across));
+    if (block_px > 1) block_px -= block_px % 2;
+    FitPlaces places{.width_px = width_px, .height_px = height_px};
+    for (std::size_t j = 0; j < blocks_along(height_px, block_px); ++j) {
+        for (std::size_t i = 0; i < blocks_along(width_px, block_px); ++i) {
+            places.columns.push_back((static_cast<double>(i) + 0.5) * block_px);
+            places.rows.push_back((static_cast<double>(j) + 0.5) * block_px);
+        }
+    }
+    return places;
+}
+
+FitSamples samples_of_images(const Survey& survey,
+                             PlaneSize size,
+                             int blocks_across,
+                             std::size_t jobs,
+                             const RunWatch& watch) {
+    FitSamples samples;
+    samples.places = fit_places(size.width_px, size.height_px, blocks_across, samples.block_px);
+    const auto skip = [&](std::size_t i, const std::string& why) {
+        samples.skipped.push_back({.image = survey.files[i].source.string(), .why = why});
+        watch.skipped(samples.skipped.back());
+    };
+    in_order(
+        survey.files.size(),
+        static_cast<int>(jobs),
+        [&](std::size_t i) {
+            FitImage image{.name = survey.files[i].name.string(),
+                           .sled = survey.sled_of(survey.files[i])};
+            SurveyImage taken = read_survey_image(survey.files[i].source, survey.camera);
+            require_size(taken.raw, size.width_px, size.height_px, "the rig's camera has");
+            take_off_black(taken);
+            average(taken.raw, taken.levels.white, samples.block_px, image);
+            return image;
+        },
+        [&](std::size_t i, FitImage image) {
+            samples.images.push_back(std::move(image));
+            watch.progress("reading",
+                           static_cast<double>(i + 1) / static_cast<double>(survey.files.size()));
+        },
+        skip);
+    if (samples.images.empty()) {
+        throw InputError("no image to be used; the first: {}",
+                         samples.skipped.empty() ? "none" : samples.skipped.front().why);
+    }
+    return samples;
+}
+
+FitSamples samples_of_maps(const std::vector<std::string>& maps,
+                           PlaneSize size,
+                           int blocks_across) {
+    FitSamples samples;
+    samples.are_maps = true;
+    samples.places = fit_places(size.width_px, size.height_px, blocks_across, samples.block_px);
+    for (const std::string& map : maps)
+        samples.images.push_back(image_of_map(map, size, samples.block_px));
+    return samples;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a fit is made to: the signal of an even grid of blocks of every image or map, in each
+// channel the mean of the block's samples less the black level, at the reference exposure.
+//
+// A block is left out (NaN) in a channel where more than kMostSaturated of its samples are
+// saturated, for their mean would be too dark, or more than half were not observed. A block is no
+// point: where the light bends by S'' over b pixels the mean is off by b^2 S''/24, 1e-3 of light
+// that falls to half over a tenth of the image, with kBlocksAcross.
+#pragma once
+
+#include "survey/fit_light.h"
+#include "survey/run_watch.h"
+#include "survey/survey.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr int kBlocksAcross = 40;
+inline constexpr double kMostSaturated = 0.01;
+
+struct FitImage {
+    std::string name;
+    Sled sled;
+    double images = 1.0;           // that a map was averaged of
+    std::vector<float> signal{};   // by place, then channel
+    double saturated_share = 0.0;  // of its samples
+};
+
+struct FitSamples {
+    FitPlaces places{};
+    int block_px = 0;
+    std::vector<FitImage> images{};
+    bool are_maps = false;
+    std::vector<Skipped> skipped{};
+};
+
+// Blocks of a width that gives about so many across.
+[[nodiscard]] FitPlaces fit_places(int width_px, int height_px, int blocks_across, int& block_px);
+
+// The survey has a navigation. Images are read `jobs` at a time and kept as their blocks alone. An
+// InputError when none can be used.
+[[nodiscard]] FitSamples samples_of_images(const Survey& survey,
+                                           PlaneSize size,
+                                           int blocks_across,
+                                           std::size_t jobs,
+                                           const RunWatch& watch);
+
+// Maps by `aphotic observe`, or by any program that writes R, G, B and the attributes
+// aphotic:altitude_m, aphotic:pitch_deg, aphotic:roll_deg. An InputError for one that cannot be
+// used: there are few, and each was named.
+[[nodiscard]] FitSamples samples_of_maps(const std::vector<std::string>& maps,
+                                         PlaneSize size,
+                                         int blocks_across);
+
+}  // namespace aphotic

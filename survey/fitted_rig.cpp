@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/fitted_rig.h"
+
+#include "base/atomic_file.h"
+#include "base/degrees.h"
+#include "rig/beam_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMillimetres = 1e3;
+
+void copy_tables(const RigText& text, const Rig& rig, const fs::path& folder) {
+    for (const RigFile& file : rig.files) {
+        const fs::path from = text.folder() / file.name;
+        const fs::path to = folder / file.name;
+        if (fs::exists(to) && fs::equivalent(from, to)) continue;
+        if (to.has_parent_path()) make_folder(to.parent_path());
+        write_text_file(to, read_text_file(from));
+    }
+}
+
+void set_beam(const FitBeam& fit,
+              const FitBeam::Fitted& fitted,
+              const std::string& name,
+              const Beam& was,
+              const fs::path& folder,
+              RigText& text) {
+    const std::string key = "beam." + name;
+    const auto* table = std::get_if<BeamTable>(&fitted.beam.pattern);
+    if (fit.kind() == FitBeamKind::Table) {
+        const std::string file = fmt::format("{}-beam.csv", name);
+        PhotometricFile photometry;
+        photometry.table = *table;
+        photometry.labels = {{"source", "aphotic fit"}};
+        write_text_file(folder / file, beam_csv_text(photometry, file));
+        text.set(key + ".table", file);
+    } else if (fit.kind() == FitBeamKind::Cosine) {
+        const double half = std::acos(std::pow(0.5, 1.0 / fit.shapes().front()));
+        text.set(key + ".fwhm_deg", 2.0 * half * kDegreesPerRadian);
+    } else if (fit.kind() == FitBeamKind::Cones) {
+        for (std::size_t k = 0; k < fitted.beam.cones.size(); ++k)
+            text.set(fmt::format("beam.{}.cones.{}.weight", was.name, k),
+                     fitted.beam.cones[k].weight);
+    } else if (fit.kind() == FitBeamKind::Optics) {
+        const auto& optics = std::get<BeamOptics>(fitted.beam.pattern);
+        text.set(fmt::format("beam.{}.focal_length_mm", was.name),
+                 kMillimetres * optics.focal_length_m);
+        text.set(fmt::format("beam.{}.distance_mm", was.name), kMillimetres * optics.distance_m);
+    }
+}
+
+void set_strobes(const Rig& rig, const FitResult& result, const fs::path& folder, RigText& text) {
+    const FitState& state = result.state;
+    std::vector<FitBeam::Fitted> beams;
+    Eigen::Index first = 0;
+    for (std::size_t b = 0; b < state.beams.size(); ++b) {
+        const auto count = static_cast<Eigen::Index>(state.beams[b].parts());
+        beams.push_back(state.beams[b].beam_of(result.shares.segment(first, count)));
+        first += count;
+    }
+    double all = 0.0;
+    double was = 0.0;
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        all += state.power[s] * beams[state.beam_of[s]].flux;
+        was += rig.strobes[s].power;
+    }
+    std::vector<bool> is_written(beams.size(), false);
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        const Strobe& strobe = rig.strobes[s];
+        const std::string key = "strobe." + strobe.name;
+        const std::size_t b = state.beam_of[s];
+        const FitBeamKind kind = state.beams[b].kind();
+        const std::string name = beams.size() == 1 ? "fitted" : fmt::format("fitted-{}", b + 1);
+        if (!is_written[b]) set_beam(state.beams[b], beams[b], name, strobe.beam, folder, text);
+        is_written[b] = true;
+        if (kind == FitBeamKind::Table || kind == FitBeamKind::Cosine)
+            text.set(key + ".beam", name);
+        for (const char* flux : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
+            text.erase(key + flux);
+        text.set(key + ".power", state.power[s] * beams[b].flux * was / all);
+        if (state.aim_rad[s][0] == 0.0 && state.aim_rad[s][1] == 0.0) continue;
+        const Eigen::Vector3d axis = aimed_axis(rig, state, s);
+        text.erase(key + ".aim");
+        text.set(key + ".direction", std::vector<double>{axis.x(), axis.y(), axis.z()});
+    }
+}
+
+}  // namespace
+
+void write_fitted_rig(const RigText& rig_text, const FitResult& result, const fs::path& folder) {
+    const Rig rig = rig_text.rig();
+    RigText text = rig_text;
+    copy_tables(rig_text, rig, folder);
+    set_strobes(rig, result, folder, text);
+    const FitState& state = result.state;
+    for (const WaterNumber& number : state.water) text.set(number.key, number.value);
+    if (!state.vignetting.empty()) {
+        text.erase("camera.vignetting");
+        text.set("camera.vignetting.radial", state.vignetting);
+    }
+    if (state.offset.altitude_m != 0.0) {
+        text.set("sled.altitude_offset_m",
+                 rig.mounting.altitude_offset_m + state.offset.altitude_m);
+    }
+    if (state.offset.pitch_rad != 0.0 || state.offset.roll_rad != 0.0) {
+        const Eigen::Vector3d turn =
+            rig.mounting.roll_pitch_yaw_rad +
+            Eigen::Vector3d(state.offset.roll_rad, state.offset.pitch_rad, 0.0);
+        text.set("camera.orientation_deg",
+                 std::vector<double>{turn.x() * kDegreesPerRadian,
+                                     turn.y() * kDegreesPerRadian,
+                                     turn.z() * kDegreesPerRadian});
+    }
+    const std::string toml = text.text();
+    // What is written can be read.
+    static_cast<void>(RigText(toml, kFittedRig, folder));
+    write_text_file(folder / kFittedRig,
+                    "# By `aphotic fit`; its errors are in fit.json.\n" + toml);
+}
+
+}  // namespace aphotic

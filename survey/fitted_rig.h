@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A fit as a rig: the file that it began with, its keys as they were fitted, and what the file
+// names beside it. A rig as any other, for `correct` and all the rest.
+//
+//   beam         [beam.fitted], a table fitted-beam.csv, or cones or optics; of several fitted-1
+//   ... aim          direction of each strobe power        of each strobe, times the flux that its
+//   beam has by the fit; together as much as
+//                before
+//   water        the keys of [water]
+//   vignetting   { radial = [...] }
+//   offsets      added to altitude_offset_m, and to the camera's orientation_deg
+//
+// Gains of the channels are no part of a rig: fit.json has them.
+#pragma once
+
+#include "survey/fit.h"
+
+#include <filesystem>
+
+namespace aphotic {
+
+inline constexpr const char* kFittedRig = "fitted.toml";
+
+// The folder is there. Files are whole or not there; the rig comes last.
+void write_fitted_rig(const RigText& rig,
+                      const FitResult& result,
+                      const std::filesystem::path& folder);
+
+}  // namespace aphotic

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The fit's light against lightmaps, which share no code with it, and its derivatives against
+// differences.
+#include "survey/fit_light.h"
+
+#include "base/degrees.h"
+#include "support/fit_rig.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace aphotic::fit_light_test {
+namespace {
+
+// Bands of a nanometre against an adaptive grid.
+constexpr double kBands = 3e-4;
+// Besides, twenty points over the veil's angle, and a phase function's table.
+constexpr double kVeilRule = 2e-3;
+// Central differences of the light, and the water's own.
+constexpr double kDifference = 2e-5;
+
+const Sled kTilted{
+    .altitude_m = 1.7, .pitch_rad = 3.0 * kRadiansPerDegree, .roll_rad = -2.0 * kRadiansPerDegree};
+
+struct Known {
+    RigText text;
+    Rig rig = text.rig();
+    FitState state{};
+    FitPlaces places{};
+    explicit Known(const FitRigNumbers& numbers) : text(fit_rig(numbers)) {
+        int block_px = 0;
+        places = fit_places(rig.camera.width_px, rig.camera.height_px, rig.camera.width_px, block_px);
+        state.beams = {FitBeam::held(rig.strobes[0].beam)};
+        state.beam_of = {0, 0};
+        state.aim_rad = {{0.0, 0.0}, {0.0, 0.0}};
+        state.power = {rig.strobes[0].power, rig.strobes[1].power};
+        state.water = {{"water.multiple", rig.water.multiple}};
+        state.vignetting = {-0.1, 0.0, 0.0};
+    }
+};
+
+double worst_against_lightmap(const FitRigNumbers& numbers) {
+    const Known known(numbers);
+    const FitLight light(known.rig, known.places);
+    const PathLight path(known.text, known.state.water, light.paths({kTilted}), false);
+    FitLight::Rows rows;
+    light.parts_into(known.state, path, kTilted, rows);
+    const LightmapMaker maker(known.rig, paths_of(known.rig, {kTilted}), {});
+    const std::vector<float> map = signal_of(maker.map(kTilted));
+    const std::size_t pixels = map.size() / kChannels;
+    double worst = 0.0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const double wanted = map[c * pixels + i];
+            const double found = rows(static_cast<Eigen::Index>(kChannels * i + c), 0);
+            worst = std::max(worst, std::abs(found / wanted - 1.0));
+        }
+    }
+    return worst;
+}
+
+TEST(FitLight, IsTheLightmapOfTheSameRig) {
+    EXPECT_LT(worst_against_lightmap({}), kBands);
+}
+
+TEST(FitLight, HasTheVeilOfTheSameRig) {
+    FitRigNumbers numbers;
+    numbers.water = "type = \"jerlov-1C\"\nmultiple = {}";
+    EXPECT_LT(worst_against_lightmap(numbers), kVeilRule);
+}
+
+// Every number there is, and the pose's three.
+void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam) {
+    Known known(numbers);
+    known.state.beams = {beam};
+    known.state.aim_rad = {{0.03, -0.02}, {0.01, 0.04}};
+    const FitLight light(known.rig, known.places);
+    const Eigen::VectorXd shares =
+        Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(beam.parts()), 2.0, 0.5);
+    std::vector<FitNumber> free{{FitPart::Water, 0, 0},
+                                {FitPart::Aim, 0, 0},
+                                {FitPart::Aim, 0, 1},
+                                {FitPart::Aim, 1, 1},
+                                {FitPart::Power, 1, 0},
+                                {FitPart::LensFactor, 0, 0},
+                                {FitPart::LensFactor, 0, 2},
+                                {FitPart::Gain, 2, 0},
+                                {FitPart::Offset, 0, 0},
+                                {FitPart::Offset, 0, 1},
+                                {FitPart::Offset, 0, 2}};
+    for (std::size_t k = 0; k < beam.shapes().size(); ++k)
+        free.push_back({FitPart::BeamShape, 0, k});
+    const PathRange paths = light.paths({kTilted});
+    FitLight::Rows slopes;
+    light.slopes_into(known.state,
+                      {known.text, known.state.water, paths, true},
+                      kTilted,
+                      shares,
+                      free,
+                      slopes);
+    const auto signal = [&](const FitState& state) {
+        FitLight::Rows parts;
+        light.parts_into(state, {known.text, state.water, paths, false}, kTilted, parts);
+        return Eigen::VectorXd(parts * shares);
+    };
+    for (std::size_t k = 0; k < free.size(); ++k) {
+        constexpr double kStep = 1e-5;
+        FitState more = known.state;
+        FitState less = known.state;
+        number_in(more, free[k]) += kStep;
+        number_in(less, free[k]) -= kStep;
+        const Eigen::VectorXd wanted = (signal(more) - signal(less)) / (2.0 * kStep);
+        const double off = (slopes.col(static_cast<Eigen::Index>(k)) - wanted).norm();
+        EXPECT_LT(off, kDifference * wanted.norm()) << "number " << k;
+    }
+}
+
+TEST(FitLight, SlopesAreThoseOfTheLight) {
+    expect_slopes({}, FitBeam::table(12, 1.2));
+    expect_slopes({}, FitBeam::cosine(5.0));
+}
+
+TEST(FitLight, SlopesOfTheVeil) {
+    FitRigNumbers numbers;
+    numbers.water = "type = \"jerlov-1C\"\nmultiple = {}";
+    numbers.width_px = 12;
+    numbers.height_px = 9;
+    expect_slopes(numbers, FitBeam::table(12, 1.5));
+}
+
+}  // namespace
+}  // namespace aphotic::fit_light_test
