@@ -69,6 +69,7 @@ pre { margin: 12px 0; padding: 14px 18px; background: var(--ground); border-radi
 .sheet { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(320px, 100%), 1fr));
   gap: 22px 24px; margin-top: 16px; }
 .duo { display: grid; grid-template-columns: 1fr 1fr; gap: 3px; }
+.trio { grid-template-columns: 1fr 1fr 1fr; }
 .sheet figcaption { overflow-wrap: anywhere; }
 .picture { display: block; width: 100%; height: auto; border-radius: 2px; }
 .squares { image-rendering: pixelated; }

@@ -18,7 +18,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <set>
+#include <span>
 
 namespace aphotic {
 namespace {
@@ -581,6 +583,10 @@ MatrixXd covariance_of(const FitEquations::Normal& normal,
         const double few =
             static_cast<double>(normal.tiles) / static_cast<double>(normal.tiles - active.size());
         C = few * huber_factor * huber_factor * inverse * meat * inverse;
+        // What few tiles see has too small a sandwich; none is smaller than H's own.
+        const VectorXd wider =
+            inverse.diagonal().cwiseQuotient(C.diagonal()).cwiseSqrt().cwiseMax(1.0);
+        C = wider.asDiagonal() * C * wider.asDiagonal();
     }
     C = scale.asDiagonal() * C * scale.asDiagonal();
     MatrixXd all = MatrixXd::Zero(normal.H.rows(), normal.H.cols());
@@ -604,96 +610,146 @@ std::vector<BeamPoint> curve_of(const FitBeam& beam,
     return points;
 }
 
-// Residuals that stay in place, or go with the altitude, are of the model and not of the floor.
+// Sums over images of the residual at one place and channel.
+struct InPlace {
+    double sum = 0.0;
+    double squares = 0.0;
+    double count = 0.0;
+};
+
+// How much of the residuals stays in place from image to image: rms of the means, less what chance
+// makes of them.
+double pattern_of(const std::vector<InPlace>& places) {
+    constexpr double kFew = 3.0;
+    double pattern = 0.0;
+    double counted = 0.0;
+    for (const InPlace& at : places) {
+        if (at.count < kFew) continue;
+        const double mean = at.sum / at.count;
+        const double chance = (at.squares / at.count - mean * mean) / (at.count - 1.0);
+        pattern += mean * mean - chance;
+        counted += 1.0;
+    }
+    return std::sqrt(std::max(0.0, pattern) / std::max(1.0, counted));
+}
+
+double correlation_with_altitude(const std::vector<ImageOutcome>& images) {
+    const auto count = static_cast<Index>(images.size());
+    VectorXd altitude(count);
+    VectorXd level(count);
+    for (Index i = 0; i < count; ++i) {
+        const ImageOutcome& image = images[static_cast<std::size_t>(i)];
+        altitude(i) = image.sled.altitude_m;
+        level(i) = image.level;
+    }
+    altitude.array() -= altitude.mean();
+    level.array() -= level.mean();
+    const double size = altitude.norm() * level.norm();
+    return size > 0.0 ? altitude.dot(level) / size : 0.0;
+}
+
+void look_for_doubts(const FitSamples& samples, FitResult& result) {
+    constexpr double kPattern = 0.02;
+    if (result.pattern > kPattern) {
+        result.doubts.push_back(
+            {"residuals stay in place from image to image: another beam, lens or "
+             "water than the fit allows, or a wrong black level; rms",
+             result.pattern});
+    }
+    constexpr double kSaturated = 0.02;
+    double saturated = 0.0;
+    for (const FitImage& image : samples.images)
+        saturated += image.saturated_share / static_cast<double>(samples.images.size());
+    if (saturated > kSaturated)
+        result.doubts.push_back({"saturated samples, left out; share", saturated});
+    constexpr std::size_t kFew = 10;
+    constexpr double kSigmas = 4.0;  // of the correlation of as many images by chance
+    const double correlation = correlation_with_altitude(result.images);
+    if (result.images.size() >= kFew &&
+        std::abs(correlation) > kSigmas / std::sqrt(static_cast<double>(result.images.size()))) {
+        result.doubts.push_back(
+            {"what is left of the images' brightness goes with their altitude; correlation",
+             correlation});
+    }
+    constexpr double kMostLevel = 0.25;
+    const double level = std::sqrt(std::ranges::max(std::span(result.effects).first(kChannels)));
+    if (level > kMostLevel) {
+        result.doubts.push_back(
+            {"images are brighter or darker than their poses explain: poses of "
+             "other images, or other exposures; rms",
+             level});
+    }
+}
+
+FitView view_of(std::size_t image, const FitSamples& samples, const FitEquations::Residual& found) {
+    const std::size_t places = samples.places.size();
+    FitView view{.image = image,
+                 .observed = std::vector<float>(places * kChannels),
+                 .fitted = std::vector<float>(places * kChannels),
+                 .residual = std::vector<float>(places, 0.0F)};
+    for (std::size_t i = 0; i < places; ++i) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const auto row = static_cast<Index>(kChannels * i + c);
+            view.observed[c * places + i] = samples.images[image].signal[kChannels * i + c];
+            view.fitted[c * places + i] = static_cast<float>(found.signal(row));
+            view.residual[i] +=
+                static_cast<float>(found.residual(row) / found.signal(row) / kChannels);
+        }
+    }
+    return view;
+}
+
+// The images nearest to even steps of altitude.
+std::vector<std::size_t> images_to_show(const FitSamples& samples) {
+    std::vector<std::size_t> order(samples.images.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return samples.images[i].sled.altitude_m; });
+    const std::size_t count = std::min(kFitViews, order.size());
+    std::vector<std::size_t> shown;
+    for (std::size_t k = 0; k < count; ++k)
+        shown.push_back(order[count == 1 ? 0 : k * (order.size() - 1) / (count - 1)]);
+    return shown;
+}
+
 void look_at_residuals(const Bench& bench,
                        const FitSamples& samples,
                        const PathLight& light,
                        FitResult& result) {
-    const std::size_t places = samples.places.size();
-    std::vector<double> sum(places * kChannels, 0.0);
-    std::vector<double> squares(sum.size(), 0.0);
-    std::vector<double> count(sum.size(), 0.0);
-    double all = 0.0;
+    constexpr double kDim = 0.05;  // of an image's brightest: darker blocks are noise
+    std::vector<InPlace> places(samples.places.size() * kChannels);
+    const std::vector<std::size_t> shown = images_to_show(samples);
+    result.views.resize(shown.size());
+    double squares = 0.0;
     double blocks = 0.0;
-    double saturated = 0.0;
-    struct Level {
-        double altitude_m;
-        double level;
-        double altitude_off_m;
-    };
-    std::vector<Level> levels;
     for (std::size_t i = 0; i < samples.images.size(); ++i) {
         const FitEquations::Residual found =
             bench.equations.residual_of(i, result.state, light, result.shares);
         const double most = found.signal.maxCoeff();
-        constexpr double kDim = 0.05;  // of the brightest: darker blocks are noise
+        double of_image = 0.0;
+        double count = 0.0;
         for (Index row = 0; row < found.residual.size(); ++row) {
             if (!std::isfinite(found.residual(row)) || found.signal(row) < kDim * most) continue;
             const double off = found.residual(row) / found.signal(row);
-            const auto at = static_cast<std::size_t>(row);
-            sum[at] += off;
-            squares[at] += off * off;
-            count[at] += 1.0;
-            all += off * off;
-            blocks += 1.0;
+            InPlace& at = places[static_cast<std::size_t>(row)];
+            at.sum += off;
+            at.squares += off * off;
+            at.count += 1.0;
+            of_image += off * off;
+            count += 1.0;
         }
-        saturated += samples.images[i].saturated_share / static_cast<double>(samples.images.size());
-        levels.push_back({samples.images[i].sled.altitude_m, found.effects[1], found.effects[3]});
+        squares += of_image;
+        blocks += count;
+        result.images.push_back({.sled = samples.images[i].sled,
+                                 .residual = std::sqrt(of_image / std::max(1.0, count)),
+                                 .level = found.effects[1],
+                                 .altitude_m = found.effects[3]});
+        const auto at = std::ranges::find(shown, i);
+        if (at != shown.end())
+            result.views[static_cast<std::size_t>(at - shown.begin())] = view_of(i, samples, found);
     }
-    result.residual = std::sqrt(all / std::max(1.0, blocks));
-    double pattern = 0.0;
-    double patterned = 0.0;
-    for (std::size_t at = 0; at < sum.size(); ++at) {
-        if (count[at] < 3.0) continue;
-        const double mean = sum[at] / count[at];
-        const double variance = (squares[at] / count[at] - mean * mean) / (count[at] - 1.0);
-        pattern += mean * mean - variance;
-        patterned += 1.0;
-    }
-    result.pattern = std::sqrt(std::max(0.0, pattern) / std::max(1.0, patterned));
-    constexpr double kPattern = 0.02;
-    if (result.pattern > kPattern) {
-        result.doubts.push_back(
-            {"the same places of the images are off by this share (rms): the rig "
-             "has another beam, lens or water than the fit allows, or the black "
-             "level is wrong",
-             result.pattern});
-    }
-    constexpr double kSaturated = 0.02;
-    if (saturated > kSaturated)
-        result.doubts.push_back({"share of samples that are saturated, and left out", saturated});
-    // A level that goes with the altitude.
-    double mean_h = 0.0;
-    double mean_l = 0.0;
-    for (const Level& level : levels) {
-        mean_h += level.altitude_m / static_cast<double>(levels.size());
-        mean_l += level.level / static_cast<double>(levels.size());
-    }
-    double hh = 0.0;
-    double hl = 0.0;
-    double ll = 0.0;
-    for (const Level& level : levels) {
-        hh += std::pow(level.altitude_m - mean_h, 2.0);
-        hl += (level.altitude_m - mean_h) * (level.level - mean_l);
-        ll += std::pow(level.level - mean_l, 2.0);
-    }
-    const double correlation = hl / std::sqrt(std::max(hh * ll, 1e-300));
-    const double chance = 3.0 / std::sqrt(static_cast<double>(levels.size()));
-    if (levels.size() >= 10 && std::abs(correlation) > std::max(0.5, chance)) {
-        result.doubts.push_back(
-            {"images' brightness goes with their altitude as no water here does: "
-             "correlation of what is left",
-             correlation});
-    }
-    constexpr double kMostLevel = 0.3;
-    const double level =
-        std::sqrt(*std::max_element(result.effects.begin(), result.effects.begin() + 3));
-    if (level > kMostLevel) {
-        result.doubts.push_back(
-            {"images are brighter or darker than the rig makes them by this share "
-             "(rms): poses of other images, or exposures that differ",
-             level});
-    }
+    result.residual = std::sqrt(squares / std::max(1.0, blocks));
+    result.pattern = pattern_of(places);
+    look_for_doubts(samples, result);
 }
 
 FitResult result_of(const Bench& bench,
@@ -798,6 +854,10 @@ FitResult fit(const RigText& text,
     for (int attempt = 0;; ++attempt) {
         equations.assume_noise();
         if (attempt == 0) start_gains(bench, problem);
+        equations.tie_parts(
+            problem.state,
+            shares_of(equations.parts(problem.state, bench.path_light(problem.state, false)))
+                .shares);
         for (int round = 0; round <= kRounds; ++round) {
             watch.progress("fitting", static_cast<double>(round) / (kRounds + 1));
             constexpr int kFirstSteps = 25;
@@ -807,6 +867,7 @@ FitResult fit(const RigText& text,
             const PathLight path_light = bench.path_light(problem.state, false);
             const Solved solved = shares_of(equations.parts(problem.state, path_light));
             if (round == 0) equations.set_effects(effects);
+            equations.tie_parts(problem.state, solved.shares);
             equations.learn_noise(problem.state, path_light, solved.shares, learns_effects);
         }
         std::vector<NotTold> untold;

@@ -89,6 +89,23 @@ struct BeamPoint {
     double error = 0.0;
 };
 
+// What the fit leaves of an image, and what it makes of the image's own level and altitude.
+struct ImageOutcome {
+    Sled sled;
+    double residual = 0.0;    // rms, relative
+    double level = 0.0;       // of green, relative
+    double altitude_m = 0.0;  // off the navigation's
+};
+
+// An image as blocks: R, G, B planar, NaN where left out.
+struct FitView {
+    std::size_t image = 0;
+    std::vector<float> observed;
+    std::vector<float> fitted;
+    std::vector<float> residual;  // relative; the mean over channels, one plane
+};
+inline constexpr std::size_t kFitViews = 5;
+
 // A sign that the model does not fit.
 struct FitDoubt {
     std::string what;
@@ -104,6 +121,8 @@ struct FitResult {
     std::vector<Confounded> confounded;               // |correlation| over 0.9, the largest first
     std::vector<std::vector<BeamPoint>> beam_curves;  // of tables and cosines, by beam
     std::vector<FitDoubt> doubts;
+    std::vector<ImageOutcome> images;
+    std::vector<FitView> views;  // kFitViews of them, from the lowest to the highest
     EffectVariances effects{};
     BlockNoise noise;
     double residual = 0.0;  // rms of blocks, relative to the signal, levels taken out

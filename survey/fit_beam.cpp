@@ -14,21 +14,11 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
+constexpr double kOnAxis = 1e-12;
 constexpr double kSteps = 1e-5;  // of central differences: relative, and of directions
 
 const BeamFrame kLampFrame{
     .axis = Vector3d::UnitZ(), .along = Vector3d::UnitX(), .across = Vector3d::UnitY()};
-
-// Of the angle off the axis over the direction: along the sphere, away from the axis.
-Vector3d away_from_axis(const Vector3d& w) {
-    const double sine = std::hypot(w.x(), w.y());
-    if (sine < 1e-12) return Vector3d::Zero();  // where nothing even has a slope
-    return {w.x() * w.z() / sine, w.y() * w.z() / sine, -sine};
-}
-
-double off_axis_rad(const Vector3d& w) {
-    return std::atan2(std::hypot(w.x(), w.y()), w.z());
-}
 
 // The four splines over a step, u from 0 to 1, and their slopes by u.
 struct Splines {
@@ -112,23 +102,26 @@ std::vector<std::string> FitBeam::shape_names() const {
 }
 
 void FitBeam::splines_at(const Vector3d& w, std::vector<BeamPartValue>& values) const {
-    const double theta_rad = off_axis_rad(w);
+    const double sine = std::sqrt(w.x() * w.x() + w.y() * w.y());
+    const double theta_rad = std::atan2(sine, w.z());
     if (theta_rad > widest_rad_) return;
     const double step_rad = widest_rad_ / static_cast<double>(parts_ - 2);
     const double place = theta_rad / step_rad;
     const std::size_t first = std::min(static_cast<std::size_t>(place), parts_ - 3);
     const Splines splines = splines_over_step(place - static_cast<double>(first));
-    const Vector3d away = away_from_axis(w) / step_rad;
+    // Of the angle over the direction, along the sphere; on the axis nothing even has a slope.
+    const double per_sine = sine < kOnAxis ? 0.0 : 1.0 / (sine * step_rad);
+    const Vector3d away(w.x() * w.z() * per_sine, w.y() * w.z() * per_sine, -sine / step_rad);
     for (std::size_t i = 0; i < 4; ++i) {
-        // Knot -1 is knot 1, mirrored.
-        const std::size_t part = first + i == 0 ? 1 : first + i - 1;
-        const auto same = std::find_if(
-            values.begin(), values.end(), [&](const BeamPartValue& v) { return v.part == part; });
-        BeamPartValue& at = same != values.end() ? *same : values.emplace_back();
-        at.part = part;
-        at.value += splines.value[i];
-        at.gradient += splines.slope[i] * away;
+        if (first == 0 && i == 0) continue;
+        values.push_back({.part = first + i - 1,
+                          .value = splines.value[i],
+                          .gradient = splines.slope[i] * away});
     }
+    if (first > 0) return;
+    // Knot -1 is knot 1, mirrored.
+    values[1].value += splines.value[0];
+    values[1].gradient += splines.slope[0] * away;
 }
 
 void FitBeam::cosine_at(const Vector3d& w, std::vector<BeamPartValue>& values) const {

@@ -194,6 +194,22 @@ void FitEquations::learn_noise(const FitState& state,
     }
 }
 
+void FitEquations::tie_parts(const FitState& state, const VectorXd& shares) {
+    tie_.setZero(shares.size(), shares.size());
+    Index first = 0;
+    for (const FitBeam& beam : state.beams) {
+        const auto count = static_cast<Index>(beam.parts());
+        const double most = shares.segment(first, count).maxCoeff();
+        const double per_variance = most > 0.0 ? std::pow(kBend * most, -2.0) : 0.0;
+        for (Index m = 1; m + 1 < count && beam.kind() == FitBeamKind::Table; ++m) {
+            const Eigen::Vector3d bend(1.0, -2.0, 1.0);
+            tie_.block<3, 3>(first + m - 1, first + m - 1) +=
+                per_variance * bend * bend.transpose();
+        }
+        first += count;
+    }
+}
+
 FitEquations::Parts FitEquations::parts(const FitState& state, const PathLight& light) const {
     std::vector<Parts> of(images_.size());
     parallel_for(
@@ -216,6 +232,7 @@ FitEquations::Parts FitEquations::parts(const FitState& state, const PathLight& 
         all.b += of[i].b;
         all.squares += of[i].squares;
     }
+    if (tie_.size() > 0) all.G += tie_;
     return all;
 }
 
@@ -291,11 +308,13 @@ FitEquations::Normal FitEquations::normal(const FitState& state,
             normal.gradient = A.transpose() * weighted_off - across.transpose() * effects;
             if (!has_meat) return;
             const VectorXd left = image.weight.cwiseProduct(off - image.effects * effects);
+            // D V^-1 A: what of the columns the image's own effects cannot take up.
+            const Rows own = A - image.effects * (covariance * across);
             MatrixXd scores = MatrixXd::Zero(A.cols(), kTilesAcross * kTilesDown);
             for (Index row = 0; row < A.rows(); ++row) {
                 if (left(row) == 0.0) continue;
                 const auto tile = tile_of_place_[static_cast<std::size_t>(row) / kChannels];
-                scores.col(static_cast<Index>(tile)) += left(row) * A.row(row).transpose();
+                scores.col(static_cast<Index>(tile)) += left(row) * own.row(row).transpose();
             }
             // Z = A^T V^-1 U = A^T D^-1 U (1 - C U^T D^-1 U)
             const MatrixXd information =
@@ -315,6 +334,11 @@ FitEquations::Normal FitEquations::normal(const FitState& state,
         all.gradient += of[i].gradient;
         all.tiles += of[i].tiles;
         if (has_meat) all.meat += of[i].meat;
+    }
+    if (tie_.size() > 0) {
+        const Index parts = tie_.rows();
+        all.H.topLeftCorner(parts, parts) += tie_;
+        all.gradient.head(parts) -= tie_ * shares;
     }
     return all;
 }

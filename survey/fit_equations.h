@@ -13,13 +13,17 @@
 //
 //   A^T V^-1 A = A^T D^-1 A - A^T D^-1 U (Gamma^-1 + U^T D^-1 U)^-1 U^T D^-1 A
 //
+// A table's parts are tied so weakly that nothing changes where the images see them: their second
+// differences are random, with the standard deviation kBend of the largest share. So a beam goes on
+// smoothly where nobody looks.
+//
 // Blocks that are off by more than kHuber of their noise, as shells and stones are, count less
 // (Huber's weights). The covariance of what is fitted is the sandwich
 //
 //   C = H^-1 ( sum over tiles s s^T + sum over images Z Gamma Z^T ) H^-1,    H = A^T V^-1 A
 //
-// with s = A^T D^-1 (y - A x - U c) of a tile, a part of an image within which noise may be
-// correlated as it likes, and Z = A^T V^-1 U. It holds though e is none that D says
+// with s = (D V^-1 A)^T D^-1 (y - A x - U c) over a tile, a part of an image within which noise may
+// be correlated as it likes, and Z = A^T V^-1 U. It holds though e is none that D says
 // (P. J. Huber 1967; H. White, Econometrica 48, 1980, 817).
 #pragma once
 
@@ -34,6 +38,7 @@
 
 namespace aphotic {
 
+inline constexpr double kBend = 0.5;
 inline constexpr double kHuber = 2.5;
 inline constexpr std::size_t kTilesAcross = 8;
 inline constexpr std::size_t kTilesDown = 6;
@@ -63,6 +68,8 @@ class FitEquations {
                      const PathLight& light,
                      const Eigen::VectorXd& shares,
                      bool estimate_effects);
+    // From now on parts are tied; none before.
+    void tie_parts(const FitState& state, const Eigen::VectorXd& shares);
     void set_effects(const EffectVariances& variances) { effects_ = variances; }
     [[nodiscard]] const EffectVariances& effects() const { return effects_; }
     [[nodiscard]] const BlockNoise& noise() const { return noise_; }
@@ -136,6 +143,7 @@ class FitEquations {
     std::vector<Image> images_;
     std::vector<std::size_t> tile_of_place_;
     EffectVariances effects_{};
+    Eigen::MatrixXd tie_;  // what it adds to the parts' G; of no size: nothing
     BlockNoise noise_;
     double huber_factor_ = 1.0;
     std::size_t blocks_ = 0;

@@ -459,7 +459,8 @@ void FitLight::slopes_into(const FitState& state,
             const double q = sights_[row / kChannels].from_middle2;
             const double V = 1.0 + q * (state.vignetting[0] +
                                         q * (state.vignetting[1] + q * state.vignetting[2]));
-            slope = signal[row] / V * std::pow(q, static_cast<double>(number.which + 1));
+            slope = signal[row] / V * q;
+            for (std::size_t power = 0; power < number.which; ++power) slope *= q;
         }
     }
 }
@@ -505,7 +506,8 @@ double FitLight::widest_rad(const std::vector<Sled>& sleds) const {
             }
         }
     }
-    return widest_rad;
+    widest_rad += kAimRoom_rad + (rig_.water.scatters() ? kVeilRoom_rad : 0.0);
+    return std::min(widest_rad, 0.5 * pi);
 }
 
 }  // namespace aphotic

@@ -33,6 +33,10 @@
 namespace aphotic {
 
 inline constexpr unsigned kFitVeilPoints = 20;
+// By how much an aim may be off before the beam's table ends within the image; and how much farther
+// off their axes lamps light water that the image sees.
+inline constexpr double kAimRoom_rad = 0.15;
+inline constexpr double kVeilRoom_rad = 0.25;
 
 // Places of the image, pixels' centres at .5.
 struct FitPlaces {
@@ -93,8 +97,8 @@ class FitLight {
 
     // The paths that these sleds can show, with room for offsets of the altitude.
     [[nodiscard]] PathRange paths(const std::vector<Sled>& sleds) const;
-    // The widest angle off any strobe's axis of what the places see, on the floor and, where the
-    // water scatters, before it.
+    // The widest angle off any strobe's axis of the floor that the places see, kAimRoom_rad and,
+    // where the water scatters, kVeilRoom_rad more; up to a right angle.
     [[nodiscard]] double widest_rad(const std::vector<Sled>& sleds) const;
 
     [[nodiscard]] std::size_t rows() const { return kChannels * places_.size(); }

@@ -1,11 +1,244 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The page is well-formed XML too.
 #include "survey/fit_page.h"
 
-namespace aphotic {
+#include "base/atomic_file.h"
+#include "base/degrees.h"
+#include "image/preview.h"
+#include "report/html.h"
+#include "report/picture.h"
+#include "report/svg.h"
 
-void write_fit_page(const std::filesystem::path&,
-                    const RigText&,
-                    const FitSamples&,
-                    const FitResult&) {}
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+constexpr double kShownResidual = 0.1;  // at which a residual has its full colour
+
+std::string number_text(double value) {
+    return scientific(value);
+}
+
+std::string verdict(const FitSamples& samples, const FitResult& result) {
+    std::string words =
+        fmt::format("{} fitted to {}",
+                    counted(result.numbers.size(), "number"),
+                    counted(samples.images.size(), samples.are_maps ? "map" : "image"));
+    if (!result.held.empty()) words += ", " + counted(result.held.size(), "number") + " held";
+    if (!result.doubts.empty()) words += ", " + counted(result.doubts.size(), "warning");
+    return html_verdict(
+        result.doubts.empty(),
+        words,
+        html_paragraph(fmt::format(
+            "Of {} it leaves {} (rms, relative), of which {} stays in place from image to image: "
+            "what the model lacks.",
+            counted(result.blocks, "block"),
+            number_text(result.residual),
+            number_text(result.pattern))));
+}
+
+std::string doubts(const FitResult& result) {
+    std::string content;
+    for (const FitDoubt& doubt : result.doubts)
+        content +=
+            html_paragraph(fmt::format("{}: {}", escaped(doubt.what), number_text(doubt.size)));
+    return content.empty() ? "" : html_section("warnings", "Warnings", content);
+}
+
+std::string numbers(const FitResult& result) {
+    std::vector<HtmlRow> rows;
+    for (const FittedNumber& one : result.numbers) {
+        rows.push_back({.style = "",
+                        .cells = {user_text(one.key),
+                                  plain(one.start),
+                                  plain(one.value),
+                                  number_text(one.error),
+                                  one.is_at_bound ? "at the end of its range" : ""}});
+    }
+    std::string content = html_table("numbers", "number;began at;fitted;standard error;", rows);
+    for (const NotTold& one : result.held)
+        content += html_paragraph("Held: " + escaped(words_of(one)) + ".");
+    for (const Confounded& pair : result.confounded) {
+        content += html_paragraph(fmt::format("Confounded: {} and {}, correlation {:+.2f}.",
+                                              user_text(pair.one),
+                                              user_text(pair.other),
+                                              pair.correlation));
+    }
+    return html_section("numbers-section", "What was found", content);
+}
+
+// Blue where the image is darker than the fit, red where it is brighter.
+std::uint32_t residual_colour(float residual) {
+    if (!std::isfinite(residual)) return 0x808080;
+    const double share = std::clamp(static_cast<double>(residual) / kShownResidual, -1.0, 1.0);
+    const auto level = [](double value) {
+        return static_cast<std::uint32_t>(std::lround(255.0 * value));
+    };
+    const double faded = 1.0 - std::abs(share);
+    const std::uint32_t red = level(share > 0.0 ? 1.0 : faded);
+    const std::uint32_t green = level(faded);
+    const std::uint32_t blue = level(share > 0.0 ? faded : 1.0);
+    return red << 16U | green << 8U | blue;
+}
+
+std::string views(const FitSamples& samples, const FitResult& result) {
+    const int width_px = samples.places.width_px / samples.block_px;
+    const int height_px = static_cast<int>(samples.places.size()) / width_px;
+    std::string figures;
+    for (const FitView& view : result.views) {
+        const CameraImage fitted{width_px, height_px, view.fitted};
+        const auto scale = preview_scale(fitted, {1.0, 1.0, 1.0}, {.white = PreviewWhite::Image});
+        std::vector<std::uint32_t> colours;
+        for (const float residual : view.residual) colours.push_back(residual_colour(residual));
+        const auto shown = [&](const std::string& png, std::string_view words) {
+            return picture_html(png, width_px, height_px, words);
+        };
+        figures += fmt::format(
+            "<figure><div class=\"duo trio\">{}{}{}</div><figcaption>{}, "
+            "{:.2f}\xC2\xA0m</figcaption></figure>\n",
+            shown(preview_png({width_px, height_px, view.observed}, scale), "observed"),
+            shown(preview_png(fitted, scale), "fitted"),
+            shown(png_of(colours, width_px, height_px), "what is left"),
+            user_text(samples.images[view.image].name),
+            samples.images[view.image].sled.altitude_m);
+    }
+    return html_section(
+        "views",
+        "Observed and fitted",
+        html_paragraph(fmt::format("Observed, fitted, and what is left: red brighter, blue darker "
+                                   "than the fit, in full colour "
+                                   "from {:.0f} % on. Each block is {} pixels wide.",
+                                   100.0 * kShownResidual,
+                                   samples.block_px)) +
+            fmt::format("<div class=\"sheet\">\n{}</div>\n", figures));
+}
+
+constexpr double kWidth = 760.0;
+constexpr double kHeight = 300.0;
+constexpr double kTop = 12.0;
+
+SvgPanel panel_over(const ValueRange& x, const ValueRange& y) {
+    return {.left = kAxisWidth,
+            .top = kTop,
+            .width = kWidth - kAxisWidth - kTop,
+            .height = kHeight - kAxisHeight - kTop,
+            .x = linear_axis(x.least, x.most, 8),
+            .y = linear_axis_around(y.least, y.most, 6)};
+}
+
+std::string beam(std::size_t number, const std::vector<BeamPoint>& curve) {
+    std::vector<double> theta_deg;
+    std::vector<double> middle;
+    std::vector<double> low;
+    std::vector<double> high;
+    ValueRange x;
+    ValueRange y;
+    for (const BeamPoint& point : curve) {
+        theta_deg.push_back(point.theta_rad * kDegreesPerRadian);
+        middle.push_back(point.intensity);
+        low.push_back(std::max(0.0, point.intensity - 2.0 * point.error));
+        high.push_back(point.intensity + 2.0 * point.error);
+        x.include(theta_deg.back());
+        y.include(high.back());
+    }
+    y.include(0.0);
+    SvgPanel panel = panel_over(x, y);
+    panel.x.title = "angle off the axis [degrees]";
+    panel.y.title = "intensity [1/sr]";
+    const std::string solid = "class=\"curve\" " + svg_tone(0);
+    const std::string dashed = "class=\"curve dashed\" " + svg_tone(0);
+    const std::string drawing = svg_axes(panel) + svg_curve(panel, theta_deg, low, dashed) +
+                                svg_curve(panel, theta_deg, high, dashed) +
+                                svg_curve(panel, theta_deg, middle, solid);
+    return fmt::format(
+        "<figure class=\"plot wide\">\n{}</figure>\n",
+        svg_drawing(fmt::format("beam-{}", number), "beam", kWidth, kHeight, drawing));
+}
+
+std::string beams(const FitResult& result) {
+    std::string content;
+    for (std::size_t b = 0; b < result.beam_curves.size(); ++b)
+        content += beam(b, result.beam_curves[b]);
+    if (content.empty()) return "";
+    return html_section(
+        "beams",
+        "Beam",
+        html_paragraph("For a flux of 1, within twice its standard error.") + content);
+}
+
+std::string over_altitude(const FitResult& result) {
+    std::vector<double> altitude_m;
+    std::vector<double> residual;
+    std::vector<double> level;
+    ValueRange x;
+    ValueRange y;
+    for (const ImageOutcome& image : result.images) {
+        altitude_m.push_back(image.sled.altitude_m);
+        residual.push_back(image.residual);
+        level.push_back(image.level);
+        x.include(altitude_m.back());
+        y.include(residual.back());
+        y.include(level.back());
+    }
+    if (!(x.most > x.least)) return "";
+    y.include(0.0);
+    SvgPanel panel = panel_over(x, y);
+    panel.x.title = "altitude [m]";
+    panel.y.title = "share of the signal";
+    const std::string dots = "class=\"dots\" style=\"stroke-width: 6px\" ";
+    const std::string drawing = svg_axes(panel) +
+                                svg_dots(panel, altitude_m, residual, dots + svg_tone(0)) +
+                                svg_dots(panel, altitude_m, level, dots + svg_tone(1));
+    return html_section(
+        "altitude",
+        "Over altitude",
+        html_paragraph("Blue: what is left of an image, rms. Red: how much brighter the image is "
+                       "than its pose explains; that should not go with the altitude.") +
+            fmt::format(
+                "<figure class=\"plot wide\">\n{}</figure>\n",
+                svg_drawing("residuals", "residuals over altitude", kWidth, kHeight, drawing)));
+}
+
+std::string deviations(const FitResult& result) {
+    const auto deviation = [&](std::size_t k) { return std::sqrt(result.effects[k]); };
+    const std::vector<HtmlItem> items{{"brightness of floors",
+                                       fmt::format("{} red, {} green, {} blue, relative",
+                                                   number_text(deviation(0)),
+                                                   number_text(deviation(1)),
+                                                   number_text(deviation(2)))},
+                                      {"altitude", fmt::format("{} m", number_text(deviation(3)))},
+                                      {"pitch, roll",
+                                       fmt::format("{}, {} degrees",
+                                                   number_text(deviation(4) * kDegreesPerRadian),
+                                                   number_text(deviation(5) * kDegreesPerRadian))}};
+    return html_section(
+        "deviations",
+        "From image to image",
+        html_paragraph("Standard deviations of what the images are off by, each its own.") +
+            html_list("deviation-list", items));
+}
+
+}  // namespace
+
+void write_fit_page(const std::filesystem::path& file,
+                    const RigText& text,
+                    const FitSamples& samples,
+                    const FitResult& result) {
+    const std::string title = text.rig().title.empty() ? "Untitled rig" : text.rig().title;
+    const std::string content =
+        html_header("fit", user_text(title), verdict(samples, result)) + doubts(result) +
+        numbers(result) + views(samples, result) + beams(result) + over_altitude(result) +
+        deviations(result) +
+        html_section("rig", "The rig that it began with", html_source(text.text()));
+    write_text_file(file, html_page("Fit: " + title, content));
+}
 
 }  // namespace aphotic

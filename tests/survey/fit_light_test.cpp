@@ -20,6 +20,8 @@ constexpr double kBands = 3e-4;
 constexpr double kVeilRule = 2e-3;
 // Central differences of the light, and the water's own.
 constexpr double kDifference = 2e-5;
+// Where the veil ends moves a rule whose panel a spline's knots cross.
+constexpr double kVeilDifference = 3e-4;
 
 const Sled kTilted{
     .altitude_m = 1.7, .pitch_rad = 3.0 * kRadiansPerDegree, .roll_rad = -2.0 * kRadiansPerDegree};
@@ -31,7 +33,8 @@ struct Known {
     FitPlaces places{};
     explicit Known(const FitRigNumbers& numbers) : text(fit_rig(numbers)) {
         int block_px = 0;
-        places = fit_places(rig.camera.width_px, rig.camera.height_px, rig.camera.width_px, block_px);
+        places =
+            fit_places(rig.camera.width_px, rig.camera.height_px, rig.camera.width_px, block_px);
         state.beams = {FitBeam::held(rig.strobes[0].beam)};
         state.beam_of = {0, 0};
         state.aim_rad = {{0.0, 0.0}, {0.0, 0.0}};
@@ -72,7 +75,7 @@ TEST(FitLight, HasTheVeilOfTheSameRig) {
 }
 
 // Every number there is, and the pose's three.
-void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam) {
+void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam, double most) {
     Known known(numbers);
     known.state.beams = {beam};
     known.state.aim_rad = {{0.03, -0.02}, {0.01, 0.04}};
@@ -94,12 +97,8 @@ void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam) {
         free.push_back({FitPart::BeamShape, 0, k});
     const PathRange paths = light.paths({kTilted});
     FitLight::Rows slopes;
-    light.slopes_into(known.state,
-                      {known.text, known.state.water, paths, true},
-                      kTilted,
-                      shares,
-                      free,
-                      slopes);
+    light.slopes_into(
+        known.state, {known.text, known.state.water, paths, true}, kTilted, shares, free, slopes);
     const auto signal = [&](const FitState& state) {
         FitLight::Rows parts;
         light.parts_into(state, {known.text, state.water, paths, false}, kTilted, parts);
@@ -113,13 +112,13 @@ void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam) {
         number_in(less, free[k]) -= kStep;
         const Eigen::VectorXd wanted = (signal(more) - signal(less)) / (2.0 * kStep);
         const double off = (slopes.col(static_cast<Eigen::Index>(k)) - wanted).norm();
-        EXPECT_LT(off, kDifference * wanted.norm()) << "number " << k;
+        EXPECT_LT(off, most * wanted.norm()) << "number " << k;
     }
 }
 
 TEST(FitLight, SlopesAreThoseOfTheLight) {
-    expect_slopes({}, FitBeam::table(12, 1.2));
-    expect_slopes({}, FitBeam::cosine(5.0));
+    expect_slopes({}, FitBeam::table(12, 1.2), kDifference);
+    expect_slopes({}, FitBeam::cosine(5.0), kDifference);
 }
 
 TEST(FitLight, SlopesOfTheVeil) {
@@ -127,7 +126,7 @@ TEST(FitLight, SlopesOfTheVeil) {
     numbers.water = "type = \"jerlov-1C\"\nmultiple = {}";
     numbers.width_px = 12;
     numbers.height_px = 9;
-    expect_slopes(numbers, FitBeam::table(12, 1.5));
+    expect_slopes(numbers, FitBeam::table(12, 1.5), kVeilDifference);
 }
 
 }  // namespace

@@ -62,7 +62,11 @@ TEST(Fit, FindsTheRigThatMadeTheMaps) {
         fmt::print("{} {} -> {} +- {}\n", one.key, one.start, one.value, one.error);
     }
     for (const NotTold& one : result.held) fmt::print("held {}\n", words_of(one));
-    fmt::print("steps {} residual {} pattern {} noise {}\n", result.steps, result.residual, result.pattern, result.noise.variance[2]);
+    fmt::print("steps {} residual {} pattern {} noise {}\n",
+               result.steps,
+               result.residual,
+               result.pattern,
+               result.noise.variance[2]);
     EXPECT_NEAR(value_of(result, "water.multiple"), 1.0, 0.02);
 }
 
