@@ -134,10 +134,11 @@ Action configure_fit(CLI::App& app) {
     app.add_option("--parts", options->fit.parts, "Splines of a beam's table")
         ->check(in_range(4, 200))
         ->capture_default_str();
-    app.add_option("--free",
-                   options->free,
-                   "Fit these alone: beam, aim, power, water, vignetting, altitude, attitude, or a "
-                   "key of [water]")
+    app.add_option(
+           "--free",
+           options->free,
+           "Fit these alone: beam, aim, power, water, vignetting, altitude, attitude, gain, or a "
+           "key of [water]")
         ->delimiter(',')
         ->type_name("WHAT,...");
     app.add_option("--altitude-error",

@@ -20,7 +20,6 @@
 #include <numbers>
 #include <numeric>
 #include <set>
-#include <span>
 
 namespace aphotic {
 namespace {
@@ -57,7 +56,8 @@ constexpr std::array<WaterBounds, 3> kCase1Numbers{{{"chlorophyll_mg_m3", 1.0, 0
                                                     {"particles", 1.0, 0.0, 1e2, 0.3}}};
 
 // What is asked for by one word each.
-constexpr std::array kWords{"beam", "aim", "power", "water", "vignetting", "altitude", "attitude"};
+constexpr std::array kWords{
+    "beam", "aim", "power", "water", "vignetting", "altitude", "attitude", "gain"};
 constexpr std::size_t kByDefault = 5;
 
 bool is_asked(const FitOptions& options, const std::string& word) {
@@ -223,6 +223,15 @@ void add_camera(const Rig& rig,
                         .group = "attitude"});
     }
     if (rig.camera.sensor.is_mono()) return;
+    if (!is_asked(options, "gain")) {
+        for (std::size_t k = 0; k < state.floor.size(); ++k) {
+            free.push_back({.number = {FitPart::FloorColour, 0, k},
+                            .key = k == 0 ? "floor.redness" : "floor.bend",
+                            .plausible = 1.0,
+                            .group = "floor"});
+        }
+        return;
+    }
     for (const std::size_t c : {std::size_t{0}, std::size_t{2}}) {
         free.push_back({.number = {FitPart::Gain, c, 0},
                         .key = fmt::format("gain.{}", kChannelNames[c]),
@@ -277,7 +286,7 @@ struct Bench {
     PathRange paths;
 
     [[nodiscard]] PathLight path_light(const FitState& state, bool has_derivatives) const {
-        return {rig, state.water, paths, has_derivatives};
+        return {rig, state.water, state.floor, paths, has_derivatives};
     }
 };
 
@@ -489,11 +498,18 @@ std::vector<NotTold> not_told(const Bench& bench,
     std::vector<Index> bad;
     for (Index k = 0; k < errors.size(); ++k) {
         const Free& one = told.free[static_cast<std::size_t>(k)];
-        if (errors(k) <= kTold || one.group == "gain") continue;
+        if (errors(k) <= kTold || one.group == "gain" || one.group == "floor") continue;
         NotTold not_one{.key = one.key, .error = errors(k) * one.plausible * one.per_unit};
         double best = errors(k);
-        for (const std::string group :
-             {"beam", "water", "aim", "power", "vignetting", "altitude", "attitude"}) {
+        for (const std::string group : {"beam",
+                                        "water",
+                                        "aim",
+                                        "power",
+                                        "vignetting",
+                                        "altitude",
+                                        "attitude",
+                                        "floor",
+                                        "gain"}) {
             if (group == one.group) continue;
             const double error = told.errors(told.H, group)(k);
             if (error >= 0.9 * best) continue;
@@ -672,7 +688,7 @@ void look_for_doubts(const FitSamples& samples, FitResult& result) {
              correlation});
     }
     constexpr double kMostLevel = 0.25;
-    const double level = std::sqrt(std::ranges::max(std::span(result.effects).first(kChannels)));
+    const double level = std::sqrt(result.effects[0]);
     if (level > kMostLevel) {
         result.doubts.push_back(
             {"images are brighter or darker than their poses explain: poses of "
@@ -741,7 +757,7 @@ void look_at_residuals(const Bench& bench,
         blocks += count;
         result.images.push_back({.sled = samples.images[i].sled,
                                  .residual = std::sqrt(of_image / std::max(1.0, count)),
-                                 .level = found.effects[1],
+                                 .level = found.effects[0],
                                  .altitude_m = found.effects[3]});
         const auto at = std::ranges::find(shown, i);
         if (at != shown.end())
@@ -840,10 +856,13 @@ FitResult fit(const RigText& text,
 
     EffectVariances effects{};
     constexpr double kLevel = 0.05;  // of floors, at first
+    constexpr double kHue = 0.02;
     const double altitude = options.altitude_error_m * options.altitude_error_m;
     const double attitude = options.attitude_error_rad * options.attitude_error_rad;
-    const double level = altitude + attitude > 0.0 || !samples.are_maps ? kLevel * kLevel : 0.0;
-    effects = {level, level, level, altitude, attitude, attitude};
+    const bool is_exact = altitude + attitude == 0.0 && samples.are_maps;
+    const double level = is_exact ? 0.0 : kLevel * kLevel;
+    const double hue = is_exact ? 0.0 : kHue * kHue;
+    effects = {level, hue, hue, altitude, attitude, attitude};
     constexpr std::size_t kManyImages = 20;  // that tell the variances of what they share
     const bool learns_effects = samples.images.size() >= kManyImages;
 

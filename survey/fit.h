@@ -45,8 +45,9 @@ struct FitOptions {
     FitBeamKind beam = FitBeamKind::Table;
     std::size_t parts = 24;      // of a table
     bool has_beam_each = false;  // each strobe its own
-    // beam, aim, power, water, vignetting, altitude, attitude, or a key of [water]; none: the first
-    // five, as far as they can be told.
+    // beam, aim, power, water, vignetting, altitude, attitude, gain, or a key of [water]; none: the
+    // first five, as far as they can be told. The floor's colour is free besides, unless the
+    // channels' gains are: these two cannot be parted.
     std::optional<std::vector<std::string>> free{};
     // Standard deviations of what the navigation tells, image by image.
     double altitude_error_m = 0.02;

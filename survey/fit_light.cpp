@@ -131,6 +131,8 @@ double& number_in(FitState& state, const FitNumber& number) {
     switch (number.part) {
         case FitPart::Water:
             return state.water[number.of].value;
+        case FitPart::FloorColour:
+            return state.floor[number.which];
         case FitPart::Aim:
             return state.aim_rad[number.of][number.which];
         case FitPart::Power:
@@ -392,6 +394,8 @@ void FitLight::slopes_into(const FitState& state,
     std::vector<Index> water;
     for (std::size_t k = 0; k < state.water.size(); ++k)
         water.push_back(column_of(FitPart::Water, k, 0));
+    for (std::size_t k = 0; k < state.floor.size(); ++k)
+        water.push_back(column_of(FitPart::FloorColour, 0, k));
 
     rows_of.setZero(static_cast<Index>(rows()), count + static_cast<Index>(kPoseColumns));
     std::vector<double> signal(rows(), 0.0);

@@ -55,12 +55,13 @@ struct FitState {
     std::vector<std::array<double, 2>> aim_rad;  // by strobe, off the rig's: along, across
     std::vector<double> power;                   // by strobe
     std::vector<WaterNumber> water;
+    FloorTint floor{};               // q1, q2 of path_light.h
     std::vector<double> vignetting;  // a1, a2, a3; empty: the rig's own
     std::array<double, kChannels> gain{1.0, 1.0, 1.0};
     Sled offset;
 };
 
-enum class FitPart { Water, Aim, Power, BeamShape, LensFactor, Offset, Gain };
+enum class FitPart { Water, FloorColour, Aim, Power, BeamShape, LensFactor, Offset, Gain };
 
 // One number of the state that is free.
 struct FitNumber {

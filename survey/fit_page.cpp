@@ -209,16 +209,15 @@ std::string over_altitude(const FitResult& result) {
 
 std::string deviations(const FitResult& result) {
     const auto deviation = [&](std::size_t k) { return std::sqrt(result.effects[k]); };
-    const std::vector<HtmlItem> items{{"brightness of floors",
-                                       fmt::format("{} red, {} green, {} blue, relative",
-                                                   number_text(deviation(0)),
-                                                   number_text(deviation(1)),
-                                                   number_text(deviation(2)))},
-                                      {"altitude", fmt::format("{} m", number_text(deviation(3)))},
-                                      {"pitch, roll",
-                                       fmt::format("{}, {} degrees",
-                                                   number_text(deviation(4) * kDegreesPerRadian),
-                                                   number_text(deviation(5) * kDegreesPerRadian))}};
+    const std::vector<HtmlItem> items{
+        {"brightness", number_text(deviation(0))},
+        {"red and blue beside green",
+         fmt::format("{}, {}", number_text(deviation(1)), number_text(deviation(2)))},
+        {"altitude", fmt::format("{} m", number_text(deviation(3)))},
+        {"pitch, roll",
+         fmt::format("{}, {} degrees",
+                     number_text(deviation(4) * kDegreesPerRadian),
+                     number_text(deviation(5) * kDegreesPerRadian))}};
     return html_section(
         "deviations",
         "From image to image",

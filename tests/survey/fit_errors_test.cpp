@@ -34,6 +34,7 @@ struct Flight {
     int images = 5;
     double noise = 0.01;
     double level = 0.0;
+    double hue = 0.0;
     double altitude_error_m = 0.0;
     double attitude_error_rad = 0.0;
 };
@@ -71,7 +72,7 @@ Drawn draw(std::uint64_t seed, const Flight& flight) {
     truth.power = {1.0, 0.8 + 0.2 * even(dice)};
     truth.water = {{"water.multiple", 1.0 + 0.3 * even(dice)}};
     truth.vignetting = {-0.1 + 0.1 * even(dice), 0.03 * even(dice), 0.0};
-    truth.gain = {1.0 + 0.2 * even(dice), 1.0, 1.0 + 0.2 * even(dice)};
+    truth.floor = {0.3 * even(dice), 0.2 * even(dice)};
     drawn.shares = Eigen::VectorXd(kParts);
     const double width_rad = 0.45 + 0.1 * even(dice);
     for (std::size_t m = 0; m < kParts; ++m) {
@@ -85,14 +86,16 @@ Drawn draw(std::uint64_t seed, const Flight& flight) {
         sled.pitch_rad += flight.attitude_error_rad * normal(dice);
         sled.roll_rad += flight.attitude_error_rad * normal(dice);
     }
-    const PathLight path(drawn.text, truth.water, light.paths(flown), false);
+    const PathLight path(drawn.text, truth.water, truth.floor, light.paths(flown), false);
     FitLight::Rows parts;
     for (std::size_t i = 0; i < flown.size(); ++i) {
         light.parts_into(truth, path, flown[i], parts);
         const Eigen::VectorXd signal = parts * drawn.shares;
         FitImage image{.name = fmt::format("{}", i), .sled = sleds[i]};
-        std::array<double, kChannels> level{};
-        for (double& of : level) of = 1.0 + flight.level * normal(dice);
+        const double brightness = 1.0 + flight.level * normal(dice);
+        const std::array<double, kChannels> level{brightness * (1.0 + flight.hue * normal(dice)),
+                                                  brightness,
+                                                  brightness * (1.0 + flight.hue * normal(dice))};
         for (Eigen::Index row = 0; row < signal.size(); ++row) {
             image.signal.push_back(
                 static_cast<float>(signal(row) * level[static_cast<std::size_t>(row) % kChannels] *
@@ -153,6 +156,7 @@ TEST(FitErrors, HoldForImagesWhosePosesAndFloorsAreOff) {
     const double share = share_within({.images = 40,
                                        .noise = 0.03,
                                        .level = 0.04,
+                                       .hue = 0.01,
                                        .altitude_error_m = 0.02,
                                        .attitude_error_rad = 0.008});
     fmt::print("{}\n", share);
