@@ -212,9 +212,9 @@ Veil::Light Veil::light_of(const Strobe& strobe, const Beam& beam, unsigned emit
 // Lagrange's cubic through the four next samples.
 double Veil::Phase::at(double psi_rad) const {
     if (samples.empty()) return function->at(psi_rad);
-    const double steps = static_cast<double>(samples.size() - 1);
-    const double place = (psi_rad - kVeilCut) * steps / (pi - kVeilCut);
-    const double first = std::clamp(std::floor(place) - 1.0, 0.0, steps - 3.0);
+    const int steps = static_cast<int>(samples.size()) - 1;
+    const double place = (psi_rad - kVeilCut) * (steps / (pi - kVeilCut));
+    const int first = std::clamp(static_cast<int>(place) - 1, 0, steps - 3);
     const double* const y = &samples[static_cast<std::size_t>(first)];
     const double a = place - first;
     const double b = a - 1.0;

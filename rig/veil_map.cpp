@@ -611,7 +611,8 @@ void VeilMap::rows_into(const Sled& sled,
     parallel_for(node_rows, rooms.size(), [&](std::size_t row, std::size_t thread) {
         const double y = down_.node_px(static_cast<double>(row) + first_node);
         for (std::size_t i = 0; i < stride * parts; ++i) {
-            const double x = across_.node_px(static_cast<double>(i / parts));
+            const std::size_t column = i / parts;
+            const double x = across_.node_px(static_cast<double>(column));
             nodes[row * stride * parts + i] =
                 is_whole ? at_sights(flight, x, y, std::nullopt, rooms[thread])
                          : at_part(flight, i % parts, x, y, rooms[thread]);

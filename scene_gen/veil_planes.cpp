@@ -20,7 +20,7 @@ namespace {
 
 // Of the spectral integral and its table: a tenth of what the interpolation is off by.
 constexpr double kTableError = 0.1 * kVeilOfSignal;
-constexpr int kBlockRows = 256;
+constexpr int kBlockRows = 512;
 // Deflate takes longer than all the rest, for a third of the size.
 constexpr int kNotCompressed = 0;
 
