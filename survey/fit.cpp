@@ -10,6 +10,7 @@
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glog/logging.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
@@ -370,6 +371,7 @@ class Reduced : public ceres::CostFunction {
         S.diagonal().array() += 1.0;
         const VectorXd gradient = off - scale.cwiseProduct(normal.gradient.tail(count));
         // S = L L^T: J = L^T above a row of 0, r = (L^-1 gradient, the rest).
+        if (!S.allFinite()) return false;
         const Eigen::LLT<MatrixXd> cholesky(S);
         if (cholesky.info() != Eigen::Success) return false;
         const MatrixXd L = cholesky.matrixL();
@@ -403,6 +405,7 @@ int search(const Bench& bench, Problem& problem, int most_steps) {
         if (std::isfinite(one.most))
             minimised.SetParameterUpperBound(x.data(), at, one.most / one.plausible);
     }
+    FLAGS_minloglevel = google::GLOG_FATAL;  // what it has to say is in the summary
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
     options.max_num_iterations = most_steps;

@@ -61,7 +61,10 @@ BlockNoise noise_of(std::vector<Deviation> deviations) {
         y(row) = 1.0;
     }
     const VectorXd v = non_negative_fit(A.transpose() * A, A.transpose() * y);
-    return {.variance = {v(0), v(1) / most, v(2) / (most * most)}};
+    // Never none: what the fit makes dark has a weight, too.
+    constexpr double kLeast = 1e-6;
+    const double least = kLeast * kLeast * most * most;
+    return {.variance = {std::max(v(0), least), v(1) / most, v(2) / (most * most)}};
 }
 
 }  // namespace
