@@ -32,7 +32,7 @@
 
 namespace aphotic {
 
-inline constexpr unsigned kFitVeilPoints = 20;
+inline constexpr unsigned kFitVeilPoints = 12;
 // By how much an aim may be off before the beam's table ends within the image; and how much farther
 // off their axes lamps light water that the image sees.
 inline constexpr double kAimRoom_rad = 0.15;
