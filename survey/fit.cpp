@@ -867,7 +867,7 @@ FitResult fit(const RigText& text,
     const double level = is_exact ? 0.0 : kLevel * kLevel;
     const double hue = is_exact ? 0.0 : kHue * kHue;
     effects = {level, hue, hue, altitude, attitude, attitude};
-    constexpr std::size_t kManyImages = 40;  // that tell the variances of what they share
+    constexpr std::size_t kManyImages = 30;  // that tell the variances of what they share
     const bool learns_effects = samples.images.size() >= kManyImages;
 
     std::vector<NotTold> held;
