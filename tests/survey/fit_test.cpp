@@ -87,13 +87,13 @@ TEST(Fit, FindsTheRigThatMadeTheMaps) {
     const FitSamples samples = fit_samples_of(truth, flown({1.2, 1.5, 2.0, 2.5}), kNoise, 1);
     const FitResult result = fit(guess(), samples, exact_poses(), {});
     EXPECT_TRUE(result.held.empty());
-    EXPECT_TRUE(result.doubts.empty());
+    EXPECT_TRUE(result.left.doubts.empty());
     expect_told(result, "water.multiple", 1.0);
     expect_told(result, "strobe.fore.aim_along_deg", 4.0 * std::cos(std::atan2(0.1, 0.5)));
     expect_told(result, "strobe.aft.aim_along_deg", 0.0);
     expect_told(result, "strobe.aft.aim_across_deg", 0.0);
     expect_told(result, "strobe.aft.power", 0.8);
-    EXPECT_NEAR(result.residual, kNoise, 0.05 * kNoise);
+    EXPECT_NEAR(result.left.residual, kNoise, 0.05 * kNoise);
 
     // And as a rig it shines as the truth does, higher than any image was.
     const TempFolder folder;
@@ -107,8 +107,8 @@ TEST(Fit, FindsTheRigInWaterThatScatters) {
     FitRigNumbers numbers;
     numbers.water = "chlorophyll_mg_m3 = {}";
     numbers.multiple = 0.4;
-    numbers.width_px = 24;
-    numbers.height_px = 18;
+    numbers.width_px = 16;
+    numbers.height_px = 12;
     const Rig truth = fit_rig(numbers).rig();
     const FitSamples samples = fit_samples_of(truth, flown({1.2, 1.6, 2.0, 2.5}), kNoise, 2);
     numbers.multiple = 0.8;
@@ -186,8 +186,8 @@ FitSamples thirty_images(std::uint64_t seed) {
                          .roll_rad = 0.05 * std::cos(3.0 * i)});
     }
     FitRigNumbers numbers;
-    numbers.width_px = 16;
-    numbers.height_px = 12;
+    numbers.width_px = 10;
+    numbers.height_px = 8;
     FitSamples samples = fit_samples_of(fit_rig(numbers).rig(), sleds, kNoise, seed);
     samples.are_maps = false;
     return samples;
@@ -195,21 +195,21 @@ FitSamples thirty_images(std::uint64_t seed) {
 
 FitResult fitted_to(const FitSamples& samples) {
     FitRigNumbers numbers;
-    numbers.width_px = 16;
-    numbers.height_px = 12;
+    numbers.width_px = 10;
+    numbers.height_px = 8;
     FitOptions options;
     options.threads = 2;
-    options.parts = 12;
+    options.parts = 8;
     return fit(fit_rig(numbers), samples, options, {});
 }
 
 TEST(Fit, FindsOutASurveyWhosePosesAreThoseOfOtherImages) {
     FitSamples samples = thirty_images(6);
-    EXPECT_TRUE(fitted_to(samples).doubts.empty());
+    EXPECT_TRUE(fitted_to(samples).left.doubts.empty());
     // Each image has its neighbour's altitude, a metre off at most.
     for (std::size_t i = 0; i + 1 < samples.images.size(); ++i)
         std::swap(samples.images[i].sled, samples.images[i + 1].sled);
-    EXPECT_FALSE(fitted_to(samples).doubts.empty());
+    EXPECT_FALSE(fitted_to(samples).left.doubts.empty());
 }
 
 // A black level of a fifth of the brightest that nobody took off.
@@ -221,7 +221,7 @@ TEST(Fit, FindsOutABlackLevel) {
     for (FitImage& image : samples.images) {
         for (float& signal : image.signal) signal += 0.2F * most;
     }
-    EXPECT_FALSE(fitted_to(samples).doubts.empty());
+    EXPECT_FALSE(fitted_to(samples).left.doubts.empty());
 }
 
 }  // namespace
