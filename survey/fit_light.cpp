@@ -111,7 +111,7 @@ struct VeilRule {
 };
 
 const VeilRule& veil_rule() {
-    static const VeilRule rule = [] {
+    static const VeilRule kRule = [] {
         using Gauss = boost::math::quadrature::gauss<double, kFitVeilPoints>;
         VeilRule made;
         for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
@@ -122,7 +122,7 @@ const VeilRule& veil_rule() {
         }
         return made;
     }();
-    return rule;
+    return kRule;
 }
 
 }  // namespace

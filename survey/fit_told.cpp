@@ -38,7 +38,7 @@ std::vector<Index> active_parts(const VectorXd& shares) {
 MatrixXd eliminated(const MatrixXd& H,
                     const std::vector<Index>& parts,
                     const std::vector<Index>& numbers) {
-    const MatrixXd of_numbers = H(numbers, numbers);
+    MatrixXd of_numbers = H(numbers, numbers);
     if (parts.empty() || numbers.empty()) return of_numbers;
     const VectorXd scale =
         H.diagonal()(parts).cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();

@@ -23,13 +23,13 @@ namespace aphotic {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using SettingsJson = nlohmann::ordered_json;
 
 fs::path file_of(const SimulatedSurvey& survey, const char* kind, const Leg& leg) {
     return survey.folder / kind / (leg.name + (std::string_view(kind) == "raw" ? ".tif" : ".exr"));
 }
 
-Json settings_of(const SimulatedSurvey& survey) {
+SettingsJson settings_of(const SimulatedSurvey& survey) {
     const InstrumentErrors& errors = survey.errors;
     return {{"rig_sha256", survey.rig.digest},
             {"seed", survey.seed},
@@ -123,7 +123,7 @@ void for_missing(const SimulatedSurvey& survey, const char* kind, const Work& wo
 }
 
 // A folder holds one survey: images of two could not be told apart.
-void require_same(const Json& settings, const fs::path& notes) {
+void require_same(const SettingsJson& settings, const fs::path& notes) {
     const nlohmann::json read = parse_json(read_text_file(notes), notes.string());
     const nlohmann::json found =
         read.is_object() ? read.value("settings", nlohmann::json::object()) : nlohmann::json();
@@ -168,7 +168,7 @@ std::uint64_t missing_bytes(const SimulatedSurvey& survey) {
 void begin_survey(const SimulatedSurvey& survey) {
     require_different_names(survey.legs);
     const fs::path notes = survey.folder / kSurveyNotes;
-    const Json settings = settings_of(survey);
+    const SettingsJson settings = settings_of(survey);
     if (fs::exists(notes)) require_same(settings, notes);
     for (const char* kind : {"truth", "raw"}) make_folder(survey.folder / kind);
     if (!fs::exists(notes)) write_text_file(notes, json_text({{"settings", settings}}));
