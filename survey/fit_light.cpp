@@ -435,7 +435,9 @@ void FitLight::slopes_into(const FitState& state,
             add_to(of.aim[1], by_aim(1) * lit.light[c]);
             add_to(of.power, value / state.power[lit.strobe]);
             for (std::size_t k = 0; k < 2; ++k) add_to(of.shape[k], by_shape[k] * lit.light[c]);
-            for (std::size_t k = 0; k < water.size(); ++k) add_to(water[k], I * lit.by_water[k][c]);
+            // None of light without derivatives.
+            for (std::size_t k = 0; k < lit.by_water.size(); ++k)
+                add_to(water[k], I * lit.by_water[k][c]);
             if (lit.by == LitBy::Water) continue;
             const double by_length =
                 I * lit.light_by_length[c] + gradient.dot(lit.w_by_length) * lit.light[c];

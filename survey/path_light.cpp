@@ -112,7 +112,7 @@ void CubicTable::at(double x, double* values) const {
     const double to = u * u * (1.0 + 2.0 * v);
     const double from_slope = step_ * u * v * v;
     const double to_slope = -step_ * u * u * v;
-    const double* a = &samples_[2 * node * lanes_];
+    const double* a = samples_.data() + 2 * node * lanes_;
     const double* b = a + 2 * lanes_;
     for (std::size_t lane = 0; lane < lanes_; ++lane) {
         values[lane] = from * a[2 * lane] + from_slope * a[2 * lane + 1] + to * b[2 * lane] +
@@ -126,7 +126,7 @@ void CubicTable::slopes_at(double x, double* slopes) const {
     const double u = place - static_cast<double>(node);
     const double v = 1.0 - u;
     const double rise = 6.0 * u * v / step_;
-    const double* a = &samples_[2 * node * lanes_];
+    const double* a = samples_.data() + 2 * node * lanes_;
     const double* b = a + 2 * lanes_;
     for (std::size_t lane = 0; lane < lanes_; ++lane) {
         slopes[lane] = rise * (b[2 * lane] - a[2 * lane]) + v * (1.0 - 3.0 * u) * a[2 * lane + 1] +
