@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A survey simulated, a rig fitted to it, and the files that this leaves.
+#include "base/atomic_file.h"
+#include "rig/rig_reader.h"
+#include "support/fit_rig.h"
+#include "support/run_command.h"
+#include "support/temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace aphotic::cli_fit_test {
+namespace {
+
+// Of one number, its error being what it says.
+constexpr double kSigmas = 4.0;
+
+TEST(CommandFit, LearnsARigFromASurvey) {
+    const TempFolder folder;
+    FitRigNumbers numbers;
+    numbers.width_px = 96;
+    numbers.height_px = 72;
+    write_text_file(folder.path() / "truth.toml", fit_rig(numbers).text());
+    numbers.fore_tilt_deg = 23.0;
+    numbers.multiple = 1.3;
+    write_text_file(folder.path() / "rig.toml", fit_rig(numbers).text());
+    const CommandResult survey =
+        run_aphotic(folder.path(), {"survey", "truth.toml", "--images", "30", "-o", "survey"});
+    ASSERT_EQ(survey.status, 0) << survey.err;
+    const CommandResult fit = run_aphotic(folder.path(),
+                                          {"fit",
+                                           "rig.toml",
+                                           "--images",
+                                           "survey/raw",
+                                           "--nav",
+                                           "survey/navigation-measured.txt",
+                                           "--bayer",
+                                           "RGGB",
+                                           "--black-level",
+                                           "64",
+                                           "--white-level",
+                                           "4095",
+                                           "--blocks",
+                                           "24",
+                                           "--parts",
+                                           "12",
+                                           "-o",
+                                           "fitted",
+                                           "--json"});
+    ASSERT_EQ(fit.status, 0) << fit.err;
+    const auto json = nlohmann::json::parse(fit.out);
+    bool is_found = false;
+    for (const auto& one : json.at("numbers")) {
+        if (one.at("key") != "strobe.fore.aim_along_deg") continue;
+        is_found = true;
+        const double error = one.at("error");
+        EXPECT_NEAR(
+            one.at("value").get<double>(), 3.0 * std::cos(std::atan2(0.1, 0.5)), kSigmas * error);
+        EXPECT_LT(error, 1.0);
+    }
+    EXPECT_TRUE(is_found);
+    EXPECT_EQ(read_text_file(folder.path() / "fitted/fit.json"), fit.out);
+    EXPECT_EQ(read_rig(folder.path() / "fitted/fitted.toml").strobes[0].beam.name, "fitted");
+    EXPECT_NE(read_text_file(folder.path() / "fitted/report.html").find("Observed and fitted"),
+              std::string::npos);
+}
+
+TEST(CommandFit, SaysWhatItNeeds) {
+    const TempFolder folder;
+    write_text_file(folder.path() / "rig.toml", fit_rig({}).text());
+    CommandResult run = run_aphotic(folder.path(), {"fit", "rig.toml", "-o", "fitted"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.err,
+              "aphotic: found neither --maps nor --images; allowed: either --maps or --images\n");
+    run = run_aphotic(folder.path(), {"fit", "rig.toml", "--images", ".", "-o", "fitted"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.err, "aphotic: --images: found no navigation; allowed: with --nav FILE\n");
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "fitted"));
+}
+
+}  // namespace
+}  // namespace aphotic::cli_fit_test
