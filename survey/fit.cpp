@@ -247,7 +247,7 @@ FitResult fit(const RigText& text,
     const bool is_exact = altitude + attitude == 0.0 && samples.are_maps;
     const double level = is_exact ? 0.0 : kLevel * kLevel;
     const double hue = is_exact ? 0.0 : kHue * kHue;
-    effects = {level, hue, hue, altitude, attitude, attitude};
+    effects = {level, hue, hue, altitude, attitude, attitude, level, level, level, level, level};
     constexpr std::size_t kManyImages = 30;  // that tell the variances of what they share
     const bool learns_effects = samples.images.size() >= kManyImages;
 

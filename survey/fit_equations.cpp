@@ -128,7 +128,17 @@ FitEquations::Rows FitEquations::effects_at(const FitState& state,
         effects(row, 1) = signal(row);
         effects(row + 2, 2) = signal(row + 2);
     }
-    effects.rightCols(FitLight::kPoseColumns) = pose;
+    effects.middleCols(kPoseEffect, FitLight::kPoseColumns) = pose;
+    const FitPlaces& places = light_.places();
+    for (Index row = 0; row < signal.size(); ++row) {
+        const auto place = static_cast<std::size_t>(row) / kChannels;
+        const double u = 2.0 * places.columns[place] / places.width_px - 1.0;
+        const double v = 2.0 * places.rows[place] / places.height_px - 1.0;
+        constexpr double kMean = 1.0 / 3.0;
+        const std::array<double, 5> wave{u, v, u * u - kMean, v * v - kMean, u * v};
+        for (std::size_t k = 0; k < wave.size(); ++k)
+            effects(row, static_cast<Index>(kWaveEffect + k)) = wave[k] * signal(row);
+    }
     return effects;
 }
 
@@ -179,7 +189,10 @@ void FitEquations::learn_noise(const FitState& state,
                      .residual = residuals[i](row) / std::sqrt(image.noise_scale)});
             }
         }
-        if (estimate_effects) effects_ = found;
+        for (std::size_t k = 0; k < kEffects && estimate_effects; ++k) {
+            const bool is_of_pose = k >= kPoseEffect && k < kWaveEffect;
+            if (!is_of_pose) effects_[k] = found[k];
+        }
         noise_ = noise_of(std::move(deviations));
         double weights = 0.0;
         double slopes = 0.0;

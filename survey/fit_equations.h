@@ -6,9 +6,11 @@
 //   e   noise of a block: variance v_0 + v_1 S + v_2 S^2, found from the residuals themselves; read
 //       noise, shot noise and the floor's texture
 //   U c what all blocks of an image share: their level, and that of red and of blue beside it, for
-//       floors are brighter here than there and of another hue, and errors of the image's own
-//       altitude, pitch and roll; c is random, with a variance each, found as well where images
-//       are many (Dempster, Laird and Rubin's EM)
+//       floors are brighter here than there and of another hue; errors of the image's own
+//       altitude, pitch and roll; and the floor's brightness across the image as a parabola, for
+//       its texture has waves as long as an image. c is random, with a variance each: of the pose
+//       as the instruments have it, of the floor found where images are many (Dempster, Laird and
+//       Rubin's EM)
 //
 // so that y has the covariance V = D + U Gamma U^T, and
 //
@@ -44,8 +46,11 @@ inline constexpr double kHuber = 2.5;
 inline constexpr std::size_t kTilesAcross = 8;
 inline constexpr std::size_t kTilesDown = 6;
 
-// Level, that of red and of blue beside it, then altitude, pitch and roll.
-inline constexpr std::size_t kEffects = 6;
+// Level, that of red and of blue beside it, then altitude, pitch and roll, then the level's
+// parabola: u, v, u^2 - 1/3, v^2 - 1/3, u v, of u and v from -1 to 1 across the image.
+inline constexpr std::size_t kEffects = 11;
+inline constexpr std::size_t kPoseEffect = 3;  // the first of the pose's
+inline constexpr std::size_t kWaveEffect = 6;  // and of the parabola's
 using EffectVariances = std::array<double, kEffects>;
 
 struct BlockNoise {

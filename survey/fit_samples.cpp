@@ -37,41 +37,56 @@ std::size_t blocks_along(int size_px, int block_px) {
     return static_cast<std::size_t>(std::max(1, size_px / block_px));
 }
 
-void average(const RawImage& raw, float white, int block_px, FitImage& image) {
+// Colours at every pixel: the sites of a mosaic's colours are half a pixel beside the middle of a
+// block, to either side, and the mean of a slope would be off by as much.
+RawImage of_all_colours(const RawImage& raw) {
+    if (!is_bayer(raw.mosaic)) return raw;
+    return {.width_px = raw.width_px,
+            .height_px = raw.height_px,
+            .samples = demosaiced(raw.samples, raw.width_px, raw.height_px, raw.mosaic)};
+}
+
+// f(mean, sample) of every sample within a block.
+template <typename F>
+void for_blocks(const RawImage& raw, int block_px, std::vector<Mean>& means, const F& f) {
     const std::size_t across = blocks_along(raw.width_px, block_px);
     const std::size_t down = blocks_along(raw.height_px, block_px);
-    std::vector<Mean> means(across * down * kChannels);
-    std::size_t saturated = 0;
+    const auto width = static_cast<std::size_t>(raw.width_px);
     for (int plane = 0; plane < raw.planes(); ++plane) {
         for (int row = 0; row < raw.height_px; ++row) {
             const auto j = static_cast<std::size_t>(row / block_px);
             if (j >= down) break;
-            const float* samples = &raw.samples[(static_cast<std::size_t>(plane) * raw.pixels()) +
-                                                static_cast<std::size_t>(row) *
-                                                    static_cast<std::size_t>(raw.width_px)];
+            const float* samples = &raw.samples[static_cast<std::size_t>(plane) * raw.pixels() +
+                                                static_cast<std::size_t>(row) * width];
             for (int column = 0; column < raw.width_px; ++column) {
                 const auto i = static_cast<std::size_t>(column / block_px);
                 if (i >= across) break;
                 const int channel =
                     raw.mosaic == Mosaic::None ? plane : channel_at(raw.mosaic, column, row);
-                Mean& mean =
-                    means[(j * across + i) * kChannels + static_cast<std::size_t>(channel)];
-                const float sample = samples[column];
-                ++mean.sites;
-                if (!std::isfinite(sample)) continue;
-                if (sample >= white) {
-                    ++mean.saturated;
-                    ++saturated;
-                    continue;
-                }
-                mean.sum += sample;
-                ++mean.count;
+                f(means[(j * across + i) * kChannels + static_cast<std::size_t>(channel)],
+                  samples[column]);
             }
         }
     }
+}
+
+void average(const RawImage& raw, float white, int block_px, FitImage& image) {
+    std::vector<Mean> means(blocks_along(raw.width_px, block_px) *
+                            blocks_along(raw.height_px, block_px) * kChannels);
+    double saturated = 0.0;
+    for_blocks(raw, block_px, means, [&](Mean& mean, float sample) {
+        ++mean.sites;
+        if (!(sample >= white)) return;
+        ++mean.saturated;
+        saturated += 1.0;
+    });
+    for_blocks(of_all_colours(raw), block_px, means, [](Mean& mean, float sample) {
+        if (!std::isfinite(sample)) return;
+        mean.sum += sample;
+        ++mean.count;
+    });
     for (const Mean& mean : means) image.signal.push_back(mean.signal());
-    image.saturated_share = static_cast<double>(saturated) /
-                            static_cast<double>(std::max<std::size_t>(1, raw.samples.size()));
+    image.saturated_share = saturated / static_cast<double>(raw.samples.size());
 }
 
 double number_of(const ExrReader& reader, const std::string& name, const std::string& map) {

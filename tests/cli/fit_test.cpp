@@ -27,8 +27,9 @@ TEST(CommandFit, LearnsARigFromASurvey) {
     numbers.fore_tilt_deg = 23.0;
     numbers.multiple = 1.3;
     write_text_file(folder.path() / "rig.toml", fit_rig(numbers).text());
-    const CommandResult survey =
-        run_aphotic(folder.path(), {"survey", "truth.toml", "--images", "30", "-o", "survey"});
+    const CommandResult survey = run_aphotic(
+        folder.path(),
+        {"survey", "truth.toml", "--images", "30", "--texture", "0.02", "-o", "survey"});
     ASSERT_EQ(survey.status, 0) << survey.err;
     const CommandResult fit = run_aphotic(folder.path(),
                                           {"fit",
