@@ -247,7 +247,10 @@ FitResult fit(const RigText& text,
     const bool is_exact = altitude + attitude == 0.0 && samples.are_maps;
     const double level = is_exact ? 0.0 : kLevel * kLevel;
     const double hue = is_exact ? 0.0 : kHue * kHue;
-    effects = {level, hue, hue, altitude, attitude, attitude, level, level, level, level, level};
+    effects.fill(level);
+    effects[1] = effects[2] = hue;
+    effects[kPoseEffect] = altitude;
+    effects[kPoseEffect + 1] = effects[kPoseEffect + 2] = attitude;
     constexpr std::size_t kManyImages = 30;  // that tell the variances of what they share
     const bool learns_effects = samples.images.size() >= kManyImages;
 

@@ -9,7 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <numbers>
+#include <type_traits>
 
 namespace aphotic {
 namespace {
@@ -67,6 +68,40 @@ BlockNoise noise_of(std::vector<Deviation> deviations) {
     return {.variance = {std::max(v(0), least), v(1) / most, v(2) / (most * most)}};
 }
 
+// a and b of each wave, by a + b: rings of like length.
+struct Wave {
+    int a;
+    int b;
+};
+
+std::vector<Wave> waves() {
+    std::vector<Wave> all;
+    for (int ring = 1; ring <= kWaves; ++ring) {
+        for (int a = 0; a <= ring; ++a) all.push_back({a, ring - a});
+    }
+    return all;
+}
+
+// The mean over each ring's waves in place of each: waves of one length vary alike.
+void pool_waves(EffectVariances& variances) {
+    std::size_t first = kWaveEffect;
+    for (int ring = 1; ring <= kWaves; ++ring) {
+        const auto count = static_cast<std::size_t>(ring) + 1;
+        double mean = 0.0;
+        for (std::size_t k = first; k < first + count; ++k)
+            mean += variances[k] / static_cast<double>(count);
+        for (std::size_t k = first; k < first + count; ++k) variances[k] = mean;
+        first += count;
+    }
+}
+
+template <typename Sum>
+Sum added_up(const std::vector<Sum>& of, const auto& add) {
+    Sum all = of.front();
+    for (std::size_t i = 1; i < of.size(); ++i) add(all, of[i]);
+    return all;
+}
+
 }  // namespace
 
 FitEquations::FitEquations(const FitLight& light, const FitSamples& samples, int threads)
@@ -78,13 +113,15 @@ FitEquations::FitEquations(const FitLight& light, const FitSamples& samples, int
         Image image{.signal = VectorXd::Zero(static_cast<Index>(light.rows())),
                     .weight = VectorXd::Zero(static_cast<Index>(light.rows())),
                     .effects = Rows::Zero(static_cast<Index>(light.rows()), kEffects),
-                    .noise_scale = mean_images / from.images};
+                    .noise_scale = mean_images / from.images,
+                    .sled = from.sled};
         for (std::size_t row = 0; row < light.rows(); ++row) {
             if (!std::isfinite(from.signal[row])) continue;
             image.signal(static_cast<Index>(row)) = from.signal[row];
             image.weight(static_cast<Index>(row)) = 1.0;
             ++blocks_;
         }
+        image.moved = image.signal;
         images_.push_back(std::move(image));
     }
     const FitPlaces& places = samples.places;
@@ -109,7 +146,13 @@ void FitEquations::assume_noise() {
             image.weight(row) =
                 1.0 / (image.noise_scale * noise_.at(std::max(0.0, image.signal(row))));
         }
+        settle(image);
     }
+}
+
+void FitEquations::set_effects(const EffectVariances& variances) {
+    effects_ = variances;
+    for (Image& image : images_) settle(image);
 }
 
 FitEquations::Rows FitEquations::effects_at(const FitState& state,
@@ -130,29 +173,77 @@ FitEquations::Rows FitEquations::effects_at(const FitState& state,
     }
     effects.middleCols(kPoseEffect, FitLight::kPoseColumns) = pose;
     const FitPlaces& places = light_.places();
-    for (Index row = 0; row < signal.size(); ++row) {
-        const auto place = static_cast<std::size_t>(row) / kChannels;
-        const double u = 2.0 * places.columns[place] / places.width_px - 1.0;
-        const double v = 2.0 * places.rows[place] / places.height_px - 1.0;
-        constexpr double kMean = 1.0 / 3.0;
-        const std::array<double, 5> wave{u, v, u * u - kMean, v * v - kMean, u * v};
-        for (std::size_t k = 0; k < wave.size(); ++k)
-            effects(row, static_cast<Index>(kWaveEffect + k)) = wave[k] * signal(row);
+    const std::vector<Wave> all = waves();
+    for (std::size_t place = 0; place < places.size(); ++place) {
+        const double x = places.columns[place] / places.width_px * std::numbers::pi;
+        const double y = places.rows[place] / places.height_px * std::numbers::pi;
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const double wave = std::cos(all[k].a * x) * std::cos(all[k].b * y);
+            for (std::size_t c = 0; c < kChannels; ++c) {
+                const auto row = static_cast<Index>(kChannels * place + c);
+                effects(row, static_cast<Index>(kWaveEffect + k)) = wave * signal(row);
+            }
+        }
     }
     return effects;
 }
 
-MatrixXd FitEquations::effect_covariance(const Image& image) const {
-    MatrixXd root = MatrixXd::Zero(kEffects, kEffects);
-    for (std::size_t k = 0; k < kEffects; ++k) {
-        const auto i = static_cast<Index>(k);
-        root(i, i) = std::sqrt(effects_[k] * image.noise_scale);
-    }
+void FitEquations::settle(Image& image) const {
+    VectorXd root(static_cast<Index>(kEffects));
+    for (std::size_t k = 0; k < kEffects; ++k)
+        root(static_cast<Index>(k)) = std::sqrt(effects_[k] * image.noise_scale);
+    image.weighted_effects = image.weight.asDiagonal() * image.effects;
     // Gamma^1/2 (1 + Gamma^1/2 U^T D^-1 U Gamma^1/2)^-1 Gamma^1/2 needs no inverse of Gamma.
-    const MatrixXd information =
-        image.effects.transpose() * image.weight.asDiagonal() * image.effects;
-    const MatrixXd inner = MatrixXd::Identity(kEffects, kEffects) + root * information * root;
-    return root * inner.ldlt().solve(root);
+    const MatrixXd inner = MatrixXd::Identity(kEffects, kEffects) +
+                           root.asDiagonal() *
+                               MatrixXd(image.effects.transpose() * image.weighted_effects) *
+                               root.asDiagonal();
+    const MatrixXd gamma_root = root.asDiagonal();
+    image.effect_covariance = gamma_root * inner.ldlt().solve(gamma_root);
+}
+
+VectorXd FitEquations::effects_in(const Image& image, const VectorXd& off) {
+    return image.effect_covariance * (image.weighted_effects.transpose() * off);
+}
+
+// The image's effects at its pose, and all that follows from them.
+void FitEquations::look_from(const FitState& state,
+                             const PathLight& light,
+                             const VectorXd& shares,
+                             Image& image,
+                             VectorXd& signal) const {
+    image.effects = effects_at(state, light, shares, image.sled, signal);
+    const Eigen::Map<const Eigen::Vector3d> back(image.back.data());
+    image.moved = image.signal - image.effects.middleCols<3>(kPoseEffect) * back;
+    settle(image);
+}
+
+void FitEquations::move_pose(const VectorXd& effects, Image& image) {
+    const std::array<double*, FitLight::kPoseColumns> pose{
+        &image.sled.altitude_m, &image.sled.pitch_rad, &image.sled.roll_rad};
+    for (std::size_t q = 0; q < pose.size(); ++q) {
+        const double move = image.back[q] + effects(static_cast<Index>(kPoseEffect + q));
+        *pose[q] += move;
+        image.back[q] -= move;
+    }
+}
+
+void FitEquations::learn_effects(const std::vector<VectorXd>& off) {
+    EffectVariances found{};
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+        const VectorXd effects = effects_in(images_[i], off[i]);
+        const VectorXd variances = images_[i].effect_covariance.diagonal();
+        for (std::size_t k = 0; k < kEffects; ++k) {
+            const auto at = static_cast<Index>(k);
+            found[k] += (effects(at) * effects(at) + variances(at)) /
+                        (images_[i].noise_scale * static_cast<double>(images_.size()));
+        }
+    }
+    pool_waves(found);
+    for (std::size_t k = 0; k < kEffects; ++k) {
+        const bool is_of_pose = k >= kPoseEffect && k < kWaveEffect;
+        if (!is_of_pose) effects_[k] = found[k];
+    }
 }
 
 void FitEquations::learn_noise(const FitState& state,
@@ -160,39 +251,31 @@ void FitEquations::learn_noise(const FitState& state,
                                const VectorXd& shares,
                                bool estimate_effects) {
     std::vector<VectorXd> signals(images_.size());
+    std::vector<VectorXd> off(images_.size());
     parallel_for(
         images_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
-            images_[i].effects =
-                effects_at(state, light, shares, samples_.images[i].sled, signals[i]);
+            Image& image = images_[i];
+            look_from(state, light, shares, image, signals[i]);
+            const VectorXd effects = effects_in(image, image.moved - signals[i]);
+            move_pose(effects, image);
+            look_from(state, light, shares, image, signals[i]);
+            off[i] = image.moved - signals[i];
         });
     constexpr int kSweeps = 3;  // noise and effects each need the other
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
         std::vector<Deviation> deviations;
-        EffectVariances found{};
         std::vector<VectorXd> residuals;
         for (std::size_t i = 0; i < images_.size(); ++i) {
             const Image& image = images_[i];
-            const MatrixXd covariance = effect_covariance(image);
-            const VectorXd off = image.signal - signals[i];
-            const VectorXd effects =
-                covariance * (image.effects.transpose() * image.weight.cwiseProduct(off));
-            residuals.push_back(off - image.effects * effects);
-            for (std::size_t k = 0; k < kEffects; ++k) {
-                const auto at = static_cast<Index>(k);
-                found[k] += (effects(at) * effects(at) + covariance(at, at)) /
-                            (image.noise_scale * static_cast<double>(images_.size()));
-            }
-            for (Index row = 0; row < off.size(); ++row) {
+            residuals.push_back(off[i] - image.effects * effects_in(image, off[i]));
+            for (Index row = 0; row < off[i].size(); ++row) {
                 if (image.weight(row) <= 0.0) continue;
                 deviations.push_back(
                     {.signal = signals[i](row),
                      .residual = residuals[i](row) / std::sqrt(image.noise_scale)});
             }
         }
-        for (std::size_t k = 0; k < kEffects && estimate_effects; ++k) {
-            const bool is_of_pose = k >= kPoseEffect && k < kWaveEffect;
-            if (!is_of_pose) effects_[k] = found[k];
-        }
+        if (estimate_effects) learn_effects(off);
         noise_ = noise_of(std::move(deviations));
         double weights = 0.0;
         double slopes = 0.0;
@@ -202,12 +285,13 @@ void FitEquations::learn_noise(const FitState& state,
                 if (image.weight(row) <= 0.0) continue;
                 const double variance =
                     image.noise_scale * noise_.at(std::max(0.0, signals[i](row)));
-                const double off = std::abs(residuals[i](row)) / std::sqrt(variance);
-                const double huber = off > kHuber ? kHuber / off : 1.0;
+                const double size = std::abs(residuals[i](row)) / std::sqrt(variance);
+                const double huber = size > kHuber ? kHuber / size : 1.0;
                 image.weight(row) = huber / variance;
                 weights += huber;
-                slopes += off > kHuber ? 0.0 : 1.0;
+                slopes += size > kHuber ? 0.0 : 1.0;
             }
+            settle(image);
         }
         huber_factor_ = weights / std::max(slopes, 1.0);
     }
@@ -219,14 +303,25 @@ void FitEquations::tie_parts(const FitState& state, const VectorXd& shares) {
     for (const FitBeam& beam : state.beams) {
         const auto count = static_cast<Index>(beam.parts());
         const double most = shares.segment(first, count).maxCoeff();
-        const double per_variance = most > 0.0 ? std::pow(kTie * most, -2.0) : 0.0;
-        const Eigen::Vector2d difference(1.0, -1.0);
-        for (Index m = 0; m + 1 < count && beam.kind() == FitBeamKind::Table; ++m) {
-            tie_.block<2, 2>(first + m, first + m) +=
-                per_variance * difference * difference.transpose();
+        const auto tie = [&](const auto& difference, double deviation) {
+            constexpr auto kSize = std::remove_cvref_t<decltype(difference)>::SizeAtCompileTime;
+            for (Index m = first; m + kSize <= first + count; ++m) {
+                tie_.template block<kSize, kSize>(m, m) +=
+                    difference * difference.transpose() / std::pow(deviation * most, 2.0);
+            }
+        };
+        if (beam.kind() == FitBeamKind::Table && most > 0.0) {
+            tie(Eigen::Vector2d(1.0, -1.0), kTie);
+            tie(Eigen::Vector3d(1.0, -2.0, 1.0), kBend);
         }
         first += count;
     }
+}
+
+MatrixXd FitEquations::information(const Image& image, const Rows& A) {
+    const Rows weighted = image.weight.asDiagonal() * A;
+    const MatrixXd across = image.weighted_effects.transpose() * A;
+    return A.transpose() * weighted - across.transpose() * image.effect_covariance * across;
 }
 
 FitEquations::Parts FitEquations::parts(const FitState& state, const PathLight& light) const {
@@ -235,22 +330,18 @@ FitEquations::Parts FitEquations::parts(const FitState& state, const PathLight& 
         images_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
             const Image& image = images_[i];
             Rows A;
-            light_.parts_into(state, light, samples_.images[i].sled, A);
-            const MatrixXd covariance = effect_covariance(image);
-            const Rows weighted = image.weight.asDiagonal() * A;
-            const VectorXd y = image.weight.cwiseProduct(image.signal);
-            const MatrixXd across = image.effects.transpose() * weighted;
-            const VectorXd along = image.effects.transpose() * y;
-            of[i] = {.G = A.transpose() * weighted - across.transpose() * covariance * across,
-                     .b = A.transpose() * y - across.transpose() * (covariance * along),
-                     .squares = y.dot(image.signal) - along.dot(covariance * along)};
+            light_.parts_into(state, light, images_[i].sled, A);
+            // V^-1 y
+            const VectorXd y = image.weight.cwiseProduct(image.moved) -
+                               image.weighted_effects * effects_in(image, image.moved);
+            of[i] = {
+                .G = information(image, A), .b = A.transpose() * y, .squares = y.dot(image.signal)};
         });
-    Parts all = of.front();
-    for (std::size_t i = 1; i < of.size(); ++i) {
-        all.G += of[i].G;
-        all.b += of[i].b;
-        all.squares += of[i].squares;
-    }
+    Parts all = added_up(of, [](Parts& sum, const Parts& one) {
+        sum.G += one.G;
+        sum.b += one.b;
+        sum.squares += one.squares;
+    });
     if (tie_.size() > 0) all.G += tie_;
     return all;
 }
@@ -270,17 +361,16 @@ std::array<double, kChannels> FitEquations::gains(const FitState& state,
     std::vector<Rows> parts(images_.size());
     parallel_for(
         images_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
-            light_.parts_into(state, light, samples_.images[i].sled, parts[i]);
+            light_.parts_into(state, light, images_[i].sled, parts[i]);
             const Rows A = of_channel(parts[i], kGreen);
             const Rows weighted = of_channel(images_[i].weight, kGreen).col(0).asDiagonal() * A;
             of[i] = {.G = A.transpose() * weighted,
                      .b = weighted.transpose() * of_channel(images_[i].signal, kGreen).col(0)};
         });
-    Sums all = of.front();
-    for (std::size_t i = 1; i < of.size(); ++i) {
-        all.G += of[i].G;
-        all.b += of[i].b;
-    }
+    const Sums all = added_up(of, [](Sums& sum, const Sums& one) {
+        sum.G += one.G;
+        sum.b += one.b;
+    });
     const VectorXd shares = non_negative_fit(all.G, all.b);
     std::array<double, kChannels> gains{};
     for (std::size_t c = 0; c < kChannels; ++c) {
@@ -299,61 +389,46 @@ std::array<double, kChannels> FitEquations::gains(const FitState& state,
     return gains;
 }
 
+FitEquations::Rows FitEquations::columns_at(const FitState& state,
+                                            const PathLight& light,
+                                            const VectorXd& shares,
+                                            const std::vector<FitNumber>& numbers,
+                                            const Sled& sled) const {
+    const auto count = static_cast<Index>(numbers.size());
+    Rows parts;
+    Rows slopes;
+    light_.parts_into(state, light, sled, parts);
+    light_.slopes_into(state, light, sled, shares, numbers, slopes);
+    Rows A(parts.rows(), parts.cols() + count);
+    A << parts, slopes.leftCols(count);
+    return A;
+}
+
 FitEquations::Normal FitEquations::normal(const FitState& state,
                                           const PathLight& light,
                                           const VectorXd& shares,
                                           const std::vector<FitNumber>& numbers,
                                           bool has_meat) const {
     std::vector<Normal> of(images_.size());
-    const auto count = static_cast<Index>(numbers.size());
     parallel_for(
         images_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
             const Image& image = images_[i];
-            const Sled& sled = samples_.images[i].sled;
-            Rows parts;
-            Rows slopes;
-            light_.parts_into(state, light, sled, parts);
-            light_.slopes_into(state, light, sled, shares, numbers, slopes);
-            Rows A(parts.rows(), parts.cols() + count);
-            A << parts, slopes.leftCols(count);
-            const MatrixXd covariance = effect_covariance(image);
-            const VectorXd off = image.signal - parts * shares;
-            const VectorXd weighted_off = image.weight.cwiseProduct(off);
-            const Rows weighted = image.weight.asDiagonal() * A;
-            const MatrixXd across = image.effects.transpose() * weighted;
-            const VectorXd effects = covariance * (image.effects.transpose() * weighted_off);
+            const Rows A = columns_at(state, light, shares, numbers, images_[i].sled);
+            const VectorXd off = image.moved - A.leftCols(shares.size()) * shares;
+            // D^-1 e
+            const VectorXd left =
+                image.weight.cwiseProduct(off) - image.weighted_effects * effects_in(image, off);
             Normal& normal = of[i];
-            normal.H = A.transpose() * weighted - across.transpose() * covariance * across;
-            normal.gradient = A.transpose() * weighted_off - across.transpose() * effects;
-            if (!has_meat) return;
-            const VectorXd left = image.weight.cwiseProduct(off - image.effects * effects);
-            // D V^-1 A: what of the columns the image's own effects cannot take up.
-            const Rows own = A - image.effects * (covariance * across);
-            MatrixXd scores = MatrixXd::Zero(A.cols(), kTilesAcross * kTilesDown);
-            for (Index row = 0; row < A.rows(); ++row) {
-                if (left(row) == 0.0) continue;
-                const auto tile = tile_of_place_[static_cast<std::size_t>(row) / kChannels];
-                scores.col(static_cast<Index>(tile)) += left(row) * own.row(row).transpose();
-            }
-            // Z = A^T V^-1 U = A^T D^-1 U (1 - C U^T D^-1 U)
-            const MatrixXd information =
-                image.effects.transpose() * image.weight.asDiagonal() * image.effects;
-            const MatrixXd Z = across.transpose() *
-                               (MatrixXd::Identity(kEffects, kEffects) - covariance * information);
-            VectorXd variances(static_cast<Index>(kEffects));
-            for (std::size_t k = 0; k < kEffects; ++k)
-                variances(static_cast<Index>(k)) = effects_[k] * image.noise_scale;
-            normal.meat = scores * scores.transpose() + Z * variances.asDiagonal() * Z.transpose();
-            normal.tiles =
-                static_cast<std::size_t>((scores.colwise().squaredNorm().array() > 0.0).count());
+            normal.H = information(image, A);
+            normal.gradient = A.transpose() * left;
+            if (has_meat) add_meat(image, A, left, normal);
         });
-    Normal all = of.front();
-    for (std::size_t i = 1; i < of.size(); ++i) {
-        all.H += of[i].H;
-        all.gradient += of[i].gradient;
-        all.tiles += of[i].tiles;
-        if (has_meat) all.meat += of[i].meat;
-    }
+    Normal all = added_up(of, [&](Normal& sum, const Normal& one) {
+        sum.H += one.H;
+        sum.gradient += one.gradient;
+        sum.tiles += one.tiles;
+        if (has_meat) sum.meat += one.meat;
+    });
     if (tie_.size() > 0) {
         const Index parts = tie_.rows();
         all.H.topLeftCorner(parts, parts) += tie_;
@@ -362,25 +437,42 @@ FitEquations::Normal FitEquations::normal(const FitState& state,
     return all;
 }
 
+void FitEquations::add_meat(const Image& image,
+                            const Rows& A,
+                            const VectorXd& left,
+                            Normal& normal) const {
+    const MatrixXd& C = image.effect_covariance;
+    const MatrixXd across = image.weighted_effects.transpose() * A;
+    // D V^-1 A: what of the columns the image's own effects cannot take up.
+    const Rows own = A - image.effects * (C * across);
+    MatrixXd scores = MatrixXd::Zero(A.cols(), kTilesAcross * kTilesDown);
+    for (Index row = 0; row < A.rows(); ++row) {
+        if (left(row) == 0.0) continue;
+        const auto tile = tile_of_place_[static_cast<std::size_t>(row) / kChannels];
+        scores.col(static_cast<Index>(tile)) += left(row) * own.row(row).transpose();
+    }
+    // Z = A^T V^-1 U = A^T D^-1 U (1 - C U^T D^-1 U)
+    const MatrixXd Z =
+        across.transpose() * (MatrixXd::Identity(kEffects, kEffects) -
+                              C * MatrixXd(image.effects.transpose() * image.weighted_effects));
+    VectorXd variances(static_cast<Index>(kEffects));
+    for (std::size_t k = 0; k < kEffects; ++k)
+        variances(static_cast<Index>(k)) = effects_[k] * image.noise_scale;
+    normal.meat = scores * scores.transpose() + Z * variances.asDiagonal() * Z.transpose();
+    normal.tiles = static_cast<std::size_t>((scores.colwise().squaredNorm().array() > 0.0).count());
+}
+
 MatrixXd FitEquations::normal_of(const FitState& state,
                                  const PathLight& light,
                                  const VectorXd& shares,
                                  const std::vector<FitNumber>& numbers,
                                  const Sled& sled) const {
-    const auto count = static_cast<Index>(numbers.size());
     Image image;
     image.effects = effects_at(state, light, shares, sled, image.signal);
     image.weight = image.signal.unaryExpr(
         [&](double signal) { return 1.0 / noise_.at(std::max(0.0, signal)); });
-    Rows parts;
-    Rows slopes;
-    light_.parts_into(state, light, sled, parts);
-    light_.slopes_into(state, light, sled, shares, numbers, slopes);
-    Rows A(parts.rows(), parts.cols() + count);
-    A << parts, slopes.leftCols(count);
-    const Rows weighted = image.weight.asDiagonal() * A;
-    const MatrixXd across = image.effects.transpose() * weighted;
-    return A.transpose() * weighted - across.transpose() * effect_covariance(image) * across;
+    settle(image);
+    return information(image, columns_at(state, light, shares, numbers, sled));
 }
 
 FitEquations::Residual FitEquations::residual_of(std::size_t i,
@@ -389,16 +481,15 @@ FitEquations::Residual FitEquations::residual_of(std::size_t i,
                                                  const VectorXd& shares) const {
     Image image = images_[i];
     Residual found;
-    image.effects = effects_at(state, light, shares, samples_.images[i].sled, found.signal);
-    const VectorXd off = image.signal - found.signal;
-    const VectorXd effects =
-        effect_covariance(image) * (image.effects.transpose() * image.weight.cwiseProduct(off));
+    look_from(state, light, shares, image, found.signal);
+    const VectorXd off = image.moved - found.signal;
+    const VectorXd effects = effects_in(image, off);
     found.residual = off - image.effects * effects;
     for (Index row = 0; row < off.size(); ++row) {
         if (image.weight(row) <= 0.0)
             found.residual(row) = std::numeric_limits<double>::quiet_NaN();
     }
-    for (std::size_t k = 0; k < kEffects; ++k) found.effects[k] = effects(static_cast<Index>(k));
+    std::copy(effects.begin(), effects.end(), found.effects.begin());
     return found;
 }
 

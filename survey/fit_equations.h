@@ -5,20 +5,24 @@
 //   A   columns: the beams' parts (fit_light.h), then the numbers that are free
 //   e   noise of a block: variance v_0 + v_1 S + v_2 S^2, found from the residuals themselves; read
 //       noise, shot noise and the floor's texture
-//   U c what all blocks of an image share: their level, and that of red and of blue beside it, for
-//       floors are brighter here than there and of another hue; errors of the image's own
-//       altitude, pitch and roll; and the floor's brightness across the image as a parabola, for
-//       its texture has waves as long as an image. c is random, with a variance each: of the pose
-//       as the instruments have it, of the floor found where images are many (Dempster, Laird and
-//       Rubin's EM)
+//   U c what blocks of an image share: their level, and that of red and of blue beside it, for
+//       floors are brighter here than there and of another hue; errors of the image's own altitude,
+//       pitch and roll; and the floor's brightness across the image, for its texture has waves as
+//       long as an image: cos(a pi x) cos(b pi y), a + b from 1 to kWaves, x and y from 0 to 1. c
+//       is random, with a variance each: of the pose as the instruments have it, of the floor found
+//       where images are many, one for all waves of the same a + b (Dempster, Laird and Rubin's EM)
+//
+// Poses go into the light as no straight line: each image's is moved to where its light tells it,
+// round by round, and what the navigation says becomes the mean of what is left of it in c.
 //
 // so that y has the covariance V = D + U Gamma U^T, and
 //
 //   A^T V^-1 A = A^T D^-1 A - A^T D^-1 U (Gamma^-1 + U^T D^-1 U)^-1 U^T D^-1 A
 //
-// A table's parts are tied so weakly that nothing changes where the images see them: their
-// differences are random, with the standard deviation kTie of the largest share. So a beam goes on
-// as it was where nobody looks.
+// A table's parts are tied so weakly that little changes where the images see them: their
+// differences are random, with the standard deviation kTie of the largest share, and so are the
+// differences of these, with kBend. So a beam goes on as it was where nobody looks, and where few
+// do it does not swing between parts that make up for each other.
 //
 // Blocks that are off by more than kHuber of their noise, as shells and stones are, count less
 // (Huber's weights). The covariance of what is fitted is the sandwich
@@ -42,15 +46,16 @@
 namespace aphotic {
 
 inline constexpr double kTie = 0.3;
+inline constexpr double kBend = 0.1;
 inline constexpr double kHuber = 2.5;
 inline constexpr std::size_t kTilesAcross = 8;
 inline constexpr std::size_t kTilesDown = 6;
 
-// Level, that of red and of blue beside it, then altitude, pitch and roll, then the level's
-// parabola: u, v, u^2 - 1/3, v^2 - 1/3, u v, of u and v from -1 to 1 across the image.
-inline constexpr std::size_t kEffects = 11;
+// Level, that of red and of blue beside it, then altitude, pitch and roll, then the waves.
+inline constexpr int kWaves = 5;
 inline constexpr std::size_t kPoseEffect = 3;  // the first of the pose's
-inline constexpr std::size_t kWaveEffect = 6;  // and of the parabola's
+inline constexpr std::size_t kWaveEffect = 6;  // and of the waves'
+inline constexpr std::size_t kEffects = kWaveEffect + (kWaves + 1) * (kWaves + 2) / 2 - 1;
 using EffectVariances = std::array<double, kEffects>;
 
 struct BlockNoise {
@@ -76,7 +81,7 @@ class FitEquations {
                      bool estimate_effects);
     // From now on parts are tied; none before.
     void tie_parts(const FitState& state, const Eigen::VectorXd& shares);
-    void set_effects(const EffectVariances& variances) { effects_ = variances; }
+    void set_effects(const EffectVariances& variances);
     [[nodiscard]] const EffectVariances& effects() const { return effects_; }
     [[nodiscard]] const BlockNoise& noise() const { return noise_; }
 
@@ -134,14 +139,41 @@ class FitEquations {
         Eigen::VectorXd weight;  // 0 where there is none
         Rows effects;            // U
         double noise_scale = 1.0;
+        Sled sled{};                                        // as far as the light tells it
+        std::array<double, FitLight::kPoseColumns> back{};  // from there to the navigation's
+        Eigen::VectorXd moved{};                            // signal less what `back` makes of it
+        // What follows from these: D^-1 U, and (Gamma^-1 + U^T D^-1 U)^-1.
+        Rows weighted_effects{};
+        Eigen::MatrixXd effect_covariance{};
     };
     [[nodiscard]] Rows effects_at(const FitState& state,
                                   const PathLight& light,
                                   const Eigen::VectorXd& shares,
                                   const Sled& sled,
                                   Eigen::VectorXd& signal) const;
-    // (Gamma^-1 + U^T D^-1 U)^-1; of effects of no variance 0.
-    [[nodiscard]] Eigen::MatrixXd effect_covariance(const Image& image) const;
+    void settle(Image& image) const;
+    void look_from(const FitState& state,
+                   const PathLight& light,
+                   const Eigen::VectorXd& shares,
+                   Image& image,
+                   Eigen::VectorXd& signal) const;
+    static void move_pose(const Eigen::VectorXd& effects, Image& image);
+    // The image's own effects, as the residuals of a signal tell them.
+    [[nodiscard]] static Eigen::VectorXd effects_in(const Image& image, const Eigen::VectorXd& off);
+    // Columns of parts, then of numbers.
+    [[nodiscard]] Rows columns_at(const FitState& state,
+                                  const PathLight& light,
+                                  const Eigen::VectorXd& shares,
+                                  const std::vector<FitNumber>& numbers,
+                                  const Sled& sled) const;
+    // A^T V^-1 A of an image's columns.
+    [[nodiscard]] static Eigen::MatrixXd information(const Image& image, const Rows& A);
+    // The sandwich's, where left is D^-1 e.
+    void add_meat(const Image& image,
+                  const Rows& A,
+                  const Eigen::VectorXd& left,
+                  Normal& normal) const;
+    void learn_effects(const std::vector<Eigen::VectorXd>& off);
 
     const FitLight& light_;
     const FitSamples& samples_;

@@ -145,7 +145,7 @@ FitResiduals fit_residuals(const FitEquations& equations,
         result.images.push_back({.sled = samples.images[i].sled,
                                  .residual = std::sqrt(of_image / std::max(1.0, count)),
                                  .level = found.effects[0],
-                                 .altitude_m = found.effects[3]});
+                                 .altitude_m = found.effects[kPoseEffect]});
         const auto at = std::ranges::find(shown, i);
         if (at != shown.end())
             result.views[static_cast<std::size_t>(at - shown.begin())] = view_of(i, samples, found);

@@ -192,13 +192,24 @@ std::string words_of(const NotTold& one) {
     return words;
 }
 
-// Covariance of shares and numbers; rows of what is held at 0 are 0.
+namespace {
+
+std::vector<Index> seen_parts(const MatrixXd& H, Index parts) {
+    std::vector<Index> seen;
+    for (Index m = 0; m < parts; ++m)
+        if (H(m, m) > 0.0) seen.push_back(m);
+    return seen;
+}
+
+}  // namespace
+
 MatrixXd covariance_of(const FitEquations::Normal& normal,
                        const VectorXd& shares,
                        const std::vector<FreeNumber>& free,
                        double huber_factor) {
     const Index parts = shares.size();
-    std::vector<Index> active = active_parts(shares);
+    // Those at 0 as well: a bound that holds one part makes none of the others surer.
+    std::vector<Index> active = seen_parts(normal.H, parts);
     for (const Index k : range_of(parts, static_cast<Index>(free.size()))) active.push_back(k);
     MatrixXd H = normal.H(active, active);
     for (Index k = 0; k < static_cast<Index>(free.size()); ++k) {

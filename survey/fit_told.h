@@ -48,7 +48,8 @@ struct NotTold {
                                          const std::vector<Eigen::Index>& parts,
                                          const std::vector<Eigen::Index>& numbers);
 
-// Covariance of shares and numbers; rows of what is held at 0 are 0.
+// Covariance of shares and numbers, as though no share were bounded; rows of what no image sees
+// are 0.
 [[nodiscard]] Eigen::MatrixXd covariance_of(const FitEquations::Normal& normal,
                                             const Eigen::VectorXd& shares,
                                             const std::vector<FreeNumber>& free,
