@@ -51,7 +51,7 @@ struct FitCommandOptions {
 
 FitSamples samples_for(const FitCommandOptions& options, const Rig& rig, const RunWatch& watch) {
     const PlaneSize size{rig.camera.width_px, rig.camera.height_px};
-    if (!options.maps.empty()) return samples_of_maps(options.maps, size, options.blocks);
+    if (!options.maps.empty()) return samples_of_maps(options.maps, rig.camera, options.blocks);
     Survey survey{.files = image_files(options.images, options.folder), .camera = options.camera};
     survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
     survey.navigation = read_navigation_with(options.rig, options.navigation, survey.files);

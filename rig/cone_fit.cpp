@@ -2,6 +2,7 @@
 #include "rig/cone_fit.h"
 
 #include "base/degrees.h"
+#include "base/non_negative_fit.h"
 
 #include <fmt/format.h>
 #include <Eigen/Dense>
@@ -83,31 +84,12 @@ struct Shares {
     double gain = 0.0;  // by how much they lower the integral
 };
 
-// Non-negative least squares, one share after another until none moves.
 Shares shares_of(const Equations& all, const std::set<int>& steps) {
-    constexpr int kMostSweeps = 2000;
-    constexpr double kStill = 1e-13;
-    const std::vector<int> chosen(steps.begin(), steps.end());
-    const auto count = static_cast<Eigen::Index>(chosen.size());
-    MatrixXd G(count, count);
-    VectorXd b(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const int row = chosen[static_cast<std::size_t>(i)] - 1;
-        b(i) = all.b(row);
-        for (Eigen::Index j = 0; j < count; ++j) {
-            G(i, j) = all.G(row, chosen[static_cast<std::size_t>(j)] - 1);
-        }
-    }
-    VectorXd alpha = VectorXd::Zero(count);
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-        double moved = 0.0;
-        for (Eigen::Index i = 0; i < count; ++i) {
-            const double next = std::max(0.0, alpha(i) + (b(i) - G.row(i).dot(alpha)) / G(i, i));
-            moved = std::max(moved, std::abs(next - alpha(i)));
-            alpha(i) = next;
-        }
-        if (moved < kStill) break;
-    }
+    std::vector<Eigen::Index> chosen;
+    for (const int step : steps) chosen.push_back(step - 1);
+    const MatrixXd G = all.G(chosen, chosen);
+    const VectorXd b = all.b(chosen);
+    const VectorXd alpha = non_negative_fit(G, b);
     return {.alpha = alpha, .gain = 2.0 * b.dot(alpha) - alpha.dot(G * alpha)};
 }
 

@@ -152,6 +152,48 @@ void start_gains(const Bench& bench, FitProblem& problem) {
     }
 }
 
+constexpr std::size_t kGroups = 12;  // of images, each left out once
+constexpr std::size_t kFewGroups = 10;
+
+// Variances of shares and numbers by the jackknife: what they move by as each group of images is
+// left out in turn. It knows no model of the noise, nor that the light is anything like a straight
+// line.
+VectorXd jackknife(const Bench& bench, const FitProblem& problem, std::size_t groups) {
+    std::vector<VectorXd> found;
+    for (std::size_t group = 0; group < groups; ++group) {
+        bench.equations.leave_out(group, groups);
+        FitProblem without = problem;
+        constexpr int kMostSteps = 12;
+        search(bench, without, kMostSteps);
+        const VectorXd shares =
+            shares_of(bench.equations.parts(without.state, bench.path_light(without.state, false)))
+                .shares;
+        VectorXd all(shares.size() + static_cast<Index>(without.free.size()));
+        all.head(shares.size()) = shares;
+        for (std::size_t k = 0; k < without.free.size(); ++k) {
+            all(shares.size() + static_cast<Index>(k)) =
+                number_in(without.state, without.free[k].number);
+        }
+        found.push_back(std::move(all));
+    }
+    bench.equations.leave_out(0, 0);
+    VectorXd mean = VectorXd::Zero(found.front().size());
+    for (const VectorXd& one : found) mean += one / static_cast<double>(groups);
+    VectorXd variances = VectorXd::Zero(mean.size());
+    for (const VectorXd& one : found) variances += (one - mean).cwiseAbs2();
+    return variances * static_cast<double>(groups - 1) / static_cast<double>(groups);
+}
+
+// The covariance, widened to these variances where its own are smaller.
+void widen(const VectorXd& variances, MatrixXd& covariance) {
+    VectorXd factor = VectorXd::Ones(variances.size());
+    for (Index k = 0; k < variances.size(); ++k) {
+        const double own = covariance(k, k);
+        if (own > 0.0) factor(k) = std::sqrt(std::max(1.0, variances(k) / own));
+    }
+    covariance = factor.asDiagonal() * covariance * factor.asDiagonal();
+}
+
 std::vector<Sled> sleds_of(const FitSamples& samples) {
     std::vector<Sled> sleds;
     for (const FitImage& image : samples.images) sleds.push_back(image.sled);
@@ -187,6 +229,9 @@ FitResult result_of(const Bench& bench,
     result.shares = solved.shares;
     result.covariance =
         covariance_of(normal, solved.shares, problem.free, bench.equations.huber_factor());
+    const std::size_t groups = std::min(kGroups, samples.images.size());
+    if (groups >= kFewGroups && !samples.are_maps)
+        widen(jackknife(bench, problem, groups), result.covariance);
     result.effects = bench.equations.effects();
     result.noise = bench.equations.noise();
     result.blocks = bench.equations.blocks();
@@ -231,6 +276,9 @@ FitResult fit(const RigText& text,
     if (!rig.objects.empty() || !rig.scene.empty())
         throw InputError(
             "found objects or a scene; allowed: the bare floor, which a survey shows on average");
+    if (rig.seafloor.phong > 0.0)
+        throw InputError("seafloor.phong: found {}; allowed: 0, for a fit's floor is matt",
+                         rig.seafloor.phong);
     const FitLight light(rig, samples.places);
     const std::vector<Sled> sleds = sleds_of(samples);
     const PathRange paths = light.paths(sleds);

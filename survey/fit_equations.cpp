@@ -124,6 +124,7 @@ FitEquations::FitEquations(const FitLight& light, const FitSamples& samples, int
         image.moved = image.signal;
         images_.push_back(std::move(image));
     }
+    leave_out(0, 0);
     const FitPlaces& places = samples.places;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const auto part = [](double at, int size, std::size_t parts) {
@@ -133,6 +134,12 @@ FitEquations::FitEquations(const FitLight& light, const FitSamples& samples, int
         tile_of_place_.push_back(part(places.rows[i], places.height_px, kTilesDown) * kTilesAcross +
                                  part(places.columns[i], places.width_px, kTilesAcross));
     }
+}
+
+void FitEquations::leave_out(std::size_t group, std::size_t groups) {
+    used_.clear();
+    for (std::size_t i = 0; i < images_.size(); ++i)
+        if (groups == 0 || i % groups != group) used_.push_back(i);
 }
 
 void FitEquations::assume_noise() {
@@ -325,18 +332,17 @@ MatrixXd FitEquations::information(const Image& image, const Rows& A) {
 }
 
 FitEquations::Parts FitEquations::parts(const FitState& state, const PathLight& light) const {
-    std::vector<Parts> of(images_.size());
-    parallel_for(
-        images_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
-            const Image& image = images_[i];
-            Rows A;
-            light_.parts_into(state, light, images_[i].sled, A);
-            // V^-1 y
-            const VectorXd y = image.weight.cwiseProduct(image.moved) -
-                               image.weighted_effects * effects_in(image, image.moved);
-            of[i] = {
-                .G = information(image, A), .b = A.transpose() * y, .squares = y.dot(image.signal)};
-        });
+    std::vector<Parts> of(used_.size());
+    parallel_for(used_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
+        const Image& image = images_[used_[i]];
+        Rows A;
+        light_.parts_into(state, light, image.sled, A);
+        // V^-1 y
+        const VectorXd y = image.weight.cwiseProduct(image.moved) -
+                           image.weighted_effects * effects_in(image, image.moved);
+        of[i] = {
+            .G = information(image, A), .b = A.transpose() * y, .squares = y.dot(image.signal)};
+    });
     Parts all = added_up(of, [](Parts& sum, const Parts& one) {
         sum.G += one.G;
         sum.b += one.b;
@@ -409,20 +415,19 @@ FitEquations::Normal FitEquations::normal(const FitState& state,
                                           const VectorXd& shares,
                                           const std::vector<FitNumber>& numbers,
                                           bool has_meat) const {
-    std::vector<Normal> of(images_.size());
-    parallel_for(
-        images_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
-            const Image& image = images_[i];
-            const Rows A = columns_at(state, light, shares, numbers, images_[i].sled);
-            const VectorXd off = image.moved - A.leftCols(shares.size()) * shares;
-            // D^-1 e
-            const VectorXd left =
-                image.weight.cwiseProduct(off) - image.weighted_effects * effects_in(image, off);
-            Normal& normal = of[i];
-            normal.H = information(image, A);
-            normal.gradient = A.transpose() * left;
-            if (has_meat) add_meat(image, A, left, normal);
-        });
+    std::vector<Normal> of(used_.size());
+    parallel_for(used_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
+        const Image& image = images_[used_[i]];
+        const Rows A = columns_at(state, light, shares, numbers, image.sled);
+        const VectorXd off = image.moved - A.leftCols(shares.size()) * shares;
+        // D^-1 e
+        const VectorXd left =
+            image.weight.cwiseProduct(off) - image.weighted_effects * effects_in(image, off);
+        Normal& normal = of[i];
+        normal.H = information(image, A);
+        normal.gradient = A.transpose() * left;
+        if (has_meat) add_meat(image, A, left, normal);
+    });
     Normal all = added_up(of, [&](Normal& sum, const Normal& one) {
         sum.H += one.H;
         sum.gradient += one.gradient;

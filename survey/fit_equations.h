@@ -79,6 +79,9 @@ class FitEquations {
                      const PathLight& light,
                      const Eigen::VectorXd& shares,
                      bool estimate_effects);
+    // From now on without every image whose number leaves this one over `groups`; 0 groups: with
+    // all.
+    void leave_out(std::size_t group, std::size_t groups);
     // From now on parts are tied; none before.
     void tie_parts(const FitState& state, const Eigen::VectorXd& shares);
     void set_effects(const EffectVariances& variances);
@@ -179,6 +182,7 @@ class FitEquations {
     const FitSamples& samples_;
     int threads_;
     std::vector<Image> images_;
+    std::vector<std::size_t> used_;  // of these, by parts() and normal()
     std::vector<std::size_t> tile_of_place_;
     EffectVariances effects_{};
     Eigen::MatrixXd tie_;  // what it adds to the parts' G; of no size: nothing

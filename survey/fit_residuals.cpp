@@ -49,7 +49,7 @@ double correlation_with_altitude(const std::vector<ImageOutcome>& images) {
     return size > 0.0 ? altitude.dot(level) / size : 0.0;
 }
 
-void look_for_doubts(const FitSamples& samples, double level, FitResiduals& result) {
+void look_for_doubts(const FitSamples& samples, FitResiduals& result) {
     constexpr double kPattern = 0.02;
     if (result.pattern > kPattern) {
         result.doubts.push_back(
@@ -73,6 +73,9 @@ void look_for_doubts(const FitSamples& samples, double level, FitResiduals& resu
              correlation});
     }
     constexpr double kMostLevel = 0.25;
+    double squares = 0.0;
+    for (const ImageOutcome& image : result.images) squares += image.level * image.level;
+    const double level = std::sqrt(squares / static_cast<double>(result.images.size()));
     if (level > kMostLevel) {
         result.doubts.push_back(
             {"images are brighter or darker than their poses explain: poses of "
@@ -144,15 +147,14 @@ FitResiduals fit_residuals(const FitEquations& equations,
         blocks += count;
         result.images.push_back({.sled = samples.images[i].sled,
                                  .residual = std::sqrt(of_image / std::max(1.0, count)),
-                                 .level = found.effects[0],
-                                 .altitude_m = found.effects[kPoseEffect]});
+                                 .level = found.effects[0]});
         const auto at = std::ranges::find(shown, i);
         if (at != shown.end())
             result.views[static_cast<std::size_t>(at - shown.begin())] = view_of(i, samples, found);
     }
     result.residual = std::sqrt(squares / std::max(1.0, blocks));
     result.pattern = pattern_of(places);
-    look_for_doubts(samples, std::sqrt(equations.effects()[0]), result);
+    look_for_doubts(samples, result);
     return result;
 }
 

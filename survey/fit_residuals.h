@@ -13,12 +13,11 @@
 
 namespace aphotic {
 
-// What the fit leaves of an image, and what it makes of the image's own level and altitude.
+// What the fit leaves of an image, and what it makes of the image's own level.
 struct ImageOutcome {
     Sled sled;
-    double residual = 0.0;    // rms, relative
-    double level = 0.0;       // of green, relative
-    double altitude_m = 0.0;  // off the navigation's
+    double residual = 0.0;  // rms, relative
+    double level = 0.0;     // of green, relative
 };
 
 // An image as blocks: R, G, B planar, NaN where left out.

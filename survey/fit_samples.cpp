@@ -104,7 +104,7 @@ double number_of(const ExrReader& reader, const std::string& name, const std::st
     return value;
 }
 
-FitImage image_of_map(const std::string& map, PlaneSize size, int block_px) {
+FitImage image_of_map(const std::string& map, const Camera& camera, int block_px) {
     ExrReader reader(map);
     const std::vector<std::string> names{kChannelNames.begin(), kChannelNames.end()};
     const std::vector<std::string> channels = reader.channels();
@@ -113,7 +113,7 @@ FitImage image_of_map(const std::string& map, PlaneSize size, int block_px) {
             throw InputError("{}: has no channel {}; needed: R, G, B", map, name);
     }
     RawImage raw{.width_px = reader.width_px(), .height_px = reader.height_px()};
-    require_size(raw, size.width_px, size.height_px, map + ": the rig's camera has");
+    require_size(raw, camera.width_px, camera.height_px, map + ": the rig's camera has");
     raw.samples = reader.planes(names);
     FitImage image{
         .name = map,
@@ -123,6 +123,10 @@ FitImage image_of_map(const std::string& map, PlaneSize size, int block_px) {
     if (!reader.attribute("aphotic:images").empty())
         image.images = std::max(1.0, number_of(reader, "aphotic:images", map));
     average(raw, std::numeric_limits<float>::infinity(), block_px, image);
+    const bool is_mono = camera.sensor.is_mono();
+    // Of a mono camera all three are one, and count once.
+    for (std::size_t k = 0; k < image.signal.size() && is_mono; ++k)
+        if (k % kChannels > 0) image.signal[k] = std::numeric_limits<float>::quiet_NaN();
     return image;
 }
 
@@ -179,13 +183,13 @@ FitSamples samples_of_images(const Survey& survey,
 }
 
 FitSamples samples_of_maps(const std::vector<std::string>& maps,
-                           PlaneSize size,
+                           const Camera& camera,
                            int blocks_across) {
     FitSamples samples;
     samples.are_maps = true;
-    samples.places = fit_places(size.width_px, size.height_px, blocks_across, samples.block_px);
+    samples.places = fit_places(camera.width_px, camera.height_px, blocks_across, samples.block_px);
     for (const std::string& map : maps)
-        samples.images.push_back(image_of_map(map, size, samples.block_px));
+        samples.images.push_back(image_of_map(map, camera, samples.block_px));
     return samples;
 }
 

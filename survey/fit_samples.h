@@ -54,7 +54,7 @@ struct FitSamples {
 // aphotic:altitude_m, aphotic:pitch_deg, aphotic:roll_deg. An InputError for one that cannot be
 // used: there are few, and each was named.
 [[nodiscard]] FitSamples samples_of_maps(const std::vector<std::string>& maps,
-                                         PlaneSize size,
+                                         const Camera& camera,
                                          int blocks_across);
 
 }  // namespace aphotic

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/fit_samples.h"
+
+#include "base/degrees.h"
+#include "base/error.h"
+#include "image/exr.h"
+#include "support/fit_rig.h"
+#include "support/temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace aphotic::fit_samples_test {
+namespace {
+
+constexpr float kRounding = 1e-5F;
+constexpr int kWidth_px = 24;
+constexpr int kHeight_px = 16;
+constexpr int kAcross = 6;
+
+// A slope to the right and down; in a mosaic of which every site sees it.
+float slope(double column, double row) {
+    return static_cast<float>(100.0 + 3.0 * column + 2.0 * row);
+}
+
+class FitSamplesOfAnImage : public testing::Test {
+  protected:
+    // One plane of the slope; `bright` samples at the top left are at the white level.
+    [[nodiscard]] FitSamples samples(int bright) const {
+        std::vector<float> plane;
+        for (int row = 0; row < kHeight_px; ++row) {
+            for (int column = 0; column < kWidth_px; ++column)
+                plane.push_back(slope(column + 0.5, row + 0.5));
+        }
+        std::fill_n(plane.begin(), bright, 1000.0F);
+        ExrWriter exr(folder_.path() / "a.exr", kWidth_px, kHeight_px, {"Y"}, {});
+        exr.write_rows(kHeight_px, plane);
+        exr.finish();
+        Survey survey;
+        survey.camera.mosaic = Mosaic::Rggb;
+        survey.camera.black_level = 64.0F;
+        survey.camera.white_level = 1000.0F;
+        survey.files = image_files({(folder_.path() / "a.exr").string()}, folder_.path() / "out");
+        survey.navigation = Navigation("track", {{.image = "a", .sled = {2.0, 0.1, 0.0}}});
+        return samples_of_images(survey, {kWidth_px, kHeight_px}, kAcross, 1, {});
+    }
+
+    TempFolder folder_;
+};
+
+// Red's sites stand half a pixel before a block's middle, blue's half a pixel behind.
+TEST_F(FitSamplesOfAnImage, ABlockOfAMosaicHasTheSlopesMiddle) {
+    const FitSamples found = samples(0);
+    ASSERT_EQ(found.block_px, 4);
+    ASSERT_EQ(found.places.size(), 24U);
+    for (std::size_t i = 0; i < found.places.size(); ++i) {
+        const double column = found.places.columns[i];
+        const double row = found.places.rows[i];
+        // At the image's edge a mosaic is mirrored, which bends a slope.
+        if (column < 4 || row < 4 || column > kWidth_px - 4 || row > kHeight_px - 4) continue;
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            EXPECT_NEAR(found.images[0].signal[kChannels * i + c],
+                        slope(column, row) - 64.0F,
+                        kRounding * slope(column, row))
+                << column << ' ' << row << ' ' << c;
+        }
+    }
+}
+
+// One sample of a block's four red ones, or eight green ones, is over a hundredth.
+TEST_F(FitSamplesOfAnImage, ASaturatedBlockIsLeftOutInItsChannel) {
+    const FitSamples found = samples(1);
+    EXPECT_TRUE(std::isnan(found.images[0].signal[0]));
+    EXPECT_FALSE(std::isnan(found.images[0].signal[1]));
+    EXPECT_FALSE(std::isnan(found.images[0].signal[kChannels]));
+    EXPECT_FLOAT_EQ(static_cast<float>(found.images[0].saturated_share),
+                    1.0F / (kWidth_px * kHeight_px));
+}
+
+class FitSamplesOfAMap : public testing::Test {
+  protected:
+    void write(const ExrAttributes& attributes) const {
+        ExrWriter exr(map(), 40, 30, {"R", "G", "B"}, attributes);
+        exr.write_rows(30, std::vector<float>(std::size_t{3} * 40 * 30, 2.0F));
+        exr.finish();
+    }
+    [[nodiscard]] std::string map() const { return (folder_.path() / "m.exr").string(); }
+
+    TempFolder folder_;
+    Camera camera_ = fit_rig({}).rig().camera;
+};
+
+TEST_F(FitSamplesOfAMap, APoseIsTheMapsOwn) {
+    write({{"aphotic:altitude_m", "1.9"},
+           {"aphotic:pitch_deg", "3"},
+           {"aphotic:roll_deg", "-2"},
+           {"aphotic:images", "7"}});
+    const FitSamples found = samples_of_maps({map()}, camera_, 40);
+    EXPECT_EQ(found.images[0].sled.altitude_m, 1.9);
+    EXPECT_DOUBLE_EQ(found.images[0].sled.pitch_rad, 3.0 * kRadiansPerDegree);
+    EXPECT_EQ(found.images[0].images, 7.0);
+    EXPECT_EQ(found.images[0].signal[0], 2.0F);
+}
+
+TEST_F(FitSamplesOfAMap, WhatIsMissingIsNamed) {
+    write({{"aphotic:altitude_m", "1.9"}, {"aphotic:pitch_deg", "nan"}, {"aphotic:roll_deg", "0"}});
+    try {
+        static_cast<void>(samples_of_maps({map()}, camera_, 40));
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("aphotic:pitch_deg: found 'nan'"),
+                  std::string::npos)
+            << error.what();
+    }
+    camera_.width_px = 41;
+    EXPECT_THROW(static_cast<void>(samples_of_maps({map()}, camera_, 40)), InputError);
+}
+
+// Its three channels are one, and count once.
+TEST_F(FitSamplesOfAMap, OfAMonoCameraOneChannelCounts) {
+    write({{"aphotic:altitude_m", "1.9"}, {"aphotic:pitch_deg", "0"}, {"aphotic:roll_deg", "0"}});
+    camera_.sensor = Sensor::mono(Spectrum("flat", {300.0, 800.0}, {0.5, 0.5}));
+    const FitSamples found = samples_of_maps({map()}, camera_, 40);
+    EXPECT_EQ(found.images[0].signal[0], 2.0F);
+    EXPECT_TRUE(std::isnan(found.images[0].signal[1]));
+    EXPECT_TRUE(std::isnan(found.images[0].signal[2]));
+}
+
+}  // namespace
+}  // namespace aphotic::fit_samples_test
