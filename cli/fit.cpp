@@ -70,7 +70,14 @@ void require_one_source(const CLI::App& app) {
         throw InputError("--images: found no navigation; allowed: with --nav FILE");
 }
 
-void print_result(const FitResult& result, const std::filesystem::path& folder) {
+void print_result(const std::string& title,
+                  const FitSamples& samples,
+                  const FitResult& result,
+                  const std::filesystem::path& folder) {
+    fmt::print("{}: {} fitted to {}\n",
+               title,
+               counted(result.numbers.size(), "number"),
+               counted(samples.images.size(), samples.are_maps ? "map" : "image"));
     for (const FittedNumber& one : result.numbers) {
         fmt::print("  {:<34} {:>10.4g} +- {:.2g}{}\n",
                    one.key,
@@ -84,11 +91,14 @@ void print_result(const FitResult& result, const std::filesystem::path& folder) 
     for (const FitDoubt& doubt : result.left.doubts)
         fmt::print("looks wrong: {}: {:.2g}\n", doubt.what, doubt.size);
     fmt::print(
-        "what is left of {}: {:.2g} rms, of which {:.2g} stays in place from image to image\n",
+        "{} are off by {:.2g} of the signal, rms, of which {:.2g} stays in place from image to "
+        "image\n",
         counted(result.blocks, "block"),
         result.left.residual,
         result.left.pattern);
-    fmt::print("{}\n", (folder / kFittedRig).string());
+    fmt::print("  {}  the rig\n", (folder / kFittedRig).string());
+    fmt::print("  {}  errors and covariance\n", (folder / "fit.json").string());
+    fmt::print("  {}  to look at\n", (folder / "report.html").string());
 }
 
 ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
@@ -109,7 +119,7 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     if (options.json) {
         fmt::print("{}", json_text(json));
     } else {
-        print_result(result, options.folder);
+        print_result(rig.title, samples, result, options.folder);
     }
     return status_of_skips(samples.skipped.size(),
                            samples.skipped.size() + samples.images.size(),
