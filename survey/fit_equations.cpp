@@ -105,7 +105,7 @@ Sum added_up(const std::vector<Sum>& of, const auto& add) {
 }  // namespace
 
 FitEquations::FitEquations(const FitLight& light, const FitSamples& samples, int threads)
-    : light_(light), samples_(samples), threads_(threads) {
+    : light_(light), threads_(threads) {
     double mean_images = 0.0;
     for (const FitImage& image : samples.images)
         mean_images += image.images / static_cast<double>(samples.images.size());

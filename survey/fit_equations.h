@@ -179,7 +179,6 @@ class FitEquations {
     void learn_effects(const std::vector<Eigen::VectorXd>& off);
 
     const FitLight& light_;
-    const FitSamples& samples_;
     int threads_;
     std::vector<Image> images_;
     std::vector<std::size_t> used_;  // of these, by parts() and normal()

@@ -113,7 +113,9 @@ FitImage image_of_map(const std::string& map, const Camera& camera, int block_px
             throw InputError("{}: has no channel {}; needed: R, G, B", map, name);
     }
     RawImage raw{.width_px = reader.width_px(), .height_px = reader.height_px()};
-    require_size(raw, camera.width_px, camera.height_px, map + ": the rig's camera has");
+    naming(map, [&] {
+        require_size(raw, camera.width_px, camera.height_px, "as the rig's camera has");
+    });
     raw.samples = reader.planes(names);
     FitImage image{
         .name = map,
@@ -164,7 +166,7 @@ FitSamples samples_of_images(const Survey& survey,
             FitImage image{.name = survey.files[i].name.string(),
                            .sled = survey.sled_of(survey.files[i])};
             SurveyImage taken = read_survey_image(survey.files[i].source, survey.camera);
-            require_size(taken.raw, size.width_px, size.height_px, "the rig's camera has");
+            require_size(taken.raw, size.width_px, size.height_px, "as the rig's camera has");
             take_off_black(taken);
             average(taken.raw, taken.levels.white, samples.block_px, image);
             return image;
