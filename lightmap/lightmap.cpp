@@ -298,12 +298,14 @@ void LightmapMaker::make_veil() {
         options_.error);
 }
 
-void LightmapMaker::place(std::size_t strobe, const StrobePlace& place) {
-    Strobe& moved = rig_.strobes[strobe];
-    moved.position_m = place.position_m;
-    moved.axis = place.axis;
-    moved.power = place.power;
-    edges_[strobe] = beam_edges(moved);
+void LightmapMaker::place(const std::vector<StrobePlace>& by_strobe) {
+    for (std::size_t s = 0; s < by_strobe.size(); ++s) {
+        Strobe& strobe = rig_.strobes[s];
+        strobe.position_m = by_strobe[s].position_m;
+        strobe.axis = by_strobe[s].axis;
+        strobe.power = by_strobe[s].power;
+        edges_[s] = beam_edges(strobe);
+    }
     make_veil();
 }
 

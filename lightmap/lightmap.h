@@ -109,9 +109,9 @@ class LightmapMaker {
     // maps have the same, no edge lies between.
     [[nodiscard]] std::vector<double> cones(const Sled& sled) const;
 
-    // Moves, turns and dims a strobe, for as many maps as are to come; its lamp stays, and so do
-    // the tables.
-    void place(std::size_t strobe, const StrobePlace& place);
+    // Moves, turns and dims the strobes, for all maps to come; their lamps stay, and so do the
+    // tables.
+    void place(const std::vector<StrobePlace>& by_strobe);
 
     [[nodiscard]] const PathRange& paths() const { return paths_; }
     [[nodiscard]] std::size_t grid_size() const { return grid_size_; }
