@@ -177,10 +177,8 @@ Action configure_design(CLI::App& app) {
         ->transform(word_of(kDesignGoals))
         ->type_name("evenness|signal|coverage")
         ->default_str("evenness");
-    app.add_option("--keep",
-                   request.keep,
-                   "Keep at least this share of the start's worst signal to noise; with --for "
-                   "signal, of its evenness")
+    app.add_option(
+           "--keep", request.keep, "Keep at least this share of each of the start's other figures")
         ->check(in_range(0.0, 1.0))
         ->option_text("SHARE")
         ->capture_default_str();

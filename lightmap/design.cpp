@@ -9,11 +9,12 @@
 #include "rig/strobe_text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -24,7 +25,11 @@ constexpr double kSearchError = 1e-4;  // of the signal: the figures are no fine
 constexpr double kForbidden = -1e3;    // below every value of a place that is allowed
 // What a share of a figure that should be kept costs: more than a design gains by it.
 constexpr double kPenalty = 20.0;
-constexpr std::size_t kJudgedCandidates = 12;
+constexpr std::size_t kMostCandidates = 60;  // to be judged
+constexpr std::size_t kFewHold = 8;          // of which so many are enough
+// Small images and large ones differ by about so much: what is only just kept on one may not be
+// on the other.
+constexpr double kRoomToJudge = 1.003;
 constexpr std::size_t kMostOnFront = 9;
 
 // Shares of the evaluations.
@@ -133,12 +138,24 @@ double goal_of(DesignGoal goal, const LightFigures& figures) {
     return goal == DesignGoal::Coverage ? figures.coverage : figures.evenness;
 }
 
-double kept_of(DesignGoal goal, const LightFigures& figures) {
-    return goal == DesignGoal::Signal ? figures.evenness : figures.signal_to_noise;
+// What a design must have of each figure at least.
+LightFigures least_of(const DesignRequest& request, const LightFigures& start) {
+    LightFigures least{.evenness = request.keep * start.evenness,
+                       .coverage = request.keep * start.coverage,
+                       .signal_to_noise = request.keep * start.signal_to_noise};
+    if (request.goal == DesignGoal::Evenness) least.evenness = 0.0;
+    if (request.goal == DesignGoal::Coverage) least.coverage = 0.0;
+    if (request.goal == DesignGoal::Signal) least.signal_to_noise = 0.0;
+    return least;
 }
 
-bool keeps(const DesignRequest& request, const LightFigures& figures, const LightFigures& start) {
-    return kept_of(request.goal, figures) >= request.keep * kept_of(request.goal, start);
+bool has(const LightFigures& figures, const LightFigures& least) {
+    return figures.evenness >= least.evenness && figures.coverage >= least.coverage &&
+           figures.signal_to_noise >= least.signal_to_noise;
+}
+
+double log_missing(double figure, double least) {
+    return figure < least ? std::log(least / figure) : 0.0;
 }
 
 class DesignSearch {
@@ -157,13 +174,13 @@ class DesignSearch {
     }
 
     void run() {
-        const double least_kept = request_.keep * kept_of(request_.goal, start_);
-        const auto goal = [&](const LightFigures& f) {
-            return value(request_.goal, f, least_kept);
-        };
+        LightFigures least = least_of(request_, start_);
+        for (double* one : {&least.evenness, &least.coverage, &least.signal_to_noise})
+            *one *= kRoomToJudge;
+        const auto goal = [&](const LightFigures& f) { return value(request_.goal, f, least); };
         search(SearchWay::Global, space_.start(), kGlobalShare, goal);
-        search(SearchWay::Local, best_by(goal), 0.5 * kLocalShare, goal);
-        search(SearchWay::Local, best_by(goal), 0.5 * kLocalShare, goal);
+        search(SearchWay::Local, best_by(goal).point, 0.5 * kLocalShare, goal);
+        search(SearchWay::Local, best_by(goal).point, 0.5 * kLocalShare, goal);
         fill_front();
     }
 
@@ -177,16 +194,15 @@ class DesignSearch {
     // Logarithms: a tenth more of one figure is worth as much as a tenth more of another.
     [[nodiscard]] double value(DesignGoal goal,
                                const LightFigures& figures,
-                               double least_kept) const {
+                               const LightFigures& least) const {
         constexpr double kTie = 1e-3;  // coverage has steps: on one, the more even light
-        const double kept = kept_of(goal, figures);
-        if (figures.evenness <= 0.0 || kept <= 0.0) return 0.5 * kForbidden;
-        const double missing = std::max(0.0, std::log(least_kept / kept));
-        const double gain = std::log(goal_of(goal, figures) / goal_of(goal, start_));
-        const double tie = goal == DesignGoal::Coverage
-                               ? kTie * std::log(figures.evenness / start_.evenness)
-                               : 0.0;
-        return gain + tie - kPenalty * missing;
+        if (figures.evenness <= 0.0 || figures.coverage <= 0.0) return 0.5 * kForbidden;
+        const double missing = log_missing(figures.evenness, least.evenness) +
+                               log_missing(figures.coverage, least.coverage) +
+                               log_missing(figures.signal_to_noise, least.signal_to_noise);
+        const double tie = goal == DesignGoal::Coverage ? kTie : 0.0;
+        return std::log(goal_of(goal, figures) / goal_of(goal, start_)) +
+               tie * std::log(figures.evenness / start_.evenness) - kPenalty * missing;
     }
 
     void search(SearchWay way, const std::vector<double>& from, double share, const Value& value) {
@@ -204,30 +220,26 @@ class DesignSearch {
         maximise(way, from, {.evaluations = evaluations, .seed = request_.seed}, ask);
     }
 
-    [[nodiscard]] std::vector<double> best_by(const Value& value) const {
-        return std::ranges::max_element(
-                   archive_.kept(), {}, [&](const Candidate& c) { return value(c.figures); })
-            ->point;
+    // A copy: the archive grows.
+    [[nodiscard]] Candidate best_by(const Value& value) const {
+        return *std::ranges::max_element(
+            archive_.kept(), {}, [&](const Candidate& c) { return value(c.figures); });
     }
 
     // Its two ends, and between them the most even light of a signal.
     void fill_front() {
         constexpr std::array kBetween{0.25, 0.5, 0.75};
         const double share = (1.0 - kGlobalShare - kLocalShare) / (2.0 + kBetween.size());
-        constexpr double kAny = std::numeric_limits<double>::min();
-        const auto run = [&](DesignGoal goal, double least_kept) {
-            const auto wanted = [&](const LightFigures& f) { return value(goal, f, least_kept); };
-            search(SearchWay::Local, best_by(wanted), share, wanted);
-            return kept_of(DesignGoal::Evenness, figures_of_best(wanted));
+        const double coverage = request_.keep * start_.coverage;
+        const auto run = [&](DesignGoal goal, double least_signal) {
+            const LightFigures least{.coverage = coverage, .signal_to_noise = least_signal};
+            const auto wanted = [&](const LightFigures& f) { return value(goal, f, least); };
+            search(SearchWay::Local, best_by(wanted).point, share, wanted);
+            return best_by(wanted).figures.signal_to_noise;
         };
-        const double most = run(DesignGoal::Signal, kAny);
-        const double least = run(DesignGoal::Evenness, kAny);
-        for (const double part : kBetween) run(DesignGoal::Evenness, least + part * (most - least));
-    }
-
-    [[nodiscard]] LightFigures figures_of_best(const Value& value) const {
-        const std::vector<double> point = best_by(value);
-        return std::ranges::find(archive_.kept(), point, &Candidate::point)->figures;
+        const double most = run(DesignGoal::Signal, 0.0);
+        const double least = run(DesignGoal::Evenness, 0.0);
+        for (const double part : kBetween) run(DesignGoal::Evenness, std::lerp(least, most, part));
     }
 
     const DesignSpace& space_;
@@ -267,19 +279,16 @@ class DesignJudge {
     std::vector<Sled> poses_;
 };
 
-// Those that keep what is to be kept, or nearly so, the best first.
+// Those that keep what is to be kept, the best first.
 std::vector<Candidate> best_of(std::vector<Candidate> candidates,
                                const DesignRequest& request,
                                const LightFigures& start) {
-    constexpr double kNearly = 0.999;  // small images and large ones differ by so much
-    std::erase_if(candidates, [&](const Candidate& c) {
-        return kept_of(request.goal, c.figures) <
-               kNearly * request.keep * kept_of(request.goal, start);
-    });
+    const LightFigures least = least_of(request, start);
+    std::erase_if(candidates, [&](const Candidate& c) { return !has(c.figures, least); });
     std::ranges::sort(candidates, std::ranges::greater(), [&](const Candidate& c) {
         return goal_of(request.goal, c.figures);
     });
-    if (candidates.size() > kJudgedCandidates) candidates.resize(kJudgedCandidates);
+    if (candidates.size() > kMostCandidates) candidates.resize(kMostCandidates);
     return candidates;
 }
 
@@ -289,8 +298,9 @@ bool is_better_in_both(const LightFigures& a, const LightFigures& b) {
 }
 
 // Of evenness and signal alone, spread over the signal.
-std::vector<Candidate> front_of(const std::vector<Candidate>& all) {
+std::vector<Candidate> front_of(std::vector<Candidate> all, double least_coverage) {
     std::vector<Candidate> front;
+    std::erase_if(all, [&](const Candidate& c) { return c.figures.coverage < least_coverage; });
     for (const Candidate& one : all) {
         if (std::ranges::none_of(all, [&](const Candidate& other) {
                 return is_better_in_both(other.figures, one.figures);
@@ -371,16 +381,21 @@ DesignResult design(const Rig& rig, const DesignRequest& request) {
     result.best = result.start;
     result.evaluations = search.evaluations();
     result.numbers = space.size();
+    const LightFigures least = least_of(request, result.start.figures);
+    std::size_t holding = 0;
     for (const Candidate& one : best_of(search.candidates(), request, search.start())) {
+        if (holding == kFewHold) break;
         Design design = judge.of(one.point);
-        if (!keeps(request, design.figures, result.start.figures) ||
-            goal_of(request.goal, design.figures) <= goal_of(request.goal, result.best.figures))
+        if (!has(design.figures, least)) continue;
+        ++holding;
+        if (goal_of(request.goal, design.figures) <= goal_of(request.goal, result.best.figures))
             continue;
         result.best = std::move(design);
         result.is_better = true;
     }
     std::vector<Design> judged{result.best};
-    for (const Candidate& one : front_of(search.candidates()))
+    const double least_coverage = request.keep * search.start().coverage;
+    for (const Candidate& one : front_of(search.candidates(), least_coverage))
         judged.push_back(judge.of(one.point));
     for (const Design& one : judged) {
         const bool is_beaten = std::ranges::any_of(judged, [&](const Design& other) {

@@ -4,10 +4,12 @@
 // signal to noise or the coverage of the floor's light (evenness.h), the worst of all poses of an
 // envelope.
 //
-//   goal                    kept
-//   Evenness   largest U0   signal to noise >= keep * the start's
-//   Signal     largest S/N  U0              >= keep * the start's
-//   Coverage   largest C    signal to noise >= keep * the start's
+//   goal       largest              at least keep times the start's
+//   Evenness   U0                   signal to noise, coverage
+//   Signal     signal to noise      U0, coverage
+//   Coverage   coverage             U0, signal to noise
+//
+// Coverage is kept since U0 is blind to a small bright spot, which hardly moves the mean.
 //
 // The search (maximise.h) looks at a small image, kSearched_px along its longer side, of few poses:
 // the ends of each range that is given, and its middle. In water that scatters the signal to noise
@@ -19,7 +21,8 @@
 // search's candidates by that judgement is the design, and where none is better than the start and
 // keeps what is to be kept, the start is: a design is never worse than its start.
 //
-// The front is the trade of evenness against signal: designs of which none is better in both.
+// The front is the trade of evenness against signal: designs of which none is better in both, and that keep the
+// coverage.
 //
 // Limits: a search is no proof that nothing is better; between the poses judged, figures may be
 // worse than at them. The same request gives the same answer, whatever the number of threads.
@@ -39,7 +42,7 @@
 
 namespace aphotic {
 
-inline constexpr int kSearched_px = 85;
+inline constexpr int kSearched_px = 170;
 inline constexpr int kVeilSearched_px = 12;
 inline constexpr int kJudged_px = 1024;
 
@@ -65,7 +68,7 @@ struct DesignRequest {
     DesignGoal goal = DesignGoal::Evenness;
     double keep = 1.0;
     double level = 0.5;  // of coverage
-    int evaluations = 6000;
+    int evaluations = 10000;
     std::uint64_t seed = 1;
     int threads = 1;
     std::filesystem::path folder{};                        // of the tables that the rig names

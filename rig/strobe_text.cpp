@@ -94,9 +94,13 @@ class StrobeEditor {
             replace(*node, direction);
             return;
         }
-        edits_.push_back({begin_of("aim"),
-                          places_.byte_of(strobe_.get("aim")->source().end),
-                          "direction = " + direction});
+        const toml::source_region& aim = strobe_.get("aim")->source();
+        const std::size_t first = begin_of("aim");
+        // The values of a column stay one, where there is room.
+        const std::size_t before_equals = places_.byte_of(aim.begin) - first - 2;
+        edits_.push_back({first,
+                          places_.byte_of(aim.end),
+                          fmt::format("{:<{}}= {}", "direction ", before_equals, direction)});
     }
 
     void brighten(double factor) {
