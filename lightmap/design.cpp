@@ -25,16 +25,19 @@ constexpr double kSearchError = 1e-4;  // of the signal: the figures are no fine
 constexpr double kForbidden = -1e3;    // below every value of a place that is allowed
 // What a share of a figure that should be kept costs: more than a design gains by it.
 constexpr double kPenalty = 20.0;
-constexpr std::size_t kMostCandidates = 60;  // to be judged
-constexpr std::size_t kFewHold = 8;          // of which so many are enough
+constexpr std::size_t kCandidatesOfRoom = 12;  // to be judged
+constexpr std::size_t kFewHold = 8;            // of which so many are enough
 // Small images and large ones differ by about so much: what is only just kept on one may not be
 // on the other.
 constexpr double kRoomToJudge = 1.003;
 constexpr std::size_t kMostOnFront = 9;
 
 // Shares of the evaluations.
-constexpr double kGlobalShare = 0.35;
-constexpr double kLocalShare = 0.25;
+constexpr double kGlobalShare = 0.2;
+constexpr double kFromStartShare = 0.15;
+constexpr double kRestartShare = 0.1;
+constexpr int kRestarts = 4;
+constexpr double kFrontShare = 0.25;
 
 std::vector<double> values_of(const Ends& ends, bool has_middle) {
     if (ends[0] == ends[1]) return {ends[0]};
@@ -149,6 +152,12 @@ LightFigures least_of(const DesignRequest& request, const LightFigures& start) {
     return least;
 }
 
+LightFigures times(LightFigures figures, double factor) {
+    for (double* one : {&figures.evenness, &figures.coverage, &figures.signal_to_noise})
+        *one *= factor;
+    return figures;
+}
+
 bool has(const LightFigures& figures, const LightFigures& least) {
     return figures.evenness >= least.evenness && figures.coverage >= least.coverage &&
            figures.signal_to_noise >= least.signal_to_noise;
@@ -174,13 +183,13 @@ class DesignSearch {
     }
 
     void run() {
-        LightFigures least = least_of(request_, start_);
-        for (double* one : {&least.evenness, &least.coverage, &least.signal_to_noise})
-            *one *= kRoomToJudge;
+        const LightFigures least = times(least_of(request_, start_), kRoomToJudge);
         const auto goal = [&](const LightFigures& f) { return value(request_.goal, f, least); };
         search(SearchWay::Global, space_.start(), kGlobalShare, goal);
-        search(SearchWay::Local, best_by(goal).point, 0.5 * kLocalShare, goal);
-        search(SearchWay::Local, best_by(goal).point, 0.5 * kLocalShare, goal);
+        search(SearchWay::Local, space_.start(), kFromStartShare, goal);
+        // Again from the best: a simplex that has shrunk in a crease is given its size anew.
+        for (int again = 0; again < kRestarts; ++again)
+            search(SearchWay::Local, best_by(goal).point, kRestartShare, goal);
         fill_front();
     }
 
@@ -229,7 +238,7 @@ class DesignSearch {
     // Its two ends, and between them the most even light of a signal.
     void fill_front() {
         constexpr std::array kBetween{0.25, 0.5, 0.75};
-        const double share = (1.0 - kGlobalShare - kLocalShare) / (2.0 + kBetween.size());
+        const double share = kFrontShare / (2.0 + kBetween.size());
         const double coverage = request_.keep * start_.coverage;
         const auto run = [&](DesignGoal goal, double least_signal) {
             const LightFigures least{.coverage = coverage, .signal_to_noise = least_signal};
@@ -279,22 +288,41 @@ class DesignJudge {
     std::vector<Sled> poses_;
 };
 
-// Those that keep what is to be kept, the best first.
+// Those that keep what is to be kept, the best first. Some have room to spare, for the best have
+// none, and the judge may find them wanting.
 std::vector<Candidate> best_of(std::vector<Candidate> candidates,
                                const DesignRequest& request,
                                const LightFigures& start) {
-    const LightFigures least = least_of(request, start);
-    std::erase_if(candidates, [&](const Candidate& c) { return !has(c.figures, least); });
+    constexpr std::array kRooms{1.0, 1.003, 1.01, 1.03, 1.1};
     std::ranges::sort(candidates, std::ranges::greater(), [&](const Candidate& c) {
         return goal_of(request.goal, c.figures);
     });
-    if (candidates.size() > kMostCandidates) candidates.resize(kMostCandidates);
-    return candidates;
+    std::vector<bool> is_taken(candidates.size(), false);
+    for (const double room : kRooms) {
+        const LightFigures least = times(least_of(request, start), room);
+        std::size_t taken = 0;
+        for (std::size_t i = 0; i < candidates.size() && taken < kCandidatesOfRoom; ++i) {
+            if (!has(candidates[i].figures, least)) continue;
+            is_taken[i] = true;
+            ++taken;
+        }
+    }
+    std::vector<Candidate> best;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (is_taken[i]) best.push_back(candidates[i]);
+    }
+    return best;
 }
 
 bool is_better_in_both(const LightFigures& a, const LightFigures& b) {
     return a.evenness >= b.evenness && a.signal_to_noise >= b.signal_to_noise &&
            (a.evenness > b.evenness || a.signal_to_noise > b.signal_to_noise);
+}
+
+bool is_alike(const LightFigures& a, const LightFigures& b) {
+    constexpr double kAlike = 1e-3;
+    return std::abs(a.evenness / b.evenness - 1.0) < kAlike &&
+           std::abs(a.signal_to_noise / b.signal_to_noise - 1.0) < kAlike;
 }
 
 // Of evenness and signal alone, spread over the signal.
@@ -401,8 +429,9 @@ DesignResult design(const Rig& rig, const DesignRequest& request) {
         const bool is_beaten = std::ranges::any_of(judged, [&](const Design& other) {
             return is_better_in_both(other.figures, one.figures);
         });
-        const bool is_there = std::ranges::any_of(
-            result.front, [&](const Design& other) { return other.toml == one.toml; });
+        const bool is_there = std::ranges::any_of(result.front, [&](const Design& other) {
+            return is_alike(other.figures, one.figures);
+        });
         if (!is_beaten && !is_there) result.front.push_back(one);
     }
     std::ranges::sort(

@@ -44,7 +44,7 @@ namespace aphotic {
 
 inline constexpr int kSearched_px = 170;
 inline constexpr int kVeilSearched_px = 12;
-inline constexpr int kJudged_px = 1024;
+inline constexpr int kJudged_px = 512;
 
 using Ends = std::array<double, 2>;  // the smaller first
 
