@@ -10,10 +10,10 @@
 // cores; at most twice as long as reading and writing.)
 #include "base/atomic_file.h"
 #include "base/parallel.h"
-#include "bench/survey/raw_camera.h"
 #include "lightmap/lightmap.h"
 #include "plugin/process.h"
 #include "rig/rig_reader.h"
+#include "survey/raw_camera.h"
 
 #include <OpenImageIO/imageio.h>
 #include <benchmark/benchmark.h>
@@ -85,10 +85,12 @@ void write_survey(const fs::path& folder, const Rig& rig, std::size_t images) {
     for (std::size_t i = 0; i < kDistinct; ++i) {
         const Lightmap map = LightmapMaker(rig, paths_of(rig, {sleds[i]}), {}).map(sleds[i]);
         if (i == 0) brightest = std::ranges::max(map.samples);
-        const auto mosaic = survey::raw_mosaic(
+        RawCamera camera;
+        camera.electrons_per_signal = camera.saturation_e / (1.2 * brightest);
+        const auto mosaic = raw_samples(
             {.width_px = map.width_px, .height_px = map.height_px, .samples = map.samples},
-            {.full_signal = 1.2 * brightest},
-            i + 1);
+            camera,
+            NoiseOf{.seed = 1, .image = static_cast<int>(i) + 1});
         const OIIO::ImageSpec spec(map.width_px, map.height_px, 1, OIIO::TypeDesc::UINT16);
         write_image(folder / "raw" / name_of(i), {.spec = spec, .pixels = mosaic}, "none");
     }

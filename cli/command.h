@@ -46,6 +46,7 @@ extern const Command kCorrect;
 extern const Command kObserve;
 extern const Command kFit;
 extern const Command kBaseline;
+extern const Command kSurvey;
 extern const Command kValidate;
 extern const Command kStudy;
 extern const Command kStress;

@@ -41,6 +41,7 @@ struct CorrectCommandOptions {
     CameraNumbers camera;
     std::vector<double> altitudes_m;
     CorrectionOptions correction;
+    std::optional<double> electrons;
     bool strict = false;
     AllowedSkips allowed_skips;
     bool json = false;
@@ -111,6 +112,7 @@ std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options
 struct Task {
     Survey survey;
     std::optional<ManifestModel> model{};
+    Readout readout{};  // of the rig
 };
 
 Task task_of(const CorrectCommandOptions& options) {
@@ -148,7 +150,13 @@ Task task_of(const CorrectCommandOptions& options) {
     });
     survey.light.rig_size = own;
     const auto model = model_error_of(options, rig, survey);
-    return {.survey = std::move(survey), .model = model};
+    return {.survey = std::move(survey), .model = model, .readout = rig.camera.readout};
+}
+
+void take_noise(CorrectCommandOptions& options, const Readout& readout) {
+    options.correction.limit.electrons_per_number =
+        options.electrons.value_or(electrons_per_number(readout));
+    if (!options.correction.read_noise) options.correction.read_noise = dark_noise_dn(readout);
 }
 
 // Read before anything is corrected, that a fault in it costs nothing.
@@ -183,7 +191,8 @@ ExitStatus correct(CorrectCommandOptions options) {
     if (options.navigation.source.empty() && !options.rig.empty())
         options.navigation.source = options.ifdo;
     const std::optional<IfdoTask> task = ifdo_task(options);
-    const auto [survey, model] = task_of(options);
+    const auto [survey, model, readout] = task_of(options);
+    take_noise(options, readout);
     const CorrectionReport report =
         correct_survey(survey, options.correction, terminal_watch(options.strict));
     if (options.json) {
@@ -225,14 +234,14 @@ void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
     add_white_level_option(app, options.camera);
     app.add_option("--read-noise",
                    options.correction.read_noise,
-                   "The camera's noise without light, in its own numbers; by default that of "
-                   "rounding to integers, 0.3, and none for floats")
+                   "The camera's noise without light, in its own numbers; by default the rig's, or "
+                   "that of rounding to integers, 0.3, and none for floats")
         ->check(not_negative());
     app.add_option("--electrons",
-                   options.correction.limit.electrons_per_number,
-                   "Electrons per number, for shot noise; 0 ignores it")
-        ->check(not_negative())
-        ->capture_default_str();
+                   options.electrons,
+                   "Electrons per number, for shot noise; 0 ignores it; by default of the rig's "
+                   "`gain_dn_per_e`, or 0")
+        ->check(not_negative());
 }
 
 [[nodiscard]] Settle add_result_options(CLI::App& app, CorrectCommandOptions& options) {

@@ -81,13 +81,13 @@ void print_result(const FitResult& result, const std::filesystem::path& folder) 
     for (const NotTold& one : result.held) fmt::print("held: {}\n", words_of(one));
     for (const Confounded& pair : result.confounded)
         fmt::print("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
-    for (const FitDoubt& doubt : result.doubts)
+    for (const FitDoubt& doubt : result.left.doubts)
         fmt::print("looks wrong: {}: {:.2g}\n", doubt.what, doubt.size);
     fmt::print(
         "what is left of {}: {:.2g} rms, of which {:.2g} stays in place from image to image\n",
         counted(result.blocks, "block"),
-        result.residual,
-        result.pattern);
+        result.left.residual,
+        result.left.pattern);
     fmt::print("{}\n", (folder / kFittedRig).string());
 }
 
@@ -134,10 +134,11 @@ Action configure_fit(CLI::App& app) {
     app.add_option("--parts", options->fit.parts, "Splines of a beam's table")
         ->check(in_range(4, 200))
         ->capture_default_str();
-    app.add_option("--free",
-                   options->free,
-                   "Fit these alone: beam, aim, power, water, vignetting, altitude, attitude, or a "
-                   "key of [water]")
+    app.add_option(
+           "--free",
+           options->free,
+           "Fit these alone: beam, aim, power, water, vignetting, altitude, attitude, gain, or a "
+           "key of [water]")
         ->delimiter(',')
         ->type_name("WHAT,...");
     app.add_option("--altitude-error",

@@ -8,11 +8,13 @@
 #include "cli/option_checks.h"
 #include "image/preview.h"
 #include "plugin/povray.h"
+#include "rig/rig.h"
 #include "scene_gen/render_plan.h"
 
 #include <CLI/CLI.hpp>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,6 +81,8 @@ struct PlanningOptions {
     std::vector<std::string> library_paths;
     bool unchecked = false;
     double clock = 0.0;
+    std::optional<Sled> sled{};           // instead of the rig's
+    std::vector<std::string> declared{};  // numbers that the probe is told, NAME=NUMBER
     std::string veil{kVeilMakers.front()};
     int veil_samples = kVeilSamples;
     int antialias = 0;

@@ -15,6 +15,7 @@
 #include <cctype>
 #include <chrono>
 #include <memory>
+#include <utility>
 
 namespace aphotic::cli {
 namespace {
@@ -98,6 +99,10 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
             "rig's `scene`",
             options.clock);
     }
+    std::vector<std::string> ini_lines;
+    if (options.clock != 0.0) ini_lines.push_back(clock_line(options.clock));
+    for (const std::string& number : options.declared)
+        ini_lines.push_back("Declare=" + number + "\n");
     ProgressLine line;
     auto surveyed_scene = std::make_shared<const UserScene>(
         survey_scene(find_povray(options.povray),
@@ -107,8 +112,7 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
                       .library_paths = options.library_paths,
                       .progress = [&](double share) { line.show("probing the scene", share); },
                       .stall_s = options.stall_timeout_s,
-                      .ini_lines = options.clock == 0.0 ? std::vector<std::string>{}
-                                                        : std::vector{clock_line(options.clock)},
+                      .ini_lines = std::move(ini_lines),
                       .unchecked = options.unchecked}));
     for (const std::string& reason : surveyed_scene->no_promise) {
         fmt::print(stderr, "aphotic: {}: no promise: {}\n", scene.string(), reason);
@@ -120,6 +124,7 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
 
 PlannedRender plan_rig(const PlanningOptions& options) {
     Rig rig = read_rig(options.rig_file);
+    if (options.sled) rig.sled = *options.sled;
     PlanRequest request = request_of(options);
     const auto start = std::chrono::steady_clock::now();
     request.scene.user_scene = surveyed(rig, options);

@@ -9,8 +9,9 @@
 #           same label and is optimised, see below
 #   povray  runs POV-Ray. Under the name povray_of_few_pixels it gets the same label and weighs half
 #   cli     runs the command as a user would
-#   slow    hundreds of plans or interruptions, or a program beyond POV-Ray, such as a browser. Under the
-#           name slow_that_waits, for POV-Ray, it gets the same label and weighs half
+#   slow    hundreds of plans, fits or interruptions, or a program beyond POV-Ray, such as a browser. Under
+#           the name slow_that_waits, for POV-Ray, it gets the same label and weighs half; under the name
+#           slow_that_computes the same label, and is optimised
 #
 # POV-Ray takes two thirds of a second for a few pixels, most of it asleep. So scripts/test gives CTest
 # four processors for each core: what computes weighs four, renders two, those of few pixels one.
@@ -41,6 +42,9 @@ function(aphotic_tests label)
         if(label STREQUAL "slow_that_waits")
             set(label slow)
             set(weight 2)
+        elseif(label STREQUAL "slow_that_computes")
+            set(label slow)
+            set(optimisation -O2)
         endif()
     endif()
 

@@ -46,6 +46,10 @@ struct Readout {
     std::optional<double> exposure_ms{};
     std::optional<double> iso{};
     std::optional<double> f_number{};
+    // Of EMVA 1288, for simulated surveys and for the noise of real ones.
+    std::optional<double> gain_dn_per_e{};
+    std::optional<double> read_noise_e{};
+    std::optional<double> saturation_e{};
 };
 
 // What an altitude of the navigation is: along the axis of the frame that pitch and roll tilt, the

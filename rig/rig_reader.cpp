@@ -61,6 +61,9 @@ constexpr Bounds kLevelDn{0.0, 1e9};
 constexpr Bounds kExposureMs{1e-4, 1e6};
 constexpr Bounds kIso{0.1, 1e7};
 constexpr Bounds kFNumber{0.1, 1000.0};
+constexpr Bounds kGainDnPerE{1e-6, 1e6};
+constexpr Bounds kReadNoiseE{0.0, 1e6};
+constexpr Bounds kSaturationE{1.0, 1e9};
 constexpr Bounds kWavelengthNm{100.0, 10000.0};
 constexpr Bounds kPortDistanceMm{1.0, 10000.0};
 constexpr Bounds kPortThicknessMm{1.0, 1000.0};
@@ -368,7 +371,10 @@ Readout RigReader::read_readout(Section& camera, bool is_mono) {
                     .white_level_dn = optional("white_level_dn", kLevelDn),
                     .exposure_ms = optional("exposure_ms", kExposureMs),
                     .iso = optional("iso", kIso),
-                    .f_number = optional("f_number", kFNumber)};
+                    .f_number = optional("f_number", kFNumber),
+                    .gain_dn_per_e = optional("gain_dn_per_e", kGainDnPerE),
+                    .read_noise_e = optional("read_noise_e", kReadNoiseE),
+                    .saturation_e = optional("saturation_e", kSaturationE)};
     if (readout.white_level_dn && *readout.white_level_dn <= readout.black_level_dn.value_or(0.0))
         camera.found_but("white_level_dn", "a number over black_level_dn");
     if (is_mono) readout.bayer = "mono";
@@ -383,23 +389,11 @@ Readout RigReader::read_readout(Section& camera, bool is_mono) {
 }
 
 Camera RigReader::read_camera(Section section, Mounting& mounting) {
-    section.refuse_keys_but({"resolution",
-                             "pixel_pitch_um",
-                             "focal_length_mm",
-                             "fov_deg",
-                             "calibration",
-                             "vignetting",
-                             "range_nm",
-                             "response",
-                             "port",
-                             "black_level_dn",
-                             "white_level_dn",
-                             "bayer",
-                             "exposure_ms",
-                             "iso",
-                             "f_number",
-                             "position_m",
-                             "orientation_deg"});
+    section.refuse_keys_but(
+        {"resolution",     "pixel_pitch_um", "focal_length_mm", "fov_deg",    "calibration",
+         "vignetting",     "range_nm",       "response",        "port",       "black_level_dn",
+         "white_level_dn", "bayer",          "exposure_ms",     "iso",        "f_number",
+         "gain_dn_per_e",  "read_noise_e",   "saturation_e",    "position_m", "orientation_deg"});
     const std::optional<CameraCalibration> calibration = read_calibration(section);
     const auto [width_px, height_px] = read_size(section, calibration);
     Sensor sensor = read_response(section);

@@ -149,37 +149,14 @@ Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(r
     constexpr unsigned kEmitterSide = 3;
     const unsigned side =
         std::min(points, std::max(kEmitterSide, points * kEmitterSide / kVeilPoints));
-    for (const Strobe& strobe : rig_->strobes) {
-        const Beam& beam = strobe.beam;
-        const BeamFrame light_frame = frame_about(strobe.axis);
-        Light light{.beam = beam,
-                    .frame = light_frame,
-                    .creases = {},
-                    .cones = {},
-                    .lamps = {},
-                    .widest_panel_rad = std::min(
-                        kVeilPanelRad, 4.0 * kVeilPanelRad / std::sqrt(steepest_cone(beam))),
-                    .ends_in_a_power = beam.window.has_value(),
-                    .is_of_optics = std::holds_alternative<BeamOptics>(beam.pattern),
-                    .pole = pole_of(beam, light_frame)};
-        light.creases = creases_of(beam, light.frame);
-        const bool is_of_cones =
-            std::holds_alternative<std::monostate>(beam.pattern) && !beam.window;
-        for (const Beam& part : is_of_cones ? parts_of(beam) : std::vector<Beam>{}) {
-            const Cone& cone = part.cones.front();
-            light.cones.push_back(
-                {.on_axis = most_intensity(part),
-                 .exponent = cone.exponent,
-                 .edge_cosine = std::max(0.0, std::cos(cone.half_angle_rad)),
-                 .full_cosine =
-                     cone.edge_rad > 0.0 ? std::cos(cone.half_angle_rad - cone.edge_rad) : -1.0});
-            light.ends_in_a_power |= cone.half_angle_rad >= kPoleRad && !is_whole(cone.exponent);
+    for (std::size_t s = 0; s < rig_->strobes.size(); ++s) {
+        const Strobe& strobe = rig_->strobes[s];
+        lights_.push_back(light_of(strobe, strobe.beam, side));
+        for (const Beam& part : parts_of(strobe.beam)) {
+            if (is_dark(part)) continue;
+            parts_.push_back(light_of(strobe, part, side));
+            strobes_.push_back(s);
         }
-        if (strobe.emitter)
-            add_lamps_of(strobe, light.frame, rules_[side], light.lamps);
-        else
-            light.lamps.push_back({strobe.position_m, 1.0});
-        lights_.push_back(std::move(light));
     }
     for (const Scatterer& scatterer : rig_->water.scatterers) {
         Phase phase{.function = &scatterer.phase, .samples = {}};
@@ -189,8 +166,7 @@ Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(r
                 if (points >= kVeilPointsBetweenKinks && angle_rad > kVeilCut)
                     kinks_rad_.push_back(angle_rad - kPoleRad);
         }
-        if (std::holds_alternative<PhaseTable>(kind) ||
-            std::holds_alternative<FournierForand>(kind)) {
+        if (!std::holds_alternative<HenyeyGreenstein>(kind)) {
             constexpr int kSteps = 8192;
             for (int i = 0; i <= kSteps; ++i)
                 phase.samples.push_back(
@@ -203,12 +179,42 @@ Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(r
         least_per_m > 0.0 ? kVeilDepth / least_per_m : std::numeric_limits<double>::infinity();
 }
 
+Veil::Light Veil::light_of(const Strobe& strobe, const Beam& beam, unsigned emitter_side) const {
+    const BeamFrame frame = frame_about(strobe.axis);
+    Light light{.beam = beam,
+                .frame = frame,
+                .creases = creases_of(beam, frame),
+                .cones = {},
+                .lamps = {},
+                .widest_panel_rad =
+                    std::min(kVeilPanelRad, 4.0 * kVeilPanelRad / std::sqrt(steepest_cone(beam))),
+                .ends_in_a_power = beam.window.has_value(),
+                .is_of_optics = std::holds_alternative<BeamOptics>(beam.pattern),
+                .pole = pole_of(beam, frame)};
+    const bool is_of_cones = std::holds_alternative<std::monostate>(beam.pattern) && !beam.window;
+    for (const Beam& part : is_of_cones ? parts_of(beam) : std::vector<Beam>{}) {
+        const Cone& cone = part.cones.front();
+        light.cones.push_back({.on_axis = most_intensity(part),
+                               .exponent = cone.exponent,
+                               .edge_cosine = std::max(0.0, std::cos(cone.half_angle_rad)),
+                               .full_cosine = cone.edge_rad > 0.0
+                                                  ? std::cos(cone.half_angle_rad - cone.edge_rad)
+                                                  : -1.0});
+        light.ends_in_a_power |= cone.half_angle_rad >= kPoleRad && !is_whole(cone.exponent);
+    }
+    if (strobe.emitter)
+        add_lamps_of(strobe, frame, rules_[emitter_side], light.lamps);
+    else
+        light.lamps.push_back({strobe.position_m, 1.0});
+    return light;
+}
+
 // Lagrange's cubic through the four next samples.
 double Veil::Phase::at(double psi_rad) const {
     if (samples.empty()) return function->at(psi_rad);
-    const double steps = static_cast<double>(samples.size() - 1);
-    const double place = (psi_rad - kVeilCut) * steps / (pi - kVeilCut);
-    const double first = std::clamp(std::floor(place) - 1.0, 0.0, steps - 3.0);
+    const int steps = static_cast<int>(samples.size()) - 1;
+    const double place = (psi_rad - kVeilCut) * (steps / (pi - kVeilCut));
+    const int first = std::clamp(static_cast<int>(place) - 1, 0, steps - 3);
     const double* const y = &samples[static_cast<std::size_t>(first)];
     const double a = place - first;
     const double b = a - 1.0;
@@ -222,9 +228,22 @@ const Veil::Rule& Veil::rule_for(double width, double room) const {
 }
 
 void Veil::nodes(std::size_t strobe, const WaterRay& ray, double length_m, VeilNodes& nodes) const {
+    find_nodes(lights_[strobe], ray, length_m, nodes);
+}
+
+void Veil::nodes_of_part(std::size_t part,
+                         const WaterRay& ray,
+                         double length_m,
+                         VeilNodes& nodes) const {
+    find_nodes(parts_[part], ray, length_m, nodes);
+}
+
+void Veil::find_nodes(const Light& light,
+                      const WaterRay& ray,
+                      double length_m,
+                      VeilNodes& nodes) const {
     nodes.clear();
     nodes.weight.resize(phases_.size());
-    const Light& light = lights_[strobe];
     for (const Lamp& lamp : light.lamps) add_lamp(light, lamp, ray, length_m, nodes);
 }
 
@@ -409,8 +428,13 @@ double veil_error(const Rig& rig, unsigned points) {
 }
 
 VeilSight sight_of(const Rig& rig, double column, double row, double lambda_nm) {
+    return sight_of(rig, floor_plane(rig.sled), column, row, lambda_nm);
+}
+
+VeilSight sight_of(
+    const Rig& rig, const Plane& floor, double column, double row, double lambda_nm) {
     const WaterRay ray = pixel_ray(rig, column, row, lambda_nm);
-    const auto length_m = distance_to(floor_plane(rig.sled), ray);
+    const auto length_m = distance_to(floor, ray);
     return {ray, length_m.value_or(std::numeric_limits<double>::infinity())};
 }
 

@@ -77,6 +77,14 @@ class Veil {
     // there, it replaces them. Thread safe.
     void nodes(std::size_t strobe, const WaterRay& ray, double length_m, VeilNodes& nodes) const;
 
+    // The same of a part: each cone of a beam is one, and so is any other beam. Where one has an
+    // edge the others are smooth.
+    void nodes_of_part(std::size_t part,
+                       const WaterRay& ray,
+                       double length_m,
+                       VeilNodes& nodes) const;
+    [[nodiscard]] const std::vector<std::size_t>& strobe_of_part() const { return strobes_; }
+
     // A of all strobes at one wavelength, powers included.
     [[nodiscard]] double radiance(const WaterRay& ray, double length_m, double lambda_nm) const;
 
@@ -115,6 +123,13 @@ class Veil {
         std::vector<double> weights;
     };
 
+    [[nodiscard]] Light light_of(const Strobe& strobe,
+                                 const Beam& beam,
+                                 unsigned emitter_side) const;
+    void find_nodes(const Light& light,
+                    const WaterRay& ray,
+                    double length_m,
+                    VeilNodes& nodes) const;
     void add_lamp(const Light& light,
                   const Lamp& lamp,
                   const WaterRay& ray,
@@ -129,11 +144,13 @@ class Veil {
     [[nodiscard]] const Rule& rule_for(double width, double room) const;
 
     std::shared_ptr<const Rig> rig_;
-    std::vector<Light> lights_;      // by strobe
-    std::vector<Phase> phases_;      // by scatterer
-    std::vector<double> kinks_rad_;  // of all phase functions, as phi
-    double longest_m_ = 0.0;         // path beyond which nothing is left
-    std::vector<Rule> rules_;        // by number of points
+    std::vector<Light> lights_;  // by strobe
+    std::vector<Light> parts_;
+    std::vector<std::size_t> strobes_;  // by part
+    std::vector<Phase> phases_;         // by scatterer
+    std::vector<double> kinks_rad_;     // of all phase functions, as phi
+    double longest_m_ = 0.0;            // path beyond which nothing is left
+    std::vector<Rule> rules_;           // by number of points
 };
 
 // How far kVeilPoints are from twice as many, relative to the veil, or to kDimVeilShare of the
@@ -149,5 +166,7 @@ struct VeilSight {
     double length_m = 0.0;
 };
 [[nodiscard]] VeilSight sight_of(const Rig& rig, double column, double row, double lambda_nm);
+[[nodiscard]] VeilSight sight_of(
+    const Rig& rig, const Plane& floor, double column, double row, double lambda_nm);
 
 }  // namespace aphotic

@@ -7,6 +7,7 @@
 #include "spectral/light_family.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -55,11 +56,17 @@ PathRange veil_paths(const Rig& rig, const PathRange& direct) {
             shortest_m, strobe.position_m.norm() - port_reach_m(rig) - emitter_reach_m(strobe));
     }
     PathRange paths{.shortest_m = std::max(0.0, shortest_m), .longest_m = direct.longest_m};
-    if (direct.has_horizon || direct.longest_m == 0.0) {
-        const double least_per_m = least_loss_per_m(rig);
-        if (std::isfinite(least_per_m)) paths.longest_m = kVeilDepth / least_per_m;
+    constexpr double kSome_m = 1.0;
+    const double least_per_m = least_loss_per_m(rig);
+    if (!std::isfinite(least_per_m)) {
+        paths.longest_m = std::max(paths.longest_m, paths.shortest_m + kSome_m);
+        return paths;
     }
-    paths.longest_m = std::max(paths.longest_m, paths.shortest_m + 1.0);
+    const double dark_m = kVeilDepth / least_per_m;
+    if (direct.has_horizon || direct.longest_m == 0.0) paths.longest_m = dark_m;
+    // However deep the water's black: a table of no more than that depth.
+    paths.longest_m = std::clamp(
+        paths.longest_m, paths.shortest_m + std::min(kSome_m, dark_m), paths.shortest_m + dark_m);
     return paths;
 }
 
@@ -91,6 +98,13 @@ VeilMap::VeilMap(const Rig& rig, unsigned points, std::vector<double> index_node
       index_nodes_nm_(std::move(index_nodes_nm)) {}
 
 VeilMap::VeilMap(const Rig& rig, const PathRange& direct, double error, unsigned points)
+    : VeilMap(rig, direct, error, points, {}) {}
+
+VeilMap::VeilMap(const Rig& rig,
+                 const PathRange& direct,
+                 double error,
+                 unsigned points,
+                 std::span<const double> lambda_nm)
     : VeilMap(rig, points, index_nodes_nm(rig)) {
     const PathRange paths = veil_paths(rig, direct);
     LightFamily family{.sources = {},
@@ -101,9 +115,11 @@ VeilMap::VeilMap(const Rig& rig, const PathRange& direct, double error, unsigned
         for (const Scatterer& scatterer : rig.water.scatterers)
             family.sources.push_back({strobe.spectrum, scatterer.scattering_per_m});
     }
-    tabulate(paths,
-             reference_grid(rig.camera.sensor, family, rig.camera.range, kVeilGridShare * error),
-             error);
+    grids_.push_back(
+        reference_grid(rig.camera.sensor, family, rig.camera.range, kVeilGridShare * error));
+    planes_ = kChannels;
+    add_grids_of(lambda_nm);
+    tabulate(paths, error);
 }
 
 VeilMap::VeilMap(const Rig& rig,
@@ -113,15 +129,22 @@ VeilMap::VeilMap(const Rig& rig,
                  std::span<const double> lambda_nm,
                  double index_nm)
     : VeilMap(rig, points, {index_nm}) {
-    Grid grid;
-    for (std::size_t c = 0; c < lambda_nm.size(); ++c) {
-        grid.push_back({.lambda_nm = lambda_nm[c]});
-        grid.back().weight[c] = 1.0;
-    }
-    tabulate(veil_paths(rig, direct), grid, error);
+    add_grids_of(lambda_nm);
+    tabulate(veil_paths(rig, direct), error);
 }
 
-void VeilMap::tabulate(const PathRange& paths, const Grid& grid, double error) {
+void VeilMap::add_grids_of(std::span<const double> lambda_nm) {
+    for (std::size_t k = 0; k < lambda_nm.size(); ++k) {
+        const std::size_t channel = k % kChannels;
+        if (channel == 0) grids_.emplace_back();
+        grids_.back().push_back({.lambda_nm = lambda_nm[k]});
+        grids_.back().back().weight[channel] = 1.0;
+    }
+    planes_ += lambda_nm.size();
+    assert(planes_ <= kVeilPlanes);
+}
+
+void VeilMap::tabulate(const PathRange& paths, double error) {
     std::vector<const Spectrum*> lamps;
     for (const Strobe& strobe : rig_.strobes) {
         const auto known = std::ranges::find_if(
@@ -136,84 +159,98 @@ void VeilMap::tabulate(const PathRange& paths, const Grid& grid, double error) {
         }
     };
     for_each_kind([&](const Spectrum& lamp, std::size_t i) {
-        const SpectralSum sum = veil_sum(rig_, grid, lamp, i, every);
-        const PathSteps steps = path_steps(sum, paths, kVeilTableShare * error);
-        if (steps.count > steps_.count) steps_ = steps;
+        for (const Grid& grid : grids_) {
+            const SpectralSum sum = veil_sum(rig_, grid, lamp, i, every);
+            const PathSteps steps = path_steps(sum, paths, kVeilTableShare * error);
+            if (steps.count > steps_.count) steps_ = steps;
+        }
     });
     for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
         for_each_kind([&](const Spectrum& lamp, std::size_t i) {
             const auto of_node = [&](double nm) {
                 return index_share(rig_, index_nodes_nm_, j, nm);
             };
-            tables_.push_back(path_table(veil_sum(rig_, grid, lamp, i, of_node), steps_));
+            const std::size_t stride = grids_.size() * kTableStride;
+            std::vector<float> table(static_cast<std::size_t>(steps_.count) * stride);
+            for (std::size_t g = 0; g < grids_.size(); ++g) {
+                const std::vector<float> of_grid =
+                    path_table(veil_sum(rig_, grids_[g], lamp, i, of_node), steps_);
+                for (std::size_t k = 0; k < of_grid.size(); ++k)
+                    table[k / kTableStride * stride + g * kTableStride + k % kTableStride] =
+                        of_grid[k];
+            }
+            tables_.push_back(std::move(table));
         });
     }
 }
 
-VeilMap::Signal VeilMap::table_at(const std::vector<float>& table, double path_m) const {
-    const double place = (path_m - steps_.first_m) * steps_.steps_per_m;
-    // Rounding may lead out of it a little. Beyond the horizon's end nothing is left.
-    if (place > steps_.count + 0.01) return {};
-    const int step = std::clamp(static_cast<int>(place), 0, steps_.count - 1);
-    const double t = place - step;
-    const float* const of_step = &table[static_cast<std::size_t>(step) * kTableStride];
-    Signal signal{};
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        const auto at = [&](std::size_t order) {
-            return static_cast<double>(of_step[order * kTableLanes + c]);
-        };
-        signal[c] = at(0) + t * (at(1) + t * (at(2) + t * at(3)));
-    }
-    return signal;
-}
-
 VeilMap::Signal VeilMap::at(const Rig& flown, double column, double row, VeilNodes& nodes) const {
-    Signal sum{};
-    for (std::size_t s = 0; s < rig_.strobes.size(); ++s)
-        add(flown, s, column, row, std::nullopt, nodes, sum);
-    return sum;
+    return at_sights(Flight(flown), column, row, std::nullopt, nodes);
 }
 
 VeilMap::Signal VeilMap::at(
     const Rig& flown, double column, double row, double length_m, VeilNodes& nodes) const {
+    return at_sights(Flight(flown), column, row, length_m, nodes);
+}
+
+VeilMap::Signal VeilMap::at_sights(const Flight& flight,
+                                   double column,
+                                   double row,
+                                   std::optional<double> length_m,
+                                   VeilNodes& nodes) const {
     Signal sum{};
-    for (std::size_t s = 0; s < rig_.strobes.size(); ++s)
-        add(flown, s, column, row, length_m, nodes, sum);
+    for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
+        const VeilSight sight = sight_of(flight.rig, flight.floor, column, row, index_nodes_nm_[j]);
+        for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+            veil_.nodes(s, sight.ray, length_m.value_or(sight.length_m), nodes);
+            add(nodes, s, j, sum);
+        }
+    }
     return sum;
 }
 
-VeilMap::Signal VeilMap::at(
-    const Rig& flown, std::size_t strobe, double column, double row, VeilNodes& nodes) const {
+VeilMap::Signal VeilMap::at_part(
+    const Flight& flight, std::size_t part, double column, double row, VeilNodes& nodes) const {
     Signal sum{};
-    add(flown, strobe, column, row, std::nullopt, nodes, sum);
+    for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
+        const VeilSight sight = sight_of(flight.rig, flight.floor, column, row, index_nodes_nm_[j]);
+        veil_.nodes_of_part(part, sight.ray, sight.length_m, nodes);
+        add(nodes, veil_.strobe_of_part()[part], j, sum);
+    }
     return sum;
 }
 
-void VeilMap::add(const Rig& flown,
+void VeilMap::add(const VeilNodes& nodes,
                   std::size_t strobe,
-                  double column,
-                  double row,
-                  std::optional<double> length_m,
-                  VeilNodes& nodes,
+                  std::size_t index_node,
                   Signal& sum) const {
     const std::size_t scatterers = rig_.water.scatterers.size();
     const std::size_t kinds = tables_.size() / index_nodes_nm_.size();
-    for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
-        const VeilSight sight = sight_of(flown, column, row, index_nodes_nm_[j]);
-        veil_.nodes(strobe, sight.ray, length_m.value_or(sight.length_m), nodes);
+    const std::vector<float>* const tables =
+        &tables_[index_node * kinds + lamp_of_strobe_[strobe] * scatterers];
+    std::array<std::array<double, kTableLanes>, kVeilPlanes / kChannels> lanes{};
+    for (std::size_t n = 0; n < nodes.path_m.size(); ++n) {
+        const double place = (nodes.path_m[n] - steps_.first_m) * steps_.steps_per_m;
+        // Rounding may lead out of it a little. Beyond the horizon's end nothing is left.
+        if (place > steps_.count + 0.01) continue;
+        const int step = std::clamp(static_cast<int>(place), 0, steps_.count - 1);
+        const auto t = static_cast<float>(place - step);
         for (std::size_t i = 0; i < scatterers; ++i) {
-            const std::vector<float>& table =
-                tables_[j * kinds + lamp_of_strobe_[strobe] * scatterers + i];
-            Signal of_scatterer{};
-            for (std::size_t n = 0; n < nodes.path_m.size(); ++n) {
-                const Signal T = table_at(table, nodes.path_m[n]);
-                for (std::size_t c = 0; c < kChannels; ++c)
-                    of_scatterer[c] += nodes.weight[i][n] * T[c];
+            const float* T =
+                &tables[i][static_cast<std::size_t>(step) * grids_.size() * kTableStride];
+            const double weight = nodes.weight[i][n];
+            for (std::size_t g = 0; g < grids_.size(); ++g, T += kTableStride) {
+                for (std::size_t c = 0; c < kTableLanes; ++c) {
+                    const float signal =
+                        T[c] + t * (T[kTableLanes + c] +
+                                    t * (T[2 * kTableLanes + c] + t * T[3 * kTableLanes + c]));
+                    lanes[g][c] += weight * static_cast<double>(signal);
+                }
             }
-            for (std::size_t c = 0; c < kChannels; ++c)
-                sum[c] += rig_.strobes[strobe].power * of_scatterer[c];
         }
     }
+    for (std::size_t c = 0; c < planes_; ++c)
+        sum[c] += rig_.strobes[strobe].power * lanes[c / kChannels][c % kChannels];
 }
 
 VeilMap::Axis::Axis(int count, double cell_px)
@@ -244,19 +281,20 @@ VeilMap::Rows VeilMap::rows_for(Rows wanted) const {
 class VeilMap::Strip {
   public:
     Strip(const VeilMap& map,
-          const Rig& flown,
-          const std::vector<Signal>& nodes,  // by row, column and strobe
+          const Flight& flight,
+          const std::vector<Signal>& nodes,  // by row, column and part
           int first_node_row,
           Rows rows,
           const std::vector<float>& floor,
           std::vector<float>& samples)
         : map_(map),
-          flown_(flown),
+          flight_(flight),
           nodes_(nodes),
           first_node_row_(first_node_row),
           rows_(rows),
           floor_(floor),
-          samples_(samples) {}
+          samples_(samples),
+          parts_(map.has_node_at_each_pixel() ? 1 : map.veil_.strobe_of_part().size()) {}
 
     void fill(int cell_row, VeilNodes& room) const {
         for (int cell = 0; cell < map_.across_.cells; ++cell) fill_cell(cell_row, cell, room);
@@ -264,7 +302,7 @@ class VeilMap::Strip {
 
   private:
     static constexpr auto kSide = static_cast<std::size_t>(kVeilStencil);
-    using Stencil = std::array<std::array<Signal, kSide>, kSide>;
+    using Stencil = std::array<std::array<const Signal*, kSide>, kSide>;
     // Where a stencil begins, and how its nodes lie in the image.
     struct Place {
         double first_column;
@@ -273,22 +311,25 @@ class VeilMap::Strip {
         double apart_row;
     };
 
-    // Pixels, and what is looked at there: one strobe's veil, beside that of all about here.
+    // Pixels, and what is looked at there: one part's veil, beside that of all about here.
     struct Scope {
         Rows rows;
         Rows columns;
-        std::size_t strobe = 0;
+        std::size_t part = 0;
         Signal veil{};
     };
 
-    static Signal cubic(const Stencil& nodes, const Place& place, double column, double row) {
+    [[nodiscard]] Signal cubic(const Stencil& nodes,
+                               const Place& place,
+                               double column,
+                               double row) const {
         const auto of_column = lagrange_weights((column - place.first_column) / place.apart_column);
         const auto of_row = lagrange_weights((row - place.first_row) / place.apart_row);
         Signal sum{};
         for (std::size_t j = 0; j < kSide; ++j) {
             for (std::size_t i = 0; i < kSide; ++i) {
-                for (std::size_t c = 0; c < kChannels; ++c)
-                    sum[c] += of_row[j] * of_column[i] * nodes[j][i][c];
+                for (std::size_t c = 0; c < map_.planes_; ++c)
+                    sum[c] += of_row[j] * of_column[i] * (*nodes[j][i])[c];
             }
         }
         return sum;
@@ -302,6 +343,10 @@ class VeilMap::Strip {
                static_cast<std::size_t>(column);
     }
 
+    [[nodiscard]] double floor_at(std::size_t plane, int row, int column) const {
+        return floor_.empty() ? 0.0 : static_cast<double>(floor_[index(plane, row, column)]);
+    }
+
     // Whether the cubic is right there, as far as the signal of the nearest of these pixels asks.
     [[nodiscard]] bool holds(const Signal& found,
                              const Signal& exact,
@@ -310,8 +355,8 @@ class VeilMap::Strip {
                              double row) const {
         const int y = nearest(row, scope.rows);
         const int x = nearest(column, scope.columns);
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            const double signal = scope.veil[c] + static_cast<double>(floor_[index(c, y, x)]);
+        for (std::size_t c = 0; c < map_.planes_; ++c) {
+            const double signal = scope.veil[c] + floor_at(c, y, x);
             if (std::abs(found[c] - exact[c]) > kVeilOff * signal) return false;
         }
         return true;
@@ -331,14 +376,13 @@ class VeilMap::Strip {
     [[nodiscard]] bool is_straight(const Stencil& nodes, const Scope& scope) const {
         const int row = scope.rows.first + scope.rows.count / 2;
         const int column = scope.columns.first + scope.columns.count / 2;
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            const double most =
-                kVeilBend * (scope.veil[c] + static_cast<double>(floor_[index(c, row, column)]));
+        for (std::size_t c = 0; c < map_.planes_; ++c) {
+            const double most = kVeilBend * (scope.veil[c] + floor_at(c, row, column));
             for (std::size_t k = 0; k < kSide; ++k) {
                 const std::array along{
-                    nodes[k][0][c], nodes[k][1][c], nodes[k][2][c], nodes[k][3][c]};
+                    (*nodes[k][0])[c], (*nodes[k][1])[c], (*nodes[k][2])[c], (*nodes[k][3])[c]};
                 const std::array down{
-                    nodes[0][k][c], nodes[1][k][c], nodes[2][k][c], nodes[3][k][c]};
+                    (*nodes[0][k])[c], (*nodes[1][k])[c], (*nodes[2][k])[c], (*nodes[3][k])[c]};
                 if (!is_straight(along, most) || !is_straight(down, most)) return false;
             }
         }
@@ -358,7 +402,7 @@ class VeilMap::Strip {
             const double column = part.first_column + look[0] * part.apart_column;
             const double row = part.first_row + look[1] * part.apart_row;
             return holds(cubic(nodes, place, column, row),
-                         map_.at(flown_, scope.strobe, column, row, room),
+                         map_.at_part(flight_, scope.part, column, row, room),
                          scope,
                          column,
                          row);
@@ -374,10 +418,11 @@ class VeilMap::Strip {
         }
         for (int row = rows.first; row < rows.first + rows.count; ++row) {
             const auto of_row = lagrange_weights((row + 0.5 - place.first_row) / place.apart_row);
-            for (std::size_t c = 0; c < kChannels; ++c) {
+            for (std::size_t c = 0; c < map_.planes_; ++c) {
                 std::array<double, kSide> line{};
                 for (std::size_t j = 0; j < kSide; ++j) {
-                    for (std::size_t i = 0; i < kSide; ++i) line[i] += of_row[j] * nodes[j][i][c];
+                    for (std::size_t i = 0; i < kSide; ++i)
+                        line[i] += of_row[j] * (*nodes[j][i])[c];
                 }
                 float* const to = &samples_[index(c, row, columns.first)];
                 for (int i = 0; i < columns.count; ++i) {
@@ -401,33 +446,38 @@ class VeilMap::Strip {
         const Place place{across.node_px(left), down.node_px(top), across.apart_px, down.apart_px};
         const Place own{
             across.node_px(cell), down.node_px(cell_row), across.apart_px, down.apart_px};
-        // Then pixels' centres are nodes.
-        const bool is_every_pixel = across.apart_px <= 1.0 && down.apart_px <= 1.0;
+        const bool is_every_pixel = map_.has_node_at_each_pixel();
         Scope scope{.rows = rows, .columns = columns};
-        for (std::size_t s = 0; s < map_.rig_.strobes.size(); ++s) {
-            for (std::size_t c = 0; c < kChannels; ++c) scope.veil[c] += node(s, cell_row, cell)[c];
+        for (std::size_t k = 0; k < parts_; ++k) {
+            for (std::size_t c = 0; c < map_.planes_; ++c)
+                scope.veil[c] += node(k, cell_row, cell)[c];
         }
-        Stencil smooth{};  // of all strobes that it serves
-        for (std::size_t s = 0; s < map_.rig_.strobes.size(); ++s) {
+        std::array<std::array<Signal, kSide>, kSide> smooth{};  // of all parts that it serves
+        for (std::size_t k = 0; k < parts_; ++k) {
             Stencil nodes;
             for (int j = 0; j < kVeilStencil; ++j) {
                 for (int i = 0; i < kVeilStencil; ++i) {
                     nodes[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] =
-                        node(s, top + j, left + i);
+                        &node(k, top + j, left + i);
                 }
             }
-            scope.strobe = s;
+            scope.part = k;
             if (!is_every_pixel && !fits(nodes, place, own, scope, room)) {
                 refine(cell_row, cell, scope, room);
                 continue;
             }
             for (std::size_t j = 0; j < kSide; ++j) {
                 for (std::size_t i = 0; i < kSide; ++i) {
-                    for (std::size_t c = 0; c < kChannels; ++c) smooth[j][i][c] += nodes[j][i][c];
+                    for (std::size_t c = 0; c < map_.planes_; ++c)
+                        smooth[j][i][c] += (*nodes[j][i])[c];
                 }
             }
         }
-        store(smooth, place, rows, columns);
+        Stencil sum;
+        for (std::size_t j = 0; j < kSide; ++j) {
+            for (std::size_t i = 0; i < kSide; ++i) sum[j][i] = &smooth[j][i];
+        }
+        store(sum, place, rows, columns);
     }
 
     void refine(int cell_row, int cell, const Scope& scope, VeilNodes& room) const {
@@ -444,14 +494,14 @@ class VeilMap::Strip {
                 const auto x = static_cast<double>(i);
                 const auto y = static_cast<double>(j);
                 const bool is_corner = i % kVeilParts == 0 && j % kVeilParts == 0;
-                fine[j][i] = is_corner ? node(scope.strobe,
+                fine[j][i] = is_corner ? node(scope.part,
                                               cell_row + static_cast<int>(j) / kVeilParts,
                                               cell + static_cast<int>(i) / kVeilParts)
-                                       : map_.at(flown_,
-                                                 scope.strobe,
-                                                 own.first_column + x * own.apart_column,
-                                                 own.first_row + y * own.apart_row,
-                                                 room);
+                                       : map_.at_part(flight_,
+                                                      scope.part,
+                                                      own.first_column + x * own.apart_column,
+                                                      own.first_row + y * own.apart_row,
+                                                      room);
             }
         }
         for (int j = 0; j < kVeilParts; ++j) {
@@ -465,8 +515,8 @@ class VeilMap::Strip {
                 Stencil nodes;
                 for (std::size_t y = 0; y < kSide; ++y) {
                     for (std::size_t x = 0; x < kSide; ++x)
-                        nodes[y][x] = fine[static_cast<std::size_t>(top) + y]
-                                          [static_cast<std::size_t>(left) + x];
+                        nodes[y][x] = &fine[static_cast<std::size_t>(top) + y]
+                                           [static_cast<std::size_t>(left) + x];
                 }
                 const Place place{own.first_column + left * own.apart_column,
                                   own.first_row + top * own.apart_row,
@@ -494,8 +544,8 @@ class VeilMap::Strip {
         }
         for (int y = rows.first; y < rows.first + rows.count; ++y) {
             for (int x = columns.first; x < columns.first + columns.count; ++x) {
-                const Signal exact = map_.at(flown_, scope.strobe, x + 0.5, y + 0.5, room);
-                for (std::size_t c = 0; c < kChannels; ++c)
+                const Signal exact = map_.at_part(flight_, scope.part, x + 0.5, y + 0.5, room);
+                for (std::size_t c = 0; c < map_.planes_; ++c)
                     samples_[index(c, y, x)] += static_cast<float>(exact[c]);
             }
         }
@@ -515,21 +565,22 @@ class VeilMap::Strip {
         return pixels_between(part == 0 ? pixels.first : at(part), end);
     }
 
-    [[nodiscard]] const Signal& node(std::size_t strobe, int row, int column) const {
+    [[nodiscard]] const Signal& node(std::size_t part, int row, int column) const {
         const auto stride = static_cast<std::size_t>(map_.across_.cells) + 1;
         return nodes_[(static_cast<std::size_t>(row - first_node_row_) * stride +
                        static_cast<std::size_t>(column)) *
-                          map_.rig_.strobes.size() +
-                      strobe];
+                          parts_ +
+                      part];
     }
 
     const VeilMap& map_;
-    const Rig& flown_;
+    const Flight& flight_;
     const std::vector<Signal>& nodes_;
     int first_node_row_;
     Rows rows_;
     const std::vector<float>& floor_;
     std::vector<float>& samples_;
+    std::size_t parts_;
 };
 
 void VeilMap::rows_into(const Sled& sled,
@@ -537,7 +588,9 @@ void VeilMap::rows_into(const Sled& sled,
                         const std::vector<float>& floor,
                         int threads,
                         std::vector<float>& samples) const {
-    samples.assign(floor.size(), 0.0F);
+    samples.assign(
+        planes_ * static_cast<std::size_t>(rows.count) * static_cast<std::size_t>(across_.pixels),
+        0.0F);
     Rig flown = rig_;
     flown.sled = sled;
     int first_cell = 0;
@@ -550,21 +603,22 @@ void VeilMap::rows_into(const Sled& sled,
         std::min(down_.cells, std::max(end_cell + 1, first_node + kVeilStencil - 1));
     const auto stride = static_cast<std::size_t>(across_.cells) + 1;
     const auto node_rows = static_cast<std::size_t>(last_node - first_node) + 1;
-    const std::size_t strobes = rig_.strobes.size();
-    std::vector<Signal> nodes(node_rows * stride * strobes);
+    const bool is_whole = has_node_at_each_pixel();
+    const std::size_t parts = is_whole ? 1 : veil_.strobe_of_part().size();
+    const Flight flight(flown);
+    std::vector<Signal> nodes(node_rows * stride * parts);
     std::vector<VeilNodes> rooms(static_cast<std::size_t>(threads));
     parallel_for(node_rows, rooms.size(), [&](std::size_t row, std::size_t thread) {
-        for (std::size_t i = 0; i < stride * strobes; ++i) {
-            const std::size_t column = i / strobes;
-            nodes[row * stride * strobes + i] =
-                at(flown,
-                   i % strobes,
-                   across_.node_px(static_cast<double>(column)),
-                   down_.node_px(static_cast<double>(row) + first_node),
-                   rooms[thread]);
+        const double y = down_.node_px(static_cast<double>(row) + first_node);
+        for (std::size_t i = 0; i < stride * parts; ++i) {
+            const std::size_t column = i / parts;
+            const double x = across_.node_px(static_cast<double>(column));
+            nodes[row * stride * parts + i] =
+                is_whole ? at_sights(flight, x, y, std::nullopt, rooms[thread])
+                         : at_part(flight, i % parts, x, y, rooms[thread]);
         }
     });
-    const Strip strip(*this, flown, nodes, first_node, rows, floor, samples);
+    const Strip strip(*this, flight, nodes, first_node, rows, floor, samples);
     parallel_for(static_cast<std::size_t>(end_cell - first_cell),
                  rooms.size(),
                  [&](std::size_t row, std::size_t thread) {

@@ -19,14 +19,14 @@
 // kVeilBend of the signal, floor's light and veil, the veil itself is computed at five places of
 // the cell: if the cubic is off at one by more than kVeilOff of the signal, the cell gets a grid of
 // its own, four times as fine, and its parts the same test; those that fail are computed pixel by
-// pixel. All that strobe
-// by strobe, for edges of one are none of the others'. It depends on the cell alone: neither
-// threads nor the rows that are asked for change a bit.
+// pixel. All that by the parts of rig/veil.h, for edges of one are none of the others'. It
+// depends on the cell alone: neither threads nor the rows that are asked for change a bit.
 //
 // Behind a port the veil is that of a few rays, interpolated over the water's index
 // (rig/index_nodes.h).
 #pragma once
 
+#include "rig/geometry.h"
 #include "rig/path_range.h"
 #include "rig/path_table.h"
 #include "rig/rig.h"
@@ -49,7 +49,8 @@ inline constexpr double kVeilOff = 4e-5;
 inline constexpr double kVeilBend = 8e-5;
 // What maps are off by at most, as measured (docs/lightmaps.md): away from the middles, too.
 inline constexpr double kVeilOfSignal = 1e-4;
-inline constexpr unsigned kVeilMapPoints = 3;  // rig/veil.h's, of a panel
+inline constexpr unsigned kVeilMapPoints = 3;   // rig/veil.h's, of a panel
+inline constexpr std::size_t kVeilPlanes = 12;  // of one map, at most
 
 class VeilMap {
   public:
@@ -60,13 +61,23 @@ class VeilMap {
             double error,
             unsigned points = kVeilMapPoints);
 
-    // Of up to three wavelengths instead, one a plane: A of rig/veil.h, all by the ray of index_nm.
+    // Of R, G and B, and beside them A of rig/veil.h at wavelengths, a plane each, which share
+    // their nodes: none behind a port, where each has a ray of its own.
+    VeilMap(const Rig& rig,
+            const PathRange& direct,
+            double error,
+            unsigned points,
+            std::span<const double> lambda_nm);
+
+    // A alone, at wavelengths that all have the ray of index_nm.
     VeilMap(const Rig& rig,
             const PathRange& direct,
             double error,
             unsigned points,
             std::span<const double> lambda_nm,
             double index_nm);
+
+    [[nodiscard]] std::size_t planes() const { return planes_; }
 
     // Rows whose floor must be known for these, which they are among.
     struct Rows {
@@ -75,23 +86,20 @@ class VeilMap {
     };
     [[nodiscard]] Rows rows_for(Rows wanted) const;
 
-    // Three planes of rows that rows_for() gave, beside the floor's signal; all 0: as exact as the
-    // veil alone asks.
+    // The planes of rows that rows_for() gave, beside the floor's signal, which has as many; none:
+    // as exact as the veil alone asks.
     void rows_into(const Sled& sled,
                    Rows rows,
                    const std::vector<float>& floor,
                    int threads,
                    std::vector<float>& samples) const;
 
-    // At a place of the image, without interpolation; pixels' centres are at .5.
-    using Signal = std::array<double, kChannels>;
+    // At a place of the image, without interpolation; pixels' centres are at .5. By plane.
+    using Signal = std::array<double, kVeilPlanes>;
     [[nodiscard]] Signal at(const Rig& flown, double column, double row, VeilNodes& nodes) const;
     // Where the pixel sees so far, not to the floor.
     [[nodiscard]] Signal at(
         const Rig& flown, double column, double row, double length_m, VeilNodes& nodes) const;
-    // Of one strobe.
-    [[nodiscard]] Signal at(
-        const Rig& flown, std::size_t strobe, double column, double row, VeilNodes& nodes) const;
 
   private:
     // Nodes along one way, from the first pixel's centre to the last's.
@@ -105,25 +113,41 @@ class VeilMap {
     };
     class Strip;
 
-    VeilMap(const Rig& rig, unsigned points, std::vector<double> index_nodes_nm);
+    // Where a rig flies.
+    struct Flight {
+        explicit Flight(const Rig& flown) : rig(flown), floor(floor_plane(flown.sled)) {}
+        const Rig& rig;
+        Plane floor;
+    };
     using Grid = std::vector<WeightedWavelength>;
-    void tabulate(const PathRange& paths, const Grid& grid, double error);
-    void add(const Rig& flown,
-             std::size_t strobe,
-             double column,
-             double row,
-             std::optional<double> length_m,
-             VeilNodes& nodes,
-             Signal& sum) const;
-    [[nodiscard]] Signal table_at(const std::vector<float>& table, double path_m) const;
+
+    VeilMap(const Rig& rig, unsigned points, std::vector<double> index_nodes_nm);
+    void add_grids_of(std::span<const double> lambda_nm);
+    void tabulate(const PathRange& paths, double error);
+    // Where pixels' centres are nodes, nothing is interpolated, and beams are taken whole.
+    [[nodiscard]] bool has_node_at_each_pixel() const {
+        return across_.apart_px <= 1.0 && down_.apart_px <= 1.0;
+    }
+    [[nodiscard]] Signal at_sights(const Flight& flight,
+                                   double column,
+                                   double row,
+                                   std::optional<double> length_m,
+                                   VeilNodes& nodes) const;
+    // Of a part of a strobe's beam.
+    [[nodiscard]] Signal at_part(
+        const Flight& flight, std::size_t part, double column, double row, VeilNodes& nodes) const;
+    void add(const VeilNodes& nodes, std::size_t strobe, std::size_t index_node, Signal& sum) const;
 
     Rig rig_;
     Veil veil_;
     Axis across_;
     Axis down_;
     std::vector<double> index_nodes_nm_;  // whose rays are taken
+    std::size_t planes_ = 0;
+    std::vector<Grid> grids_;  // each of three planes
     PathSteps steps_;
-    std::vector<std::vector<float>> tables_;  // by index node, lamp spectrum and scatterer
+    // By index node, lamp spectrum and scatterer; by step, grid, and as path_table() has it.
+    std::vector<std::vector<float>> tables_;
     std::vector<std::size_t> lamp_of_strobe_;
 };
 

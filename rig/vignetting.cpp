@@ -7,9 +7,9 @@
 #include "rig/rig.h"
 #include "spectral/table.h"
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>

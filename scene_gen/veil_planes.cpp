@@ -20,7 +20,9 @@ namespace {
 
 // Of the spectral integral and its table: a tenth of what the interpolation is off by.
 constexpr double kTableError = 0.1 * kVeilOfSignal;
-constexpr int kBlockRows = 256;
+constexpr int kBlockRows = 512;
+// Deflate takes longer than all the rest, for a third of the size.
+constexpr int kNotCompressed = 0;
 
 // Few points where they do: not where light is lost within a panel, as in water like milk.
 unsigned points_of(const Rig& rig) {
@@ -29,28 +31,27 @@ unsigned points_of(const Rig& rig) {
                                                               : kVeilPoints;
 }
 
-struct FrameMap {
-    VeilMap map;
-    std::size_t planes;  // that count
-};
-
-// One for R, G, B, and one for each frame's wavelengths, in the manifest's order; behind a port for
-// each by itself, for it has its own ray.
-std::vector<FrameMap> maps_of(const Rig& rig, const Manifest& manifest, bool may_see_far) {
+// Of R, G, B and then the wavelengths, in the manifest's order: as many as one may hold, but behind
+// a port each wavelength by itself, for it has its own ray.
+std::vector<VeilMap> maps_of(const Rig& rig, const Manifest& manifest, bool may_see_far) {
     PathRange paths = path_range(rig);
     paths.has_horizon |= may_see_far;
     const unsigned points = points_of(rig);
-    std::vector<FrameMap> maps{{VeilMap(rig, paths, kTableError, points), kChannels}};
-    std::span<const PlannedWavelength> rest = manifest.wavelengths;
+    std::vector<double> lambda_nm;
+    for (const PlannedWavelength& w : manifest.wavelengths) lambda_nm.push_back(w.lambda_nm);
+    std::span<const double> rest = lambda_nm;
+    const auto take = [&](std::size_t most) {
+        const std::span<const double> first = rest.first(std::min(most, rest.size()));
+        rest = rest.subspan(first.size());
+        return first;
+    };
+    std::vector<VeilMap> maps;
+    const std::size_t beside_signals = rig.camera.port ? 0 : kVeilPlanes - kChannels;
+    maps.emplace_back(rig, paths, kTableError, points, take(beside_signals));
     while (!rest.empty()) {
-        std::vector<double> lambda_nm;
-        for (const PlannedWavelength& w : rest) {
-            const bool same_ray = lambda_nm.empty() || !rig.camera.port;
-            if (w.frame == rest.front().frame && same_ray) lambda_nm.push_back(w.lambda_nm);
-        }
-        maps.push_back({VeilMap(rig, paths, kTableError, points, lambda_nm, rest.front().lambda_nm),
-                        lambda_nm.size()});
-        rest = rest.subspan(lambda_nm.size());
+        const double index_nm = rest.front();
+        const auto next = take(rig.camera.port ? 1 : kVeilPlanes);
+        maps.emplace_back(rig, paths, kTableError, points, next, index_nm);
     }
     return maps;
 }
@@ -59,21 +60,20 @@ int threads_here() {
     return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
-// Over the bare floor, interpolated.
-std::vector<float> block_of_cells(const std::vector<FrameMap>& maps,
-                                  const Rig& rig,
-                                  VeilMap::Rows rows) {
-    const std::size_t plane =
-        static_cast<std::size_t>(rig.camera.width_px) * static_cast<std::size_t>(rows.count);
-    const std::vector<float> no_floor(kChannels * plane, 0.0F);
-    std::vector<float> block;
-    std::vector<float> veil;
-    for (const FrameMap& of_frame : maps) {
-        of_frame.map.rows_into(rig.sled, rows, no_floor, threads_here(), veil);
-        veil.resize(of_frame.planes * plane);
-        block.insert(block.end(), veil.begin(), veil.end());
+// Over the bare floor, interpolated. The room is for the planes of one map.
+void block_of_cells(const std::vector<VeilMap>& maps,
+                    const Rig& rig,
+                    VeilMap::Rows rows,
+                    std::vector<float>& room,
+                    std::vector<float>& block) {
+    block.clear();
+    for (const VeilMap& map : maps) {
+        map.rows_into(rig.sled, rows, {}, threads_here(), room);
+        if (maps.size() == 1)
+            block.swap(room);
+        else
+            block.insert(block.end(), room.begin(), room.end());
     }
-    return block;
 }
 
 // How far each pixel sees, from the frame of fog; infinite where that is all there is.
@@ -94,7 +94,7 @@ std::vector<double> distances(const std::filesystem::path& folder,
 
 // Over anything, pixel by pixel. Where the floor is in view, it is the floor: nearer to it than the
 // fog's half floats tell.
-std::vector<float> block_of_pixels(const std::vector<FrameMap>& maps,
+std::vector<float> block_of_pixels(const std::vector<VeilMap>& maps,
                                    const Rig& rig,
                                    VeilMap::Rows rows,
                                    const std::vector<double>& distance_m) {
@@ -102,31 +102,31 @@ std::vector<float> block_of_pixels(const std::vector<FrameMap>& maps,
     const auto width = static_cast<std::size_t>(rig.camera.width_px);
     const std::size_t plane = distance_m.size();
     std::size_t planes = 0;
-    for (const FrameMap& of_frame : maps) planes += of_frame.planes;
+    for (const VeilMap& map : maps) planes += map.planes();
     std::vector<float> block(planes * plane);
     std::vector<VeilNodes> rooms(static_cast<std::size_t>(threads_here()));
     const double middle_nm = std::midpoint(rig.camera.range.first_nm, rig.camera.range.last_nm);
-    parallel_for(
-        static_cast<std::size_t>(rows.count),
-        rooms.size(),
-        [&](std::size_t row, std::size_t thread) {
-            for (std::size_t i = 0; i < width; ++i) {
-                const std::size_t at = row * width + i;
-                const double x = static_cast<double>(i) + 0.5;
-                const double y = rows.first + static_cast<double>(row) + 0.5;
-                const double floor_m = sight_of(rig, x, y, middle_nm).length_m;
-                const bool is_floor = std::abs(distance_m[at] - floor_m) <= kHalfFloat * floor_m;
-                std::size_t first = 0;
-                for (const FrameMap& of_frame : maps) {
-                    const VeilMap::Signal veil =
-                        is_floor ? of_frame.map.at(rig, x, y, rooms[thread])
-                                 : of_frame.map.at(rig, x, y, distance_m[at], rooms[thread]);
-                    for (std::size_t c = 0; c < of_frame.planes; ++c)
-                        block[(first + c) * plane + at] = static_cast<float>(veil[c]);
-                    first += of_frame.planes;
-                }
-            }
-        });
+    parallel_for(static_cast<std::size_t>(rows.count),
+                 rooms.size(),
+                 [&](std::size_t row, std::size_t thread) {
+                     for (std::size_t i = 0; i < width; ++i) {
+                         const std::size_t at = row * width + i;
+                         const double x = static_cast<double>(i) + 0.5;
+                         const double y = rows.first + static_cast<double>(row) + 0.5;
+                         const double floor_m = sight_of(rig, x, y, middle_nm).length_m;
+                         const bool is_floor =
+                             std::abs(distance_m[at] - floor_m) <= kHalfFloat * floor_m;
+                         std::size_t first = 0;
+                         for (const VeilMap& map : maps) {
+                             const VeilMap::Signal veil =
+                                 is_floor ? map.at(rig, x, y, rooms[thread])
+                                          : map.at(rig, x, y, distance_m[at], rooms[thread]);
+                             for (std::size_t c = 0; c < map.planes(); ++c)
+                                 block[(first + c) * plane + at] = static_cast<float>(veil[c]);
+                             first += map.planes();
+                         }
+                     }
+                 });
     return block;
 }
 
@@ -159,19 +159,23 @@ std::optional<ManifestVeil> write_veil(const std::filesystem::path& folder,
     ManifestVeil veil = manifest.veil.value_or(ManifestVeil{});
     const std::filesystem::path file = veil_path(folder);
     make_folder(file.parent_path());
-    const std::vector<FrameMap> maps = maps_of(rig, manifest, veil.fog_m > 0.0);
+    const std::vector<VeilMap> maps = maps_of(rig, manifest, veil.fog_m > 0.0);
     ExrWriter writer(file,
                      manifest.width_px,
                      manifest.height_px,
                      veil_channels(manifest),
-                     {{"aphotic:rig_sha256", manifest.rig_sha256}});
+                     {{"aphotic:rig_sha256", manifest.rig_sha256}},
+                     kNotCompressed);
+    std::vector<float> room;
+    std::vector<float> block;
     for (int row = 0; row < manifest.height_px;) {
-        const VeilMap::Rows rows = maps.front().map.rows_for(
+        const VeilMap::Rows rows = maps.front().rows_for(
             {.first = row, .count = std::min(kBlockRows, manifest.height_px - row)});
-        writer.write_rows(rows.count,
-                          veil.fog_m > 0.0
-                              ? block_of_pixels(maps, rig, rows, distances(folder, manifest, rows))
-                              : block_of_cells(maps, rig, rows));
+        if (veil.fog_m > 0.0)
+            block = block_of_pixels(maps, rig, rows, distances(folder, manifest, rows));
+        else
+            block_of_cells(maps, rig, rows, room, block);
+        writer.write_rows(rows.count, block);
         row = rows.first + rows.count;
     }
     writer.finish();

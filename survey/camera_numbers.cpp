@@ -8,6 +8,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -68,6 +69,15 @@ CameraNumbers with_rig(CameraNumbers camera, const Camera& rig) {
     if (readout.exposure_ms && camera.exposure_by == ExposureBy::Exif)
         camera.reference.time_s = *readout.exposure_ms * kSecondsPerMillisecond;
     return camera;
+}
+
+double electrons_per_number(const Readout& readout) {
+    return readout.gain_dn_per_e ? 1.0 / *readout.gain_dn_per_e : 0.0;
+}
+
+std::optional<double> dark_noise_dn(const Readout& readout) {
+    if (!readout.gain_dn_per_e || !readout.read_noise_e) return std::nullopt;
+    return std::sqrt(std::pow(*readout.gain_dn_per_e * *readout.read_noise_e, 2) + 1.0 / 12.0);
 }
 
 double relative_exposure(const ShotExposure& shot, const CameraNumbers& camera) {

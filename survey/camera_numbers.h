@@ -54,6 +54,12 @@ struct CameraNumbers {
 // mono of a camera of colours, or colours of a mono camera.
 [[nodiscard]] CameraNumbers with_rig(CameraNumbers camera, const Camera& rig);
 
+// The noise of the rig's camera in its numbers, by what it tells of EMVA 1288: electrons to a
+// number, 1/K, or 0; and without light sqrt((K read_noise_e)^2 + 1/12), rounding's included, or
+// none.
+[[nodiscard]] double electrons_per_number(const Readout& readout);
+[[nodiscard]] std::optional<double> dark_noise_dn(const Readout& readout);
+
 // How many times as much light as at the reference, of the same scene:
 //
 //   e = (t / t_0) (S / S_0) (N_0 / N)^2      t: time, S: ISO number, N: f-number

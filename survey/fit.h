@@ -27,7 +27,10 @@
 #include "rig/rig_text.h"
 #include "survey/fit_equations.h"
 #include "survey/fit_light.h"
+#include "survey/fit_problem.h"
+#include "survey/fit_residuals.h"
 #include "survey/fit_samples.h"
+#include "survey/fit_told.h"
 #include "survey/run_watch.h"
 
 #include <Eigen/Core>
@@ -38,21 +41,6 @@
 #include <vector>
 
 namespace aphotic {
-
-inline constexpr double kTold = 0.5;
-
-struct FitOptions {
-    FitBeamKind beam = FitBeamKind::Table;
-    std::size_t parts = 24;      // of a table
-    bool has_beam_each = false;  // each strobe its own
-    // beam, aim, power, water, vignetting, altitude, attitude, or a key of [water]; none: the first
-    // five, as far as they can be told.
-    std::optional<std::vector<std::string>> free{};
-    // Standard deviations of what the navigation tells, image by image.
-    double altitude_error_m = 0.02;
-    double attitude_error_rad = 0.0087;
-    int threads = 1;
-};
 
 // A number with its error, as the rig's keys have it.
 struct FittedNumber {
@@ -65,51 +53,10 @@ struct FittedNumber {
     bool is_at_bound = false;
 };
 
-// The two numbers that are told least apart, by the correlation of their errors.
-struct Confounded {
-    std::string one;
-    std::string other;
-    double correlation = 0.0;
-};
-
-// What the data do not tell, and why.
-struct NotTold {
-    std::string key;
-    double error = 0.0;  // by the data alone, in units of the key
-    std::string confounded_with{};
-    std::optional<double> fly_at_m{};  // further images that would part them
-    double error_then = 0.0;
-};
-
-[[nodiscard]] std::string words_of(const NotTold& one);
-
 struct BeamPoint {
     double theta_rad = 0.0;
     double intensity = 0.0;  // of the beam scaled to a flux of 1
     double error = 0.0;
-};
-
-// What the fit leaves of an image, and what it makes of the image's own level and altitude.
-struct ImageOutcome {
-    Sled sled;
-    double residual = 0.0;    // rms, relative
-    double level = 0.0;       // of green, relative
-    double altitude_m = 0.0;  // off the navigation's
-};
-
-// An image as blocks: R, G, B planar, NaN where left out.
-struct FitView {
-    std::size_t image = 0;
-    std::vector<float> observed;
-    std::vector<float> fitted;
-    std::vector<float> residual;  // relative; the mean over channels, one plane
-};
-inline constexpr std::size_t kFitViews = 5;
-
-// A sign that the model does not fit.
-struct FitDoubt {
-    std::string what;
-    double size = 0.0;
 };
 
 struct FitResult {
@@ -120,13 +67,9 @@ struct FitResult {
     std::vector<NotTold> held;
     std::vector<Confounded> confounded;               // |correlation| over 0.9, the largest first
     std::vector<std::vector<BeamPoint>> beam_curves;  // of tables and cosines, by beam
-    std::vector<FitDoubt> doubts;
-    std::vector<ImageOutcome> images;
-    std::vector<FitView> views;  // kFitViews of them, from the lowest to the highest
+    FitResiduals left;
     EffectVariances effects{};
     BlockNoise noise;
-    double residual = 0.0;  // rms of blocks, relative to the signal, levels taken out
-    double pattern = 0.0;   // of that, what stays in place from image to image
     std::size_t blocks = 0;
     std::size_t tiles = 0;
     int rounds = 0;

@@ -61,7 +61,10 @@ BlockNoise noise_of(std::vector<Deviation> deviations) {
         y(row) = 1.0;
     }
     const VectorXd v = non_negative_fit(A.transpose() * A, A.transpose() * y);
-    return {.variance = {v(0), v(1) / most, v(2) / (most * most)}};
+    // Never none: what the fit makes dark has a weight, too.
+    constexpr double kLeast = 1e-6;
+    const double least = kLeast * kLeast * most * most;
+    return {.variance = {std::max(v(0), least), v(1) / most, v(2) / (most * most)}};
 }
 
 }  // namespace
@@ -120,8 +123,11 @@ FitEquations::Rows FitEquations::effects_at(const FitState& state,
     light_.slopes_into(state, light, sled, shares, {}, pose);
     signal = parts * shares;
     Rows effects = Rows::Zero(signal.size(), kEffects);
-    for (Index row = 0; row < signal.size(); ++row)
-        effects(row, row % static_cast<Index>(kChannels)) = signal(row);
+    effects.col(0) = signal;
+    for (Index row = 0; row < signal.size(); row += kChannels) {
+        effects(row, 1) = signal(row);
+        effects(row + 2, 2) = signal(row + 2);
+    }
     effects.rightCols(FitLight::kPoseColumns) = pose;
     return effects;
 }
@@ -200,11 +206,11 @@ void FitEquations::tie_parts(const FitState& state, const VectorXd& shares) {
     for (const FitBeam& beam : state.beams) {
         const auto count = static_cast<Index>(beam.parts());
         const double most = shares.segment(first, count).maxCoeff();
-        const double per_variance = most > 0.0 ? std::pow(kBend * most, -2.0) : 0.0;
-        for (Index m = 1; m + 1 < count && beam.kind() == FitBeamKind::Table; ++m) {
-            const Eigen::Vector3d bend(1.0, -2.0, 1.0);
-            tie_.block<3, 3>(first + m - 1, first + m - 1) +=
-                per_variance * bend * bend.transpose();
+        const double per_variance = most > 0.0 ? std::pow(kTie * most, -2.0) : 0.0;
+        const Eigen::Vector2d difference(1.0, -1.0);
+        for (Index m = 0; m + 1 < count && beam.kind() == FitBeamKind::Table; ++m) {
+            tie_.block<2, 2>(first + m, first + m) +=
+                per_variance * difference * difference.transpose();
         }
         first += count;
     }

@@ -5,17 +5,18 @@
 //   A   columns: the beams' parts (fit_light.h), then the numbers that are free
 //   e   noise of a block: variance v_0 + v_1 S + v_2 S^2, found from the residuals themselves; read
 //       noise, shot noise and the floor's texture
-//   U c what all blocks of an image share: the level of each channel, for floors are brighter here
-//       than there, and errors of the image's own altitude, pitch and roll; c is random, with a
-//       variance each, found as well where images are many (Dempster, Laird and Rubin's EM)
+//   U c what all blocks of an image share: their level, and that of red and of blue beside it, for
+//       floors are brighter here than there and of another hue, and errors of the image's own
+//       altitude, pitch and roll; c is random, with a variance each, found as well where images
+//       are many (Dempster, Laird and Rubin's EM)
 //
 // so that y has the covariance V = D + U Gamma U^T, and
 //
 //   A^T V^-1 A = A^T D^-1 A - A^T D^-1 U (Gamma^-1 + U^T D^-1 U)^-1 U^T D^-1 A
 //
-// A table's parts are tied so weakly that nothing changes where the images see them: their second
-// differences are random, with the standard deviation kBend of the largest share. So a beam goes on
-// smoothly where nobody looks.
+// A table's parts are tied so weakly that nothing changes where the images see them: their
+// differences are random, with the standard deviation kTie of the largest share. So a beam goes on
+// as it was where nobody looks.
 //
 // Blocks that are off by more than kHuber of their noise, as shells and stones are, count less
 // (Huber's weights). The covariance of what is fitted is the sandwich
@@ -38,12 +39,12 @@
 
 namespace aphotic {
 
-inline constexpr double kBend = 0.5;
+inline constexpr double kTie = 0.3;
 inline constexpr double kHuber = 2.5;
 inline constexpr std::size_t kTilesAcross = 8;
 inline constexpr std::size_t kTilesDown = 6;
 
-// Levels of R, G and B, then altitude, pitch and roll.
+// Level, that of red and of blue beside it, then altitude, pitch and roll.
 inline constexpr std::size_t kEffects = 6;
 using EffectVariances = std::array<double, kEffects>;
 

@@ -111,7 +111,7 @@ struct VeilRule {
 };
 
 const VeilRule& veil_rule() {
-    static const VeilRule rule = [] {
+    static const VeilRule kRule = [] {
         using Gauss = boost::math::quadrature::gauss<double, kFitVeilPoints>;
         VeilRule made;
         for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
@@ -122,7 +122,7 @@ const VeilRule& veil_rule() {
         }
         return made;
     }();
-    return rule;
+    return kRule;
 }
 
 }  // namespace
@@ -131,6 +131,8 @@ double& number_in(FitState& state, const FitNumber& number) {
     switch (number.part) {
         case FitPart::Water:
             return state.water[number.of].value;
+        case FitPart::FloorColour:
+            return state.floor[number.which];
         case FitPart::Aim:
             return state.aim_rad[number.of][number.which];
         case FitPart::Power:
@@ -392,6 +394,8 @@ void FitLight::slopes_into(const FitState& state,
     std::vector<Index> water;
     for (std::size_t k = 0; k < state.water.size(); ++k)
         water.push_back(column_of(FitPart::Water, k, 0));
+    for (std::size_t k = 0; k < state.floor.size(); ++k)
+        water.push_back(column_of(FitPart::FloorColour, 0, k));
 
     rows_of.setZero(static_cast<Index>(rows()), count + static_cast<Index>(kPoseColumns));
     std::vector<double> signal(rows(), 0.0);
@@ -431,7 +435,9 @@ void FitLight::slopes_into(const FitState& state,
             add_to(of.aim[1], by_aim(1) * lit.light[c]);
             add_to(of.power, value / state.power[lit.strobe]);
             for (std::size_t k = 0; k < 2; ++k) add_to(of.shape[k], by_shape[k] * lit.light[c]);
-            for (std::size_t k = 0; k < water.size(); ++k) add_to(water[k], I * lit.by_water[k][c]);
+            // None of light without derivatives.
+            for (std::size_t k = 0; k < lit.by_water.size(); ++k)
+                add_to(water[k], I * lit.by_water[k][c]);
             if (lit.by == LitBy::Water) continue;
             const double by_length =
                 I * lit.light_by_length[c] + gradient.dot(lit.w_by_length) * lit.light[c];

@@ -32,7 +32,7 @@
 
 namespace aphotic {
 
-inline constexpr unsigned kFitVeilPoints = 20;
+inline constexpr unsigned kFitVeilPoints = 12;
 // By how much an aim may be off before the beam's table ends within the image; and how much farther
 // off their axes lamps light water that the image sees.
 inline constexpr double kAimRoom_rad = 0.15;
@@ -55,12 +55,13 @@ struct FitState {
     std::vector<std::array<double, 2>> aim_rad;  // by strobe, off the rig's: along, across
     std::vector<double> power;                   // by strobe
     std::vector<WaterNumber> water;
+    FloorTint floor{};               // q1, q2 of path_light.h
     std::vector<double> vignetting;  // a1, a2, a3; empty: the rig's own
     std::array<double, kChannels> gain{1.0, 1.0, 1.0};
     Sled offset;
 };
 
-enum class FitPart { Water, Aim, Power, BeamShape, LensFactor, Offset, Gain };
+enum class FitPart { Water, FloorColour, Aim, Power, BeamShape, LensFactor, Offset, Gain };
 
 // One number of the state that is free.
 struct FitNumber {

@@ -33,21 +33,21 @@ std::string verdict(const FitSamples& samples, const FitResult& result) {
                     counted(result.numbers.size(), "number"),
                     counted(samples.images.size(), samples.are_maps ? "map" : "image"));
     if (!result.held.empty()) words += ", " + counted(result.held.size(), "number") + " held";
-    if (!result.doubts.empty()) words += ", " + counted(result.doubts.size(), "warning");
+    if (!result.left.doubts.empty()) words += ", " + counted(result.left.doubts.size(), "warning");
     return html_verdict(
-        result.doubts.empty(),
+        result.left.doubts.empty(),
         words,
         html_paragraph(fmt::format(
             "Of {} it leaves {} (rms, relative), of which {} stays in place from image to image: "
             "what the model lacks.",
             counted(result.blocks, "block"),
-            number_text(result.residual),
-            number_text(result.pattern))));
+            number_text(result.left.residual),
+            number_text(result.left.pattern))));
 }
 
 std::string doubts(const FitResult& result) {
     std::string content;
-    for (const FitDoubt& doubt : result.doubts)
+    for (const FitDoubt& doubt : result.left.doubts)
         content +=
             html_paragraph(fmt::format("{}: {}", escaped(doubt.what), number_text(doubt.size)));
     return content.empty() ? "" : html_section("warnings", "Warnings", content);
@@ -93,7 +93,7 @@ std::string views(const FitSamples& samples, const FitResult& result) {
     const int width_px = samples.places.width_px / samples.block_px;
     const int height_px = static_cast<int>(samples.places.size()) / width_px;
     std::string figures;
-    for (const FitView& view : result.views) {
+    for (const FitView& view : result.left.views) {
         const CameraImage fitted{width_px, height_px, view.fitted};
         const auto scale = preview_scale(fitted, {1.0, 1.0, 1.0}, {.white = PreviewWhite::Image});
         std::vector<std::uint32_t> colours;
@@ -180,7 +180,7 @@ std::string over_altitude(const FitResult& result) {
     std::vector<double> level;
     ValueRange x;
     ValueRange y;
-    for (const ImageOutcome& image : result.images) {
+    for (const ImageOutcome& image : result.left.images) {
         altitude_m.push_back(image.sled.altitude_m);
         residual.push_back(image.residual);
         level.push_back(image.level);
@@ -209,16 +209,15 @@ std::string over_altitude(const FitResult& result) {
 
 std::string deviations(const FitResult& result) {
     const auto deviation = [&](std::size_t k) { return std::sqrt(result.effects[k]); };
-    const std::vector<HtmlItem> items{{"brightness of floors",
-                                       fmt::format("{} red, {} green, {} blue, relative",
-                                                   number_text(deviation(0)),
-                                                   number_text(deviation(1)),
-                                                   number_text(deviation(2)))},
-                                      {"altitude", fmt::format("{} m", number_text(deviation(3)))},
-                                      {"pitch, roll",
-                                       fmt::format("{}, {} degrees",
-                                                   number_text(deviation(4) * kDegreesPerRadian),
-                                                   number_text(deviation(5) * kDegreesPerRadian))}};
+    const std::vector<HtmlItem> items{
+        {"brightness", number_text(deviation(0))},
+        {"red and blue beside green",
+         fmt::format("{}, {}", number_text(deviation(1)), number_text(deviation(2)))},
+        {"altitude", fmt::format("{} m", number_text(deviation(3)))},
+        {"pitch, roll",
+         fmt::format("{}, {} degrees",
+                     number_text(deviation(4) * kDegreesPerRadian),
+                     number_text(deviation(5) * kDegreesPerRadian))}};
     return html_section(
         "deviations",
         "From image to image",

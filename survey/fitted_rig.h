@@ -11,7 +11,8 @@
 //   vignetting   { radial = [...] }
 //   offsets      added to altitude_offset_m, and to the camera's orientation_deg
 //
-// Gains of the channels are no part of a rig: fit.json has them.
+// Gains of the channels and the colour of the images' floor are no part of a rig, whose map is that
+// of its own floor: fit.json has them.
 #pragma once
 
 #include "survey/fit.h"

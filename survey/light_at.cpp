@@ -7,6 +7,7 @@
 #include "image/exr.h"
 #include "lightmap/cone_edge.h"
 #include "spectral/light_family.h"
+#include "survey/flight.h"
 #include "survey/survey_check.h"
 
 #include <fmt/format.h>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <set>
 #include <span>
 
 namespace aphotic {
@@ -25,23 +25,8 @@ struct RigLight {
     LightmapMaker maker;
 };
 
-// Least and most of what the sleds have, and 0 between them: at a level sled, paths are shortest.
-std::set<double> extremes(const std::vector<Sled>& sleds, double Sled::*part) {
-    const auto [least, most] = std::ranges::minmax(sleds, {}, part);
-    return {least.*part, std::clamp(0.0, least.*part, most.*part), most.*part};
-}
-
 PathRange paths_of_survey(const Rig& rig, const std::vector<Sled>& sleds) {
-    std::vector<Sled> corners;
-    if (sleds.empty()) return {};
-    for (const double altitude_m : extremes(sleds, &Sled::altitude_m)) {
-        for (const double pitch_rad : extremes(sleds, &Sled::pitch_rad)) {
-            for (const double roll_rad : extremes(sleds, &Sled::roll_rad)) {
-                corners.push_back({altitude_m, pitch_rad, roll_rad});
-            }
-        }
-    }
-    return paths_of(rig, corners);
+    return sleds.empty() ? PathRange{} : paths_of(rig, corners_of(sleds));
 }
 
 using MapAsRadians = std::function<std::optional<Lightmap>(const Sled& sled)>;

@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace aphotic {
@@ -100,6 +102,17 @@ const ImagePose& Navigation::pose_of(const std::filesystem::path& image) const {
                          most_m_);
     }
     return pose;
+}
+
+std::vector<std::string> Navigation::images() const {
+    std::vector<const ImagePose*> poses;
+    for (const auto& [key, pose] : poses_) poses.push_back(&pose);
+    std::ranges::sort(poses, [](const ImagePose* a, const ImagePose* b) {
+        return std::tie(a->line, a->image) < std::tie(b->line, b->image);
+    });
+    std::vector<std::string> images;
+    for (const ImagePose* pose : poses) images.push_back(pose->image);
+    return images;
 }
 
 void Navigation::mount(const Mounting& mounting) {

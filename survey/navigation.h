@@ -65,6 +65,8 @@ class Navigation {
     void limit_altitude(double least_m, double most_m);
 
     [[nodiscard]] std::size_t size() const { return poses_.size(); }
+    // All that it knows a pose of, as the source has them, in its order.
+    [[nodiscard]] std::vector<std::string> images() const;
     [[nodiscard]] const ToldAngles& told() const { return told_; }
 
     // Which angles poses have from anywhere: the source, or a rig that stands in for it.

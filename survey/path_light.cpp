@@ -27,23 +27,31 @@ std::vector<std::size_t> distinct_lamps(const Rig& rig, std::vector<std::size_t>
     return lamp_of_strobe;
 }
 
-// Adds `times` the light of this rig to one version of a lamp's tables.
-void add_lamp(const Rig& rig,
-              std::size_t strobe,
-              std::size_t version,
-              double times,
-              CubicTable& floor,
-              CubicTable& veil) {
+// What is added to a lamp's tables: the light of a rig, as one version of it.
+struct Share {
+    const Rig& rig;
+    std::size_t version;
+    double times;
+    FloorTint colour;
+    int floor_power =
+        0;  // of u: a derivative over the floor's colour, which the veil does not have
+};
+
+void add_lamp(const Share& share, std::size_t strobe, CubicTable& floor, CubicTable& veil) {
+    const Rig& rig = share.rig;
+    const WavelengthRange range = rig.camera.range;
     const int bands =
-        std::max(1,
-                 static_cast<int>(
-                     std::ceil((rig.camera.range.last_nm - rig.camera.range.first_nm) / kBand_nm)));
-    const std::size_t scatterers = rig.water.scatterers.size();
-    for (const WeightedWavelength& band : equal_bands(rig.camera.sensor, rig.camera.range, bands)) {
+        std::max(1, static_cast<int>(std::ceil((range.last_nm - range.first_nm) / kBand_nm)));
+    const std::size_t scatterers = share.floor_power > 0 ? 0 : rig.water.scatterers.size();
+    for (const WeightedWavelength& band : equal_bands(rig.camera.sensor, range, bands)) {
         const double nm = band.lambda_nm;
         const double K_per_m = rig.water.attenuation_per_m(nm);
-        const double lamp = times * rig.strobes[strobe].spectrum.at(nm);
-        const double of_floor = lamp * rig.seafloor.reflectance.at(nm);
+        const double lamp = share.times * rig.strobes[strobe].spectrum.at(nm);
+        const double u =
+            (2.0 * nm - range.first_nm - range.last_nm) / (range.last_nm - range.first_nm);
+        double of_floor = lamp * rig.seafloor.reflectance.at(nm) *
+                          std::exp(u * (share.colour[0] + u * share.colour[1]));
+        for (int power = 0; power < share.floor_power; ++power) of_floor *= u;
         std::vector<double> of_water;
         for (std::size_t i = 0; i < scatterers; ++i)
             of_water.push_back(lamp * rig.water.scattering_per_m(i, nm));
@@ -51,10 +59,10 @@ void add_lamp(const Rig& rig,
             const double left = std::exp(-K_per_m * floor.place(node));
             for (std::size_t c = 0; c < kChannels; ++c) {
                 const double direct = of_floor * band.weight[c] * left;
-                floor.value(node, version * kChannels + c) += direct;
-                floor.slope(node, version * kChannels + c) -= K_per_m * direct;
+                floor.value(node, share.version * kChannels + c) += direct;
+                floor.slope(node, share.version * kChannels + c) -= K_per_m * direct;
                 for (std::size_t i = 0; i < scatterers; ++i) {
-                    const std::size_t lane = (version * scatterers + i) * kChannels + c;
+                    const std::size_t lane = (share.version * scatterers + i) * kChannels + c;
                     const double scattered = of_water[i] * band.weight[c] * left;
                     veil.value(node, lane) += scattered;
                     veil.slope(node, lane) -= K_per_m * scattered;
@@ -104,7 +112,7 @@ void CubicTable::at(double x, double* values) const {
     const double to = u * u * (1.0 + 2.0 * v);
     const double from_slope = step_ * u * v * v;
     const double to_slope = -step_ * u * u * v;
-    const double* a = &samples_[2 * node * lanes_];
+    const double* a = samples_.data() + 2 * node * lanes_;
     const double* b = a + 2 * lanes_;
     for (std::size_t lane = 0; lane < lanes_; ++lane) {
         values[lane] = from * a[2 * lane] + from_slope * a[2 * lane + 1] + to * b[2 * lane] +
@@ -118,7 +126,7 @@ void CubicTable::slopes_at(double x, double* slopes) const {
     const double u = place - static_cast<double>(node);
     const double v = 1.0 - u;
     const double rise = 6.0 * u * v / step_;
-    const double* a = &samples_[2 * node * lanes_];
+    const double* a = samples_.data() + 2 * node * lanes_;
     const double* b = a + 2 * lanes_;
     for (std::size_t lane = 0; lane < lanes_; ++lane) {
         slopes[lane] = rise * (b[2 * lane] - a[2 * lane]) + v * (1.0 - 3.0 * u) * a[2 * lane + 1] +
@@ -128,10 +136,11 @@ void CubicTable::slopes_at(double x, double* slopes) const {
 
 PathLight::PathLight(const RigText& text,
                      const std::vector<WaterNumber>& numbers,
+                     const FloorTint& colour,
                      PathRange paths,
                      bool has_derivatives)
     : rig_(with(text, numbers).rig()),
-      versions_(has_derivatives ? 1 + numbers.size() : 1),
+      versions_(has_derivatives ? 1 + numbers.size() + colour.size() : 1),
       scatterers_(rig_.water.scatters() ? rig_.water.scatterers.size() : 0),
       phases_(kVeilCut, std::numbers::pi, kPhaseSteps, versions_ * scatterers_) {
     if (scatterers_ == 0) rig_.water.scatterers.clear();
@@ -145,11 +154,20 @@ PathLight::PathLight(const RigText& text,
     const auto add = [&](Rig& rig, std::size_t version, double times) {
         if (scatterers_ == 0) rig.water.scatterers.clear();
         for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp)
-            add_lamp(rig, lamps[lamp], version, times, floor_[lamp], veil_[lamp]);
+            add_lamp({rig, version, times, colour}, lamps[lamp], floor_[lamp], veil_[lamp]);
         add_phases(rig, version, times, phases_);
     };
     add(rig_, 0, 1.0);
-    for (std::size_t k = 0; k + 1 < versions_; ++k) {
+    if (!has_derivatives) return;
+    for (std::size_t k = 0; k < colour.size(); ++k) {
+        for (std::size_t lamp = 0; lamp < lamps.size(); ++lamp) {
+            add_lamp({rig_, 1 + numbers.size() + k, 1.0, colour, static_cast<int>(k) + 1},
+                     lamps[lamp],
+                     floor_[lamp],
+                     veil_[lamp]);
+        }
+    }
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
         // A number at 0 may have nothing below it.
         const double step = kWaterStep * std::max(std::abs(numbers[k].value), 0.01);
         std::vector<WaterNumber> moved = numbers;

@@ -2,11 +2,17 @@
 //
 // What of a lamp's light arrives over a path in water, and how that changes with the water:
 //
-//   T_c(l)  = int Phi rho Q_c exp(-K l) dlambda          by way of the floor
-//   V_ic(l) = int Phi b_i Q_c exp(-K l) dlambda          by way of scatterer i
+//   T_c(l)  = int Phi rho e^(q1 u + q2 u^2) Q_c exp(-K l) dlambda    by way of the floor
+//   V_ic(l) = int Phi b_i Q_c exp(-K l) dlambda                      by way of scatterer i
+//
+// rho    the rig's floor       q1, q2   by how much redder the floor of the images is
+// u      wavelength, from -1 at the short end of the camera's range to 1 at the long end
+//
+// A floor of another colour changes how fast a channel loses light with the path, not its level
+// alone: what is redder has its red at longer waves, of which water takes more.
 //
 // in double precision, with the derivatives over l and over the numbers of the rig's [water] that a
-// fit looks for. Symbols are those of rig/path_table.h and rig/veil.h.
+// fit looks for, and over q1 and q2. Symbols are those of rig/path_table.h and rig/veil.h.
 //
 // Between even steps of l each is the cubic that has values and slopes at both ends. Wavelengths
 // are the middles of bands of a nanometre. Derivatives over the water are central differences of
@@ -18,6 +24,7 @@
 #include "rig/rig.h"
 #include "rig/rig_text.h"
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -61,16 +68,20 @@ struct WaterNumber {
     double value = 0.0;
 };
 
+using FloorTint = std::array<double, 2>;  // q1, q2
+
 class PathLight {
   public:
     // Of every distinct lamp spectrum of the rig, for paths up to the longest, and from the
     // shortest on that light can take. derivatives: over the numbers, which are set in the rig.
     PathLight(const RigText& rig,
               const std::vector<WaterNumber>& numbers,
+              const FloorTint& colour,
               PathRange paths,
               bool has_derivatives);
 
-    // Lanes: (version, channel), version 0 the light itself, then its derivatives by number.
+    // Lanes: (version, channel), version 0 the light itself, then its derivatives by number, then
+    // by q1 and q2.
     [[nodiscard]] const CubicTable& floor(std::size_t strobe) const {
         return floor_[lamp_of_strobe_[strobe]];
     }

@@ -14,6 +14,26 @@ namespace aphotic {
 
 using Eigen::Vector3d;
 
+namespace {
+
+Eigen::Matrix3d camera_to_vehicle(const Mounting& mounting) {
+    const Vector3d& turn_rad = mounting.roll_pitch_yaw_rad;
+    return (Eigen::AngleAxisd(turn_rad.z(), Vector3d::UnitZ()) *
+            Eigen::AngleAxisd(turn_rad.y(), Vector3d::UnitY()) *
+            Eigen::AngleAxisd(turn_rad.x(), Vector3d::UnitX()))
+        .toRotationMatrix();
+}
+
+// Of whoever sees this way down.
+double pitch_of(const Vector3d& down) {
+    return -std::asin(std::clamp(down.x(), -1.0, 1.0));
+}
+double roll_of(const Vector3d& down) {
+    return std::atan2(down.y(), down.z());
+}
+
+}  // namespace
+
 bool is_mounted_apart(const Mounting& mounting) {
     return !mounting.position_m.isZero(0.0) || !mounting.roll_pitch_yaw_rad.isZero(0.0);
 }
@@ -27,12 +47,7 @@ Sled camera_pose(const Sled& vehicle, const Mounting& mounting) {
                 vehicle.pitch_rad,
                 vehicle.roll_rad};
     }
-    const Vector3d& turn_rad = mounting.roll_pitch_yaw_rad;
-    const Eigen::Matrix3d camera_to_vehicle = (Eigen::AngleAxisd(turn_rad.z(), Vector3d::UnitZ()) *
-                                               Eigen::AngleAxisd(turn_rad.y(), Vector3d::UnitY()) *
-                                               Eigen::AngleAxisd(turn_rad.x(), Vector3d::UnitX()))
-                                                  .toRotationMatrix();
-    const Vector3d seen = camera_to_vehicle.transpose() * down;
+    const Vector3d seen = camera_to_vehicle(mounting).transpose() * down;
     if (seen.z() <= 0.0) {
         throw InputError(
             "the camera looks {:.3g} degrees above the horizon; allowed: below it, to see the "
@@ -49,9 +64,25 @@ Sled camera_pose(const Sled& vehicle, const Mounting& mounting) {
             vehicle_height_m,
             vehicle_height_m - height_m);
     }
-    return {height_m / seen.z(),
-            -std::asin(std::clamp(seen.x(), -1.0, 1.0)),
-            std::atan2(seen.y(), seen.z())};
+    return {height_m / seen.z(), pitch_of(seen), roll_of(seen)};
+}
+
+Sled vehicle_pose(const Sled& camera, const Mounting& mounting) {
+    const Vector3d seen = -floor_plane(camera).normal;
+    const bool is_along_axis = mounting.altitude_is == AltitudeIs::Axis;
+    if (!is_mounted_apart(mounting)) {
+        return {(is_along_axis ? camera.altitude_m : camera.altitude_m * seen.z()) -
+                    mounting.altitude_offset_m,
+                camera.pitch_rad,
+                camera.roll_rad};
+    }
+    const Vector3d down = camera_to_vehicle(mounting) * seen;
+    if (down.z() <= 0.0)
+        throw InputError("found a pose in which the vehicle's z points up; allowed: down");
+    const double height_m = camera.altitude_m * seen.z() + down.dot(mounting.position_m);
+    return {(is_along_axis ? height_m / down.z() : height_m) - mounting.altitude_offset_m,
+            pitch_of(down),
+            roll_of(down)};
 }
 
 }  // namespace aphotic

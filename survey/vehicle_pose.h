@@ -35,4 +35,8 @@ namespace aphotic {
 // camera would be under it.
 [[nodiscard]] Sled camera_pose(const Sled& vehicle, const Mounting& mounting);
 
+// The vehicle's pose that has this camera's, as the navigation is to tell it. An InputError when
+// the vehicle's own z does not come down on the floor.
+[[nodiscard]] Sled vehicle_pose(const Sled& camera, const Mounting& mounting);
+
 }  // namespace aphotic

@@ -17,7 +17,7 @@
 // Tone tells a correction that makes all things alike from one that takes away the light's pattern.
 #pragma once
 
-#include "image/output_images.h"
+#include "image/camera_image.h"
 
 #include <array>
 #include <cstdint>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// judge SURVEY NAME=DIR ...: what corrections made of a simulated survey's grey chart.
+// judge SURVEY CARD NAME=DIR ...: what corrections made of a simulated survey's grey chart.
 //
-// SURVEY is a folder of the program `survey`, DIR one of corrected images: files by the names of
-// the survey's, whatever their suffix. Prints a table in Markdown, a row for each NAME; --json
-// prints the same as JSON. NAME=SURVEY/truth is the row of no correction at all.
+// SURVEY is a folder of `aphotic survey`, CARD one of the same poses over the bare grey card, DIR
+// one of corrected images: files by the names of the survey's, whatever their suffix. Prints a
+// table in Markdown, a row for each NAME; --json prints the same as JSON. NAME=SURVEY/truth is the
+// row of no correction at all.
 //
 // --picture FILE puts the images of --show side by side: a row for each of them, a column for
 // each NAME. Every column has one exposure and one white balance, which show the light tiles of its
@@ -12,8 +13,8 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "bench/survey/chart.h"
-#include "bench/survey/flight.h"
-#include "bench/survey/image_file.h"
+#include "image/any_image.h"
+#include "image/output_images.h"
 #include "image/preview.h"
 
 #include <fmt/format.h>
@@ -32,6 +33,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
     std::string survey;
+    std::string card;
     std::vector<std::string> corrections;  // NAME=DIR
     int images = 0;
     std::string picture;
@@ -65,20 +67,46 @@ fs::path image_in(const fs::path& folder, const std::string& name) {
                                  "its name and .exr, .png, .tif or .tiff"));
 }
 
+// The first three channels of an image of any format; integers are scaled to 0..1.
+CameraImage read_image(const fs::path& file) {
+    const AnyImage any = open_any_image(file);
+    if (any.channels.size() < kChannels) {
+        throw InputError(fmt::format(
+            "{}: found {} channels; allowed: R, G and B", file.string(), any.channels.size()));
+    }
+    CameraImage image{
+        .width_px = any.width_px, .height_px = any.height_px, .samples = any.planes()};
+    image.samples.resize(kChannels * image.samples.size() / any.channels.size());
+    return image;
+}
+
 // The charts of a survey's first images, by the images' names.
 using Charts = std::map<std::string, std::vector<Tile>>;
 
-Charts charts_of(const fs::path& survey, int images) {
+// Without a chart some pixels of a floor still look like it.
+bool has_chart(const std::vector<Tile>& tiles) {
+    constexpr double kLeastShare = 0.01;
+    const auto some = static_cast<double>(tiles.size()) -
+                      static_cast<double>(std::ranges::count(tiles, Tile::None));
+    return some >= kLeastShare * static_cast<double>(tiles.size());
+}
+
+Charts charts_of(const Options& options) {
     Charts charts;
-    for (const auto& entry : fs::directory_iterator(survey / "card")) {
+    for (const auto& entry : fs::directory_iterator(fs::path(options.card) / "truth")) {
         const std::string name = entry.path().stem().string();
-        if (images > 0 && std::stoi(name) > images) continue;
-        charts[name] = find_chart(read_signals(survey / "truth" / (name + ".exr")),
-                                  read_signals(entry.path()));
+        if (options.images > 0 && std::stoi(name) > options.images) continue;
+        std::vector<Tile> chart =
+            find_chart(read_signals(fs::path(options.survey) / "truth" / (name + ".exr")),
+                       read_signals(entry.path()));
+        if (has_chart(chart)) charts[name] = std::move(chart);
     }
     if (charts.empty()) {
         throw InputError(fmt::format(
-            "{}: found no image with a chart; allowed: a folder of `survey`", survey.string()));
+            "{}: found no image with a chart; allowed: a survey of scenes/survey, and {} of the "
+            "same over the card",
+            options.survey,
+            options.card));
     }
     return charts;
 }
@@ -199,7 +227,7 @@ void judge(const Options& options) {
     std::vector<Correction> corrections;
     for (const std::string& words : options.corrections)
         corrections.push_back(correction_of(words));
-    const Charts charts = charts_of(options.survey, options.images);
+    const Charts charts = charts_of(options);
     for (const std::string& name : options.show) {
         if (!charts.contains(name)) {
             throw InputError(fmt::format("--show: found {}; allowed: an image with a chart", name));
@@ -230,7 +258,10 @@ void judge(const Options& options) {
 int main(int argc, char** argv) {
     aphotic::survey::Options options;
     CLI::App app{"What corrections made of a simulated survey's grey chart."};
-    app.add_option("SURVEY", options.survey, "a folder of `survey`")
+    app.add_option("SURVEY", options.survey, "a folder of `aphotic survey`")
+        ->required()
+        ->check(CLI::ExistingDirectory);
+    app.add_option("CARD", options.card, "the same over the bare card")
         ->required()
         ->check(CLI::ExistingDirectory);
     app.add_option("CORRECTION", options.corrections, "NAME=DIR: a folder of corrected images")

@@ -5,15 +5,19 @@
 //    Description: One image of a simulated survey: random patches of sand, algae and gravel, with
 //                 rocks and shells on them, and in some images the tiles of a grey chart.
 //
-// The program `survey` (bench/survey) declares what differs from image to image before it includes
-// this file. Without that, the sled is level at the lowest altitude that surveys fly:
+// `aphotic survey` declares what differs from image to image before it includes this file. Without
+// that, the sled is level at the lowest altitude that surveys fly:
 //
+//    Survey_Image      its number: the first five, and then every tenth, have the chart
 //    Survey_Seed       of all that is random
 //    Survey_Altitude   of the sled in metres, along its z
 //    Survey_Pitch      degrees, bow up
 //    Survey_Roll       degrees, starboard down
-//    Survey_Floor      "natural", "chart" (the same with tiles on it), or "card": one grey card all
-//                      over with nothing on it, which is what the chart would look like everywhere
+//
+// and --declare the floor, in place of the sea's:
+//
+//    Survey_Floor      "sea", or "card": one grey card all over with nothing on it, which is what
+//                      the chart would look like everywhere
 //
 // A quick look, from this folder:
 //
@@ -22,11 +26,12 @@
 #version 3.7;
 #include "aphotic.inc"
 
+#ifndef (Survey_Image) #declare Survey_Image = 1; #end
 #ifndef (Survey_Seed) #declare Survey_Seed = 0; #end
 #ifndef (Survey_Altitude) #declare Survey_Altitude = 1.3; #end
 #ifndef (Survey_Pitch) #declare Survey_Pitch = 0; #end
 #ifndef (Survey_Roll) #declare Survey_Roll = 0; #end
-#ifndef (Survey_Floor) #declare Survey_Floor = "chart"; #end
+#ifndef (Survey_Floor) #declare Survey_Floor = "sea"; #end
 
 Aphotic_Rig ()
 
@@ -179,7 +184,7 @@ Aphotic_Rig ()
       Ground ()
       #for (K, 1, 12) Rock () #end
       #for (K, 1, 40) Shell () #end
-      #if (strcmp(Survey_Floor, "chart") = 0) Chart () #end
+      #if (Survey_Image <= 5 | mod(Survey_Image, 10) = 0) Chart () #end
       transform { Floor_Trans }
    }
 #end

@@ -52,7 +52,9 @@ TEST(NonNegativeFit, IsTheMinimum) {
         for (Eigen::Index i = 0; i < x.size(); ++i) {
             EXPECT_GE(x(i), 0.0);
             EXPECT_GT(gradient(i), -small);
-            if (x(i) > 0.0) EXPECT_LT(gradient(i), small);
+            if (x(i) > 0.0) {
+                EXPECT_LT(gradient(i), small);
+            }
         }
     }
 }

@@ -28,11 +28,11 @@ float chart_signal(int column) {
 class Judge : public testing::Test {
   protected:
     Judge() {
-        for (const char* part : {"card", "truth", "flat", "tilted"}) {
+        for (const char* part : {"card/truth", "truth", "flat", "tilted"}) {
             fs::create_directories(folder_.path() / part);
         }
         for (const char* name : {"000001.exr", "000010.exr"}) {
-            put("card", name, [](int) { return 1.0F; });
+            put("card/truth", name, [](int) { return 1.0F; });
             put("truth", name, chart_signal);
             put("flat", name, chart_signal);
             put("tilted", name, [](int column) {
@@ -50,7 +50,7 @@ class Judge : public testing::Test {
     }
     int judge(std::vector<std::string> arguments) {
         constexpr double kTimeout_s = 60.0;
-        arguments.insert(arguments.begin(), ".");
+        arguments.insert(arguments.begin(), {".", "card"});
         return run_process({.executable = APHOTIC_JUDGE,
                             .arguments = arguments,
                             .folder = folder_.path(),

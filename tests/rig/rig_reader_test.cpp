@@ -975,13 +975,16 @@ TEST(RigReader, TellsWhatTheCamerasFilesHold) {
     EXPECT_EQ(readout("").black_level_dn, std::nullopt);
     const Readout all = readout(
         "bayer = \"GRBG\"\nblack_level_dn = 64\nwhite_level_dn = 4095\nexposure_ms = 2.5\n"
-        "iso = 400\nf_number = 5.6");
+        "iso = 400\nf_number = 5.6\ngain_dn_per_e = 0.25\nread_noise_e = 8\nsaturation_e = 15000");
     EXPECT_EQ(all.bayer, "GRBG");
     EXPECT_EQ(all.black_level_dn, 64.0);
     EXPECT_EQ(all.white_level_dn, 4095.0);
     EXPECT_EQ(all.exposure_ms, 2.5);
     EXPECT_EQ(all.iso, 400.0);
     EXPECT_EQ(all.f_number, 5.6);
+    EXPECT_EQ(all.gain_dn_per_e, 0.25);
+    EXPECT_EQ(all.read_noise_e, 8.0);
+    EXPECT_EQ(all.saturation_e, 15000.0);
     const auto refused = [](const std::string& line, const std::string& words) {
         EXPECT_EQ(error_of(with(7, "range_nm = [400, 700]\n" + line)),
                   "rig.toml:8: camera." + words);
@@ -993,6 +996,9 @@ TEST(RigReader, TellsWhatTheCamerasFilesHold) {
     refused("exposure_ms = 0", "exposure_ms: found 0; allowed: a number from 0.0001 to 1000000");
     refused("iso = 0", "iso: found 0; allowed: a number from 0.1 to 10000000");
     refused("f_number = \"2.8\"", "f_number: found '2.8'; allowed: a number from 0.1 to 1000");
+    refused("gain_dn_per_e = 0", "gain_dn_per_e: found 0; allowed: a number from 1e-06 to 1000000");
+    refused("read_noise_e = -1", "read_noise_e: found -1; allowed: a number from 0 to 1000000");
+    refused("saturation_e = 0", "saturation_e: found 0; allowed: a number from 1 to 1000000000");
     refused("bayer = \"RGB\"",
             "bayer: found 'RGB'; allowed: \"RGGB\" or \"BGGR\" or \"GRBG\" or \"GBRG\" or "
             "\"mono\"");

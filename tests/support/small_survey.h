@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A simulated survey of small images, in a folder of its own: the rig and scene of scenes/survey
-// with fewer pixels, and the program `survey` run on them.
+// with fewer pixels, and `aphotic survey` run on them.
 #pragma once
 
 #include "base/atomic_file.h"
-#include "bench/survey/flight.h"
-#include "plugin/process.h"
+#include "base/degrees.h"
+#include "support/run_command.h"
 #include "support/temp_folder.h"
+#include "survey/flight.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace aphotic::survey {
+namespace aphotic {
 
 class SmallSurvey {
   public:
@@ -40,28 +41,28 @@ class SmallSurvey {
     // The rig over its own bare floor, where the sled was at an image.
     [[nodiscard]] std::filesystem::path rig_at(const Leg& leg) const {
         std::string text =
-            with("altitude_m", fmt::format("{}", leg.altitude_m), read_text_file(rig()));
-        text = with("pitch_deg", fmt::format("{}", leg.pitch_deg), text);
-        text = with("roll_deg", fmt::format("{}", leg.roll_deg), text);
+            with("altitude_m", fmt::format("{}", leg.sled.altitude_m), read_text_file(rig()));
+        text = with("pitch_deg", fmt::format("{}", leg.sled.pitch_rad * kDegreesPerRadian), text);
+        text = with("roll_deg", fmt::format("{}", leg.sled.roll_rad * kDegreesPerRadian), text);
         const std::filesystem::path file = rig().parent_path() / (leg.name + ".toml");
         write_file(file, text);
         return file;
     }
 
-    // Into folder()/output. Returns the exit status.
-    [[nodiscard]] int make(std::vector<std::string> arguments,
-                           const std::string& output = "out") const {
-        constexpr double kTimeout_s = 280.0;
-        arguments.insert(arguments.begin(), {"-o", output, "--rig", rig().string()});
-        return run_process({.executable = APHOTIC_SURVEY,
-                            .arguments = arguments,
-                            .folder = folder(),
-                            .environment = {},
-                            .log = folder() / "log"},
-                           kTimeout_s)
-            .exit_code;
+    // Into folder()/output, by the plan of docs/proof.md.
+    [[nodiscard]] CommandResult make(const std::vector<std::string>& arguments,
+                                     const std::string& output = "out") const {
+        std::vector<std::string> all{"survey", rig().string(), "-o", output};
+        all.insert(all.end(),
+                   {"--scene",
+                    (rig().parent_path() / "survey.pov").string(),
+                    "--paths-m",
+                    "2.4,7.7",
+                    "--fitted",
+                    "9"});
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        return run_aphotic(folder(), all);
     }
-    [[nodiscard]] std::string said() const { return read_text_file(folder() / "log"); }
 
   private:
     // A key's line with another value.
@@ -75,4 +76,4 @@ class SmallSurvey {
     TempFolder temp_;
 };
 
-}  // namespace aphotic::survey
+}  // namespace aphotic

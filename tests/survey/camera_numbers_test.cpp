@@ -101,5 +101,14 @@ TEST(CameraNumbers, AreNotedAsTheOptionsNameThem) {
     EXPECT_EQ(to_json(CameraNumbers{.half = Half::Right})["half"], "right");
 }
 
+TEST(CameraNumbers, HaveTheNoiseThatTheRigTells) {
+    EXPECT_EQ(electrons_per_number({}), 0.0) << "not told";
+    EXPECT_EQ(dark_noise_dn({}), std::nullopt);
+    EXPECT_EQ(dark_noise_dn({.read_noise_e = 8.0}), std::nullopt) << "in which numbers?";
+    const Readout told{.gain_dn_per_e = 0.25, .read_noise_e = 8.0};
+    EXPECT_EQ(electrons_per_number(told), 4.0);
+    EXPECT_DOUBLE_EQ(dark_noise_dn(told).value(), std::sqrt(4.0 + 1.0 / 12.0));
+}
+
 }  // namespace
 }  // namespace aphotic::camera_numbers_test

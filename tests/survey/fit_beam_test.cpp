@@ -4,6 +4,7 @@
 #include "base/error.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <numbers>

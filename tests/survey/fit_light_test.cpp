@@ -47,7 +47,7 @@ struct Known {
 double worst_against_lightmap(const FitRigNumbers& numbers) {
     const Known known(numbers);
     const FitLight light(known.rig, known.places);
-    const PathLight path(known.text, known.state.water, light.paths({kTilted}), false);
+    const PathLight path(known.text, known.state.water, {}, light.paths({kTilted}), false);
     FitLight::Rows rows;
     light.parts_into(known.state, path, kTilted, rows);
     const LightmapMaker maker(known.rig, paths_of(known.rig, {kTilted}), {});
@@ -78,6 +78,7 @@ TEST(FitLight, HasTheVeilOfTheSameRig) {
 void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam, double most) {
     Known known(numbers);
     known.state.beams = {beam};
+    known.state.floor = {0.2, -0.1};
     known.state.aim_rad = {{0.03, -0.02}, {0.01, 0.04}};
     const FitLight light(known.rig, known.places);
     const Eigen::VectorXd shares =
@@ -90,6 +91,8 @@ void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam, double mos
                                 {FitPart::LensFactor, 0, 0},
                                 {FitPart::LensFactor, 0, 2},
                                 {FitPart::Gain, 2, 0},
+                                {FitPart::FloorColour, 0, 0},
+                                {FitPart::FloorColour, 0, 1},
                                 {FitPart::Offset, 0, 0},
                                 {FitPart::Offset, 0, 1},
                                 {FitPart::Offset, 0, 2}};
@@ -97,11 +100,16 @@ void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam, double mos
         free.push_back({FitPart::BeamShape, 0, k});
     const PathRange paths = light.paths({kTilted});
     FitLight::Rows slopes;
-    light.slopes_into(
-        known.state, {known.text, known.state.water, paths, true}, kTilted, shares, free, slopes);
+    light.slopes_into(known.state,
+                      {known.text, known.state.water, known.state.floor, paths, true},
+                      kTilted,
+                      shares,
+                      free,
+                      slopes);
     const auto signal = [&](const FitState& state) {
         FitLight::Rows parts;
-        light.parts_into(state, {known.text, state.water, paths, false}, kTilted, parts);
+        light.parts_into(
+            state, {known.text, state.water, state.floor, paths, false}, kTilted, parts);
         return Eigen::VectorXd(parts * shares);
     };
     for (std::size_t k = 0; k < free.size(); ++k) {

@@ -133,5 +133,28 @@ TEST(VehiclePose, ACameraThatCannotSeeTheFloorIsRefusedWithItsNumbers) {
               "camera 1.25 m lower");
 }
 
+TEST(VehiclePose, ComesBackFromTheCamerasOwn) {
+    Dice dice(9);
+    for (int i = 0; i < 200; ++i) {
+        const Mounting mounting{
+            .altitude_is = static_cast<AltitudeIs>(dice.whole(0, 2)),
+            .altitude_offset_m = dice.between(-0.5, 0.5),
+            .position_m = {dice.between(-1.0, 1.0),
+                           dice.between(-1.0, 1.0),
+                           dice.between(-1.0, 1.0)},
+            .roll_pitch_yaw_rad = {
+                dice.between(-0.3, 0.3), dice.between(-0.3, 0.3), dice.between(-3.0, 3.0)}};
+        const Sled vehicle{
+            dice.between(3.0, 6.0), dice.between(-0.3, 0.3), dice.between(-0.3, 0.3)};
+        for (const Mounting& one :
+             {mounting, Mounting{.altitude_is = mounting.altitude_is, .altitude_offset_m = 0.1}}) {
+            const Sled back = vehicle_pose(camera_pose(vehicle, one), one);
+            EXPECT_NEAR(back.altitude_m, vehicle.altitude_m, 10.0 * kRounding);
+            EXPECT_NEAR(back.pitch_rad, vehicle.pitch_rad, 10.0 * kRounding);
+            EXPECT_NEAR(back.roll_rad, vehicle.roll_rad, 10.0 * kRounding);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace aphotic::vehicle_pose_test

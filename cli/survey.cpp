@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic survey RIG -o DIR: raw images as the rig's camera writes them, with noise, navigation
+// with errors, and the truth beside both.
+#include "survey/simulated_survey.h"
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "base/sha256.h"
+#include "base/words.h"
+#include "cli/command.h"
+#include "cli/options.h"
+#include "cli/outcome.h"
+#include "cli/output_folder.h"
+#include "cli/planning.h"
+#include "plugin/survey_render.h"
+#include "rig/rig_reader.h"
+#include "survey/navigation_file.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+namespace aphotic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFlightOptions = "Flight";
+constexpr const char* kCameraOptions = "Camera";
+
+struct SurveyCommandOptions {
+    PlanningOptions planning;
+    std::string folder;
+    int images = 50;
+    std::uint64_t seed = 1;
+    std::string flight;
+    FlightRanges ranges;
+    InstrumentErrors errors;
+    double texture = 0.2;
+    bool by_povray = false;
+    std::vector<std::string> declared;
+    Readout readout;  // over the rig's
+    double floor_share = 0.25;
+    std::optional<double> electrons_per_signal;
+    bool has_noise = true;
+    int jobs = all_cores();
+    bool json = false;
+};
+
+struct MadeSurvey {
+    const SimulatedSurvey& survey;
+    std::optional<ManifestModel> model;
+};
+
+Json to_json(const MadeSurvey& made) {
+    Json json{{"folder", made.survey.folder.string()},
+              {"images", made.survey.legs.size()},
+              {"camera", to_json(made.survey.camera)}};
+    put_model_error(json, made.model);
+    return json;
+}
+
+void print(const MadeSurvey& made) {
+    const auto& [survey, model] = made;
+    const RawCamera& camera = survey.camera;
+    const std::string folder = survey.folder.string();
+    fmt::print(
+        "{}: {} in {}\n"
+        "  camera: {}, black level {:g}, white level {:g}, {:.4g} numbers an electron\n"
+        "  {}, as instruments tell it {}\n",
+        survey.rig.title,
+        counted(survey.legs.size(), "image"),
+        folder,
+        mosaic_name(camera.mosaic),
+        camera.black_dn,
+        camera.white_dn,
+        camera.gain_dn_per_e,
+        (survey.folder / "navigation.txt").string(),
+        (survey.folder / "navigation-measured.txt").string());
+    print_model_error(model);
+}
+
+bool is_by_povray(const SurveyCommandOptions& options, const Rig& rig) {
+    return options.by_povray || !options.planning.scene.empty() || !rig.scene.empty() ||
+           !rig.objects.empty();
+}
+
+fs::path scene_of(const SurveyCommandOptions& options, const Rig& rig) {
+    return options.planning.scene.empty() ? rig.scene : fs::path(options.planning.scene);
+}
+
+// What the rig's camera tells, and in its place what the options do.
+Readout readout_of(const Readout& said, Readout readout) {
+    if (!said.bayer.empty()) readout.bayer = said.bayer;
+    for (const auto part : {&Readout::black_level_dn,
+                            &Readout::white_level_dn,
+                            &Readout::gain_dn_per_e,
+                            &Readout::read_noise_e,
+                            &Readout::saturation_e}) {
+        if (said.*part) readout.*part = said.*part;
+    }
+    return readout;
+}
+
+Json flight_settings(const SurveyCommandOptions& options) {
+    if (!options.flight.empty()) return {{"sha256", sha256_of_file(options.flight)}};
+    return {{"altitude_m", options.ranges.altitude_m},
+            {"pitch_deg", options.ranges.pitch_deg},
+            {"roll_deg", options.ranges.roll_deg}};
+}
+
+Json light_settings(const SurveyCommandOptions& options, const Rig& rig) {
+    if (!is_by_povray(options, rig)) return {{"by", "lightmap"}};
+    const PlanningOptions& planning = options.planning;
+    Json light{{"by", "povray"},
+               {"tolerance", planning.tolerance},
+               {"fitted", planning.fitted},
+               {"bands", planning.bands},
+               {"wavelengths_nm", planning.wavelengths_nm},
+               {"paths_m", planning.paths_m},
+               {"antialias", planning.antialias},
+               {"emitter_lamps", planning.emitter_lamps},
+               {"veil", planning.veil},
+               {"clock", planning.clock},
+               {"declared", options.declared}};
+    if (const fs::path scene = scene_of(options, rig); !scene.empty())
+        light["scene_sha256"] = digest_of_scene(scene);
+    return light;
+}
+
+void fly(const SurveyCommandOptions& options, SimulatedSurvey& survey) {
+    if (options.flight.empty()) {
+        survey.legs = flight(options.ranges, options.seed, options.images);
+        survey.corners = corners_of(options.ranges);
+        return;
+    }
+    survey.legs = naming(options.flight, [&] {
+        return flight_of(read_navigation({.source = options.flight}, {}, &survey.rig));
+    });
+    std::vector<Sled> sleds;
+    for (const Leg& leg : survey.legs) sleds.push_back(leg.sled);
+    survey.corners = corners_of(sleds);
+}
+
+SimulatedSurvey survey_of(const SurveyCommandOptions& options) {
+    const std::string& file = options.planning.rig_file;
+    SimulatedSurvey survey{.folder = options.folder,
+                           .rig = read_rig(file),
+                           .legs = {},
+                           .corners = {},
+                           .errors = options.errors,
+                           .has_noise = options.has_noise,
+                           .seed = options.seed,
+                           .jobs = options.jobs};
+    fly(options, survey);
+    survey.camera = naming(file, [&] {
+        const Camera& camera = survey.rig.camera;
+        return raw_camera_of(readout_of(options.readout, camera.readout), camera.sensor.is_mono());
+    });
+    survey.camera.electrons_per_signal =
+        options.electrons_per_signal ? *options.electrons_per_signal : naming(file, [&] {
+            return electrons_for_share(
+                survey.rig, survey.corners, survey.camera.saturation_e, options.floor_share);
+        });
+    const bool by_povray = is_by_povray(options, survey.rig);
+    survey.texture = by_povray ? 0.0 : options.texture;
+    survey.made_by = {{"flight", flight_settings(options)},
+                      {"light", light_settings(options, survey.rig)}};
+    if (!options.declared.empty() && scene_of(options, survey.rig).empty())
+        throw InputError("--declare: found without a scene; allowed: with one, by --scene");
+    return survey;
+}
+
+std::optional<ManifestModel> model_of(const SimulatedSurvey& survey,
+                                      const PlanningOptions& planning) {
+    Rig rig = survey.rig;
+    rig.sled = std::ranges::max(survey.corners, {}, &Sled::altitude_m);
+    return model_error(rig, planning.rig_file, planning.model_tolerance);
+}
+
+std::vector<SurveyPicture> pictures_of(const SimulatedSurvey& survey) {
+    std::vector<SurveyPicture> pictures;
+    for (const Leg& leg : survey.legs) {
+        pictures.push_back({.number = leg.image,
+                            .seed = floor_seed(survey.seed, leg.image),
+                            .sled = leg.sled,
+                            .image = truth_file(survey, leg)});
+    }
+    return pictures;
+}
+
+void make_truth_by_povray(const SurveyCommandOptions& options, const SimulatedSurvey& survey) {
+    const std::vector<SurveyPicture> pictures = pictures_of(survey);
+    if (std::ranges::all_of(pictures, [](const auto& p) { return fs::exists(p.image); })) return;
+    const PovRay povray = find_povray(options.planning.povray);
+    PlanningOptions planning = options.planning;
+    // The lowest, level: the brightest, from which the exposure is taken.
+    planning.sled = {.altitude_m =
+                         std::ranges::min(survey.corners, {}, &Sled::altitude_m).altitude_m};
+    planning.declared = declared_numbers({.number = 1, .sled = *planning.sled}, options.declared);
+    if (planning.paths_m.empty()) {
+        const PathRange paths =
+            paths_of_poses(survey.rig, survey.corners, !scene_of(options, survey.rig).empty());
+        planning.paths_m = {paths.shortest_m, paths.longest_m};
+    }
+    PlannedRender planned = plan_rig(planning);
+    ProgressLine line;
+    RunOptions run = run_options(planning, options.jobs);
+    run.report = [&](const FrameProgress& done) {
+        line.show(fmt::format("rendering: {} of {} frames", done.frames_done, done.frames),
+                  done.share);
+    };
+    render_pictures(povray,
+                    survey.folder / "plan",
+                    {.rig = std::move(planned.rig),
+                     .plan = std::move(planned.plan),
+                     .declared = options.declared},
+                    pictures,
+                    run);
+}
+
+ExitStatus make_survey(const SurveyCommandOptions& options) {
+    SimulatedSurvey survey = survey_of(options);
+    const std::optional<ManifestModel> model = model_of(survey, options.planning);
+    require_room(
+        {.folder_bytes = missing_bytes(survey)}, survey.folder, options.planning.ignore_needs);
+    const FolderLock lock = claim_tree(survey.folder);
+    begin_survey(survey);
+    ProgressLine line;
+    survey.progress = [&](double share) { line.show("images", share); };
+    if (is_by_povray(options, survey.rig)) {
+        make_truth_by_povray(options, survey);
+    } else {
+        naming(options.planning.rig_file, [&] { make_truth_by_lightmaps(survey); });
+    }
+    finish_survey(survey);
+    line.wipe();
+    show(MadeSurvey{.survey = survey, .model = model}, options.json);
+    return kDone;
+}
+
+CLI::Option* add_range(CLI::App& app,
+                       const std::string& names,
+                       std::array<double, 2>& range,
+                       const std::string& words,
+                       const CLI::Validator& allowed) {
+    return app
+        .add_option_function<std::vector<double>>(
+            names,
+            [&range, names](const std::vector<double>& ends) {
+                if (ends[0] > ends[1]) {
+                    throw CLI::ValidationError(
+                        names.substr(0, names.find(',')),
+                        fmt::format("found {},{}; allowed: the lower first", ends[0], ends[1]));
+                }
+                range = {ends[0], ends[1]};
+            },
+            words)
+        ->delimiter(',')
+        ->expected(2)
+        ->check(allowed)
+        ->option_text("LEAST,MOST")
+        ->default_str(fmt::format("{:g},{:g}", range[0], range[1]));
+}
+
+void add_flight_options(CLI::App& app, SurveyCommandOptions& options) {
+    constexpr int kMostImages = 999999;
+    constexpr double kMostBias = 1000.0;
+    const OptionGroup group(app, kFlightOptions);
+    CLI::Option* images = app.add_option("--images", options.images, "Take N images")
+                              ->check(in_range(1, kMostImages))
+                              ->capture_default_str();
+    app.add_option("--seed", options.seed, "Seed of all that is random")->capture_default_str();
+    const auto tilts = in_range(-kMostTilt_deg, kMostTilt_deg);
+    std::vector<CLI::Option*> random{images,
+                                     add_range(app,
+                                               kAltitudeNames,
+                                               options.ranges.altitude_m,
+                                               "Fly at these altitudes in metres",
+                                               in_range(kLeastAltitude_m, kMostAltitude_m)),
+                                     add_range(app,
+                                               kPitchNames,
+                                               options.ranges.pitch_deg,
+                                               "With pitch in degrees between these, bow up",
+                                               tilts),
+                                     add_range(app,
+                                               kRollNames,
+                                               options.ranges.roll_deg,
+                                               "With roll in degrees between these, starboard down",
+                                               tilts)};
+    CLI::Option* flown =
+        app.add_option("--flight",
+                       options.flight,
+                       "Fly the poses of this table instead, as --nav of other commands reads it, "
+                       "an image for each of its own, under its name")
+            ->type_name("FILE");
+    for (CLI::Option* option : random) flown->excludes(option);
+    app.add_option("--altitude-error",
+                   options.errors.altitude_m,
+                   "Standard deviation of the measured altitude, in metres")
+        ->check(not_negative())
+        ->capture_default_str();
+    app.add_option("--attitude-error",
+                   options.errors.attitude_deg,
+                   "Standard deviation of measured pitch and roll, in degrees")
+        ->check(not_negative())
+        ->capture_default_str();
+    const auto add_bias = [&](const char* name, double& bias, const char* words) {
+        app.add_option(name, bias, words)
+            ->check(in_range(-kMostBias, kMostBias).description(""))
+            ->capture_default_str();
+    };
+    add_bias("--altitude-bias",
+             options.errors.altitude_bias_m,
+             "Add this to each measured altitude, in metres");
+    add_bias("--pitch-bias",
+             options.errors.pitch_bias_deg,
+             "Add this to each measured pitch, in degrees");
+    add_bias(
+        "--roll-bias", options.errors.roll_bias_deg, "Add this to each measured roll, in degrees");
+}
+
+void add_floor_options(CLI::App& app, SurveyCommandOptions& options) {
+    constexpr double kMostContrast = 10.0;
+    app.add_option("--texture",
+                   options.texture,
+                   "RMS contrast of the flat floor's random pattern; 0: none. A scene has its own")
+        ->check(in_range(0.0, kMostContrast))
+        ->option_text("C")
+        ->capture_default_str();
+    app.add_flag("--by-povray",
+                 options.by_povray,
+                 "Render a bare floor, too, by POV-Ray, which has no pattern; rigs with objects or "
+                 "a scene always are");
+    app.add_option("--declare",
+                   options.declared,
+                   "Declare this in the scene, such as Depth=2 or Floor=\"card\"; repeatable")
+        ->option_text("NAME=VALUE")
+        ->check([](const std::string& text) {
+            try {
+                require_declaration(text);
+                return std::string();
+            } catch (const InputError& error) {
+                return std::string(error.what());
+            }
+        });
+}
+
+void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {
+    const OptionGroup group(app, kCameraOptions);
+    Readout& readout = options.readout;
+    app.add_option("--bayer",
+                   readout.bayer,
+                   "Pattern of the mosaic, or mono; by default the rig's `bayer`, or RGGB")
+        ->check(CLI::IsMember(std::vector<std::string>{"RGGB", "BGGR", "GRBG", "GBRG", "mono"}))
+        ->option_text("PATTERN");
+    const auto add = [&](const char* name,
+                         std::optional<double>& number,
+                         const char* words,
+                         const CLI::Validator& allowed) {
+        app.add_option(name, number, words)->check(allowed);
+    };
+    add("--black-level",
+        readout.black_level_dn,
+        "Number for no light; by default the rig's `black_level_dn`, or 64",
+        not_negative());
+    add("--white-level",
+        readout.white_level_dn,
+        "Number at saturation; by default the rig's `white_level_dn`, or 4095",
+        not_negative());
+    add("--saturation-e",
+        readout.saturation_e,
+        "Electrons that fill a pixel; by default the rig's `saturation_e`, or 15000",
+        positive());
+    add("--read-noise-e",
+        readout.read_noise_e,
+        "Noise without light in electrons; by default the rig's `read_noise_e`, or 8",
+        not_negative());
+    add("--gain-dn-per-e",
+        readout.gain_dn_per_e,
+        "Numbers per electron; by default the rig's `gain_dn_per_e`, or white at saturation",
+        positive());
+    app.add_option("--floor-share",
+                   options.floor_share,
+                   "Expose so that the rig's bare floor, at its brightest below the lowest "
+                   "altitude, fills this share of a pixel")
+        ->check(positive())
+        ->option_text("SHARE")
+        ->capture_default_str();
+    app.add_option("--electrons-per-signal",
+                   options.electrons_per_signal,
+                   "Expose so that a signal of 1 is this many electrons")
+        ->check(positive())
+        ->excludes("--floor-share");
+    app.add_flag_callback(
+        "--no-noise", [&options] { options.has_noise = false; }, "Leave out shot and read noise");
+}
+
+Action configure_survey(CLI::App& app) {
+    const auto options = std::make_shared<SurveyCommandOptions>();
+    add_output_folder(app, options->folder)->required();
+    add_floor_options(app, *options);
+    add_jobs(app, options->jobs, "Make N images at a time");
+    add_needs_option(app, options->planning.ignore_needs);
+    add_json(app, options->json);
+    add_flight_options(app, *options);
+    add_readout_options(app, *options);
+    add_planning_options(app, options->planning);
+    app.footer(
+        "Leaves DIR/raw, navigation.txt, navigation-measured.txt, survey.json and DIR/truth. A "
+        "flat floor is lit by lightmaps; options of wavelengths, scene and POV-Ray are for what "
+        "POV-Ray renders. Interrupted, it continues when run again, as with more images.");
+    return [options] { return make_survey(*options); };
+}
+
+}  // namespace
+
+const Command kSurvey{"survey",
+                      kSurveyCommands,
+                      "Simulate a survey: raw images, navigation and the truth",
+                      configure_survey};
+
+}  // namespace aphotic::cli

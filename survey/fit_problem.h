@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a fit looks for: which numbers of a rig are free, where the search begins, within which
+// bounds, and how far from there each may plausibly be.
+#pragma once
+
+#include "rig/rig_text.h"
+#include "survey/fit_light.h"
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct FitOptions {
+    FitBeamKind beam = FitBeamKind::Table;
+    std::size_t parts = 24;      // of a table
+    bool has_beam_each = false;  // each strobe its own
+    // beam, aim, power, water, vignetting, altitude, attitude, gain, or a key of [water]; none: the
+    // first five, as far as they can be told. The floor's colour is free besides, unless the
+    // channels' gains are: these two cannot be parted.
+    std::optional<std::vector<std::string>> free{};
+    // Standard deviations of what the navigation tells, image by image.
+    double altitude_error_m = 0.02;
+    double attitude_error_rad = 0.0087;
+    int threads = 1;
+};
+
+// A number that is free: where it begins, how far from there it may plausibly be, its bounds.
+struct FreeNumber {
+    FitNumber number;
+    std::string key;
+    double plausible = 1.0;
+    double least = -std::numeric_limits<double>::infinity();
+    double most = std::numeric_limits<double>::infinity();
+    double per_unit = 1.0;  // the key's, of the state's
+    std::string group;      // as it is asked for
+    double start = 0.0;
+};
+
+struct FitProblem {
+    FitState state;
+    std::vector<FreeNumber> free;
+
+    [[nodiscard]] std::vector<FitNumber> numbers() const;
+    // x: the numbers, each over what is plausible.
+    [[nodiscard]] FitState at(const double* x) const;
+};
+
+// widest_rad: of a beam's table. An InputError for a word that is none.
+[[nodiscard]] FitProblem fit_problem(const RigText& text,
+                                     const FitOptions& options,
+                                     double widest_rad);
+
+}  // namespace aphotic

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/fit_residuals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace aphotic {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Sums over images of the residual at one place and channel.
+struct InPlace {
+    double sum = 0.0;
+    double squares = 0.0;
+    double count = 0.0;
+};
+
+// How much of the residuals stays in place from image to image: rms of the means, less what chance
+// makes of them.
+double pattern_of(const std::vector<InPlace>& places) {
+    constexpr double kFew = 3.0;
+    double pattern = 0.0;
+    double counted = 0.0;
+    for (const InPlace& at : places) {
+        if (at.count < kFew) continue;
+        const double mean = at.sum / at.count;
+        const double chance = (at.squares / at.count - mean * mean) / (at.count - 1.0);
+        pattern += mean * mean - chance;
+        counted += 1.0;
+    }
+    return std::sqrt(std::max(0.0, pattern) / std::max(1.0, counted));
+}
+
+double correlation_with_altitude(const std::vector<ImageOutcome>& images) {
+    const auto count = static_cast<Index>(images.size());
+    VectorXd altitude(count);
+    VectorXd level(count);
+    for (Index i = 0; i < count; ++i) {
+        const ImageOutcome& image = images[static_cast<std::size_t>(i)];
+        altitude(i) = image.sled.altitude_m;
+        level(i) = image.level;
+    }
+    altitude.array() -= altitude.mean();
+    level.array() -= level.mean();
+    const double size = altitude.norm() * level.norm();
+    return size > 0.0 ? altitude.dot(level) / size : 0.0;
+}
+
+void look_for_doubts(const FitSamples& samples, double level, FitResiduals& result) {
+    constexpr double kPattern = 0.02;
+    if (result.pattern > kPattern) {
+        result.doubts.push_back(
+            {"residuals stay in place from image to image: another beam, lens or "
+             "water than the fit allows, or a wrong black level; rms",
+             result.pattern});
+    }
+    constexpr double kSaturated = 0.02;
+    double saturated = 0.0;
+    for (const FitImage& image : samples.images)
+        saturated += image.saturated_share / static_cast<double>(samples.images.size());
+    if (saturated > kSaturated)
+        result.doubts.push_back({"saturated samples, left out; share", saturated});
+    constexpr std::size_t kFew = 10;
+    constexpr double kSigmas = 4.0;  // of the correlation of as many images by chance
+    const double correlation = correlation_with_altitude(result.images);
+    if (result.images.size() >= kFew &&
+        std::abs(correlation) > kSigmas / std::sqrt(static_cast<double>(result.images.size()))) {
+        result.doubts.push_back(
+            {"what is left of the images' brightness goes with their altitude; correlation",
+             correlation});
+    }
+    constexpr double kMostLevel = 0.25;
+    if (level > kMostLevel) {
+        result.doubts.push_back(
+            {"images are brighter or darker than their poses explain: poses of "
+             "other images, or other exposures; rms",
+             level});
+    }
+}
+
+FitView view_of(std::size_t image, const FitSamples& samples, const FitEquations::Residual& found) {
+    const std::size_t places = samples.places.size();
+    FitView view{.image = image,
+                 .observed = std::vector<float>(places * kChannels),
+                 .fitted = std::vector<float>(places * kChannels),
+                 .residual = std::vector<float>(places, 0.0F)};
+    for (std::size_t i = 0; i < places; ++i) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const auto row = static_cast<Index>(kChannels * i + c);
+            view.observed[c * places + i] = samples.images[image].signal[kChannels * i + c];
+            view.fitted[c * places + i] = static_cast<float>(found.signal(row));
+            view.residual[i] +=
+                static_cast<float>(found.residual(row) / found.signal(row) / kChannels);
+        }
+    }
+    return view;
+}
+
+// The images nearest to even steps of altitude.
+std::vector<std::size_t> images_to_show(const FitSamples& samples) {
+    std::vector<std::size_t> order(samples.images.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return samples.images[i].sled.altitude_m; });
+    const std::size_t count = std::min(kFitViews, order.size());
+    std::vector<std::size_t> shown;
+    for (std::size_t k = 0; k < count; ++k)
+        shown.push_back(order[count == 1 ? 0 : k * (order.size() - 1) / (count - 1)]);
+    return shown;
+}
+
+}  // namespace
+
+FitResiduals fit_residuals(const FitEquations& equations,
+                           const FitSamples& samples,
+                           const FitState& state,
+                           const PathLight& light,
+                           const VectorXd& shares) {
+    FitResiduals result;
+    constexpr double kDim = 0.05;  // of an image's brightest: darker blocks are noise
+    std::vector<InPlace> places(samples.places.size() * kChannels);
+    const std::vector<std::size_t> shown = images_to_show(samples);
+    result.views.resize(shown.size());
+    double squares = 0.0;
+    double blocks = 0.0;
+    for (std::size_t i = 0; i < samples.images.size(); ++i) {
+        const FitEquations::Residual found = equations.residual_of(i, state, light, shares);
+        const double most = found.signal.maxCoeff();
+        double of_image = 0.0;
+        double count = 0.0;
+        for (Index row = 0; row < found.residual.size(); ++row) {
+            if (!std::isfinite(found.residual(row)) || found.signal(row) < kDim * most) continue;
+            const double off = found.residual(row) / found.signal(row);
+            InPlace& at = places[static_cast<std::size_t>(row)];
+            at.sum += off;
+            at.squares += off * off;
+            at.count += 1.0;
+            of_image += off * off;
+            count += 1.0;
+        }
+        squares += of_image;
+        blocks += count;
+        result.images.push_back({.sled = samples.images[i].sled,
+                                 .residual = std::sqrt(of_image / std::max(1.0, count)),
+                                 .level = found.effects[0],
+                                 .altitude_m = found.effects[3]});
+        const auto at = std::ranges::find(shown, i);
+        if (at != shown.end())
+            result.views[static_cast<std::size_t>(at - shown.begin())] = view_of(i, samples, found);
+    }
+    result.residual = std::sqrt(squares / std::max(1.0, blocks));
+    result.pattern = pattern_of(places);
+    look_for_doubts(samples, std::sqrt(equations.effects()[0]), result);
+    return result;
+}
+
+}  // namespace aphotic

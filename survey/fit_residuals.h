@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a fit leaves: where the residuals of many images stay in place, or go with the altitude, it
+// is the model that is wrong and not the floor.
+#pragma once
+
+#include "survey/fit_equations.h"
+#include "survey/fit_samples.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+// What the fit leaves of an image, and what it makes of the image's own level and altitude.
+struct ImageOutcome {
+    Sled sled;
+    double residual = 0.0;    // rms, relative
+    double level = 0.0;       // of green, relative
+    double altitude_m = 0.0;  // off the navigation's
+};
+
+// An image as blocks: R, G, B planar, NaN where left out.
+struct FitView {
+    std::size_t image = 0;
+    std::vector<float> observed;
+    std::vector<float> fitted;
+    std::vector<float> residual;  // relative; the mean over channels, one plane
+};
+inline constexpr std::size_t kFitViews = 5;
+
+// A sign that the model does not fit.
+struct FitDoubt {
+    std::string what;
+    double size = 0.0;
+};
+
+struct FitResiduals {
+    double residual = 0.0;  // rms of blocks, relative to the signal, levels taken out
+    double pattern = 0.0;   // of that, what stays in place from image to image
+    std::vector<ImageOutcome> images;
+    std::vector<FitView> views;  // kFitViews of them, from the lowest to the highest
+    std::vector<FitDoubt> doubts;
+};
+
+[[nodiscard]] FitResiduals fit_residuals(const FitEquations& equations,
+                                         const FitSamples& samples,
+                                         const FitState& state,
+                                         const PathLight& light,
+                                         const Eigen::VectorXd& shares);
+
+}  // namespace aphotic

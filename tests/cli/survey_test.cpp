@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// `aphotic survey` of a flat floor, and what `aphotic correct` makes of it.
+#include "base/atomic_file.h"
+#include "image/exr.h"
+#include "image/output_images.h"
+#include "support/run_command.h"
+#include "support/small_scene.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace aphotic::survey_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::size_t kWidth_px = 8;  // of the scene's 340, forty times coarser
+
+class SurveyCommand : public testing::Test {
+  protected:
+    SurveyCommand() {
+        put_small_scene(fs::path(APHOTIC_SOURCE_DIR) / "scenes/survey/smooth.toml", path(""));
+    }
+    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+    [[nodiscard]] CommandResult run(std::vector<std::string> arguments) const {
+        return run_aphotic(folder_.path(), arguments);
+    }
+    [[nodiscard]] std::string text(const std::string& name) const {
+        return read_text_file(path(name));
+    }
+
+    TempFolder folder_;
+};
+
+// The loop that the command is for: what was flown and what was seen, told apart by a correction
+// that knows the rig. Of 16 bits without noise nothing is left but rounding.
+TEST_F(SurveyCommand, IsCorrectedToItsTexture) {
+    const CommandResult made = run({"survey",
+                                    "rig.toml",
+                                    "--images",
+                                    "3",
+                                    "--white-level",
+                                    "65535",
+                                    "--no-noise",
+                                    "-o",
+                                    "out"});
+    ASSERT_EQ(made.status, 0) << made.err;
+    const CommandResult corrected = run({"correct",
+                                         "out/raw",
+                                         "--rig",
+                                         "rig.toml",
+                                         "--nav",
+                                         "out/navigation.txt",
+                                         "--bayer",
+                                         "RGGB",
+                                         "--black-level",
+                                         "64",
+                                         "--white-level",
+                                         "65535",
+                                         "--keep-mosaic",
+                                         "--middle",
+                                         "1",
+                                         "--format",
+                                         "exr",
+                                         "-o",
+                                         "corrected"});
+    ASSERT_EQ(corrected.status, 0) << corrected.err;
+    // The darkest pixel, red at the corner of the highest image, has some 100 numbers over black.
+    constexpr double kRounding = 0.5 / 100.0;
+    // The gain makes each channel's median 1: of its own pixels, whose textures differ.
+    std::array<double, kChannels> level{};
+    for (const char* name : {"000001.exr", "000002.exr", "000003.exr"}) {
+        const std::vector<std::string> grey{"Y"};
+        const std::vector<float> texture = ExrReader(path("out/texture") / name).planes(grey);
+        const std::vector<float> result = ExrReader(path("corrected") / name).planes(grey);
+        ASSERT_EQ(result.size(), texture.size());
+        for (std::size_t i = 0; i < texture.size(); ++i) {
+            const double ratio = result[i] / texture[i];
+            double& of_channel = level.at(i % kWidth_px % 2 + i / kWidth_px % 2);  // RGGB
+            if (of_channel == 0.0) of_channel = ratio;
+            ASSERT_NEAR(ratio / of_channel, 1.0, 2.0 * kRounding) << name << ' ' << i;
+        }
+    }
+}
+
+TEST_F(SurveyCommand, FliesTheUsersNavigation) {
+    write_file(path("dive.csv"),
+               "image,altitude_m,pitch_deg,roll_deg\nB 1.jpg,2,1,0\nA.jpg,2.5,-1,3\n");
+    const std::vector<std::string> command{
+        "survey", "rig.toml", "--flight", "dive.csv", "-o", "out"};
+    const CommandResult made = run(command);
+    ASSERT_EQ(made.status, 0) << made.err;
+    EXPECT_EQ(text("out/navigation.txt"),
+              "image,altitude_m,pitch_deg,roll_deg\n\"B 1.tif\",2,1,0\nA.tif,2.5,-1,3\n");
+    EXPECT_TRUE(fs::exists(path("out/raw/B 1.tif")));
+    EXPECT_TRUE(fs::exists(path("out/raw/A.tif")));
+    EXPECT_EQ(run(command).status, 0) << "the same again";
+    write_file(path("dive.csv"), "image,altitude_m,pitch_deg,roll_deg\nB.jpg,2,1,0\n");
+    EXPECT_EQ(run(command).status, 2) << "another flight";
+}
+
+TEST_F(SurveyCommand, TakesItsCameraFromTheRig) {
+    std::string toml = text("rig.toml");
+    toml.insert(toml.find("resolution"),
+                "bayer = \"GBRG\"\nblack_level_dn = 10\nwhite_level_dn = 1023\n"
+                "read_noise_e = 3\nsaturation_e = 5000\n");
+    write_file(path("rig.toml"), toml);
+    const CommandResult made =
+        run({"survey", "rig.toml", "--images", "1", "--read-noise-e", "4", "--json", "-o", "out"});
+    ASSERT_EQ(made.status, 0) << made.err;
+    const Json camera = Json::parse(made.out).at("camera");
+    EXPECT_EQ(camera["bayer"], "GBRG");
+    EXPECT_EQ(camera["black_level_dn"], 10.0);
+    EXPECT_DOUBLE_EQ(camera["gain_dn_per_e"], 1013.0 / 5000.0);
+    EXPECT_EQ(camera["read_noise_e"], 4.0) << "the option's, over the rig's";
+
+    // And so does the correction: levels, pattern and noise.
+    toml.insert(toml.find("resolution"), "gain_dn_per_e = 0.2\n");
+    write_file(path("rig.toml"), toml);
+    const CommandResult corrected = run({"correct",
+                                         "out/raw",
+                                         "--rig",
+                                         "rig.toml",
+                                         "--nav",
+                                         "out/navigation-measured.txt",
+                                         "-o",
+                                         "corrected"});
+    ASSERT_EQ(corrected.status, 0) << corrected.err;
+    const Json settings = Json::parse(text("corrected/correction.json")).at("settings");
+    EXPECT_EQ(settings["electrons"], 5.0);
+    EXPECT_DOUBLE_EQ(settings["read_noise"], std::sqrt(0.36 + 1.0 / 12.0));
+}
+
+TEST_F(SurveyCommand, RefusesWhatMakesNoSurvey) {
+    const auto refused = [&](std::vector<std::string> more, const std::string& words) {
+        more.insert(more.begin(), {"survey", "rig.toml", "-o", "out"});
+        const CommandResult result = run(more);
+        EXPECT_EQ(result.status, 2) << words;
+        EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
+        EXPECT_FALSE(fs::exists(path("out")));
+    };
+    refused({"--altitude", "3,2"}, "the lower first");
+    refused({"--declare", "Depth=2"}, "found without a scene");
+    refused({"--declare", "Depth=2;"}, "NAME=NUMBER");
+    refused({"--bayer", "mono"}, "bayer: found mono");
+    refused({"--white-level", "100000"}, "white_level_dn: found 100000");
+    refused({"--flight", "nowhere.csv"}, "nowhere.csv");
+    refused({"--flight", "rig.toml", "--images", "3"}, "--images");
+}
+
+}  // namespace
+}  // namespace aphotic::survey_test
