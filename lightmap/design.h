@@ -21,8 +21,8 @@
 // search's candidates by that judgement is the design, and where none is better than the start and
 // keeps what is to be kept, the start is: a design is never worse than its start.
 //
-// The front is the trade of evenness against signal: designs of which none is better in both, and that keep the
-// coverage.
+// The front is the trade of evenness against signal: designs of which none is better in both, and
+// that keep the coverage.
 //
 // Limits: a search is no proof that nothing is better; between the poses judged, figures may be
 // worse than at them. The same request gives the same answer, whatever the number of threads.

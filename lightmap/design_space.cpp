@@ -229,7 +229,7 @@ void DesignSpace::set_powers() {
             "--vary: found the power of one strobe; allowed: of two or more, which "
             "share the light that they have together");
     }
-    if (count > 0) least_share_ = std::min(kLeastShare, least / most);
+    if (count > 0) least_share_ = std::min(kLeastFluxShare, least / most);
 }
 
 std::vector<double> DesignSpace::tilt_range_rad(std::size_t strobe) const {

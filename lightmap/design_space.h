@@ -16,7 +16,7 @@
 // moves, as the same words say.
 //
 // Powers share the flux (power times the integral of the lamp's table) that they begin with: light
-// is moved, not added. None falls below kLeastShare of the strongest, or its own share of it.
+// is moved, not added. None falls below kLeastFluxShare of the strongest, or its own share of it.
 //
 // Allowed is a place where every lamp is over the floor by kRoomOverFloor of the altitude at least,
 // in every pose, and out of the camera's view, made kRoomAboutView times as large each way.
@@ -36,7 +36,7 @@
 
 namespace aphotic {
 
-inline constexpr double kLeastShare = 0.1;
+inline constexpr double kLeastFluxShare = 0.1;
 inline constexpr double kRoomOverFloor = 0.05;
 inline constexpr double kRoomAboutView = 1.1;
 
@@ -95,7 +95,7 @@ class DesignSpace {
     std::vector<Free> free_;
     std::vector<double> flux_per_power_;
     double shared_flux_ = 0.0;
-    double least_share_ = kLeastShare;
+    double least_share_ = kLeastFluxShare;
     std::vector<double> start_;
 };
 

@@ -103,7 +103,8 @@ std::string steps_png(const Lightmap& map) {
     std::vector<std::uint32_t> pixels(plane);
     for (std::size_t i = 0; i < shown.size(); ++i) {
         const double step = std::floor(kSteps * static_cast<double>(shown[i]) / mean) / kSteps;
-        const auto grey = static_cast<std::uint32_t>(kGreys * std::min(1.0, step / kWhitest) + 0.5);
+        const auto grey =
+            static_cast<std::uint32_t>(std::lround(kGreys * std::min(1.0, step / kWhitest)));
         pixels[i] = grey << 16U | grey << 8U | grey;
     }
     return png_of(pixels, map.width_px, map.height_px);

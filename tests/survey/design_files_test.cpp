@@ -17,22 +17,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+Rig rig_with_a_table(const fs::path& folder) {
+    std::string text = design_rig_text(two_strobes("direction = [0, 0, 1]  # <b> & \"c\""), 3.0);
+    text.replace(text.find("[seafloor]"), 10, "[seafloor]\nreflectance = \"mud/mud.csv\"");
+    fs::create_directories(folder / "mud");
+    write_file(folder / "mud" / "mud.csv", "wavelength_nm,reflectance\n300,0.1\n800,0.2\n");
+    write_file(folder / "rig.toml", text);
+    return read_rig(folder / "rig.toml");
+}
+
+DesignRequest request_for(const Rig& rig, const fs::path& folder) {
+    DesignRequest request{.freedom = {.keys = {"strobe.*.position_m"}},
+                          .envelope = envelope_of(rig.sled),
+                          .evaluations = 150,
+                          .folder = folder};
+    request.envelope.altitude_m = {1.8, 2.2};
+    return request;
+}
+
 class DesignFiles : public testing::Test {
   protected:
     void SetUp() override {
-        std::string text =
-            design_rig_text(two_strobes("direction = [0, 0, 1]  # <b> & \"c\""), 3.0);
-        text.replace(text.find("[seafloor]"), 10, "[seafloor]\nreflectance = \"mud/mud.csv\"");
-        fs::create_directories(in_ / "mud");
-        write_file(in_ / "mud" / "mud.csv", "wavelength_nm,reflectance\n300,0.1\n800,0.2\n");
-        write_file(in_ / "rig.toml", text);
-        rig_ = read_rig(in_ / "rig.toml");
-        request_ = {.freedom = {.keys = {"strobe.*.position_m"}},
-                    .envelope = envelope_of(rig_.sled),
-                    .evaluations = 150,
-                    .folder = in_};
-        request_.envelope.altitude_m = {1.8, 2.2};
-        result_ = design(rig_, request_);
         fs::create_directories(out_);
         write_design(rig_, request_, result_, out_);
     }
@@ -40,9 +45,9 @@ class DesignFiles : public testing::Test {
     TempFolder folder_;
     fs::path in_ = folder_.path() / "in";
     fs::path out_ = folder_.path() / "out";
-    Rig rig_;
-    DesignRequest request_;
-    DesignResult result_;
+    Rig rig_ = rig_with_a_table(in_);
+    DesignRequest request_ = request_for(rig_, in_);
+    DesignResult result_ = design(rig_, request_);
 };
 
 TEST_F(DesignFiles, LeaveARigThatFindsItsTables) {
