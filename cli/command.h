@@ -41,6 +41,7 @@ extern const Command kIntegrate;
 extern const Command kTrace;
 extern const Command kLightmap;
 extern const Command kAtlas;
+extern const Command kDesign;
 extern const Command kCorrect;
 extern const Command kObserve;
 extern const Command kFit;

@@ -276,8 +276,8 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     : rig_(rig), options_(options), spectrum_of_strobe_(lamps_by_strobe(rig)) {
     require_bare_floor(rig);
     for (const Strobe& strobe : rig.strobes) edges_.push_back(beam_edges(strobe));
-    const PathRange direct = paths ? *paths : path_range(rig);
-    paths_ = direct;
+    direct_ = paths ? *paths : path_range(rig);
+    paths_ = direct_;
     // The rig's own end where the floor does, or else where its light does.
     if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
     if (rig.camera.vignetting) vignetting_ = vignetting_plane(rig.camera);
@@ -285,13 +285,28 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     for (const double nm : index_nodes_nm_)
         ray_tables_.push_back(ray_table(rig_, nm, options_.threads));
     if (paths_.longest_m > 0.0) tabulate();
-    if (rig.water.scatters() && options.has_veil)
-        veil_ = std::make_shared<VeilMap>(
-            rig,
-            PathRange{.shortest_m = direct.shortest_m,
-                      .longest_m = direct.longest_m,
-                      .has_horizon = direct.has_horizon || ends_in_darkness(rig.water, direct)},
-            options.error);
+    make_veil();
+}
+
+void LightmapMaker::make_veil() {
+    if (!rig_.water.scatters() || !options_.has_veil) return;
+    veil_ = std::make_shared<VeilMap>(
+        rig_,
+        PathRange{.shortest_m = direct_.shortest_m,
+                  .longest_m = direct_.longest_m,
+                  .has_horizon = direct_.has_horizon || ends_in_darkness(rig_.water, direct_)},
+        options_.error);
+}
+
+void LightmapMaker::place(const std::vector<StrobePlace>& by_strobe) {
+    for (std::size_t s = 0; s < by_strobe.size(); ++s) {
+        Strobe& strobe = rig_.strobes[s];
+        strobe.position_m = by_strobe[s].position_m;
+        strobe.axis = by_strobe[s].axis;
+        strobe.power = by_strobe[s].power;
+        edges_[s] = beam_edges(strobe);
+    }
+    make_veil();
 }
 
 void LightmapMaker::tabulate() {

@@ -32,7 +32,10 @@
 #include "spectral/bands.h"
 #include "spectral/veil_share.h"
 
+#include <Eigen/Core>
+
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -79,6 +82,13 @@ struct Lightmap {
 
 [[nodiscard]] VeilShare veil_share_of(const Lightmap& map);
 
+// What may change of a strobe without a change of its light.
+struct StrobePlace {
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // unit vector
+    double power = 1.0;
+};
+
 class LightmapMaker {
   public:
     // paths: what the tables must serve; none: what the rig's own sled sees. Throws InputError for
@@ -99,6 +109,10 @@ class LightmapMaker {
     // maps have the same, no edge lies between.
     [[nodiscard]] std::vector<double> cones(const Sled& sled) const;
 
+    // Moves, turns and dims the strobes, for all maps to come; their lamps stay, and so do the
+    // tables.
+    void place(const std::vector<StrobePlace>& by_strobe);
+
     [[nodiscard]] const PathRange& paths() const { return paths_; }
     [[nodiscard]] std::size_t grid_size() const { return grid_size_; }
     [[nodiscard]] int table_steps() const { return steps_.count; }
@@ -113,6 +127,7 @@ class LightmapMaker {
     struct Scene;  // what all rows of a map have in common
 
     void tabulate();
+    void make_veil();
     void tabulate_lamp(const Spectrum& lamp,
                        const std::vector<WeightedWavelength>& grid,
                        LightTables& tables) const;
@@ -122,6 +137,7 @@ class LightmapMaker {
     Rig rig_;
     LightmapOptions options_;
     PathRange paths_;
+    PathRange direct_;  // as they were asked for
     PathSteps steps_;
     std::size_t grid_size_ = 0;
     std::vector<double> index_nodes_nm_;  // wavelengths whose rays are traced; one without a port

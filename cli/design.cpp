@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic design RIG --vary KEY,... -o DIR: better places for a rig's strobes, and what they gain.
+#include "lightmap/design.h"
+
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/json_text.h"
+#include "base/progress.h"
+#include "base/words.h"
+#include "cli/command.h"
+#include "cli/options.h"
+#include "cli/output_folder.h"
+#include "rig/rig_reader.h"
+#include "survey/design_files.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace aphotic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DesignCommandOptions {
+    std::string rig;
+    fs::path folder;
+    DesignRequest request;
+    double turn_deg = 30.0;
+    std::vector<double> altitude_m;
+    std::vector<double> pitch_deg;
+    std::vector<double> roll_deg;
+    bool json = false;
+};
+
+const std::map<std::string, DesignGoal> kDesignGoals{{"evenness", DesignGoal::Evenness},
+                                                     {"signal", DesignGoal::Signal},
+                                                     {"coverage", DesignGoal::Coverage}};
+
+void set_ends(const char* option, const std::vector<double>& given, double unit, Ends& ends) {
+    if (given.empty()) return;
+    if (given.front() > given.back())
+        throw InputError(
+            "{}: found {},{}; allowed: the smaller one first", option, given.front(), given.back());
+    ends = {unit * given.front(), unit * given.back()};
+}
+
+DesignRequest request_of(const DesignCommandOptions& options, const Rig& rig) {
+    DesignRequest request = options.request;
+    request.folder = fs::path(options.rig).parent_path();
+    request.freedom.turn_rad = options.turn_deg * kRadiansPerDegree;
+    request.envelope = envelope_of(rig.sled);
+    set_ends("--altitude", options.altitude_m, 1.0, request.envelope.altitude_m);
+    set_ends("--pitch", options.pitch_deg, kRadiansPerDegree, request.envelope.pitch_rad);
+    set_ends("--roll", options.roll_deg, kRadiansPerDegree, request.envelope.roll_rad);
+    return request;
+}
+
+void print_design(const Rig& rig, const DesignRequest& request, const DesignResult& result) {
+    const LightFigures& start = result.start.figures;
+    const LightFigures& best = result.best.figures;
+    fmt::print("{}: {}, {} looked at; the worst of {}\n",
+               rig.title,
+               counted(result.numbers, "free number"),
+               counted(static_cast<std::size_t>(result.evaluations), "design"),
+               counted(result.best.poses.size(), "pose"));
+    if (!result.is_better) fmt::print("  nothing better than the start was found\n");
+    const auto line = [](const std::string& name, double before, double after) {
+        constexpr double kPercent = 100.0;
+        fmt::print("  {:<34} {:>8.4f} {:>8.4f} {:>+7.1f} %\n",
+                   name,
+                   before,
+                   after,
+                   kPercent * (after / before - 1.0));
+    };
+    fmt::print("  {:<34} {:>8} {:>8} {:>9}\n", "", "start", "design", "gain");
+    line("evenness, least over mean", start.evenness, best.evenness);
+    line("signal to noise, of the start's", 1.0, best.signal_to_noise / start.signal_to_noise);
+    line(fmt::format("coverage, over {:g} of the brightest", request.level),
+         start.coverage,
+         best.coverage);
+    fmt::print("  the trade, signal to noise (of the start's) and evenness:\n");
+    for (const Design& one : result.front)
+        fmt::print("    {:>8.4f} {:>8.4f}\n",
+                   one.figures.signal_to_noise / start.signal_to_noise,
+                   one.figures.evenness);
+}
+
+ExitStatus design_rig(const DesignCommandOptions& options) {
+    const Rig rig = read_rig(options.rig);
+    DesignRequest request = request_of(options, rig);
+    const FolderLock lock = claim_folder(options.folder);
+    const DesignResult result = [&] {
+        ProgressLine line;
+        request.progress = [&](int done, int of_all) {
+            line.show("designing", static_cast<double>(done) / of_all);
+        };
+        return naming(options.rig, [&] { return design(rig, request); });
+    }();
+    write_design(rig, request, result, options.folder);
+    if (options.json) {
+        fmt::print("{}", json_text(design_json(rig, request, result)));
+        return kDone;
+    }
+    print_design(rig, request, result);
+    for (const char* file : {kDesignedRig, kDesignNumbers, kDesignPage})
+        fmt::print("  {}\n", (options.folder / file).string());
+    return kDone;
+}
+
+void add_envelope(CLI::App& app, DesignCommandOptions& options) {
+    const OptionGroup group(app, "Envelope");
+    app.add_option(kAltitudeNames,
+                   options.altitude_m,
+                   "Altitudes to design for, in metres, such as 1.5,2.5, instead of the rig's")
+        ->delimiter(',')
+        ->expected(1, 2)
+        ->check(in_range(kLeastAltitude_m, kMostAltitude_m))
+        ->option_text("LOW,HIGH");
+    app.add_option(kPitchNames, options.pitch_deg, "Pitches, in degrees, bow up")
+        ->delimiter(',')
+        ->expected(1, 2)
+        ->check(in_range(-kMostTilt_deg, kMostTilt_deg))
+        ->option_text("LOW,HIGH");
+    app.add_option(kRollNames, options.roll_deg, "Rolls, in degrees, starboard down")
+        ->delimiter(',')
+        ->expected(1, 2)
+        ->check(in_range(-kMostTilt_deg, kMostTilt_deg))
+        ->option_text("LOW,HIGH");
+}
+
+void add_freedom(CLI::App& app, DesignCommandOptions& options) {
+    constexpr double kMostRoom_m = 1000.0;
+    constexpr double kMostTurn_deg = 80.0;
+    DesignFreedom& freedom = options.request.freedom;
+    app.add_option("--vary",
+                   freedom.keys,
+                   "What may change, such as strobe.fore.position_m,strobe.*.aim: position_m, aim, "
+                   "aim.tilt_deg or power of strobes, * for all")
+        ->delimiter(',')
+        ->required()
+        ->type_name("KEY,...");
+    app.add_option("--within", freedom.within_m, "Move strobes up to M metres each way")
+        ->check(in_range(0.0, kMostRoom_m))
+        ->option_text("M")
+        ->capture_default_str();
+    app.add_option("--box",
+                   freedom.boxes,
+                   "Move this strobe within a box instead, such as fore=0.3:0.7,0,-0.2:0.2; "
+                   "repeatable")
+        ->type_name("NAME=X0:X1,Y0:Y1,Z0:Z1");
+    app.add_option("--turn", options.turn_deg, "Turn strobes up to DEG degrees each way")
+        ->check(in_range(0.0, kMostTurn_deg))
+        ->option_text("DEG")
+        ->capture_default_str();
+}
+
+Action configure_design(CLI::App& app) {
+    constexpr int kLeastEvaluations = 10;
+    constexpr int kMostEvaluations = 10'000'000;
+    const auto options = std::make_shared<DesignCommandOptions>();
+    DesignRequest& request = options->request;
+    request.threads = all_cores();
+    add_rig(app, options->rig);
+    add_output_folder(app, options->folder)->required();
+    add_freedom(app, *options);
+    add_envelope(app, *options);
+    app.add_option("--for",
+                   request.goal,
+                   "Design for evenness, for signal (the worst signal to noise) or for coverage")
+        ->transform(word_of(kDesignGoals))
+        ->type_name("evenness|signal|coverage")
+        ->default_str("evenness");
+    app.add_option(
+           "--keep", request.keep, "Keep at least this share of each of the start's other figures")
+        ->check(in_range(0.0, 1.0))
+        ->option_text("SHARE")
+        ->capture_default_str();
+    app.add_option("--level",
+                   request.level,
+                   "Count as covered what is as bright as this share of the brightest")
+        ->check(in_range(0.0, 1.0))
+        ->option_text("SHARE")
+        ->capture_default_str();
+    app.add_option("--evaluations", request.evaluations, "Look at up to N designs")
+        ->check(in_range(kLeastEvaluations, kMostEvaluations))
+        ->capture_default_str();
+    app.add_option("--seed", request.seed, "Seed of the search")->capture_default_str();
+    add_jobs(app, request.threads, "Map with N threads");
+    add_json(app, options->json);
+    app.footer(
+        "Leaves DIR/designed.toml, the rig with its strobes moved, report.html and design.json. "
+        "The same command gives the same design, which is never worse than the start.");
+    return [options] { return design_rig(*options); };
+}
+
+}  // namespace
+
+const Command kDesign{
+    "design", kMapCommands, "Place and aim strobes for even light", configure_design};
+
+}  // namespace aphotic::cli

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Better places for a rig's strobes: a search over a space (design_space.h) for the evenness, the
+// signal to noise or the coverage of the floor's light (evenness.h), the worst of all poses of an
+// envelope.
+//
+//   goal       largest              at least keep times the start's
+//   Evenness   U0                   signal to noise, coverage
+//   Signal     signal to noise      U0, coverage
+//   Coverage   coverage             U0, signal to noise
+//
+// Coverage is kept since U0 is blind to a small bright spot, which hardly moves the mean.
+//
+// The search (maximise.h) looks at a small image, kSearched_px along its longer side, of few poses:
+// the ends of each range that is given, and its middle. In water that scatters the signal to noise
+// is that of kVeilSearched_px. Every design it looks at counts, also those found on the way to
+// other goals: none of these is better in one figure and as good in the others.
+//
+// Judged is what a user gets: the rig's text with its rounded numbers, read again, on an image of
+// up to kJudged_px, at the ends and the middle of each range, in all combinations. The best of the
+// search's candidates by that judgement is the design, and where none is better than the start and
+// keeps what is to be kept, the start is: a design is never worse than its start.
+//
+// The front is the trade of evenness against signal: designs of which none is better in both, and
+// that keep the coverage.
+//
+// Limits: a search is no proof that nothing is better; between the poses judged, figures may be
+// worse than at them. The same request gives the same answer, whatever the number of threads.
+#pragma once
+
+#include "lightmap/design_space.h"
+#include "lightmap/evenness.h"
+#include "lightmap/lightmap.h"
+#include "rig/rig.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr int kSearched_px = 170;
+inline constexpr int kVeilSearched_px = 12;
+inline constexpr int kJudged_px = 512;
+
+using Ends = std::array<double, 2>;  // the smaller first
+
+struct Envelope {
+    Ends altitude_m{};
+    Ends pitch_rad{};
+    Ends roll_rad{};
+};
+
+[[nodiscard]] Envelope envelope_of(const Sled& sled);
+// Ends of all ranges, in all combinations, and the middle of all.
+[[nodiscard]] std::vector<Sled> corner_poses(const Envelope& envelope);
+// Ends and middles, in all combinations.
+[[nodiscard]] std::vector<Sled> grid_poses(const Envelope& envelope);
+
+enum class DesignGoal { Evenness, Signal, Coverage };
+
+struct DesignRequest {
+    DesignFreedom freedom;
+    Envelope envelope;
+    DesignGoal goal = DesignGoal::Evenness;
+    double keep = 1.0;
+    double level = 0.5;  // of coverage
+    int evaluations = 10000;
+    std::uint64_t seed = 1;
+    int threads = 1;
+    std::filesystem::path folder{};                        // of the tables that the rig names
+    std::function<void(int done, int of_all)> progress{};  // may be none
+};
+
+// As judged.
+struct JudgedPose {
+    Sled sled;
+    LightFigures figures;
+};
+
+struct Design {
+    std::string toml;
+    std::vector<StrobePlace> places;  // by strobe, as read again
+    LightFigures figures;             // the worst of all poses
+    std::vector<JudgedPose> poses{};
+};
+
+struct DesignResult {
+    Design start;
+    Design best;  // the start itself where nothing better was found
+    bool is_better = false;
+    std::vector<Design> front{};  // by signal, the least first
+    int evaluations = 0;
+    std::size_t numbers = 0;  // that were free
+};
+
+// The rig must come from a file (Rig::toml) and be of the bare floor. Throws InputError where the
+// start is not allowed, or leaves pixels without light.
+[[nodiscard]] DesignResult design(const Rig& rig, const DesignRequest& request);
+
+// The rig with an image so small, of the same view; as it is where it is smaller.
+[[nodiscard]] Rig with_longer_side(Rig rig, int longer_px);
+
+}  // namespace aphotic

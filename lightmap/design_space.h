@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which strobes of a rig may be where: the free keys and their boxes, as a unit cube to search.
+//
+//   strobe.NAME.position_m     the position, within a box about it
+//   strobe.NAME.aim            where it points, within an angle of where it does
+//   strobe.NAME.aim.tilt_deg   its tilt alone, of an aim = { tilt_deg = ..., toward = "axis" }
+//   strobe.NAME.power          its share of the flux that the strobes of free power have together
+//
+// NAME may be * for every strobe. An aim turns by two angles a and b of its own, each within t:
+//
+//   axis = unit(axis_0 + tan(a) e_1 + tan(b) e_2)
+//
+// with e_1, e_2 across axis_0 and each other: at a = b = 0 it is the axis of the start, and it has
+// no pole. A strobe whose rig says an aim towards the camera's axis goes on pointing there as it
+// moves, as the same words say.
+//
+// Powers share the flux (power times the integral of the lamp's table) that they begin with: light
+// is moved, not added. None falls below kLeastFluxShare of the strongest, or its own share of it.
+//
+// Allowed is a place where every lamp is over the floor by kRoomOverFloor of the altitude at least,
+// in every pose, and out of the camera's view, made kRoomAboutView times as large each way.
+#pragma once
+
+#include "lightmap/lightmap.h"
+#include "rig/path_range.h"
+#include "rig/rig.h"
+#include "rig/strobe_text.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr double kLeastFluxShare = 0.1;
+inline constexpr double kRoomOverFloor = 0.05;
+inline constexpr double kRoomAboutView = 1.1;
+
+struct DesignFreedom {
+    std::vector<std::string> keys;
+    double within_m = 0.25;            // of the start, each way
+    std::vector<std::string> boxes{};  // NAME=x0:x1,y0:y1,z0:z1 in metres; one number: fixed
+    double turn_rad = 0.5;             // t
+};
+
+class DesignSpace {
+  public:
+    // Throws InputError, which names the key or box, for what the rig does not have or cannot have.
+    DesignSpace(const Rig& rig, const DesignFreedom& freedom, std::vector<Sled> poses);
+
+    // The free numbers, each from 0 to 1.
+    [[nodiscard]] std::size_t size() const { return start_.size(); }
+    [[nodiscard]] const std::vector<double>& start() const { return start_; }
+
+    // By strobe, those that are not free among them.
+    [[nodiscard]] std::vector<StrobePlace> places_at(std::span<const double> point) const;
+    [[nodiscard]] bool allows(const std::vector<StrobePlace>& places) const;
+    // The same in words, for people; none: allowed.
+    [[nodiscard]] std::string why_not(const std::vector<StrobePlace>& places) const;
+
+    // What the rig's text says of them, rounded within the boxes.
+    [[nodiscard]] std::vector<StrobeChange> changes_at(std::span<const double> point) const;
+
+    // All paths that may be seen from anywhere in the space, in any pose.
+    [[nodiscard]] PathRange paths() const;
+
+    [[nodiscard]] const std::vector<Sled>& poses() const { return poses_; }
+
+  private:
+    struct Free {
+        bool position = false;
+        bool aim = false;
+        bool tilt = false;
+        bool power = false;
+        Eigen::Vector3d least_m = Eigen::Vector3d::Zero();
+        Eigen::Vector3d most_m = Eigen::Vector3d::Zero();
+    };
+
+    void set_keys(const std::vector<std::string>& keys);
+    void set_key(std::size_t strobe, const std::string& key, const std::string& path);
+    void set_boxes(const DesignFreedom& freedom);
+    void set_powers();
+    void set_start();
+    [[nodiscard]] std::vector<double> tilt_range_rad(std::size_t strobe) const;
+    [[nodiscard]] std::string allowed_keys() const;
+
+    Rig rig_;
+    std::vector<Sled> poses_;
+    double turn_rad_ = 0.0;
+    std::vector<StrobeAim> aims_;  // by strobe, as its text says
+    std::vector<Free> free_;
+    std::vector<double> flux_per_power_;
+    double shared_flux_ = 0.0;
+    double least_share_ = kLeastFluxShare;
+    std::vector<double> start_;
+};
+
+}  // namespace aphotic
