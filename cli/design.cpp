@@ -11,7 +11,6 @@
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/output_folder.h"
-#include "rig/rig_reader.h"
 #include "survey/design_files.h"
 
 #include <fmt/format.h>
@@ -53,7 +52,6 @@ void set_ends(const char* option, const std::vector<double>& given, double unit,
 
 DesignRequest request_of(const DesignCommandOptions& options, const Rig& rig) {
     DesignRequest request = options.request;
-    request.folder = fs::path(options.rig).parent_path();
     request.freedom.turn_rad = options.turn_deg * kRadiansPerDegree;
     request.envelope = envelope_of(rig.sled);
     set_ends("--altitude", options.altitude_m, 1.0, request.envelope.altitude_m);
@@ -93,7 +91,8 @@ void print_design(const Rig& rig, const DesignRequest& request, const DesignResu
 }
 
 ExitStatus design_rig(const DesignCommandOptions& options) {
-    const Rig rig = read_rig(options.rig);
+    const RigText text{fs::path(options.rig)};
+    const Rig rig = text.rig();
     DesignRequest request = request_of(options, rig);
     const FolderLock lock = claim_folder(options.folder);
     const DesignResult result = [&] {
@@ -101,9 +100,9 @@ ExitStatus design_rig(const DesignCommandOptions& options) {
         request.progress = [&](int done, int of_all) {
             line.show("designing", static_cast<double>(done) / of_all);
         };
-        return naming(options.rig, [&] { return design(rig, request); });
+        return naming(options.rig, [&] { return design(text, request); });
     }();
-    write_design(rig, request, result, options.folder);
+    write_design(text, request, result, options.folder);
     if (options.json) {
         fmt::print("{}", json_text(design_json(rig, request, result)));
         return kDone;

@@ -5,8 +5,6 @@
 #include "base/parallel.h"
 #include "lightmap/maximise.h"
 #include "rig/lens.h"
-#include "rig/rig_reader.h"
-#include "rig/strobe_text.h"
 
 #include <algorithm>
 #include <array>
@@ -262,13 +260,13 @@ class DesignSearch {
 // What a user gets.
 class DesignJudge {
   public:
-    DesignJudge(const Rig& rig, const DesignSpace& space, const DesignRequest& request)
-        : rig_(rig), space_(space), request_(request), poses_(grid_poses(request.envelope)) {}
+    DesignJudge(const DesignSpace& space, const DesignRequest& request)
+        : space_(space), request_(request), poses_(grid_poses(request.envelope)) {}
 
     [[nodiscard]] Design of(std::span<const double> point) const {
-        Design design{
-            .toml = with_strobes(rig_.toml, space_.changes_at(point)), .places = {}, .figures = {}};
-        const Rig rig = parse_rig(design.toml, rig_.title, request_.folder);
+        const RigText text = space_.text_at(point);
+        Design design{.toml = text.text(), .places = {}, .figures = {}};
+        const Rig rig = text.rig();
         for (const Strobe& strobe : rig.strobes)
             design.places.push_back({strobe.position_m, strobe.axis, strobe.power});
         const Rig seen = with_longer_side(rig, kJudged_px);
@@ -282,7 +280,6 @@ class DesignJudge {
     }
 
   private:
-    const Rig& rig_;
     const DesignSpace& space_;
     const DesignRequest& request_;
     std::vector<Sled> poses_;
@@ -398,13 +395,14 @@ Rig with_longer_side(Rig rig, int longer_px) {
     return rig;
 }
 
-DesignResult design(const Rig& rig, const DesignRequest& request) {
-    const DesignSpace space(rig, request.freedom, corner_poses(request.envelope));
+DesignResult design(const RigText& text, const DesignRequest& request) {
+    const Rig rig = text.rig();
+    const DesignSpace space(text, request.freedom, corner_poses(request.envelope));
     SearchedLight light(rig, space, request);
     DesignSearch search(space, light, request);
     search.run();
 
-    const DesignJudge judge(rig, space, request);
+    const DesignJudge judge(space, request);
     DesignResult result{.start = judge.of(space.start()), .best = {}};
     result.best = result.start;
     result.evaluations = search.evaluations();

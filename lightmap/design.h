@@ -71,7 +71,6 @@ struct DesignRequest {
     int evaluations = 10000;
     std::uint64_t seed = 1;
     int threads = 1;
-    std::filesystem::path folder{};                        // of the tables that the rig names
     std::function<void(int done, int of_all)> progress{};  // may be none
 };
 
@@ -97,9 +96,9 @@ struct DesignResult {
     std::size_t numbers = 0;  // that were free
 };
 
-// The rig must come from a file (Rig::toml) and be of the bare floor. Throws InputError where the
-// start is not allowed, or leaves pixels without light.
-[[nodiscard]] DesignResult design(const Rig& rig, const DesignRequest& request);
+// Of a rig of the bare floor. Throws InputError where the start is not allowed, or leaves pixels
+// without light.
+[[nodiscard]] DesignResult design(const RigText& text, const DesignRequest& request);
 
 // The rig with an image so small, of the same view; as it is where it is smaller.
 [[nodiscard]] Rig with_longer_side(Rig rig, int longer_px);

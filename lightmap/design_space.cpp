@@ -91,6 +91,30 @@ std::vector<Vector3d> ends_of(const Strobe& strobe) {
     return ends;
 }
 
+double rounded(double value, int places) {
+    const double scale = std::pow(10.0, places);
+    return std::round(scale * value) / scale;
+}
+
+Vector3d rounded(const Vector3d& v, int places) {
+    return v.unaryExpr([&](double value) { return rounded(value, places); });
+}
+
+std::vector<double> numbers_of(const Vector3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+// Times the power or flux that the rig says, in the same words.
+void brighten(RigText& text, const std::string& strobe, double factor) {
+    static constexpr std::array kPowers{"luminous_flux_lm", "radiant_flux_w", "energy_j", "power"};
+    const auto* said =
+        std::ranges::find_if(kPowers, [&](const char* key) { return text.has(strobe + key); });
+    const std::string key = strobe + (said == kPowers.end() ? "power" : *said);
+    const double power = factor * text.number(key).value_or(1.0);
+    const int magnitude = power > 0.0 ? static_cast<int>(std::floor(std::log10(power))) : 0;
+    text.set(key, rounded(power, DesignSpace::kDigitsOfPower - 1 - magnitude));
+}
+
 Strobe placed(Strobe strobe, const StrobePlace& place) {
     strobe.position_m = place.position_m;
     strobe.axis = place.axis;
@@ -100,12 +124,14 @@ Strobe placed(Strobe strobe, const StrobePlace& place) {
 
 }  // namespace
 
-DesignSpace::DesignSpace(const Rig& rig, const DesignFreedom& freedom, std::vector<Sled> poses)
-    : rig_(rig),
+DesignSpace::DesignSpace(const RigText& text, const DesignFreedom& freedom, std::vector<Sled> poses)
+    : text_(text),
+      rig_(text.rig()),
       poses_(std::move(poses)),
       turn_rad_(freedom.turn_rad),
-      aims_(strobe_aims(rig.toml)),
-      free_(rig.strobes.size()) {
+      free_(rig_.strobes.size()) {
+    for (std::size_t s = 0; s < free_.size(); ++s)
+        is_aimed_.push_back(text.has(fmt::format("strobe.{}.aim", s)));
     set_keys(freedom.keys);
     set_boxes(freedom);
     set_powers();
@@ -128,16 +154,10 @@ void DesignSpace::set_key(std::size_t strobe, const std::string& key, const std:
     if (key == "position_m") free.position = true;
     if (key == "power") free.power = true;
     if (key == "aim") {
-        if (aims_[strobe] == StrobeAim::Apart) {
-            throw InputError(
-                "{}: found an aim in a table of its own; allowed: aim = {{ ... }} or "
-                "direction, which the result can take the place of",
-                path);
-        }
         free.aim = true;
     }
     if (key == "aim.tilt_deg") {
-        if (aims_[strobe] == StrobeAim::Direction)
+        if (!is_aimed_[strobe])
             throw InputError("{}: found a strobe with a direction; allowed: strobe.{}.aim",
                              path,
                              rig_.strobes[strobe].name);
@@ -281,7 +301,7 @@ std::vector<StrobePlace> DesignSpace::places_at(std::span<const double> point) c
             const double a = between(-turn_rad_, turn_rad_, *next++);
             const double b = between(-turn_rad_, turn_rad_, *next++);
             place.axis = (strobe.axis + std::tan(a) * e_1 + std::tan(b) * e_2).normalized();
-        } else if (aims_[s] != StrobeAim::Direction && (free.position || free.tilt)) {
+        } else if (is_aimed_[s] && (free.position || free.tilt)) {
             double tilt_rad = tilt_rad_of(strobe.axis);
             if (free.tilt) {
                 const std::vector<double> range = tilt_range_rad(s);
@@ -305,7 +325,7 @@ std::string DesignSpace::why_not(const std::vector<StrobePlace>& places) const {
         const Free& free = free_[s];
         if (!free.position && !free.aim && !free.tilt) continue;
         const Strobe strobe = placed(rig_.strobes[s], places[s]);
-        const bool is_aimed = aims_[s] != StrobeAim::Direction && !free.aim;
+        const bool is_aimed = is_aimed_[s] && !free.aim;
         const bool is_on_axis = strobe.position_m.head<2>().norm() == 0.0;
         if (is_aimed && is_on_axis && std::abs(strobe.axis.z()) < 1.0)
             return fmt::format("strobe '{}': found on the camera's axis", strobe.name);
@@ -336,23 +356,29 @@ bool DesignSpace::allows(const std::vector<StrobePlace>& places) const {
     return why_not(places).empty();
 }
 
-std::vector<StrobeChange> DesignSpace::changes_at(std::span<const double> point) const {
+RigText DesignSpace::text_at(std::span<const double> point) const {
+    RigText text = text_;
+    if (std::ranges::equal(point, start_)) return text;
     const std::vector<StrobePlace> places = places_at(point);
-    std::vector<StrobeChange> changes(free_.size());
-    if (std::ranges::equal(point, start_)) return changes;
-    const double steps = std::pow(10.0, kPlacesOfMetre);
     for (std::size_t s = 0; s < free_.size(); ++s) {
         const Free& free = free_[s];
-        StrobeChange& change = changes[s];
+        const Strobe& was = rig_.strobes[s];
+        const std::string key = fmt::format("strobe.{}.", s);
         if (free.position) {
-            const Vector3d rounded_m = (steps * places[s].position_m).array().round() / steps;
-            change.position_m = rounded_m.cwiseMax(free.least_m).cwiseMin(free.most_m);
+            const Vector3d rounded_m = rounded(places[s].position_m, kPlacesOfMetre);
+            text.set(key + "position_m",
+                     numbers_of(rounded_m.cwiseMax(free.least_m).cwiseMin(free.most_m)));
         }
-        if (free.aim) change.direction = places[s].axis;
-        if (free.tilt) change.tilt_deg = tilt_rad_of(places[s].axis) * kDegreesPerRadian;
-        if (free.power) change.power_factor = places[s].power / rig_.strobes[s].power;
+        if (free.aim) {
+            text.erase(key + "aim");
+            text.set(key + "direction", numbers_of(rounded(places[s].axis, kPlacesOfDirection)));
+        }
+        if (free.tilt)
+            text.set(key + "aim.tilt_deg",
+                     rounded(tilt_rad_of(places[s].axis) * kDegreesPerRadian, kPlacesOfDegree));
+        if (free.power) brighten(text, key, places[s].power / was.power);
     }
-    return changes;
+    return text;
 }
 
 PathRange DesignSpace::paths() const {

@@ -25,7 +25,7 @@
 #include "lightmap/lightmap.h"
 #include "rig/path_range.h"
 #include "rig/rig.h"
-#include "rig/strobe_text.h"
+#include "rig/rig_text.h"
 
 #include <Eigen/Core>
 
@@ -50,7 +50,7 @@ struct DesignFreedom {
 class DesignSpace {
   public:
     // Throws InputError, which names the key or box, for what the rig does not have or cannot have.
-    DesignSpace(const Rig& rig, const DesignFreedom& freedom, std::vector<Sled> poses);
+    DesignSpace(const RigText& text, const DesignFreedom& freedom, std::vector<Sled> poses);
 
     // The free numbers, each from 0 to 1.
     [[nodiscard]] std::size_t size() const { return start_.size(); }
@@ -62,8 +62,13 @@ class DesignSpace {
     // The same in words, for people; none: allowed.
     [[nodiscard]] std::string why_not(const std::vector<StrobePlace>& places) const;
 
-    // What the rig's text says of them, rounded within the boxes.
-    [[nodiscard]] std::vector<StrobeChange> changes_at(std::span<const double> point) const;
+    // The rig's text with the strobes there. Numbers are rounded: to so many places of metres,
+    // within the boxes, of directions and of degrees, and to so many digits of powers.
+    static constexpr int kPlacesOfMetre = 4;
+    static constexpr int kPlacesOfDirection = 5;
+    static constexpr int kPlacesOfDegree = 2;
+    static constexpr int kDigitsOfPower = 5;
+    [[nodiscard]] RigText text_at(std::span<const double> point) const;
 
     // All paths that may be seen from anywhere in the space, in any pose.
     [[nodiscard]] PathRange paths() const;
@@ -88,10 +93,11 @@ class DesignSpace {
     [[nodiscard]] std::vector<double> tilt_range_rad(std::size_t strobe) const;
     [[nodiscard]] std::string allowed_keys() const;
 
+    RigText text_;
     Rig rig_;
     std::vector<Sled> poses_;
     double turn_rad_ = 0.0;
-    std::vector<StrobeAim> aims_;  // by strobe, as its text says
+    std::vector<bool> is_aimed_;  // by strobe: its text has an aim, not a direction
     std::vector<Free> free_;
     std::vector<double> flux_per_power_;
     double shared_flux_ = 0.0;

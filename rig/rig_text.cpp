@@ -5,19 +5,16 @@
 #include "base/error.h"
 #include "rig/rig_reader.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <charconv>
 #include <sstream>
 #include <utility>
 
 namespace aphotic {
-
-struct RigText::Tree {
-    toml::table table;
-    std::string untouched;  // the text, as long as nothing was set
-};
-
 namespace {
 
 std::vector<std::string> steps_of(std::string_view key) {
@@ -31,9 +28,9 @@ std::vector<std::string> steps_of(std::string_view key) {
 }
 
 // Of an array of tables: by its name, or by its number from 0 on.
-toml::node* element(toml::array& array, const std::string& step) {
-    for (toml::node& node : array) {
-        if (toml::table* table = node.as_table(); table != nullptr) {
+const toml::node* element(const toml::array& array, const std::string& step) {
+    for (const toml::node& node : array) {
+        if (const toml::table* table = node.as_table(); table != nullptr) {
             if ((*table)["name"].value_or(std::string{}) == step) return table;
         }
     }
@@ -43,14 +40,14 @@ toml::node* element(toml::array& array, const std::string& step) {
     return is_number && number < array.size() ? &array[number] : nullptr;
 }
 
-toml::node* child(toml::node& node, const std::string& step) {
-    if (toml::table* table = node.as_table(); table != nullptr) return table->get(step);
-    if (toml::array* array = node.as_array(); array != nullptr) return element(*array, step);
+const toml::node* child(const toml::node& node, const std::string& step) {
+    if (const toml::table* table = node.as_table(); table != nullptr) return table->get(step);
+    if (const toml::array* array = node.as_array(); array != nullptr) return element(*array, step);
     return nullptr;
 }
 
-toml::node* find(toml::table& root, std::string_view key) {
-    toml::node* node = &root;
+const toml::node* find(const toml::table& root, std::string_view key) {
+    const toml::node* node = &root;
     for (const std::string& step : steps_of(key)) {
         node = child(*node, step);
         if (node == nullptr) return nullptr;
@@ -58,22 +55,160 @@ toml::node* find(toml::table& root, std::string_view key) {
     return node;
 }
 
-// The table that holds the last step of the key, and that step.
-std::pair<toml::table*, std::string> place(toml::table& root, std::string_view key) {
-    std::vector<std::string> steps = steps_of(key);
-    const std::string last = steps.back();
-    steps.pop_back();
-    toml::node* node = &root;
-    for (const std::string& step : steps) {
-        toml::node* next = child(*node, step);
-        if (next == nullptr && node->is_table())
-            next = &node->as_table()->insert(step, toml::table{}).first->second;
-        if (next == nullptr)
-            throw InputError("{}: found no '{}'; allowed: the rig's own", key, step);
-        node = next;
+// A whole number gets a decimal point, for some keys take no integers.
+std::string toml_of(double value) {
+    return fmt::format("{:#}", value == 0.0 ? 0.0 : value);
+}
+
+std::string toml_of(const std::string& value) {
+    std::ostringstream text;
+    text << toml::value<std::string>(value);
+    return text.str();
+}
+
+std::string toml_key(const std::string& step) {
+    const bool is_bare = !step.empty() && std::ranges::all_of(step, [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '-';
+    });
+    return is_bare ? step : toml_of(step);
+}
+
+// Bytes of a text from first up to last.
+struct TextRange {
+    std::size_t first = 0;
+    std::size_t last = 0;
+};
+
+// Where the nodes of a text stand in it.
+class TextPlaces {
+  public:
+    explicit TextPlaces(std::string_view text) : text_(text) {
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (text[i] == '\n') lines_.push_back(i + 1);
+        }
     }
-    if (!node->is_table()) throw InputError("{}: found no table to hold it", key);
-    return {node->as_table(), last};
+
+    [[nodiscard]] TextRange of(const toml::source_region& region) const {
+        return {byte_of(region.begin), byte_of(region.end)};
+    }
+    // From the key's own begin on, tables' names before it included.
+    [[nodiscard]] TextRange of(const toml::key& key, const toml::node& value) const {
+        std::size_t first = byte_of(key.source().begin);
+        const std::size_t line = lines_[key.source().begin.line - 1];
+        while (first > line && is_of_key(text_[first - 1])) --first;
+        return {first, byte_of(value.source().end)};
+    }
+    // After its line's end; of the last line, the text's.
+    [[nodiscard]] std::size_t end_of_line(std::size_t at) const {
+        return std::min(text_.find('\n', at), text_.size() - 1) + 1;
+    }
+    [[nodiscard]] std::size_t begin_of_line(std::size_t at) const {
+        return *std::prev(std::ranges::upper_bound(lines_, at));
+    }
+    [[nodiscard]] bool is_header(const toml::node& table) const {
+        const std::size_t at = byte_of(table.source().begin);
+        return at < text_.size() && text_[at] == '[';
+    }
+
+  private:
+    static bool is_of_key(char c) {
+        return std::string_view(" \t,{[\n").find(c) == std::string_view::npos;
+    }
+
+    // The parser counts lines, and code points along a line, from 1.
+    [[nodiscard]] std::size_t byte_of(const toml::source_position& place) const {
+        constexpr unsigned char kContinued = 0x80;
+        constexpr unsigned char kContinuedMask = 0xC0;
+        const auto is_continued = [&](std::size_t i) {
+            return (static_cast<unsigned char>(text_[i]) & kContinuedMask) == kContinued;
+        };
+        std::size_t at = lines_[place.line - 1];
+        for (toml::source_index column = 1; column < place.column; ++column) {
+            ++at;
+            while (at < text_.size() && is_continued(at)) ++at;
+        }
+        return std::min(at, text_.size());
+    }
+
+    std::string_view text_;
+    std::vector<std::size_t> lines_{0};
+};
+
+// The ends of all values that stand under a table's own header, not under one of its own.
+std::size_t last_end(const toml::table& table, const TextPlaces& places) {
+    std::size_t end = places.is_header(table) ? places.of(table.source()).last : 0;
+    for (auto&& [key, value] : table) {
+        const toml::table* inner = value.as_table();
+        const toml::array* array = value.as_array();
+        const bool are_headers = array != nullptr && !array->empty() &&
+                                 array->is_array_of_tables() &&
+                                 !array->front().as_table()->is_inline();
+        if (are_headers || (inner != nullptr && places.is_header(*inner))) continue;
+        const bool is_dotted = inner != nullptr && !inner->is_inline();
+        end = std::max(end, is_dotted ? last_end(*inner, places) : places.of(value.source()).last);
+    }
+    return end;
+}
+
+// [beam.narrow] makes a table `beam` too, which has no lines of its own.
+bool has_no_place(const toml::table& table) {
+    return std::ranges::any_of(table, [&](const auto& entry) {
+        return entry.second.is_table() && entry.second.source().begin == table.source().begin;
+    });
+}
+
+// The text with one more key in the table.
+std::string with_key(std::string text,
+                     const toml::table& table,
+                     const std::string& key,
+                     const std::string& value) {
+    const TextPlaces places(text);
+    const std::string pair = fmt::format("{} = {}", key, value);
+    if (table.is_inline()) {
+        const std::size_t brace = places.of(table.source()).last - 1;
+        if (table.empty()) return text.insert(brace, fmt::format(" {} ", pair));
+        std::size_t last = 0;
+        for (auto&& [name, node] : table) last = std::max(last, places.of(node.source()).last);
+        return text.insert(last, ", " + pair);
+    }
+    std::size_t at = places.end_of_line(last_end(table, places));
+    if (text[at - 1] != '\n') text.insert(at++, "\n");
+    return text.insert(at, pair + "\n");
+}
+
+// Whole lines where nothing else stands on them, the mark of a list with it.
+TextRange with_its_surroundings(const std::string& text, TextRange range) {
+    const TextPlaces places(text);
+    const std::size_t begin = places.begin_of_line(range.first);
+    const std::size_t end = places.end_of_line(range.last);
+    const std::string_view before(text.data() + begin, range.first - begin);
+    const std::string_view after(text.data() + range.last, end - range.last);
+    const auto is_blank = [](std::string_view part) {
+        const std::size_t at = part.find_first_not_of(" \t\r\n");
+        return at == std::string_view::npos || part[at] == '#';
+    };
+    if (is_blank(before) && is_blank(after)) return {begin, end};
+    const std::size_t comma = text.find_first_not_of(" \t\r\n", range.last);
+    if (comma != std::string::npos && text[comma] == ',')
+        return {range.first, text.find_first_not_of(" \t", comma + 1)};
+    const std::size_t earlier = text.find_last_not_of(" \t\r\n", range.first - 1);
+    if (text[earlier] == ',') return {earlier, range.last};
+    return range;
+}
+
+// A table that has no braces stands in many lines: each goes by itself.
+void add_ranges(const toml::key& key,
+                const toml::node& node,
+                const TextPlaces& places,
+                std::vector<TextRange>& ranges) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr || table->is_inline()) {
+        ranges.push_back(places.of(key, node));
+        return;
+    }
+    if (places.is_header(*table)) ranges.push_back(places.of(table->source()));
+    for (auto&& [name, inner] : *table) add_ranges(name, inner, places, ranges);
 }
 
 }  // namespace
@@ -82,69 +217,99 @@ RigText::RigText(const std::filesystem::path& file)
     : RigText(read_text_file(file), file.string(), file.parent_path()) {}
 
 RigText::RigText(std::string_view toml, std::string name, std::filesystem::path folder)
-    : name_(std::move(name)), folder_(std::move(folder)), tree_(std::make_unique<Tree>()) {
-    static_cast<void>(parse_rig(toml, name_, folder_));  // whose messages are the better ones
-    tree_->table = toml::parse(toml, name_);
-    tree_->untouched = toml;
+    : text_(toml), name_(std::move(name)), folder_(std::move(folder)) {
+    static_cast<void>(rig());  // throws for a text that is no rig's
 }
-
-RigText::RigText(const RigText& other)
-    : name_(other.name_), folder_(other.folder_), tree_(std::make_unique<Tree>(*other.tree_)) {}
-
-RigText& RigText::operator=(const RigText& other) {
-    *this = RigText(other);
-    return *this;
-}
-
-RigText::RigText(RigText&&) noexcept = default;
-RigText& RigText::operator=(RigText&&) noexcept = default;
-RigText::~RigText() = default;
 
 bool RigText::has(std::string_view key) const {
-    return find(tree_->table, key) != nullptr;
+    const toml::table root = toml::parse(text_);
+    return find(root, key) != nullptr;
 }
 
 std::optional<double> RigText::number(std::string_view key) const {
-    const toml::node* node = find(tree_->table, key);
+    const toml::table root = toml::parse(text_);
+    const toml::node* node = find(root, key);
     return node == nullptr ? std::nullopt : node->value<double>();
 }
 
+void RigText::put(std::string_view key, const std::string& value) {
+    const toml::table root = toml::parse(text_);
+    std::vector<std::string> steps = steps_of(key);
+    const toml::node* node = &root;
+    std::size_t known = 0;
+    for (; known < steps.size(); ++known) {
+        const toml::node* next = child(*node, steps[known]);
+        if (next == nullptr) break;
+        node = next;
+    }
+    if (known == steps.size()) {
+        const TextRange range = TextPlaces(text_).of(node->source());
+        text_.replace(range.first, range.last - range.first, value);
+        return;
+    }
+    if (node->is_array())
+        throw InputError("{}: found no '{}'; allowed: the rig's own", key, steps[known]);
+    const toml::table* table = node->as_table();
+    if (table == nullptr) throw InputError("{}: found no table to hold it", key);
+    std::vector<std::string> rest;
+    for (std::size_t i = known; i < steps.size(); ++i) rest.push_back(toml_key(steps[i]));
+    const std::string last = rest.back();
+    const bool needs_header = table == &root ? rest.size() > 1 : has_no_place(*table);
+    if (!needs_header) {
+        text_ = with_key(text_, *table, fmt::format("{}", fmt::join(rest, ".")), value);
+        return;
+    }
+    rest.pop_back();
+    rest.insert(rest.begin(), steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(known));
+    if (!text_.ends_with('\n')) text_ += '\n';
+    text_ += fmt::format("\n[{}]\n{} = {}\n", fmt::join(rest, "."), last, value);
+}
+
 void RigText::set(std::string_view key, double value) {
-    const auto [table, last] = place(tree_->table, key);
-    table->insert_or_assign(last, value);
-    tree_->untouched.clear();
+    put(key, toml_of(value));
 }
 
 void RigText::set(std::string_view key, const std::string& value) {
-    const auto [table, last] = place(tree_->table, key);
-    table->insert_or_assign(last, value);
-    tree_->untouched.clear();
+    put(key, toml_of(value));
 }
 
 void RigText::set(std::string_view key, const std::vector<double>& values) {
-    const auto [table, last] = place(tree_->table, key);
-    toml::array array;
-    for (const double value : values) array.push_back(value);
-    table->insert_or_assign(last, std::move(array));
-    tree_->untouched.clear();
+    std::vector<std::string> parts;
+    for (const double value : values) parts.push_back(toml_of(value));
+    put(key, fmt::format("[{}]", fmt::join(parts, ", ")));
 }
 
 void RigText::erase(std::string_view key) {
-    if (find(tree_->table, key) == nullptr) return;
-    const auto [table, last] = place(tree_->table, key);
-    table->erase(last);
-    tree_->untouched.clear();
+    const toml::table root = toml::parse(text_);
+    if (find(root, key) == nullptr) return;
+    const std::size_t dot = key.rfind('.');
+    const toml::node* holder =
+        dot == std::string_view::npos ? &root : find(root, key.substr(0, dot));
+    const toml::table* table = holder->as_table();
+    if (table == nullptr) throw InputError("{}: found no table to hold it", key);
+    std::vector<TextRange> ranges;
+    const auto entry = table->find(key.substr(dot + 1));
+    add_ranges(entry->first, entry->second, TextPlaces(text_), ranges);
+    // From the end, so that what comes before stays where it is.
+    std::ranges::sort(ranges, std::ranges::greater(), &TextRange::first);
+    for (const TextRange& range : ranges) {
+        const TextRange all = with_its_surroundings(text_, range);
+        text_.erase(all.first, all.last - all.first);
+    }
 }
 
-std::string RigText::text() const {
-    if (!tree_->untouched.empty()) return tree_->untouched;
-    std::ostringstream text;
-    text << tree_->table << "\n";
-    return text.str();
+void RigText::copy_files(const std::filesystem::path& folder) const {
+    for (const RigFile& file : rig().files) {
+        const std::filesystem::path from = folder_ / file.name;
+        const std::filesystem::path to = folder / file.name;
+        if (exists(to) && equivalent(from, to)) continue;
+        if (to.has_parent_path()) make_folder(to.parent_path());
+        write_text_file(to, read_text_file(from));
+    }
 }
 
 Rig RigText::rig() const {
-    return parse_rig(text(), name_, folder_);
+    return parse_rig(text_, name_, folder_);
 }
 
 }  // namespace aphotic

@@ -6,13 +6,14 @@
 //   water.multiple      sled.altitude_m      strobe.fore.power      strobe.1.position_m
 //   beam.fresnel.cones  camera.vignetting.radial
 //
-// Comments and the order of keys are lost with the first key that is set.
+// A value is replaced where it stands; a new key follows the last of its table. All else, comments
+// and layout included, stays as its author wrote it. Numbers have the fewest digits that give the
+// same number back.
 #pragma once
 
 #include "rig/rig.h"
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,11 +25,6 @@ class RigText {
   public:
     explicit RigText(const std::filesystem::path& file);
     RigText(std::string_view toml, std::string name, std::filesystem::path folder);
-    RigText(const RigText& other);
-    RigText& operator=(const RigText& other);
-    RigText(RigText&&) noexcept;
-    RigText& operator=(RigText&&) noexcept;
-    ~RigText();
 
     [[nodiscard]] bool has(std::string_view key) const;
     // None where the key is not there or no number.
@@ -39,20 +35,23 @@ class RigText {
     void set(std::string_view key, double value);
     void set(std::string_view key, const std::string& value);
     void set(std::string_view key, const std::vector<double>& values);
-    // Whatever it holds.
+    // With its line, where nothing else stands there. A table goes with all that it holds.
     void erase(std::string_view key);
 
     // Files that the text names are found here.
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-    [[nodiscard]] std::string text() const;
+    [[nodiscard]] const std::string& text() const { return text_; }
+    // Copies these below another folder, where they are not there themselves.
+    void copy_files(const std::filesystem::path& folder) const;
     // As rig/rig_reader.h reads it.
     [[nodiscard]] Rig rig() const;
 
   private:
-    struct Tree;
+    void put(std::string_view key, const std::string& value);
+
+    std::string text_;
     std::string name_;
     std::filesystem::path folder_;
-    std::unique_ptr<Tree> tree_;
 };
 
 }  // namespace aphotic

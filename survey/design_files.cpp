@@ -52,16 +52,6 @@ DesignJson numbers_of(const Rig& rig, const Design& design, const LightFigures& 
     return json;
 }
 
-void copy_files(const Rig& rig, const fs::path& from_folder, const fs::path& to_folder) {
-    for (const RigFile& file : rig.files) {
-        const fs::path from = from_folder / file.name;
-        const fs::path to = to_folder / file.name;
-        if (fs::exists(to) && fs::equivalent(from, to)) continue;
-        make_folder(to.parent_path());
-        write_text_file(to, read_text_file(from));
-    }
-}
-
 }  // namespace
 
 DesignJson design_json(const Rig& rig, const DesignRequest& request, const DesignResult& result) {
@@ -89,11 +79,12 @@ DesignJson design_json(const Rig& rig, const DesignRequest& request, const Desig
     return json;
 }
 
-void write_design(const Rig& rig,
+void write_design(const RigText& text,
                   const DesignRequest& request,
                   const DesignResult& result,
                   const fs::path& folder) {
-    copy_files(rig, request.folder, folder);
+    const Rig rig = text.rig();
+    text.copy_files(folder);
     write_text_file(folder / kDesignNumbers, json_text(design_json(rig, request, result)));
     write_text_file(folder / kDesignPage, design_html(rig, request, result));
     write_text_file(folder / kDesignedRig, result.best.toml);

@@ -24,7 +24,7 @@ inline constexpr const char* kDesignPage = "report.html";
                                                  const DesignResult& result);
 
 // The folder is there. Files are whole or not there; the rig comes last.
-void write_design(const Rig& rig,
+void write_design(const RigText& text,
                   const DesignRequest& request,
                   const DesignResult& result,
                   const std::filesystem::path& folder);

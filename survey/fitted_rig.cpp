@@ -17,16 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr double kMillimetres = 1e3;
 
-void copy_tables(const RigText& text, const Rig& rig, const fs::path& folder) {
-    for (const RigFile& file : rig.files) {
-        const fs::path from = text.folder() / file.name;
-        const fs::path to = folder / file.name;
-        if (fs::exists(to) && fs::equivalent(from, to)) continue;
-        if (to.has_parent_path()) make_folder(to.parent_path());
-        write_text_file(to, read_text_file(from));
-    }
-}
-
 void set_beam(const FitBeam& fit,
               const FitBeam::Fitted& fitted,
               const std::string& name,
@@ -98,7 +88,7 @@ void set_strobes(const Rig& rig, const FitResult& result, const fs::path& folder
 void write_fitted_rig(const RigText& rig_text, const FitResult& result, const fs::path& folder) {
     const Rig rig = rig_text.rig();
     RigText text = rig_text;
-    copy_tables(rig_text, rig, folder);
+    rig_text.copy_files(folder);
     set_strobes(rig, result, folder, text);
     const FitState& state = result.state;
     for (const WaterNumber& number : state.water) text.set(number.key, number.value);

@@ -27,7 +27,7 @@ TEST(Design, FindsTheMiddle) {
         design_rig(design_strobe("lamp", "[0.2, -0.1, -0.2]", "direction = [0, 0, 1]"), 4.0);
     DesignRequest request = request_for(rig, {"strobe.lamp.position_m"}, 600);
     request.freedom.boxes = {"lamp=-0.4:0.4,-0.4:0.4,-0.2"};
-    const DesignResult result = design(rig, request);
+    const DesignResult result = design(text_of(rig), request);
     constexpr double kNear_m = 0.01;  // the top is a crease; the box is 0.8 m wide
     ASSERT_TRUE(result.is_better);
     EXPECT_NEAR(result.best.places[0].position_m.x(), 0.0, kNear_m);
@@ -42,7 +42,7 @@ TEST(Design, TwoAlikeEndAsMirrors) {
     DesignRequest request = request_for(rig, {"strobe.*.position_m"}, 1500);
     request.freedom.boxes = {"fore=0.1:1,0,0", "aft=-1:-0.1,0,0"};
     request.keep = 0.0;
-    const DesignResult result = design(rig, request);
+    const DesignResult result = design(text_of(rig), request);
     constexpr double kNear_m = 0.01;
     ASSERT_TRUE(result.is_better);
     EXPECT_NEAR(
@@ -53,9 +53,9 @@ TEST(Design, TheSameSeedGivesTheSameBytesWhateverTheThreads) {
     const Rig rig = design_rig(two_strobes());
     DesignRequest request = request_for(rig, {"strobe.*.position_m", "strobe.*.aim"}, 200);
     request.envelope.altitude_m = {1.8, 2.2};
-    const DesignResult one = design(rig, request);
+    const DesignResult one = design(text_of(rig), request);
     request.threads = 3;
-    const DesignResult other = design(rig, request);
+    const DesignResult other = design(text_of(rig), request);
     EXPECT_EQ(one.best.toml, other.best.toml);
     EXPECT_EQ(one.best.figures.evenness, other.best.figures.evenness);
     ASSERT_EQ(one.front.size(), other.front.size());
@@ -75,7 +75,7 @@ TEST(Design, IsNeverWorseThanTheStart) {
                 request.seed = seed;
                 request.level = 0.8;
                 request.envelope.pitch_rad = {0.0, 0.1};
-                const DesignResult result = design(rig, request);
+                const DesignResult result = design(text_of(rig), request);
                 EXPECT_GE(result.best.figures.evenness, result.start.figures.evenness);
                 EXPECT_GE(result.best.figures.coverage, result.start.figures.coverage);
                 EXPECT_GE(result.best.figures.signal_to_noise,
@@ -90,7 +90,7 @@ TEST(Design, IsNeverWorseThanTheStart) {
 TEST(Design, NoneOfTheFrontIsBetterInBoth) {
     const Rig rig = design_rig(two_strobes(), 3.0);
     const DesignResult result =
-        design(rig, request_for(rig, {"strobe.*.position_m", "strobe.*.aim"}, 600));
+        design(text_of(rig), request_for(rig, {"strobe.*.position_m", "strobe.*.aim"}, 600));
     ASSERT_GE(result.front.size(), 2U);
     for (std::size_t i = 1; i < result.front.size(); ++i) {
         EXPECT_GT(result.front[i].figures.signal_to_noise,
@@ -104,8 +104,8 @@ TEST(Design, JudgesWhatItLeaves) {
     const Rig rig = design_rig(two_strobes());
     DesignRequest request = request_for(rig, {"strobe.*.aim"}, 100);
     request.envelope.roll_rad = {-0.1, 0.1};
-    const DesignResult result = design(rig, request);
-    const Rig left = parse_rig(result.best.toml, "designed.toml", {});
+    const DesignResult result = design(text_of(rig), request);
+    const Rig left = RigText(result.best.toml, "designed.toml", {}).rig();
     double least = 1.0;
     for (const double roll_rad : {-0.1, 0.0, 0.1}) {
         Sled sled = left.sled;
@@ -148,17 +148,17 @@ TEST(Design, RefusesAStartThatLeavesPixelsDark) {
         "[[strobe]]\nname = \"lamp\"\nposition_m = [0.2, 0, 0]\ndirection = [0, 0, 1]\n"
         "beam = \"narrow\"\n";
     const Rig rig = design_rig(cone);
-    EXPECT_THROW((void)design(rig, request_for(rig, {"strobe.lamp.aim"}, 20)), InputError);
+    EXPECT_THROW((void)design(text_of(rig), request_for(rig, {"strobe.lamp.aim"}, 20)), InputError);
 }
 
 // A search in water that scatters counts the veil's noise.
 TEST(Design, CountsTheVeil) {
     std::string text = design_rig_text(two_strobes());
     text.replace(text.find("multiple = 0.0"), 14, "scattering = \"sea-water\"");
-    const Rig rig = parse_rig(text, "rig.toml", {});
+    const Rig rig = RigText(text, "rig.toml", {}).rig();
     DesignRequest request = request_for(rig, {"strobe.fore.aim"}, 10);
     request.goal = DesignGoal::Signal;
-    const DesignResult result = design(rig, request);
+    const DesignResult result = design(text_of(rig), request);
     const LightmapMaker maker(rig, std::nullopt, {});
     constexpr double kTables = 2e-4;
     EXPECT_NEAR(

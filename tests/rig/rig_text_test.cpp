@@ -2,9 +2,13 @@
 #include "rig/rig_text.h"
 
 #include "base/error.h"
+#include "support/design_rig.h"
 #include "support/fit_rig.h"
 
 #include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
 
 namespace aphotic::rig_text_test {
 namespace {
@@ -49,6 +53,81 @@ TEST(RigText, NamesWhatIsNotThere) {
                   std::string::npos)
             << error.what();
     }
+}
+
+// Of a strobe's lines. What stands besides the value stays, byte for byte.
+struct TextChange {
+    std::string was;
+    std::string key;
+    std::vector<double> value;  // one: a number; none: it is erased
+    std::string is;
+};
+
+const std::string kDown = "direction = [0, 0, 1]";
+
+TEST(RigText, ChangesWhatIsAskedAndNothingElse) {
+    const std::vector<TextChange> changes{
+        {"aim = { tilt_deg = 26.0, toward = \"axis\" }  # é",
+         "aim.tilt_deg",
+         {7.0},
+         "aim = { tilt_deg = 7.0, toward = \"axis\" }  # é"},
+        {"aim.tilt_deg = 3  # é\naim.toward = \"axis\"",
+         "aim.tilt_deg",
+         {-0.0},
+         "aim.tilt_deg = 0.0  # é\naim.toward = \"axis\""},
+        {"direction = [\n  0.5, 0.0,  # x\n  0.1 ]",
+         "direction",
+         {0.25, -0.0, 1.0},
+         "direction = [0.25, 0.0, 1.0]"},
+        {kDown + "  # down", "power", {0.165}, kDown + "  # down\npower = 0.165"},
+        {kDown + "\npower = 2  # W", "power", {}, kDown},
+        {"aim = { tilt_deg = 3, toward = \"axis\" }", "aim", {}, ""},
+        {"aim.tilt_deg = 3\naim.toward = \"axis\"\npower = 2.0", "aim", {}, "power = 2.0"},
+        {"power = 2.0\n[strobe.aim]  # its own\ntilt_deg = 3\ntoward = \"axis\"",
+         "aim",
+         {},
+         "power = 2.0"},
+        {"power = 2.0\n[strobe.aim]\ntilt_deg = 3\ntoward = \"axis\"",
+         "energy_j",
+         {5.0},
+         "power = 2.0\nenergy_j = 5.0\n[strobe.aim]\ntilt_deg = 3\ntoward = \"axis\""},
+        {"aim = { tilt_deg = 3, toward = \"axis\" }", "aim.toward", {}, "aim = { tilt_deg = 3 }"},
+        {"aim = { tilt_deg = 3, toward = \"axis\" }",
+         "aim.tilt_deg",
+         {},
+         "aim = { toward = \"axis\" }"},
+    };
+    const auto text_of = [](const std::string& lines) {
+        return design_rig_text(design_strobe("é", "[0.5, 0, 0]", lines));
+    };
+    for (const TextChange& change : changes) {
+        RigText text(text_of(change.was), "rig.toml", {});
+        const std::string key = "strobe.é." + change.key;
+        if (change.value.empty()) {
+            text.erase(key);
+        } else if (change.value.size() == 1) {
+            text.set(key, change.value.front());
+        } else {
+            text.set(key, change.value);
+        }
+        const std::string wanted = text_of(change.is);
+        // A line that is gone takes its end with it.
+        EXPECT_EQ(text.text(), change.is.empty() ? wanted.substr(0, wanted.size() - 1) : wanted)
+            << change.was;
+    }
+}
+
+TEST(RigText, AddsToStrobesInOneLine) {
+    const std::string strobe =
+        "{ name = \"a\", position_m = [1, 0, 0], direction = [0, 0, 1], "
+        "beam = \"round\"";
+    const std::string text = design_rig_text("");
+    const std::string lines = "strobe = [" + strobe + " }]\n";
+    RigText rig(lines + text, "rig.toml", {});
+    rig.set("strobe.a.power", 0.25);
+    EXPECT_EQ(rig.text(), "strobe = [" + strobe + ", power = 0.25 }]\n" + text);
+    rig.erase("strobe.a.power");
+    EXPECT_EQ(rig.text(), lines + text);
 }
 
 // To the last bit, and what is read again is the same.

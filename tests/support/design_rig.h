@@ -5,7 +5,7 @@
 #pragma once
 
 #include "rig/rig.h"
-#include "rig/rig_reader.h"
+#include "rig/rig_text.h"
 
 #include <fmt/format.h>
 
@@ -51,8 +51,12 @@ inline std::string two_strobes(const std::string& aim = "direction = [0, 0, 1]")
            design_strobe("aft", "[-0.6, 0.0, 0.0]", aim);
 }
 
+inline RigText text_of(const Rig& rig) {
+    return {rig.toml, "rig.toml", {}};
+}
+
 inline Rig design_rig(const std::string& strobes, double exponent = 1.0) {
-    return parse_rig(design_rig_text(strobes, exponent), "rig.toml", {});
+    return RigText(design_rig_text(strobes, exponent), "rig.toml", {}).rig();
 }
 
 }  // namespace aphotic

@@ -2,6 +2,7 @@
 #include "survey/design_files.h"
 
 #include "base/atomic_file.h"
+#include "rig/rig_reader.h"
 #include "support/design_rig.h"
 #include "support/page.h"
 #include "support/temp_folder.h"
@@ -17,20 +18,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Rig rig_with_a_table(const fs::path& folder) {
+RigText rig_with_a_table(const fs::path& folder) {
     std::string text = design_rig_text(two_strobes("direction = [0, 0, 1]  # <b> & \"c\""), 3.0);
     text.replace(text.find("[seafloor]"), 10, "[seafloor]\nreflectance = \"mud/mud.csv\"");
     fs::create_directories(folder / "mud");
     write_file(folder / "mud" / "mud.csv", "wavelength_nm,reflectance\n300,0.1\n800,0.2\n");
     write_file(folder / "rig.toml", text);
-    return read_rig(folder / "rig.toml");
+    return RigText(folder / "rig.toml");
 }
 
-DesignRequest request_for(const Rig& rig, const fs::path& folder) {
+DesignRequest request_for(const Rig& rig) {
     DesignRequest request{.freedom = {.keys = {"strobe.*.position_m"}},
                           .envelope = envelope_of(rig.sled),
-                          .evaluations = 150,
-                          .folder = folder};
+                          .evaluations = 150};
     request.envelope.altitude_m = {1.8, 2.2};
     return request;
 }
@@ -39,15 +39,16 @@ class DesignFiles : public testing::Test {
   protected:
     void SetUp() override {
         fs::create_directories(out_);
-        write_design(rig_, request_, result_, out_);
+        write_design(text_, request_, result_, out_);
     }
 
     TempFolder folder_;
     fs::path in_ = folder_.path() / "in";
     fs::path out_ = folder_.path() / "out";
-    Rig rig_ = rig_with_a_table(in_);
-    DesignRequest request_ = request_for(rig_, in_);
-    DesignResult result_ = design(rig_, request_);
+    RigText text_ = rig_with_a_table(in_);
+    Rig rig_ = text_.rig();
+    DesignRequest request_ = request_for(rig_);
+    DesignResult result_ = design(text_, request_);
 };
 
 TEST_F(DesignFiles, LeaveARigThatFindsItsTables) {
@@ -74,7 +75,7 @@ TEST_F(DesignFiles, LeaveThePageAndTheNumbers) {
 
 // The folder of the rig itself will do: its tables are not copied onto themselves.
 TEST_F(DesignFiles, MayStandBesideTheRig) {
-    write_design(rig_, request_, result_, in_);
+    write_design(text_, request_, result_, in_);
     EXPECT_EQ(read_rig(in_ / kDesignedRig).strobes.size(), 2U);
     EXPECT_EQ(read_rig(in_ / "rig.toml").digest, rig_.digest);
 }
