@@ -57,7 +57,9 @@ const toml::node* find(const toml::table& root, std::string_view key) {
 
 // A whole number gets a decimal point, for some keys take no integers.
 std::string toml_of(double value) {
-    return fmt::format("{:#}", value == 0.0 ? 0.0 : value);
+    std::string text = fmt::format("{}", value == 0.0 ? 0.0 : value);
+    if (text.find_first_of(".en") == std::string::npos) text += ".0";
+    return text;
 }
 
 std::string toml_of(const std::string& value) {

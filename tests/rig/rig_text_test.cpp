@@ -133,10 +133,12 @@ TEST(RigText, AddsToStrobesInOneLine) {
 // To the last bit, and what is read again is the same.
 TEST(RigText, KeepsDigits) {
     RigText text = fit_rig({});
-    const double third = 1.0 / 3.0;
-    text.set("water.multiple", third);
-    EXPECT_EQ(text.rig().water.multiple, third);
-    EXPECT_EQ(RigText(text.text(), "again.toml", {}).number("water.multiple"), third);
+    for (const double value : {1.0 / 3.0, 1e-5, 2e20, 1.5e-300, 0.165, 3.0}) {
+        text.set("water.multiple", value);
+        EXPECT_EQ(text.number("water.multiple"), value) << text.text();
+    }
+    text.set("water.multiple", 1.0 / 3.0);
+    EXPECT_EQ(text.rig().water.multiple, 1.0 / 3.0);
 }
 
 }  // namespace
