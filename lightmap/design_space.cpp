@@ -111,8 +111,7 @@ void brighten(RigText& text, const std::string& strobe, double factor) {
         std::ranges::find_if(kPowers, [&](const char* key) { return text.has(strobe + key); });
     const std::string key = strobe + (said == kPowers.end() ? "power" : *said);
     const double power = factor * text.number(key).value_or(1.0);
-    const int magnitude = power > 0.0 ? static_cast<int>(std::floor(std::log10(power))) : 0;
-    text.set(key, rounded(power, DesignSpace::kDigitsOfPower - 1 - magnitude));
+    text.set(key, std::stod(fmt::format("{:.{}g}", power, DesignSpace::kDigitsOfPower)));
 }
 
 Strobe placed(Strobe strobe, const StrobePlace& place) {

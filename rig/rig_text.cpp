@@ -137,16 +137,22 @@ class TextPlaces {
     std::vector<std::size_t> lines_{0};
 };
 
-// The ends of all values that stand under a table's own header, not under one of its own.
+// [table], or [[table]] for each of several.
+bool has_headers(const toml::node& node, const TextPlaces& places) {
+    if (const toml::array* array = node.as_array(); array != nullptr) {
+        const toml::table* first = array->empty() ? nullptr : array->front().as_table();
+        return first != nullptr && !first->is_inline();
+    }
+    return node.is_table() && !node.as_table()->is_inline() && places.is_header(*node.as_table());
+}
+
+// The ends of all values that stand under a table's own header or within its braces, not under a
+// header of their own; 0: there are none.
 std::size_t last_end(const toml::table& table, const TextPlaces& places) {
-    std::size_t end = places.is_header(table) ? places.of(table.source()).last : 0;
+    std::size_t end = 0;
     for (auto&& [key, value] : table) {
+        if (has_headers(value, places)) continue;
         const toml::table* inner = value.as_table();
-        const toml::array* array = value.as_array();
-        const bool are_headers = array != nullptr && !array->empty() &&
-                                 array->is_array_of_tables() &&
-                                 !array->front().as_table()->is_inline();
-        if (are_headers || (inner != nullptr && places.is_header(*inner))) continue;
         const bool is_dotted = inner != nullptr && !inner->is_inline();
         end = std::max(end, is_dotted ? last_end(*inner, places) : places.of(value.source()).last);
     }
@@ -160,21 +166,22 @@ bool has_no_place(const toml::table& table) {
     });
 }
 
-// The text with one more key in the table.
+// The text with one more key in the table, of the root or one with a header or braces.
 std::string with_key(std::string text,
                      const toml::table& table,
+                     bool is_root,
                      const std::string& key,
                      const std::string& value) {
     const TextPlaces places(text);
     const std::string pair = fmt::format("{} = {}", key, value);
+    const std::size_t last = last_end(table, places);
+    const TextRange own = places.of(table.source());
     if (table.is_inline()) {
-        const std::size_t brace = places.of(table.source()).last - 1;
-        if (table.empty()) return text.insert(brace, fmt::format(" {} ", pair));
-        std::size_t last = 0;
-        for (auto&& [name, node] : table) last = std::max(last, places.of(node.source()).last);
-        return text.insert(last, ", " + pair);
+        return last == 0 ? text.insert(own.last - 1, fmt::format(" {} ", pair))
+                         : text.insert(last, ", " + pair);
     }
-    std::size_t at = places.end_of_line(last_end(table, places));
+    if (is_root && last == 0) return text.insert(0, pair + "\n");
+    std::size_t at = places.end_of_line(last == 0 ? own.last : last);
     if (text[at - 1] != '\n') text.insert(at++, "\n");
     return text.insert(at, pair + "\n");
 }
@@ -236,35 +243,45 @@ std::optional<double> RigText::number(std::string_view key) const {
 
 void RigText::put(std::string_view key, const std::string& value) {
     const toml::table root = toml::parse(text_);
+    const TextPlaces places(text_);
     std::vector<std::string> steps = steps_of(key);
-    const toml::node* node = &root;
-    std::size_t known = 0;
-    for (; known < steps.size(); ++known) {
-        const toml::node* next = child(*node, steps[known]);
+    std::vector<const toml::node*> nodes{&root};  // on the way, as far as it is there
+    while (nodes.size() <= steps.size()) {
+        const toml::node* next = child(*nodes.back(), steps[nodes.size() - 1]);
         if (next == nullptr) break;
-        node = next;
+        nodes.push_back(next);
     }
-    if (known == steps.size()) {
-        const TextRange range = TextPlaces(text_).of(node->source());
+    if (nodes.size() > steps.size()) {
+        const toml::table* table = nodes.back()->as_table();
+        if (has_headers(*nodes.back(), places) || (table != nullptr && !table->is_inline()))
+            throw InputError("{}: found a table; allowed: a key with a value", key);
+        const TextRange range = places.of(nodes.back()->source());
         text_.replace(range.first, range.last - range.first, value);
         return;
     }
-    if (node->is_array())
-        throw InputError("{}: found no '{}'; allowed: the rig's own", key, steps[known]);
-    const toml::table* table = node->as_table();
-    if (table == nullptr) throw InputError("{}: found no table to hold it", key);
-    std::vector<std::string> rest;
-    for (std::size_t i = known; i < steps.size(); ++i) rest.push_back(toml_key(steps[i]));
-    const std::string last = rest.back();
-    const bool needs_header = table == &root ? rest.size() > 1 : has_no_place(*table);
+    if (nodes.back()->is_array())
+        throw InputError("{}: found no '{}'; allowed: the rig's own", key, steps[nodes.size() - 1]);
+    if (!nodes.back()->is_table()) throw InputError("{}: found no table to hold it", key);
+    // a.b.c = 1 makes tables that have neither header nor braces: their keys go where it stands.
+    const auto is_dotted = [&](const toml::table& table) {
+        return !table.is_inline() && !places.is_header(table);
+    };
+    while (nodes.size() > 1 && is_dotted(*nodes.back()->as_table())) nodes.pop_back();
+
+    for (std::string& step : steps) step = toml_key(step);
+    const toml::table& table = *nodes.back()->as_table();
+    const std::size_t known = nodes.size() - 1;
+    const bool needs_header = known == 0 ? steps.size() > 1 : has_no_place(table);
     if (!needs_header) {
-        text_ = with_key(text_, *table, fmt::format("{}", fmt::join(rest, ".")), value);
+        const auto first = steps.begin() + static_cast<std::ptrdiff_t>(known);
+        const std::string rest = fmt::format("{}", fmt::join(first, steps.end(), "."));
+        text_ = with_key(text_, table, known == 0, rest, value);
         return;
     }
-    rest.pop_back();
-    rest.insert(rest.begin(), steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(known));
+    const std::string last = steps.back();
+    steps.pop_back();
     if (!text_.ends_with('\n')) text_ += '\n';
-    text_ += fmt::format("\n[{}]\n{} = {}\n", fmt::join(rest, "."), last, value);
+    text_ += fmt::format("\n[{}]\n{} = {}\n", fmt::join(steps, "."), last, value);
 }
 
 void RigText::set(std::string_view key, double value) {

@@ -117,6 +117,45 @@ TEST(RigText, ChangesWhatIsAskedAndNothingElse) {
     }
 }
 
+// Wherever the table of the key stands.
+TEST(RigText, AddsKeysToEveryKindOfTable) {
+    const std::string strobes = two_strobes();
+    const auto water_of = [&](const std::string& lines) {
+        std::string text = design_rig_text(strobes);
+        text.replace(text.find("multiple = 0.0"), 14, lines);
+        return text;
+    };
+    const auto added = [&](const std::string& text, const std::string& key) {
+        RigText rig(text, "rig.toml", {});
+        rig.set(key, 1.5);
+        EXPECT_EQ(rig.number(key), 1.5) << rig.text();
+        return rig.text();
+    };
+    EXPECT_EQ(added(water_of("multiple = 0.0"), "water.a.b"),
+              water_of("multiple = 0.0\na.b = 1.5"));
+    // A key of the root, of none and of a table that only others' headers name.
+    const std::string text = design_rig_text(strobes);
+    EXPECT_EQ(added(text, "first"), std::string(text).insert(text.find("[sled]"), "first = 1.5\n"));
+    const std::string untitled = text.substr(text.find("[sled]"));
+    EXPECT_EQ(added(untitled, "first"), "first = 1.5\n" + untitled);
+    EXPECT_EQ(added(text, "beam.wide.fwhm_deg"), text + "\n[beam.wide]\nfwhm_deg = 1.5\n");
+    EXPECT_EQ(added(text, "sled.roll_deg"),
+              std::string(text).insert(text.find("[camera]"), "roll_deg = 1.5\n"));
+    // Of a table that dots make.
+    const std::string aim = "aim.tilt_deg = 3\naim.toward = \"axis\"";
+    EXPECT_EQ(added(design_rig_text(two_strobes(aim)), "strobe.fore.aim.more"),
+              design_rig_text(design_strobe("fore", "[0.3, 0.0, 0.0]", aim + "\naim.more = 1.5") +
+                              design_strobe("aft", "[-0.6, 0.0, 0.0]", aim)));
+}
+
+TEST(RigText, SetsNoTable) {
+    RigText text = fit_rig({});
+    for (const char* key : {"water", "strobe", "strobe.fore", "beam", "beam.smooth"}) {
+        EXPECT_THROW(text.set(key, 1.0), InputError) << key;
+    }
+    EXPECT_EQ(text.text(), fit_rig({}).text());
+}
+
 TEST(RigText, AddsToStrobesInOneLine) {
     const std::string strobe =
         "{ name = \"a\", position_m = [1, 0, 0], direction = [0, 0, 1], "
