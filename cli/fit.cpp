@@ -97,8 +97,8 @@ void print_result(const std::string& title,
         result.left.residual,
         result.left.pattern);
     fmt::print("  {}  the rig\n", (folder / kFittedRig).string());
-    fmt::print("  {}  errors and covariance\n", (folder / "fit.json").string());
-    fmt::print("  {}  to look at\n", (folder / "report.html").string());
+    fmt::print("  {}  errors and covariance\n", (folder / kFitNumbers).string());
+    fmt::print("  {}  to look at\n", (folder / kFitPage).string());
 }
 
 ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
@@ -114,8 +114,8 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     make_folder(options.folder);
     write_fitted_rig(text, result, options.folder);
     const nlohmann::ordered_json json = to_json(result);
-    write_text_file(options.folder / "fit.json", json_text(json));
-    write_fit_page(options.folder / "report.html", text, samples, result);
+    write_text_file(options.folder / kFitNumbers, json_text(json));
+    write_fit_page(options.folder / kFitPage, text, samples, result);
     if (options.json) {
         fmt::print("{}", json_text(json));
     } else {

@@ -73,6 +73,13 @@ VectorXd told_errors(const MatrixXd& H,
     return (solver.eigenvectors().array().square().matrix() * variances).cwiseSqrt();
 }
 
+std::vector<Index> seen_parts(const MatrixXd& H, Index parts) {
+    std::vector<Index> seen;
+    for (Index m = 0; m < parts; ++m)
+        if (H(m, m) > 0.0) seen.push_back(m);
+    return seen;
+}
+
 // Numbers, and how well the images alone tell them.
 struct Told {
     const MatrixXd& H;
@@ -192,26 +199,15 @@ std::string words_of(const NotTold& one) {
     return words;
 }
 
-namespace {
-
-std::vector<Index> seen_parts(const MatrixXd& H, Index parts) {
-    std::vector<Index> seen;
-    for (Index m = 0; m < parts; ++m)
-        if (H(m, m) > 0.0) seen.push_back(m);
-    return seen;
-}
-
-}  // namespace
-
 MatrixXd covariance_of(const FitEquations::Normal& normal,
                        const VectorXd& shares,
                        const std::vector<FreeNumber>& free,
                        double huber_factor) {
     const Index parts = shares.size();
     // Those at 0 as well: a bound that holds one part makes none of the others surer.
-    std::vector<Index> active = seen_parts(normal.H, parts);
-    for (const Index k : range_of(parts, static_cast<Index>(free.size()))) active.push_back(k);
-    MatrixXd H = normal.H(active, active);
+    std::vector<Index> seen = seen_parts(normal.H, parts);
+    for (const Index k : range_of(parts, static_cast<Index>(free.size()))) seen.push_back(k);
+    MatrixXd H = normal.H(seen, seen);
     for (Index k = 0; k < static_cast<Index>(free.size()); ++k) {
         const Index at = H.rows() - static_cast<Index>(free.size()) + k;
         H(at, at) += std::pow(free[static_cast<std::size_t>(k)].plausible, -2.0);
@@ -225,11 +221,11 @@ MatrixXd covariance_of(const FitEquations::Normal& normal,
     MatrixXd C = inverse;
     // The sandwich wants several tiles for each number.
     constexpr std::size_t kTilesOfEach = 5;
-    if (normal.tiles > kTilesOfEach * active.size()) {
+    if (normal.tiles > kTilesOfEach * seen.size()) {
         const MatrixXd meat =
-            scale.asDiagonal() * MatrixXd(normal.meat(active, active)) * scale.asDiagonal();
+            scale.asDiagonal() * MatrixXd(normal.meat(seen, seen)) * scale.asDiagonal();
         const double few =
-            static_cast<double>(normal.tiles) / static_cast<double>(normal.tiles - active.size());
+            static_cast<double>(normal.tiles) / static_cast<double>(normal.tiles - seen.size());
         C = few * huber_factor * huber_factor * inverse * meat * inverse;
         // What few tiles see has too small a sandwich; none is smaller than H's own.
         const VectorXd wider =
@@ -238,7 +234,7 @@ MatrixXd covariance_of(const FitEquations::Normal& normal,
     }
     C = scale.asDiagonal() * C * scale.asDiagonal();
     MatrixXd all = MatrixXd::Zero(normal.H.rows(), normal.H.cols());
-    all(active, active) = C;
+    all(seen, seen) = C;
     return all;
 }
 

@@ -22,6 +22,8 @@
 namespace aphotic {
 
 inline constexpr const char* kFittedRig = "fitted.toml";
+inline constexpr const char* kFitNumbers = "fit.json";
+inline constexpr const char* kFitPage = "report.html";
 
 // The folder is there. Files are whole or not there; the rig comes last.
 void write_fitted_rig(const RigText& rig,
