@@ -99,6 +99,8 @@ TEST(Fit, FindsTheRigThatMadeTheMaps) {
     const TempFolder folder;
     write_fitted_rig(guess(), result, folder.path());
     const Rig fitted = RigText(folder.path() / kFittedRig).rig();
+    const auto power = std::ranges::find(result.numbers, "strobe.aft.power", &FittedNumber::key);
+    EXPECT_NEAR(fitted.strobes[1].power / fitted.strobes[0].power, 0.8, kSigmas * power->error);
     EXPECT_LT(off_at(fitted, truth, {.altitude_m = 3.0}), kPredicted);
     EXPECT_GT(off_at(guess().rig(), truth, {.altitude_m = 3.0}), 5.0 * kPredicted);
 }
@@ -203,13 +205,20 @@ FitResult fitted_to(const FitSamples& samples) {
     return fit(fit_rig(numbers), samples, options, {});
 }
 
+std::string doubts_of(const FitResult& result) {
+    std::string all;
+    for (const FitDoubt& doubt : result.left.doubts) all += doubt.what + "\n";
+    return all;
+}
+
 TEST(Fit, FindsOutASurveyWhosePosesAreThoseOfOtherImages) {
     FitSamples samples = thirty_images(6);
     EXPECT_TRUE(fitted_to(samples).left.doubts.empty());
     // Each image has its neighbour's altitude, a metre off at most.
     for (std::size_t i = 0; i + 1 < samples.images.size(); ++i)
         std::swap(samples.images[i].sled, samples.images[i + 1].sled);
-    EXPECT_FALSE(fitted_to(samples).left.doubts.empty());
+    EXPECT_NE(doubts_of(fitted_to(samples)).find("darker than their poses explain"),
+              std::string::npos);
 }
 
 // A black level of a fifth of the brightest that nobody took off.
@@ -221,7 +230,23 @@ TEST(Fit, FindsOutABlackLevel) {
     for (FitImage& image : samples.images) {
         for (float& signal : image.signal) signal += 0.2F * most;
     }
-    EXPECT_FALSE(fitted_to(samples).left.doubts.empty());
+    EXPECT_NE(doubts_of(fitted_to(samples)).find("goes with their altitude"), std::string::npos);
+}
+
+// Every other block a tenth darker in all images, which no beam or lens can be.
+TEST(Fit, FindsOutAPatternThatStaysInPlace) {
+    FitSamples samples = thirty_images(8);
+    for (FitImage& image : samples.images) {
+        for (std::size_t i = 0; i < image.signal.size(); ++i)
+            if (i / kChannels % 2 == 0) image.signal[i] *= 0.9F;
+    }
+    EXPECT_NE(doubts_of(fitted_to(samples)).find("stay in place"), std::string::npos);
+}
+
+TEST(Fit, FindsOutSaturatedImages) {
+    FitSamples samples = thirty_images(9);
+    for (FitImage& image : samples.images) image.saturated_share = 0.05;
+    EXPECT_EQ(doubts_of(fitted_to(samples)), "saturated samples, left out; share\n");
 }
 
 }  // namespace
