@@ -214,7 +214,9 @@ class DesignSearch {
 
     void search(SearchWay way, const std::vector<double>& from, double share, const Value& value) {
         const int evaluations =
-            std::max(1, static_cast<int>(share * static_cast<double>(request_.evaluations)));
+            std::min(std::max(1, static_cast<int>(share * request_.evaluations)),
+                     request_.evaluations - evaluations_);
+        if (evaluations == 0) return;
         const auto ask = [&](std::span<const double> point) {
             ++evaluations_;
             if (request_.progress) request_.progress(evaluations_, request_.evaluations);

@@ -3,6 +3,7 @@
 
 #include <nlopt.h>
 
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <new>
@@ -17,12 +18,18 @@ constexpr double kLeastStep = 1e-5;
 struct Asked {
     const std::function<double(std::span<const double>)>& value;
     nlopt_opt search;
+    int left;  // of the evaluations: NLopt ends some steps later
     std::exception_ptr fault{};
 };
 
 // Called from C, which no exception may pass.
 double ask(unsigned count, const double* point, double* /*gradient*/, void* data) {
     auto& asked = *static_cast<Asked*>(data);
+    if (asked.left == 0) {
+        nlopt_force_stop(asked.search);
+        return -HUGE_VAL;
+    }
+    --asked.left;
     try {
         return asked.value({point, count});
     } catch (...) {
@@ -43,7 +50,7 @@ void maximise(SearchWay way,
                                      static_cast<unsigned>(start.size())),
                         &nlopt_destroy);
     if (!search) throw std::bad_alloc();
-    Asked asked{.value = value, .search = search.get()};
+    Asked asked{.value = value, .search = search.get(), .left = effort.evaluations};
     nlopt_srand(static_cast<unsigned long>(effort.seed));
     nlopt_set_max_objective(search.get(), ask, &asked);
     nlopt_set_lower_bounds1(search.get(), 0.0);

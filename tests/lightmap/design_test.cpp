@@ -87,6 +87,16 @@ TEST(Design, IsNeverWorseThanTheStart) {
     }
 }
 
+TEST(Design, LooksAtNoMoreThanItIsAskedTo) {
+    const Rig rig = design_rig(two_strobes(), 3.0);
+    for (const int evaluations : {10, 37, 200}) {
+        const DesignResult result = design(
+            text_of(rig), request_for(rig, {"strobe.*.position_m", "strobe.*.aim"}, evaluations));
+        EXPECT_LE(result.evaluations, evaluations);
+        EXPECT_GE(result.evaluations, evaluations / 2);
+    }
+}
+
 TEST(Design, NoneOfTheFrontIsBetterInBoth) {
     const Rig rig = design_rig(two_strobes(), 3.0);
     const DesignResult result =
