@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <limits>
 #include <numbers>
@@ -163,8 +165,7 @@ Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(r
         const auto& kind = scatterer.phase.kind;
         if (const auto* table = std::get_if<PhaseTable>(&kind)) {
             for (const double angle_rad : table->angle_rad)
-                if (points >= kVeilPointsBetweenKinks && angle_rad > kVeilCut)
-                    kinks_rad_.push_back(angle_rad - kPoleRad);
+                if (angle_rad > kVeilCut) kinks_rad_.push_back(angle_rad - kPoleRad);
         }
         if (!std::holds_alternative<HenyeyGreenstein>(kind)) {
             constexpr int kSteps = 8192;
@@ -174,9 +175,29 @@ Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(r
         }
         phases_.push_back(std::move(phase));
     }
+    add_kink_panels();
     const double least_per_m = rig.water.scatters() ? least_loss_in_view_per_m(rig) : 0.0;
     longest_m_ =
         least_per_m > 0.0 ? kVeilDepth / least_per_m : std::numeric_limits<double>::infinity();
+}
+
+void Veil::add_kink_panels() {
+    std::ranges::sort(kinks_rad_);
+    for (std::size_t k = 0; k + 1 < kinks_rad_.size(); ++k) {
+        const double from = kinks_rad_[k];
+        const double width = kinks_rad_[k + 1] - from;
+        KinkPanel panel{
+            .room_rad = std::min({kVeilPanelRad, kPoleRad - kinks_rad_[k + 1], from + kPoleRad})};
+        const Rule& rule = rule_for(width, panel.room_rad);
+        for (std::size_t n = 0; width <= panel.room_rad && n < rule.points.size(); ++n) {
+            const double phi = from + width * rule.points[n];
+            panel.points.push_back({.cosine = std::cos(phi),
+                                    .sine = std::sin(phi),
+                                    .weight = width * rule.weights[n]});
+            for (const Phase& phase : phases_) panel.phases.push_back(phase.at(phi + kPoleRad));
+        }
+        panels_.push_back(std::move(panel));
+    }
 }
 
 Veil::Light Veil::light_of(const Strobe& strobe, const Beam& beam, unsigned emitter_side) const {
@@ -274,7 +295,7 @@ void Veil::add_lamp(const Light& light,
         std::min(std::atan2(end_m - view.foot_m, view.away_m), kPoleRad - kVeilEndRad);
     if (!(last > first)) return;
     std::vector<double>& cuts = nodes.cuts_rad;
-    cuts = kinks_rad_;
+    cuts.clear();
     for (const Crease& crease : light.creases)
         add_crossings(crease, view.towards, view.along, cuts);
     // Towards what ends like a power panels shrink.
@@ -287,7 +308,7 @@ void Veil::add_lamp(const Light& light,
             }
         }
     };
-    if (light.is_of_optics) shrink_towards(kinks_rad_.size(), {0.03, 0.004});
+    if (light.is_of_optics) shrink_towards(0, {0.03, 0.004});
     if (light.ends_in_a_power) {
         const std::size_t from = cuts.size();
         add_crossings(light.creases.back(), view.towards, view.along, cuts);
@@ -302,38 +323,41 @@ void Veil::add_lamp(const Light& light,
     }
 }
 
-void Veil::add_piece(const Light& light,
-                     const Lamp& lamp,
-                     const View& view,
-                     double from,
-                     double to,
-                     VeilNodes& nodes) const {
-    const double centre = 0.5 * (from + to);
-    const Vector3d seen = std::cos(centre) * view.towards + std::sin(centre) * view.along;
-    const double k_e = light.frame.axis.dot(view.towards);
-    const double k_u = light.frame.axis.dot(view.along);
-    // Which cones shine here, and on which side of their soft edges.
-    constexpr std::size_t kMostCones = 16;
-    std::array<const ConeLight*, kMostCones> lit{};
-    std::size_t count = 0;
-    const bool is_of_cones = !light.cones.empty() && light.cones.size() <= kMostCones;
-    const double cos_seen = light.frame.axis.dot(seen);
-    for (const ConeLight& cone : light.cones) {
-        if (is_of_cones && cos_seen > cone.edge_cosine) lit[count++] = &cone;
-    }
-    if (is_of_cones ? count == 0 : intensity_towards(light.beam, light.frame, seen) == 0.0) return;
-    const auto intensity_at = [&](double cosine, double sine) {
-        if (!is_of_cones) {
-            return continued_intensity(
-                light.beam, light.frame, cosine * view.towards + sine * view.along, seen);
+// A lamp's light in a piece of the ray within which its beam has no edge and no kink.
+class Veil::Shine {
+  public:
+    const Light& light;
+    const View& view;
+    double share;  // of the lamp, over h
+
+    Shine(const Light& of_light, const Lamp& lamp, const View& of_view, double middle_rad)
+        : light(of_light),
+          view(of_view),
+          share(lamp.share / view.away_m),
+          k_e_(light.frame.axis.dot(view.towards)),
+          k_u_(light.frame.axis.dot(view.along)),
+          seen_(towards(std::cos(middle_rad), std::sin(middle_rad))),
+          cos_seen_(light.frame.axis.dot(seen_)),
+          is_of_cones_(!light.cones.empty() && light.cones.size() <= kMostCones) {
+        for (std::size_t i = 0; is_of_cones_ && i < light.cones.size(); ++i) {
+            if (cos_seen_ > light.cones[i].edge_cosine) lit_ |= std::uint32_t{1} << i;
         }
-        const double cos_theta = std::max(0.0, cosine * k_e + sine * k_u);
+    }
+
+    [[nodiscard]] bool is_dark() const {
+        return is_of_cones_ ? lit_ == 0 : intensity_towards(light.beam, light.frame, seen_) == 0.0;
+    }
+
+    [[nodiscard]] double intensity(double cosine, double sine) const {
+        if (!is_of_cones_)
+            return continued_intensity(light.beam, light.frame, towards(cosine, sine), seen_);
+        const double cos_theta = std::max(0.0, cosine * k_e_ + sine * k_u_);
         double sum = 0.0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const ConeLight& cone = *lit[i];
+        for (std::uint32_t left = lit_; left != 0; left &= left - 1) {
+            const ConeLight& cone = light.cones[static_cast<std::size_t>(std::countr_zero(left))];
             double I = cone.on_axis *
                        (cone.exponent == 1.0 ? cos_theta : std::pow(cos_theta, cone.exponent));
-            if (cos_seen < cone.full_cosine) {
+            if (cos_seen_ < cone.full_cosine) {
                 const double t =
                     (cos_theta - cone.edge_cosine) / (cone.full_cosine - cone.edge_cosine);
                 I *= t * t * (3.0 - 2.0 * t);
@@ -341,13 +365,70 @@ void Veil::add_piece(const Light& light,
             sum += I;
         }
         return sum;
-    };
+    }
+
+    // phase_of: by scatterer.
+    template <typename PhaseOf>
+    void add(const Point& point, const PhaseOf& phase_of, VeilNodes& nodes) const {
+        const double weight = share * intensity(point.cosine, point.sine) * point.weight;
+        nodes.path_m.push_back(view.foot_m + view.away_m * (1.0 + point.sine) / point.cosine);
+        for (std::size_t i = 0; i < nodes.weight.size(); ++i)
+            nodes.weight[i].push_back(weight * phase_of(i));
+    }
+
+  private:
+    static constexpr std::size_t kMostCones = 32;
+    [[nodiscard]] Vector3d towards(double cosine, double sine) const {
+        return cosine * view.towards + sine * view.along;
+    }
+    double k_e_;
+    double k_u_;
+    Vector3d seen_;
+    double cos_seen_;
+    bool is_of_cones_;
+    std::uint32_t lit_ = 0;  // which cones shine here, a bit each
+};
+
+void Veil::add_piece(const Light& light,
+                     const Lamp& lamp,
+                     const View& view,
+                     double from,
+                     double to,
+                     VeilNodes& nodes) const {
+    const Shine shine(light, lamp, view, 0.5 * (from + to));
+    if (shine.is_dark()) return;
+    const auto first = std::ranges::upper_bound(kinks_rad_, from);
+    for (auto kink = first; from < to; ++kink) {
+        const double end = kink == kinks_rad_.end() ? to : std::min(to, *kink);
+        const auto known = static_cast<std::size_t>(kink - kinks_rad_.begin()) - 1;
+        const bool is_whole_panel = kink != first && kink != kinks_rad_.end() && end == *kink;
+        if (is_whole_panel && !panels_[known].points.empty() &&
+            std::min(light.widest_panel_rad, view.room(from, end - from)) >=
+                panels_[known].room_rad)
+            add_known(shine, panels_[known], nodes);
+        else
+            add_panels(shine, from, end, nodes);
+        from = end;
+        if (kink == kinks_rad_.end()) break;
+    }
+}
+
+void Veil::add_known(const Shine& shine, const KinkPanel& panel, VeilNodes& nodes) const {
+    const double* phase = panel.phases.data();
+    for (const Point& point : panel.points) {
+        shine.add(
+            point, [&](std::size_t i) { return phase[i]; }, nodes);
+        phase += phases_.size();
+    }
+}
+
+void Veil::add_panels(const Shine& shine, double from, double to, VeilNodes& nodes) const {
     for (double start = from; start < to;) {
         // Halves of what is left, until a panel is no wider than its room.
         double width = to - start;
         double room = 0.0;
         while (true) {
-            room = std::min(light.widest_panel_rad, view.room(start, width));
+            room = std::min(shine.light.widest_panel_rad, shine.view.room(start, width));
             if (width <= room * (1.0 + 1e-9)) break;
             width *= 0.5;
         }
@@ -359,14 +440,13 @@ void Veil::add_piece(const Light& light,
         for (std::size_t n = 0; n < rule.points.size(); ++n) {
             const double off = width * (rule.points[n] - 0.5);
             const auto [cos_off, sin_off] = near_zero(off);
-            const double phi = middle + off;
-            const double cosine = cos_middle * cos_off - sin_middle * sin_off;
-            const double sine = sin_middle * cos_off + cos_middle * sin_off;
-            const double share =
-                lamp.share * intensity_at(cosine, sine) * width * rule.weights[n] / view.away_m;
-            nodes.path_m.push_back(view.foot_m + view.away_m * (1.0 + sine) / cosine);
-            for (std::size_t i = 0; i < phases_.size(); ++i)
-                nodes.weight[i].push_back(share * phases_[i].at(phi + kPoleRad));
+            const double psi = middle + off + kPoleRad;
+            shine.add(
+                {.cosine = cos_middle * cos_off - sin_middle * sin_off,
+                 .sine = sin_middle * cos_off + cos_middle * sin_off,
+                 .weight = width * rule.weights[n]},
+                [&](std::size_t i) { return phases_[i].at(psi); },
+                nodes);
         }
         start = is_last ? to : start + width;
     }

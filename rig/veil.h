@@ -52,9 +52,9 @@ namespace aphotic {
 
 inline constexpr double kVeilPanelRad = 0.35;
 inline constexpr unsigned kVeilPoints = 8;  // of a panel
-// Of so many and more, panels end at the kinks of tabulated phase functions. Fewer are off by more
-// at each kink than they would be without.
-inline constexpr unsigned kVeilPointsBetweenKinks = 4;
+// Enough for images and maps: off by 1e-8, but where light is lost within a panel, as in water like
+// milk.
+inline constexpr unsigned kVeilMapPoints = 4;
 // Light that the water leaves less than e^-kVeilDepth of is left out.
 inline constexpr double kVeilDepth = 40.0;
 
@@ -122,6 +122,19 @@ class Veil {
         std::vector<double> points;  // on 0 to 1
         std::vector<double> weights;
     };
+    struct Point {
+        double cosine;  // of phi
+        double sine;
+        double weight;  // of the rule, times the panel's width
+    };
+    // From one kink to the next: the same panel for every ray and lamp. Without points where it
+    // would be too wide.
+    struct KinkPanel {
+        double room_rad = 0.0;
+        std::vector<Point> points{};
+        std::vector<double> phases{};  // by point and scatterer
+    };
+    class Shine;
 
     [[nodiscard]] Light light_of(const Strobe& strobe,
                                  const Beam& beam,
@@ -141,6 +154,9 @@ class Veil {
                    double from,
                    double to,
                    VeilNodes& nodes) const;
+    void add_panels(const Shine& shine, double from, double to, VeilNodes& nodes) const;
+    void add_known(const Shine& shine, const KinkPanel& panel, VeilNodes& nodes) const;
+    void add_kink_panels();
     [[nodiscard]] const Rule& rule_for(double width, double room) const;
 
     std::shared_ptr<const Rig> rig_;
@@ -148,7 +164,8 @@ class Veil {
     std::vector<Light> parts_;
     std::vector<std::size_t> strobes_;  // by part
     std::vector<Phase> phases_;         // by scatterer
-    std::vector<double> kinks_rad_;     // of all phase functions, as phi
+    std::vector<double> kinks_rad_;     // of all phase functions, as phi, ascending
+    std::vector<KinkPanel> panels_;     // by the kink where they begin
     double longest_m_ = 0.0;            // path beyond which nothing is left
     std::vector<Rule> rules_;           // by number of points
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/veil_map.h"
 
+#include "base/lagrange.h"
 #include "base/parallel.h"
 #include "rig/geometry.h"
 #include "rig/index_nodes.h"
@@ -27,14 +28,6 @@ double cell_px(const Camera& camera) {
     constexpr double kLeast_px = 1.0;
     return std::clamp(
         std::max(camera.width_px, camera.height_px) / kVeilCells, kLeast_px, kVeilCell_px);
-}
-
-// Lagrange's through 0, 1, 2, 3.
-std::array<double, 4> lagrange_weights(double a) {
-    const double b = a - 1.0;
-    const double c = a - 2.0;
-    const double d = a - 3.0;
-    return {-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0};
 }
 
 // Of the wavelengths that are scattered.

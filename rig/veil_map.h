@@ -49,7 +49,6 @@ inline constexpr double kVeilOff = 4e-5;
 inline constexpr double kVeilBend = 8e-5;
 // What maps are off by at most, as measured (docs/lightmaps.md): away from the middles, too.
 inline constexpr double kVeilOfSignal = 1e-4;
-inline constexpr unsigned kVeilMapPoints = 3;   // rig/veil.h's, of a panel
 inline constexpr std::size_t kVeilPlanes = 12;  // of one map, at most
 
 class VeilMap {

@@ -27,8 +27,7 @@ constexpr int kNotCompressed = 0;
 // Few points where they do: not where light is lost within a panel, as in water like milk.
 unsigned points_of(const Rig& rig) {
     constexpr double kRight = 1e-6;  // beside kVeilOfSignal
-    return veil_error(rig, kVeilPointsBetweenKinks) <= kRight ? kVeilPointsBetweenKinks
-                                                              : kVeilPoints;
+    return veil_error(rig, kVeilMapPoints) <= kRight ? kVeilMapPoints : kVeilPoints;
 }
 
 // Of R, G, B and then the wavelengths, in the manifest's order: as many as one may hold, but behind

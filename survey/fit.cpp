@@ -65,7 +65,7 @@ class Reduced : public ceres::CostFunction {
         const FitState state = problem_.at(x[0]);
         const auto count = static_cast<Index>(problem_.free.size());
         const PathLight light = bench_.path_light(state, has_slopes);
-        const Solved solved = shares_of(bench_.equations.parts(state, light));
+        const Solved& solved = solved_at(VectorXd::Map(x[0], count), state, light);
         VectorXd off(count);  // from where it began
         double squares = solved.squares;
         for (Index k = 0; k < count; ++k) {
@@ -105,8 +105,21 @@ class Reduced : public ceres::CostFunction {
     }
 
   private:
+    // Of the place last asked for: Ceres wants the slopes where it has just had the value.
+    const Solved& solved_at(const VectorXd& x,
+                            const FitState& state,
+                            const PathLight& light) const {
+        if (x.size() != last_x_.size() || x != last_x_) {
+            last_ = shares_of(bench_.equations.parts(state, light));
+            last_x_ = x;
+        }
+        return last_;
+    }
+
     const Bench& bench_;
     const FitProblem& problem_;
+    mutable VectorXd last_x_;
+    mutable Solved last_;
 };
 
 // Moves the problem's state to the least of the objective. Steps that it took.
@@ -216,6 +229,7 @@ std::vector<BeamPoint> curve_of(const FitBeam& beam,
     return points;
 }
 
+// What cannot be told is found first: then there is no result.
 FitResult result_of(const Bench& bench,
                     const FitProblem& problem,
                     const FitSamples& samples,
@@ -224,7 +238,9 @@ FitResult result_of(const Bench& bench,
     const Solved solved = shares_of(bench.equations.parts(problem.state, light));
     const FitEquations::Normal normal =
         bench.equations.normal(problem.state, light, solved.shares, problem.numbers(), true);
+    untold = not_told(bench.equations, problem, light, normal.H, solved.shares, sleds_of(samples));
     FitResult result;
+    if (!untold.empty()) return result;
     result.state = problem.state;
     result.shares = solved.shares;
     result.covariance =
@@ -261,7 +277,6 @@ FitResult result_of(const Bench& bench,
         }
         first += count;
     }
-    untold = not_told(bench.equations, problem, light, normal.H, solved.shares, sleds_of(samples));
     result.left = fit_residuals(bench.equations, samples, result.state, light, result.shares);
     return result;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/fit_light.h"
 
+#include "base/lagrange.h"
 #include "rig/geometry.h"
 #include "rig/lens.h"
 #include "rig/vignetting.h"
@@ -85,6 +86,41 @@ Lamp lamp_of(const Rig& rig, const FitState& state, const Floor& floor, std::siz
     return lamp;
 }
 
+struct NodeWeight {
+    std::size_t node;
+    double weight;
+};
+
+// Nodes along one way of the image, from the first place to the last. No more than there are
+// places: then each has its own.
+struct VeilAxis {
+    std::size_t nodes;
+    double first;
+    double apart;
+
+    explicit VeilAxis(std::vector<double> places) {
+        std::ranges::sort(places);
+        first = places.front();
+        const double last = places.back();
+        places.erase(std::unique(places.begin(), places.end()), places.end());
+        nodes = std::min(places.size(), kFitVeilNodes);
+        apart = nodes > 1 ? (last - first) / static_cast<double>(nodes - 1) : 1.0;
+    }
+    [[nodiscard]] double place(std::size_t node) const {
+        return first + static_cast<double>(node) * apart;
+    }
+    [[nodiscard]] std::vector<NodeWeight> weights(double at) const {
+        const double x = (at - first) / apart;
+        if (nodes < kFitVeilNodes) return {{static_cast<std::size_t>(std::lround(x)), 1.0}};
+        const auto cell = static_cast<std::size_t>(x);
+        const std::size_t left = std::clamp<std::size_t>(cell, 1, nodes - 3) - 1;
+        const std::array<double, 4> cubic = lagrange_weights(x - static_cast<double>(left));
+        std::vector<NodeWeight> weights;
+        for (std::size_t k = 0; k < cubic.size(); ++k) weights.push_back({left + k, cubic[k]});
+        return weights;
+    }
+};
+
 enum class LitBy { Floor, Water, End };
 
 // Light of one lamp that some channels of a place get from one direction: a factor of the beam.
@@ -92,7 +128,7 @@ enum class LitBy { Floor, Water, End };
 struct Lit {
     LitBy by{};
     std::size_t strobe = 0;
-    std::size_t row = 0;  // of the place's first channel
+    std::size_t row = 0;  // of the place's, or node's, first channel
     std::size_t first_channel = 0;
     std::size_t last_channel = 0;
     Vector3d w;
@@ -195,14 +231,35 @@ FitLight::FitLight(const Rig& rig, const FitPlaces& places) : rig_(rig), places_
     } else {
         lambda_nm.push_back(0.5 * (camera.range.first_nm + camera.range.last_nm));
     }
+    const auto rays_at = [&](double column, double row) {
+        Rays rays;
+        for (const double nm : lambda_nm) rays.push_back(pixel_ray(rig, column, row, nm));
+        return rays;
+    };
     for (std::size_t i = 0; i < places.size(); ++i) {
-        Place sight;
-        for (const double nm : lambda_nm)
-            sight.rays.push_back(pixel_ray(rig, places.columns[i], places.rows[i], nm));
-        sight.vignetting = vignetting_at(camera, places.columns[i], places.rows[i]);
-        sight.from_middle2 = radial_square(camera, places.columns[i], places.rows[i]);
-        sights_.push_back(std::move(sight));
+        sights_.push_back({.rays = rays_at(places.columns[i], places.rows[i]),
+                           .from_middle2 = radial_square(camera, places.columns[i], places.rows[i]),
+                           .vignetting = vignetting_at(camera, places.columns[i], places.rows[i])});
     }
+    if (!rig.water.scatters()) return;
+    const VeilAxis across(places.columns);
+    const VeilAxis down(places.rows);
+    for (std::size_t j = 0; j < down.nodes; ++j) {
+        for (std::size_t i = 0; i < across.nodes; ++i)
+            veil_nodes_.push_back(rays_at(across.place(i), down.place(j)));
+    }
+    std::vector<Eigen::Triplet<double>> weights;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        for (const NodeWeight& y : down.weights(places.rows[k])) {
+            for (const NodeWeight& x : across.weights(places.columns[k])) {
+                weights.emplace_back(static_cast<int>(k),
+                                     static_cast<int>(y.node * across.nodes + x.node),
+                                     y.weight * x.weight);
+            }
+        }
+    }
+    from_nodes_.resize(static_cast<Index>(places.size()), static_cast<Index>(veil_nodes_.size()));
+    from_nodes_.setFromTriplets(weights.begin(), weights.end());
 }
 
 std::size_t FitLight::part_columns(const FitState& state) {
@@ -211,125 +268,157 @@ std::size_t FitLight::part_columns(const FitState& state) {
     return columns;
 }
 
-template <typename Add>
-void FitLight::light_up(const FitState& state,
-                        const PathLight& light,
-                        const Sled& sled,
-                        bool has_slopes,
-                        const Add& add) const {
-    const Floor floor = floor_of({.altitude_m = sled.altitude_m + state.offset.altitude_m,
-                                  .pitch_rad = sled.pitch_rad + state.offset.pitch_rad,
-                                  .roll_rad = sled.roll_rad + state.offset.roll_rad});
+// What places and nodes have in common.
+struct FitLight::Scene {
+    const FitState& state;
+    const PathLight& light;
+    Floor floor;
     std::vector<Lamp> lamps;
-    for (std::size_t s = 0; s < rig_.strobes.size(); ++s)
-        lamps.push_back(lamp_of(rig_, state, floor, s));
+    std::size_t versions;  // of the light that are looked at
 
-    const std::size_t versions = has_slopes ? light.versions() : 1;
-    const std::size_t scatterers = light.scatterers();
-    std::vector<double> T(light.versions() * kChannels);
+    Scene(const Rig& rig,
+          const FitState& in_state,
+          const PathLight& in_light,
+          const Sled& sled,
+          bool has_slopes)
+        : state(in_state),
+          light(in_light),
+          floor(floor_of({.altitude_m = sled.altitude_m + state.offset.altitude_m,
+                          .pitch_rad = sled.pitch_rad + state.offset.pitch_rad,
+                          .roll_rad = sled.roll_rad + state.offset.roll_rad})),
+          versions(has_slopes ? light.versions() : 1) {
+        for (std::size_t s = 0; s < rig.strobes.size(); ++s)
+            lamps.push_back(lamp_of(rig, state, floor, s));
+    }
+    [[nodiscard]] bool has_slopes() const { return versions > 1; }
+
+    // Of each ray that comes down to the floor and each lamp: take(ray, landing, lamp, lit).
+    template <typename Take>
+    void for_each_way(const Rays& rays, std::size_t row, Lit& lit, const Take& take) const {
+        lit.row = row;
+        for (std::size_t r = 0; r < rays.size(); ++r) {
+            const std::optional<Landing> landing = landing_of(floor, rays[r]);
+            if (!landing) continue;
+            lit.landing = &*landing;
+            lit.first_channel = rays.size() == 1 ? 0 : r;
+            lit.last_channel = rays.size() == 1 ? kChannels : r + 1;
+            for (lit.strobe = 0; lit.strobe < lamps.size(); ++lit.strobe) {
+                lit.lamp = &lamps[lit.strobe];
+                take(rays[r], *landing, lamps[lit.strobe]);
+            }
+        }
+    }
+};
+
+template <typename Add>
+void FitLight::light_floor(const Scene& scene, const Add& add) const {
+    const FitState& state = scene.state;
+    std::vector<double> T(scene.light.versions() * kChannels);
     std::vector<double> T_by_length(T.size());
-    std::vector<double> V(light.versions() * std::max<std::size_t>(1, scatterers) * kChannels);
-    std::vector<double> p(light.versions() * std::max<std::size_t>(1, scatterers));
     Lit lit;
-    lit.by_water.resize(versions - 1);
+    lit.by_water.resize(scene.versions - 1);
+    const auto take = [&](const WaterRay& ray, const Landing& landing, const Lamp& lamp) {
+        const Vector3d way = ray.origin_m + landing.length_m * ray.direction - lamp.position_m;
+        const double d = way.norm();
+        const double d_by_length = way.dot(ray.direction) / d;
+        lit.w = lamp.into_frame * way / d;
+        const double spread = state.power[lit.strobe] * lamp.height_m / (pi * d * d * d);
+        const CubicTable& table = scene.light.floor(lit.strobe);
+        table.at(d + landing.length_m, T.data());
+        for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
+            lit.light[c] = state.gain[c] * spread * T[c];
+            for (std::size_t v = 1; v < scene.versions; ++v)
+                lit.by_water[v - 1][c] = state.gain[c] * spread * T[v * kChannels + c];
+        }
+        if (scene.has_slopes()) {
+            table.slopes_at(d + landing.length_m, T_by_length.data());
+            lit.w_by_length = (lamp.into_frame * ray.direction - lit.w * d_by_length) / d;
+            for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
+                lit.light_by_length[c] =
+                    state.gain[c] * spread *
+                    (T_by_length[c] * (1.0 + d_by_length) - 3.0 * T[c] * d_by_length / d);
+            }
+        }
+        add(lit);
+    };
+    for (std::size_t place = 0; place < sights_.size(); ++place)
+        scene.for_each_way(sights_[place].rays, kChannels * place, lit, take);
+}
+
+template <typename Add>
+void FitLight::light_water(const Scene& scene, const Add& add) const {
+    const FitState& state = scene.state;
+    const std::size_t scatterers = scene.light.scatterers();
+    std::vector<double> V(scene.light.versions() * scatterers * kChannels);
+    std::vector<double> p(scene.light.versions() * scatterers);
+    Lit lit;
+    lit.by_water.resize(scene.versions - 1);
 
     // Of scattered light at a point of the ray: factor times sum of p V.
     const auto scatter = [&](double factor, double psi, double path_m) {
-        light.phases().at(psi, p.data());
-        light.veil(lit.strobe).at(path_m, V.data());
+        scene.light.phases().at(psi, p.data());
+        scene.light.veil(lit.strobe).at(path_m, V.data());
         lit.light.fill(0.0);
         for (auto& by : lit.by_water) by.fill(0.0);
-        for (std::size_t i = 0; i < scatterers; ++i) {
-            for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
+        for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
+            const double of_channel = state.gain[c] * factor;
+            for (std::size_t i = 0; i < scatterers; ++i) {
                 const double value = V[i * kChannels + c];
-                lit.light[c] += factor * p[i] * value;
-                for (std::size_t v = 1; v < versions; ++v) {
+                lit.light[c] += of_channel * p[i] * value;
+                for (std::size_t v = 1; v < scene.versions; ++v) {
                     const std::size_t lane = v * scatterers + i;
                     lit.by_water[v - 1][c] +=
-                        factor * (p[i] * V[lane * kChannels + c] + p[lane] * value);
+                        of_channel * (p[i] * V[lane * kChannels + c] + p[lane] * value);
                 }
             }
         }
     };
+    const auto take = [&](const WaterRay& ray, const Landing& landing, const Lamp& lamp) {
+        const Vector3d from_lamp = ray.origin_m - lamp.position_m;
+        const double foot_m = -from_lamp.dot(ray.direction);
+        const Vector3d across = from_lamp + foot_m * ray.direction;
+        const double away_m = std::max(across.norm(), kNear_m);
+        const double last = std::atan2(landing.length_m - foot_m, away_m);
+        const double first = std::max(std::atan2(-foot_m, away_m), kVeilCut - 0.5 * pi);
+        if (last <= first) return;
+        const double power = state.power[lit.strobe];
+        lit.by = LitBy::Water;
+        const VeilRule& rule = veil_rule();
+        for (std::size_t i = 0; i < rule.points.size(); ++i) {
+            const double phi = first + (last - first) * rule.points[i];
+            const double t = foot_m + away_m * std::tan(phi);
+            lit.w = lamp.into_frame * (from_lamp + t * ray.direction).normalized();
+            scatter(power * rule.weights[i] * (last - first) / away_m,
+                    phi + 0.5 * pi,
+                    t + away_m / std::cos(phi));
+            add(lit);
+        }
+        if (!scene.has_slopes()) return;
+        lit.by = LitBy::End;
+        const Vector3d way = from_lamp + landing.length_m * ray.direction;
+        const double d = way.norm();
+        lit.w = lamp.into_frame * way / d;
+        scatter(power / (d * d), last + 0.5 * pi, d + landing.length_m);
+        add(lit);
+    };
+    for (std::size_t node = 0; node < veil_nodes_.size(); ++node)
+        scene.for_each_way(veil_nodes_[node], kChannels * node, lit, take);
+}
 
+void FitLight::add_between_nodes(const Rows& of_nodes, Rows& rows) const {
+    // A place's three rows as one, and a node's.
+    const Index columns = kChannels * rows.cols();
+    const Eigen::Map<const Rows> from(of_nodes.data(), from_nodes_.cols(), columns);
+    Eigen::Map<Rows>(rows.data(), from_nodes_.rows(), columns) += from_nodes_ * from;
+}
+
+void FitLight::multiply_by_vignetting(const FitState& state, Rows& rows) const {
     for (std::size_t place = 0; place < sights_.size(); ++place) {
-        const Place& sight = sights_[place];
-        double V_lens = sight.vignetting;
-        if (!state.vignetting.empty()) {
-            const double q = sight.from_middle2;
-            V_lens = 1.0 + q * (state.vignetting[0] +
-                                q * (state.vignetting[1] + q * state.vignetting[2]));
-        }
-        lit.row = kChannels * place;
-        for (std::size_t r = 0; r < sight.rays.size(); ++r) {
-            const WaterRay& ray = sight.rays[r];
-            const std::optional<Landing> landing = landing_of(floor, ray);
-            if (!landing) continue;
-            lit.landing = &*landing;
-            lit.first_channel = sight.rays.size() == 1 ? 0 : r;
-            lit.last_channel = sight.rays.size() == 1 ? kChannels : r + 1;
-            const Vector3d seen_m = ray.origin_m + landing->length_m * ray.direction;
-            for (std::size_t s = 0; s < lamps.size(); ++s) {
-                const Lamp& lamp = lamps[s];
-                lit.strobe = s;
-                lit.lamp = &lamp;
-                // Of what all channels share.
-                const double common = V_lens * state.power[s];
-                const Vector3d way = seen_m - lamp.position_m;
-                const double d = way.norm();
-                const double d_by_length = way.dot(ray.direction) / d;
-                lit.by = LitBy::Floor;
-                lit.w = lamp.into_frame * way / d;
-                const double spread = common * lamp.height_m / (pi * d * d * d);
-                light.floor(s).at(d + landing->length_m, T.data());
-                for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
-                    lit.light[c] = state.gain[c] * spread * T[c];
-                    for (std::size_t v = 1; v < versions; ++v)
-                        lit.by_water[v - 1][c] = state.gain[c] * spread * T[v * kChannels + c];
-                }
-                if (has_slopes) {
-                    light.floor(s).slopes_at(d + landing->length_m, T_by_length.data());
-                    lit.w_by_length = (lamp.into_frame * ray.direction - lit.w * d_by_length) / d;
-                    for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
-                        lit.light_by_length[c] =
-                            state.gain[c] * spread *
-                            (T_by_length[c] * (1.0 + d_by_length) - 3.0 * T[c] * d_by_length / d);
-                    }
-                }
-                add(lit);
-                if (scatterers == 0) continue;
-
-                const Vector3d from_lamp = ray.origin_m - lamp.position_m;
-                const double foot_m = -from_lamp.dot(ray.direction);
-                const Vector3d across = from_lamp + foot_m * ray.direction;
-                const double away_m = std::max(across.norm(), kNear_m);
-                const double last = std::atan2(landing->length_m - foot_m, away_m);
-                const double first = std::max(std::atan2(-foot_m, away_m), kVeilCut - 0.5 * pi);
-                if (last <= first) continue;
-                lit.by = LitBy::Water;
-                const VeilRule& rule = veil_rule();
-                for (std::size_t i = 0; i < rule.points.size(); ++i) {
-                    const double phi = first + (last - first) * rule.points[i];
-                    const double t = foot_m + away_m * std::tan(phi);
-                    lit.w = lamp.into_frame * (from_lamp + t * ray.direction).normalized();
-                    scatter(common * rule.weights[i] * (last - first) / away_m,
-                            phi + 0.5 * pi,
-                            t + away_m / std::cos(phi));
-                    for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
-                        lit.light[c] *= state.gain[c];
-                        for (auto& by : lit.by_water) by[c] *= state.gain[c];
-                    }
-                    add(lit);
-                }
-                if (!has_slopes) continue;
-                lit.by = LitBy::End;
-                lit.w = lamp.into_frame * way / d;
-                scatter(common / (d * d), last + 0.5 * pi, d + landing->length_m);
-                for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c)
-                    lit.light[c] *= state.gain[c];
-                add(lit);
-            }
-        }
+        const double q = sights_[place].from_middle2;
+        const std::vector<double>& a = state.vignetting;
+        const double V =
+            a.empty() ? sights_[place].vignetting : 1.0 + q * (a[0] + q * (a[1] + q * a[2]));
+        rows.middleRows(static_cast<Index>(kChannels * place), kChannels) *= V;
     }
 }
 
@@ -343,17 +432,27 @@ void FitLight::parts_into(const FitState& state,
         first_part.push_back(parts);
         parts += static_cast<Index>(beam.parts());
     }
-    rows_of.setZero(static_cast<Index>(rows()), parts);
     std::vector<BeamPartValue> values;
-    light_up(state, light, sled, false, [&](const Lit& lit) {
-        const std::size_t b = state.beam_of[lit.strobe];
-        state.beams[b].at(lit.w, values);
-        for (const BeamPartValue& value : values) {
-            const Index column = first_part[b] + static_cast<Index>(value.part);
-            for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c)
-                rows_of(static_cast<Index>(lit.row + c), column) += value.value * lit.light[c];
-        }
-    });
+    const auto add_to = [&](Rows& lit_rows) {
+        return [&](const Lit& lit) {
+            const std::size_t b = state.beam_of[lit.strobe];
+            state.beams[b].at(lit.w, values);
+            for (const BeamPartValue& value : values) {
+                const Index column = first_part[b] + static_cast<Index>(value.part);
+                for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c)
+                    lit_rows(static_cast<Index>(lit.row + c), column) += value.value * lit.light[c];
+            }
+        };
+    };
+    const Scene scene(rig_, state, light, sled, false);
+    rows_of.setZero(static_cast<Index>(rows()), parts);
+    light_floor(scene, add_to(rows_of));
+    if (light.scatterers() > 0) {
+        Rows of_nodes = Rows::Zero(static_cast<Index>(kChannels * veil_nodes_.size()), parts);
+        light_water(scene, add_to(of_nodes));
+        add_between_nodes(of_nodes, rows_of);
+    }
+    multiply_by_vignetting(state, rows_of);
 }
 
 void FitLight::slopes_into(const FitState& state,
@@ -397,78 +496,85 @@ void FitLight::slopes_into(const FitState& state,
     for (std::size_t k = 0; k < state.floor.size(); ++k)
         water.push_back(column_of(FitPart::FloorColour, 0, k));
 
-    rows_of.setZero(static_cast<Index>(rows()), count + static_cast<Index>(kPoseColumns));
-    std::vector<double> signal(rows(), 0.0);
+    // The last column is the signal.
+    const Index of_signal = count + static_cast<Index>(kPoseColumns);
     std::vector<BeamPartValue> values;
-    light_up(state, light, sled, true, [&](const Lit& lit) {
-        const std::size_t b = state.beam_of[lit.strobe];
-        state.beams[b].at(lit.w, values);
-        double I = 0.0;
-        Vector3d gradient = Vector3d::Zero();
-        std::array<double, 2> by_shape{};
-        for (const BeamPartValue& value : values) {
-            const double share = shares(first_part[b] + static_cast<Index>(value.part));
-            I += share * value.value;
-            gradient += share * value.gradient;
-            for (std::size_t k = 0; k < 2; ++k) by_shape[k] += share * value.by_shape[k];
-        }
-        const Vector3d& w = lit.w;
-        const Columns& of = columns[lit.strobe];
-        const Eigen::RowVector2d by_aim =
-            Eigen::RowVector2d(gradient.z() * w.x() - gradient.x() * w.z(),
-                               gradient.z() * w.y() - gradient.y() * w.z()) *
-            of.turns;
-        for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
-            const auto row = static_cast<Index>(lit.row + c);
-            const double value = I * lit.light[c];
-            const auto add_to = [&](Index column, double slope) {
-                if (column != kHeld) rows_of(row, column) += slope;
-            };
-            if (lit.by == LitBy::End) {
-                for (std::size_t q = 0; q < kPoseColumns; ++q)
-                    rows_of(row, count + static_cast<Index>(q)) +=
-                        value * lit.landing->length_by[q];
-                continue;
+    const auto add_to = [&](Rows& lit_rows) {
+        return [&](const Lit& lit) {
+            const std::size_t b = state.beam_of[lit.strobe];
+            state.beams[b].at(lit.w, values);
+            double I = 0.0;
+            Vector3d gradient = Vector3d::Zero();
+            std::array<double, 2> by_shape{};
+            for (const BeamPartValue& value : values) {
+                const double share = shares(first_part[b] + static_cast<Index>(value.part));
+                I += share * value.value;
+                gradient += share * value.gradient;
+                for (std::size_t k = 0; k < 2; ++k) by_shape[k] += share * value.by_shape[k];
             }
-            signal[lit.row + c] += value;
-            add_to(of.aim[0], by_aim(0) * lit.light[c]);
-            add_to(of.aim[1], by_aim(1) * lit.light[c]);
-            add_to(of.power, value / state.power[lit.strobe]);
-            for (std::size_t k = 0; k < 2; ++k) add_to(of.shape[k], by_shape[k] * lit.light[c]);
-            // None of light without derivatives.
-            for (std::size_t k = 0; k < lit.by_water.size(); ++k)
-                add_to(water[k], I * lit.by_water[k][c]);
-            if (lit.by == LitBy::Water) continue;
-            const double by_length =
-                I * lit.light_by_length[c] + gradient.dot(lit.w_by_length) * lit.light[c];
-            for (std::size_t q = 0; q < kPoseColumns; ++q) {
-                rows_of(row, count + static_cast<Index>(q)) +=
-                    by_length * lit.landing->length_by[q] +
-                    value / lit.lamp->height_m * lit.lamp->height_by[q];
+            const Vector3d& w = lit.w;
+            const Columns& of = columns[lit.strobe];
+            const Eigen::RowVector2d by_aim =
+                Eigen::RowVector2d(gradient.z() * w.x() - gradient.x() * w.z(),
+                                   gradient.z() * w.y() - gradient.y() * w.z()) *
+                of.turns;
+            for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
+                auto row = lit_rows.row(static_cast<Index>(lit.row + c));
+                const double value = I * lit.light[c];
+                const auto add = [&](Index column, double slope) {
+                    if (column != kHeld) row(column) += slope;
+                };
+                if (lit.by == LitBy::End) {
+                    for (std::size_t q = 0; q < kPoseColumns; ++q)
+                        row(count + static_cast<Index>(q)) += value * lit.landing->length_by[q];
+                    continue;
+                }
+                row(of_signal) += value;
+                add(of.aim[0], by_aim(0) * lit.light[c]);
+                add(of.aim[1], by_aim(1) * lit.light[c]);
+                add(of.power, value / state.power[lit.strobe]);
+                for (std::size_t k = 0; k < 2; ++k) add(of.shape[k], by_shape[k] * lit.light[c]);
+                // None of light without derivatives.
+                for (std::size_t k = 0; k < lit.by_water.size(); ++k)
+                    add(water[k], I * lit.by_water[k][c]);
+                if (lit.by == LitBy::Water) continue;
+                const double by_length =
+                    I * lit.light_by_length[c] + gradient.dot(lit.w_by_length) * lit.light[c];
+                for (std::size_t q = 0; q < kPoseColumns; ++q) {
+                    row(count + static_cast<Index>(q)) +=
+                        by_length * lit.landing->length_by[q] +
+                        value / lit.lamp->height_m * lit.lamp->height_by[q];
+                }
             }
-        }
-    });
+        };
+    };
+    const Scene scene(rig_, state, light, sled, true);
+    Rows all = Rows::Zero(static_cast<Index>(rows()), of_signal + 1);
+    light_floor(scene, add_to(all));
+    if (light.scatterers() > 0) {
+        Rows of_nodes =
+            Rows::Zero(static_cast<Index>(kChannels * veil_nodes_.size()), of_signal + 1);
+        light_water(scene, add_to(of_nodes));
+        add_between_nodes(of_nodes, all);
+    }
+    const Eigen::VectorXd without_lens = all.col(of_signal);
+    multiply_by_vignetting(state, all);
 
     for (Index k = 0; k < count; ++k) {
         const FitNumber& number = numbers[static_cast<std::size_t>(k)];
-        if (number.part == FitPart::Offset) {
-            rows_of.col(k) = rows_of.col(count + static_cast<Index>(number.which));
-        }
-        if (number.part != FitPart::Gain && number.part != FitPart::LensFactor) continue;
-        for (std::size_t row = 0; row < rows(); ++row) {
-            const std::size_t c = row % kChannels;
-            double& slope = rows_of(static_cast<Index>(row), k);
-            if (number.part == FitPart::Gain) {
-                if (c == number.of) slope = signal[row] / state.gain[c];
-                continue;
+        if (number.part == FitPart::Offset)
+            all.col(k) = all.col(count + static_cast<Index>(number.which));
+        for (Index row = 0; row < all.rows(); ++row) {
+            const auto at = static_cast<std::size_t>(row);
+            if (number.part == FitPart::Gain && at % kChannels == number.of)
+                all(row, k) = all(row, of_signal) / state.gain[number.of];
+            if (number.part == FitPart::LensFactor) {
+                all(row, k) = without_lens(row) * std::pow(sights_[at / kChannels].from_middle2,
+                                                           static_cast<double>(number.which + 1));
             }
-            const double q = sights_[row / kChannels].from_middle2;
-            const double V = 1.0 + q * (state.vignetting[0] +
-                                        q * (state.vignetting[1] + q * state.vignetting[2]));
-            slope = signal[row] / V * q;
-            for (std::size_t power = 0; power < number.which; ++power) slope *= q;
         }
     }
+    rows_of = all.leftCols(of_signal);
 }
 
 PathRange FitLight::paths(const std::vector<Sled>& sleds) const {

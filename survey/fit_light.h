@@ -12,7 +12,8 @@
 //
 // All else is rig/veil.h's and docs/physics.md's. Lamps are points, the floor is flat and matt.
 // Behind a port each channel has the ray of its mean wavelength. The veil is integrated by
-// kFitVeilPoints of Gauss and Legendre's over the angle at the lamp.
+// kFitVeilPoints of Gauss and Legendre's over the angle at the lamp, at kFitVeilNodes across and
+// down the image at most; between these it is the cubic through the four next of each way.
 //
 // Aim is turned by two small angles, towards `along` and `across` of the rig's own frame of the
 // strobe (rig/beam.h). Offsets are added to the altitude, pitch and roll that the navigation tells.
@@ -23,6 +24,7 @@
 #include "survey/path_light.h"
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 
 #include <array>
 #include <cstddef>
@@ -33,6 +35,7 @@
 namespace aphotic {
 
 inline constexpr unsigned kFitVeilPoints = 12;
+inline constexpr std::size_t kFitVeilNodes = 13;
 // By how much an aim may be off before the beam's table ends within the image; and how much farther
 // off their axes lamps light water that the image sees.
 inline constexpr double kAimRoom_rad = 0.15;
@@ -106,21 +109,27 @@ class FitLight {
     [[nodiscard]] const FitPlaces& places() const { return places_; }
 
   private:
+    using Rays = std::vector<WaterRay>;  // one, or by channel
     struct Place {
-        std::vector<WaterRay> rays;  // one, or by channel
-        double from_middle2 = 0.0;   // p^2 of vignetting
-        double vignetting = 1.0;     // the rig's own
+        Rays rays;
+        double from_middle2 = 0.0;  // p^2 of vignetting
+        double vignetting = 1.0;    // the rig's own
     };
+    struct Scene;
     template <typename Add>
-    void light_up(const FitState& state,
-                  const PathLight& light,
-                  const Sled& sled,
-                  bool has_slopes,
-                  const Add& add) const;
+    void light_floor(const Scene& scene, const Add& add) const;
+    template <typename Add>
+    void light_water(const Scene& scene, const Add& add) const;
+    // From what the nodes see of the veil to what the places do.
+    void add_between_nodes(const Rows& of_nodes, Rows& rows) const;
+    // The lens' V.
+    void multiply_by_vignetting(const FitState& state, Rows& rows) const;
 
     Rig rig_;
     FitPlaces places_;
     std::vector<Place> sights_;
+    std::vector<Rays> veil_nodes_;
+    Eigen::SparseMatrix<double, Eigen::RowMajor> from_nodes_;  // by place and node
 };
 
 }  // namespace aphotic

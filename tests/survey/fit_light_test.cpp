@@ -132,8 +132,8 @@ TEST(FitLight, SlopesAreThoseOfTheLight) {
 TEST(FitLight, SlopesOfTheVeil) {
     FitRigNumbers numbers;
     numbers.water = "type = \"jerlov-1C\"\nmultiple = {}";
-    numbers.width_px = 12;
-    numbers.height_px = 9;
+    numbers.width_px = 16;
+    numbers.height_px = 12;
     expect_slopes(numbers, FitBeam::table(12, 1.5), kVeilDifference);
 }
 

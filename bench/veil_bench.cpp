@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the veil adds to a render in scattering water: the processor time of its planes, written to
+// disk, beside POV-Ray's for the frames. (Goal: under a tenth.) Smooth beams, and HabCam's sharp
+// cones, along whose edges the veil is computed pixel by pixel; both in Jerlov's 1C.
+#include "plugin/frame_runner.h"
+#include "plugin/render.h"
+#include "rig/rig_text.h"
+#include "scene_gen/render_plan.h"
+#include "scene_gen/veil_planes.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+namespace aphotic {
+namespace {
+
+namespace fs = std::filesystem;
+
+Rig in_coastal_water(const std::string& name) {
+    RigText text(APHOTIC_SOURCE_DIR "/scenes/" + name + ".toml");
+    text.erase("water.absorption");
+    text.erase("water.multiple");
+    text.set("water.type", "jerlov-1C");
+    text.set("camera.range_nm", {400.0, 700.0});  // where Jerlov's tables end
+    return text.rig();
+}
+
+double processor_s(int who) {
+    rusage use{};
+    ::getrusage(who, &use);
+    double sum_s = 0.0;
+    for (const timeval& time : {use.ru_utime, use.ru_stime})
+        sum_s += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    return sum_s;
+}
+
+void veil_beside_frames(benchmark::State& state, const std::string& name) {
+    const Rig rig = in_coastal_water(name);
+    const SceneSet set = make_scene_set(rig, plan_render(rig, {}));
+    const PovRay povray = find_povray("");
+    const fs::path folder =
+        fs::temp_directory_path() / fmt::format("aphotic-veil-bench-{}-{}", ::getpid(), name);
+    double frames_s = 0.0;
+    double veil_s = 0.0;
+    for (auto _ : state) {
+        fs::remove_all(folder);
+        const Manifest manifest = generate(folder, set);
+        const double children_s = processor_s(RUSAGE_CHILDREN);
+        run_frames(povray, folder, manifest.frames, manifest.width_px, manifest.height_px, {});
+        frames_s += processor_s(RUSAGE_CHILDREN) - children_s;
+        const double own_s = processor_s(RUSAGE_SELF);
+        write_veil(folder, rig, manifest);
+        veil_s += processor_s(RUSAGE_SELF) - own_s;
+    }
+    fs::remove_all(folder);
+    state.counters["frames_s"] = benchmark::Counter(frames_s, benchmark::Counter::kAvgIterations);
+    state.counters["veil_s"] = benchmark::Counter(veil_s, benchmark::Counter::kAvgIterations);
+    state.counters["veil_over_frames"] = veil_s / frames_s;
+}
+
+void few(benchmark::internal::Benchmark* benchmark) {
+    benchmark->Unit(benchmark::kSecond)->UseRealTime()->Iterations(3);
+}
+BENCHMARK_CAPTURE(veil_beside_frames, smooth, "habcam-led")->Apply(few);
+BENCHMARK_CAPTURE(veil_beside_frames, sharp_cones, "habcam")->Apply(few);
+
+}  // namespace
+}  // namespace aphotic
