@@ -16,6 +16,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace aphotic {
 namespace {
@@ -27,7 +28,7 @@ Rig in_coastal_water(const std::string& name) {
     text.erase("water.absorption");
     text.erase("water.multiple");
     text.set("water.type", "jerlov-1C");
-    text.set("camera.range_nm", {400.0, 700.0});  // where Jerlov's tables end
+    text.set("camera.range_nm", std::vector<double>{400.0, 700.0});  // where Jerlov's tables end
     return text.rig();
 }
 

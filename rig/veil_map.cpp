@@ -221,7 +221,7 @@ void VeilMap::add(const VeilNodes& nodes,
     const std::size_t kinds = tables_.size() / index_nodes_nm_.size();
     const std::vector<float>* const tables =
         &tables_[index_node * kinds + lamp_of_strobe_[strobe] * scatterers];
-    std::array<std::array<double, kTableLanes>, kVeilPlanes / kChannels> lanes{};
+    std::array<std::array<float, kTableLanes>, kVeilPlanes / kChannels> lanes{};
     for (std::size_t n = 0; n < nodes.path_m.size(); ++n) {
         const double place = (nodes.path_m[n] - steps_.first_m) * steps_.steps_per_m;
         // Rounding may lead out of it a little. Beyond the horizon's end nothing is left.
@@ -231,19 +231,20 @@ void VeilMap::add(const VeilNodes& nodes,
         for (std::size_t i = 0; i < scatterers; ++i) {
             const float* T =
                 &tables[i][static_cast<std::size_t>(step) * grids_.size() * kTableStride];
-            const double weight = nodes.weight[i][n];
+            const auto weight = static_cast<float>(nodes.weight[i][n]);
             for (std::size_t g = 0; g < grids_.size(); ++g, T += kTableStride) {
                 for (std::size_t c = 0; c < kTableLanes; ++c) {
                     const float signal =
                         T[c] + t * (T[kTableLanes + c] +
                                     t * (T[2 * kTableLanes + c] + t * T[3 * kTableLanes + c]));
-                    lanes[g][c] += weight * static_cast<double>(signal);
+                    lanes[g][c] += weight * signal;
                 }
             }
         }
     }
     for (std::size_t c = 0; c < planes_; ++c)
-        sum[c] += rig_.strobes[strobe].power * lanes[c / kChannels][c % kChannels];
+        sum[c] +=
+            rig_.strobes[strobe].power * static_cast<double>(lanes[c / kChannels][c % kChannels]);
 }
 
 VeilMap::Axis::Axis(int count, double cell_px)

@@ -167,18 +167,17 @@ FitEquations::Rows FitEquations::effects_at(const FitState& state,
                                             const VectorXd& shares,
                                             const Sled& sled,
                                             VectorXd& signal) const {
-    Rows parts;
-    Rows pose;
-    light_.parts_into(state, light, sled, parts);
-    light_.slopes_into(state, light, sled, shares, {}, pose);
-    signal = parts * shares;
+    Rows columns;
+    light_.columns_into(state, light, sled, shares, {}, columns);
+    signal = columns.rightCols<1>();
     Rows effects = Rows::Zero(signal.size(), kEffects);
     effects.col(0) = signal;
     for (Index row = 0; row < signal.size(); row += kChannels) {
         effects(row, 1) = signal(row);
         effects(row + 2, 2) = signal(row + 2);
     }
-    effects.middleCols(kPoseEffect, FitLight::kPoseColumns) = pose;
+    effects.middleCols(kPoseEffect, FitLight::kPoseColumns) =
+        columns.middleCols(shares.size(), FitLight::kPoseColumns);
     const FitPlaces& places = light_.places();
     const std::vector<Wave> all = waves();
     for (std::size_t place = 0; place < places.size(); ++place) {
@@ -400,14 +399,9 @@ FitEquations::Rows FitEquations::columns_at(const FitState& state,
                                             const VectorXd& shares,
                                             const std::vector<FitNumber>& numbers,
                                             const Sled& sled) const {
-    const auto count = static_cast<Index>(numbers.size());
-    Rows parts;
-    Rows slopes;
-    light_.parts_into(state, light, sled, parts);
-    light_.slopes_into(state, light, sled, shares, numbers, slopes);
-    Rows A(parts.rows(), parts.cols() + count);
-    A << parts, slopes.leftCols(count);
-    return A;
+    Rows all;
+    light_.columns_into(state, light, sled, shares, numbers, all);
+    return all.leftCols(shares.size() + static_cast<Index>(numbers.size()));
 }
 
 FitEquations::Normal FitEquations::normal(const FitState& state,

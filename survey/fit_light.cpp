@@ -455,19 +455,21 @@ void FitLight::parts_into(const FitState& state,
     multiply_by_vignetting(state, rows_of);
 }
 
-void FitLight::slopes_into(const FitState& state,
-                           const PathLight& light,
-                           const Sled& sled,
-                           const Eigen::VectorXd& shares,
-                           const std::vector<FitNumber>& numbers,
-                           Rows& rows_of) const {
+void FitLight::columns_into(const FitState& state,
+                            const PathLight& light,
+                            const Sled& sled,
+                            const Eigen::VectorXd& shares,
+                            const std::vector<FitNumber>& numbers,
+                            Rows& all) const {
     constexpr Index kHeld = -1;
     const auto count = static_cast<Index>(numbers.size());
+    const auto first_number = static_cast<Index>(part_columns(state));
     const auto column_of = [&](FitPart part, std::size_t of, std::size_t which) {
         const auto at = std::find_if(numbers.begin(), numbers.end(), [&](const FitNumber& n) {
             return n.part == part && n.of == of && n.which == which;
         });
-        return at == numbers.end() ? kHeld : static_cast<Index>(at - numbers.begin());
+        return at == numbers.end() ? kHeld
+                                   : first_number + static_cast<Index>(at - numbers.begin());
     };
     struct Columns {
         std::array<Index, 2> aim;
@@ -496,8 +498,8 @@ void FitLight::slopes_into(const FitState& state,
     for (std::size_t k = 0; k < state.floor.size(); ++k)
         water.push_back(column_of(FitPart::FloorColour, 0, k));
 
-    // The last column is the signal.
-    const Index of_signal = count + static_cast<Index>(kPoseColumns);
+    const Index of_pose = first_number + count;
+    const Index of_signal = of_pose + static_cast<Index>(kPoseColumns);
     std::vector<BeamPartValue> values;
     const auto add_to = [&](Rows& lit_rows) {
         return [&](const Lit& lit) {
@@ -526,9 +528,11 @@ void FitLight::slopes_into(const FitState& state,
                 };
                 if (lit.by == LitBy::End) {
                     for (std::size_t q = 0; q < kPoseColumns; ++q)
-                        row(count + static_cast<Index>(q)) += value * lit.landing->length_by[q];
+                        row(of_pose + static_cast<Index>(q)) += value * lit.landing->length_by[q];
                     continue;
                 }
+                for (const BeamPartValue& part : values)
+                    row(first_part[b] + static_cast<Index>(part.part)) += part.value * lit.light[c];
                 row(of_signal) += value;
                 add(of.aim[0], by_aim(0) * lit.light[c]);
                 add(of.aim[1], by_aim(1) * lit.light[c]);
@@ -541,7 +545,7 @@ void FitLight::slopes_into(const FitState& state,
                 const double by_length =
                     I * lit.light_by_length[c] + gradient.dot(lit.w_by_length) * lit.light[c];
                 for (std::size_t q = 0; q < kPoseColumns; ++q) {
-                    row(count + static_cast<Index>(q)) +=
+                    row(of_pose + static_cast<Index>(q)) +=
                         by_length * lit.landing->length_by[q] +
                         value / lit.lamp->height_m * lit.lamp->height_by[q];
                 }
@@ -549,7 +553,7 @@ void FitLight::slopes_into(const FitState& state,
         };
     };
     const Scene scene(rig_, state, light, sled, true);
-    Rows all = Rows::Zero(static_cast<Index>(rows()), of_signal + 1);
+    all.setZero(static_cast<Index>(rows()), of_signal + 1);
     light_floor(scene, add_to(all));
     if (light.scatterers() > 0) {
         Rows of_nodes =
@@ -563,18 +567,18 @@ void FitLight::slopes_into(const FitState& state,
     for (Index k = 0; k < count; ++k) {
         const FitNumber& number = numbers[static_cast<std::size_t>(k)];
         if (number.part == FitPart::Offset)
-            all.col(k) = all.col(count + static_cast<Index>(number.which));
+            all.col(first_number + k) = all.col(of_pose + static_cast<Index>(number.which));
         for (Index row = 0; row < all.rows(); ++row) {
             const auto at = static_cast<std::size_t>(row);
             if (number.part == FitPart::Gain && at % kChannels == number.of)
-                all(row, k) = all(row, of_signal) / state.gain[number.of];
+                all(row, first_number + k) = all(row, of_signal) / state.gain[number.of];
             if (number.part == FitPart::LensFactor) {
-                all(row, k) = without_lens(row) * std::pow(sights_[at / kChannels].from_middle2,
-                                                           static_cast<double>(number.which + 1));
+                all(row, first_number + k) =
+                    without_lens(row) * std::pow(sights_[at / kChannels].from_middle2,
+                                                 static_cast<double>(number.which + 1));
             }
         }
     }
-    rows_of = all.leftCols(of_signal);
 }
 
 PathRange FitLight::paths(const std::vector<Sled>& sleds) const {

@@ -90,14 +90,15 @@ class FitLight {
                     const Sled& sled,
                     Rows& rows) const;
 
-    // By number, and after those by altitude, pitch and roll, of the signal with these shares.
+    // Columns of parts, then of the numbers, of altitude, pitch and roll, all as derivatives of the
+    // signal with these shares, and the signal itself.
     static constexpr std::size_t kPoseColumns = 3;
-    void slopes_into(const FitState& state,
-                     const PathLight& light,
-                     const Sled& sled,
-                     const Eigen::VectorXd& shares,
-                     const std::vector<FitNumber>& numbers,
-                     Rows& rows) const;
+    void columns_into(const FitState& state,
+                      const PathLight& light,
+                      const Sled& sled,
+                      const Eigen::VectorXd& shares,
+                      const std::vector<FitNumber>& numbers,
+                      Rows& all) const;
 
     // The paths that these sleds can show, with room for offsets of the altitude.
     [[nodiscard]] PathRange paths(const std::vector<Sled>& sleds) const;

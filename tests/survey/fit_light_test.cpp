@@ -99,19 +99,25 @@ void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam, double mos
     for (std::size_t k = 0; k < beam.shapes().size(); ++k)
         free.push_back({FitPart::BeamShape, 0, k});
     const PathRange paths = light.paths({kTilted});
-    FitLight::Rows slopes;
-    light.slopes_into(known.state,
-                      {known.text, known.state.water, known.state.floor, paths, true},
-                      kTilted,
-                      shares,
-                      free,
-                      slopes);
+    FitLight::Rows all;
+    light.columns_into(known.state,
+                       {known.text, known.state.water, known.state.floor, paths, true},
+                       kTilted,
+                       shares,
+                       free,
+                       all);
     const auto signal = [&](const FitState& state) {
         FitLight::Rows parts;
         light.parts_into(
             state, {known.text, state.water, state.floor, paths, false}, kTilted, parts);
         return Eigen::VectorXd(parts * shares);
     };
+    // Parts and signal are those of the light without slopes.
+    constexpr double kRounding = 1e-12;
+    EXPECT_LT((all.leftCols(shares.size()) * shares - signal(known.state)).norm(),
+              kRounding * signal(known.state).norm());
+    EXPECT_LT((all.rightCols<1>() - signal(known.state)).norm(),
+              kRounding * signal(known.state).norm());
     for (std::size_t k = 0; k < free.size(); ++k) {
         constexpr double kStep = 1e-5;
         FitState more = known.state;
@@ -119,7 +125,8 @@ void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam, double mos
         number_in(more, free[k]) += kStep;
         number_in(less, free[k]) -= kStep;
         const Eigen::VectorXd wanted = (signal(more) - signal(less)) / (2.0 * kStep);
-        const double off = (slopes.col(static_cast<Eigen::Index>(k)) - wanted).norm();
+        const auto column = shares.size() + static_cast<Eigen::Index>(k);
+        const double off = (all.col(column) - wanted).norm();
         EXPECT_LT(off, most * wanted.norm()) << "number " << k;
     }
 }
