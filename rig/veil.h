@@ -52,9 +52,9 @@ namespace aphotic {
 
 inline constexpr double kVeilPanelRad = 0.35;
 inline constexpr unsigned kVeilPoints = 8;  // of a panel
-// Enough for images and maps: off by 1e-8, but where light is lost within a panel, as in water like
+// Enough for images and maps: off by 2e-6, but where light is lost within a panel, as in water like
 // milk.
-inline constexpr unsigned kVeilMapPoints = 4;
+inline constexpr unsigned kVeilMapPoints = 3;
 // Light that the water leaves less than e^-kVeilDepth of is left out.
 inline constexpr double kVeilDepth = 40.0;
 

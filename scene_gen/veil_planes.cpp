@@ -18,7 +18,8 @@
 namespace aphotic {
 namespace {
 
-// Of the spectral integral and its table: a tenth of what the interpolation is off by.
+// Of the spectral integral, its table and the rule along the ray: a tenth of what the interpolation
+// is off by.
 constexpr double kTableError = 0.1 * kVeilOfSignal;
 constexpr int kBlockRows = 512;
 // Deflate takes longer than all the rest, for a third of the size.
@@ -26,8 +27,7 @@ constexpr int kNotCompressed = 0;
 
 // Few points where they do: not where light is lost within a panel, as in water like milk.
 unsigned points_of(const Rig& rig) {
-    constexpr double kRight = 1e-6;  // beside kVeilOfSignal
-    return veil_error(rig, kVeilMapPoints) <= kRight ? kVeilMapPoints : kVeilPoints;
+    return veil_error(rig, kVeilMapPoints) <= kTableError ? kVeilMapPoints : kVeilPoints;
 }
 
 // Of R, G, B and then the wavelengths, in the manifest's order: as many as one may hold, but behind

@@ -13,7 +13,7 @@
 // sees: the rig's floor, or as far as the frame of fog tells (spectral/manifest.h), to a half
 // float's digits. Shadows in the veil are left out. Off by no more than veil_plane_error() of a
 // pixel's signal over the floor, measured and no bound: of the interpolation, and of
-// four points a panel, or of kVeilPoints where four are not right to 1e-6.
+// kVeilMapPoints a panel, or kVeilPoints where these are not right to a tenth of kVeilOfSignal.
 #pragma once
 
 #include "rig/path_range.h"
