@@ -61,7 +61,7 @@ std::pair<Sample*, nb::capsule> owned(std::vector<Sample> samples) {
     Sample* const data = held->data();
     nb::capsule owner(held.get(),
                       [](void* p) noexcept { delete static_cast<std::vector<Sample>*>(p); });
-    held.release();
+    static_cast<void>(held.release());
     return {data, std::move(owner)};
 }
 
