@@ -24,8 +24,8 @@ int threads_of(int threads) {
 NB_MODULE(_aphotic, module) {
     namespace nb = nanobind;
     module.attr("__version__") = APHOTIC_VERSION;
-    nb::exception<aphotic::InputError>(module, "InputError", PyExc_ValueError);
-    nb::exception<aphotic::RunError>(module, "RunError", PyExc_RuntimeError);
+    const nb::exception<aphotic::InputError> input_error(module, "InputError", PyExc_ValueError);
+    const nb::exception<aphotic::RunError> run_error(module, "RunError", PyExc_RuntimeError);
     aphotic::python::bind_rig(module);
     aphotic::python::bind_light(module);
     aphotic::python::bind_survey(module);
