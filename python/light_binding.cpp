@@ -94,8 +94,8 @@ std::optional<std::array<double, kChannels>> promise_of(const RenderPlan& plan) 
 
 void bind_plan(nb::module_& module) {
     nb::class_<RenderPlan>(module, "Plan", "The wavelengths, weights and frames of a render.")
-        .def_prop_ro("wavelengths_nm", wavelengths_of)
-        .def_prop_ro("weights", weights_of, "By wavelength, then R, G, B.")
+        .def_prop_ro("wavelengths_nm", wavelengths_of, kOwn)
+        .def_prop_ro("weights", weights_of, kOwn, "By wavelength, then R, G, B.")
         .def_prop_ro("frames", &RenderPlan::frames)
         .def_prop_ro("promise",
                      promise_of,
@@ -192,9 +192,8 @@ class RigLightmapMaker {
     }
 
   private:
-    static std::optional<PathRange> paths_for(const Rig& rig,
-                                              const std::vector<double>& altitudes_m) {
-        if (altitudes_m.empty()) return std::nullopt;
+    // Never none: what the tables of a map alone do not serve is black in it, without a word.
+    static PathRange paths_for(const Rig& rig, const std::vector<double>& altitudes_m) {
         std::vector<Sled> sleds{rig.sled};
         for (const double altitude_m : altitudes_m) {
             sleds.push_back(rig.sled);
@@ -242,6 +241,7 @@ void bind_lightmap(nb::module_& module) {
             [](const RigLightmap& light) {
                 return image_of(signal_of(light.map), light.map.height_px, light.map.width_px);
             },
+            kOwn,
             "Floor and veil: what the camera gets.")
         .def_ro("strobes", &RigLightmap::strobes, "By name, each strobe's own light.");
     module.def("lightmap",
@@ -349,7 +349,7 @@ void bind_trace(nb::module_& module) {
         .def_prop_ro("signal", traced_signal, "Rows, columns, R, G, B; None unless asked for.")
         .def_prop_ro("radiance", traced_radiance, "Rows, columns, wavelengths.")
         .def_ro("wavelengths_nm", &Traced::lambda_nm)
-        .def_prop_ro("on_edges", traced_edges, "Where the signal steps and no bound holds.");
+        .def_prop_ro("on_edges", traced_edges, kOwn, "Where the signal steps and no bound holds.");
     module.def("trace",
                trace,
                nb::arg("rig"),

@@ -117,7 +117,8 @@ void bind_rig(nb::module_& module) {
         .def_ro("name", &Table::name)
         .def_ro("columns", &Table::columns)
         .def_ro("metadata", &Table::metadata)
-        .def_prop_ro("values", values_of, "Rows by columns, the first of them wavelengths in nm.");
+        .def_prop_ro(
+            "values", values_of, kOwn, "Rows by columns, the first of them wavelengths in nm.");
     module.def(
         "spectra", builtin_spectra, "The built-in tables by name, as `aphotic data` lists them.");
 }

@@ -6,6 +6,11 @@ import pytest
 
 import aphotic
 
+try:
+    import tomllib
+except ImportError:  # before Python 3.11
+    tomllib = None
+
 
 def test_a_rig_is_what_its_file_says(rig_file):
     rig = aphotic.Rig.load(rig_file)
@@ -24,7 +29,8 @@ def test_replace_sets_keys_and_leaves_the_rig_alone(rig_file):
     )
     assert (rig.altitude_m, other.altitude_m) == (2.0, 2.5)
     assert other.digest != rig.digest
-    assert "position_m = [1, 0, 0.5]" in " ".join(other.text.split()) or "[1, 0, 0.5]" in other.text
+    if tomllib:
+        assert tomllib.loads(other.text)["strobe"][0]["position_m"] == [1, 0, 0.5]
     assert other.replace(**{"sled.altitude_m": 2.0}).altitude_m == 2.0
 
 

@@ -32,7 +32,8 @@ def test_a_corrected_image_is_the_commands_to_the_bit(rig_file, tmp_path, comman
     rig = aphotic.Rig.load(rig_file).replace(
         **{"sled.altitude_m": 2.0, "sled.pitch_deg": 5.0, "sled.roll_deg": 0.0}
     )
-    light = aphotic.lightmap(rig)
+    # Tables for the poses of a survey have room, from which a map's last digits come.
+    light = aphotic.LightmapMaker(rig).map()
     for file in raw:
         image = np.array(Image.open(file)).astype(np.float32)
         corrected = aphotic.correct(
