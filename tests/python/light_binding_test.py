@@ -17,10 +17,14 @@ MAP_ERROR = 3e-5
 
 
 def in_coastal_water(rig):
-    water = "[water]\n"
-    start = rig.text.index(water)
-    end = rig.text.index("\n[", start)
-    return aphotic.Rig.parse(rig.text[:start] + '[water]\ntype = "jerlov-3C"\n' + rig.text[end:])
+    return rig.replace(
+        **{
+            "water.absorption": None,
+            "water.multiple": None,
+            "water.type": "jerlov-3C",
+            "camera.range_nm": [400, 700],
+        }
+    )
 
 
 def test_a_lightmap_is_the_commands_to_the_bit(rig_file, tmp_path, command, channels):

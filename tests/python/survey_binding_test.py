@@ -2,48 +2,77 @@
 import json
 
 import numpy as np
+import OpenEXR
 import pytest
 from PIL import Image
 
 import aphotic
 
 LEVELS = {"bayer": "RGGB", "black_level": 64, "white_level": 4095}
+# The stated error of two maps, whose tables are not of the same paths, and the rounding of floats.
+MAP_ERROR = 3e-5
 LEVEL_WORDS = ["--bayer", "RGGB", "--black-level", 64, "--white-level", 4095]
 
 
 @pytest.fixture
 def survey(rig_file, tmp_path, command):
-    """Raw images of the rig's own pose, which are named, with their navigation."""
+    """Raw images of floats, and a navigation by which all are of one level pose.
+
+    The command reads integers as shares of their range, and back: off by a rounding.
+    """
     command("survey", rig_file, "--images", 3, "-o", "survey")
-    raw = sorted((tmp_path / "survey/raw").iterdir())
+    raw = []
+    for file in sorted((tmp_path / "survey/raw").iterdir()):
+        raw.append(tmp_path / f"{file.stem}.exr")
+        planes = {"Y": np.array(Image.open(file)).astype(np.float32)}
+        with OpenEXR.File({"type": OpenEXR.scanlineimage}, planes) as image:
+            image.write(str(raw[-1]))
     pose = tmp_path / "pose.csv"
-    rows = [f"{file.name},2,5,0" for file in raw]
+    rows = [f"{file.name},2,0,0" for file in raw]
     pose.write_text("\n".join(["image,altitude_m,pitch_deg,roll_deg", *rows]) + "\n")
     return raw, pose
 
 
-def test_a_corrected_image_is_the_commands_to_the_bit(rig_file, tmp_path, command, channels, survey):
+SETTINGS = {"gain": [1e-3] * 3, "middle": 0.3, "read_noise": 2, "electrons": 3}
+SETTING_WORDS = [
+    "--gain", 0.001, "--middle", 0.3, "--read-noise", 2, "--electrons", 3,
+    "--mask", "--format", "exr",
+]  # fmt: skip
+
+
+def mask_beside(file):
+    return np.array(Image.open(next(file.parent.glob(f"**/{file.stem}*mask*.png"))))
+
+
+def test_an_image_by_a_map_is_the_commands_to_the_bit(rig_file, tmp_path, command, channels, survey):
+    raw, _ = survey
+    command("lightmap", rig_file, "-o", "map.exr")
+    command("correct", *raw, "--map", "map.exr", *LEVEL_WORDS, *SETTING_WORDS, "-o", "corrected")
+    light = aphotic.lightmap(aphotic.Rig.load(rig_file))
+    for file in raw:
+        corrected = aphotic.correct(channels(file)["Y"], light, **LEVELS, **SETTINGS, edge_px=0)
+        result = tmp_path / f"corrected/{file.stem}.exr"
+        for c, name in enumerate("RGB"):
+            np.testing.assert_array_equal(corrected.image[:, :, c], channels(result)[name])
+        np.testing.assert_array_equal(corrected.doubts, mask_beside(result))
+
+
+def test_an_image_by_its_pose_is_the_commands(rig_file, tmp_path, command, channels, survey):
     raw, pose = survey
     command(
-        "correct", *raw, "--rig", rig_file, "--nav", pose, *LEVEL_WORDS, "--mask",
-        "--gain", 0.001, "--middle", 0.3, "--read-noise", 2, "--electrons", 3,
-        "--format", "exr", "-o", "corrected",
+        "correct", *raw, "--rig", rig_file, "--nav", pose, *LEVEL_WORDS, *SETTING_WORDS,
+        "-o", "corrected",
     )  # fmt: skip
-    rig = aphotic.Rig.load(rig_file).replace(
-        **{"sled.altitude_m": 2.0, "sled.pitch_deg": 5.0, "sled.roll_deg": 0.0}
-    )
-    # Tables for the poses of a survey have room, from which a map's last digits come.
-    light = aphotic.LightmapMaker(rig).map()
+    level = aphotic.Rig.load(rig_file).replace(**{"sled.pitch_deg": 0.0, "sled.roll_deg": 0.0})
+    light = aphotic.LightmapMaker(level).map()
     for file in raw:
-        image = np.array(Image.open(file)).astype(np.float32)
-        corrected = aphotic.correct(
-            image, light, **LEVELS, gain=[1e-3] * 3, middle=0.3, read_noise=2, electrons=3
-        )
-        planes = channels(tmp_path / f"corrected/{file.stem}.exr")
+        corrected = aphotic.correct(channels(file)["Y"], light, **LEVELS, **SETTINGS)
+        result = tmp_path / f"corrected/{file.stem}.exr"
         for c, name in enumerate("RGB"):
-            np.testing.assert_array_equal(corrected.image[:, :, c], planes[name])
-        mask = next((tmp_path / "corrected").glob(f"**/{file.stem}*mask*.png"))
-        np.testing.assert_array_equal(corrected.doubts, np.array(Image.open(mask)))
+            np.testing.assert_allclose(
+                corrected.image[:, :, c], channels(result)[name], rtol=MAP_ERROR
+            )
+        np.testing.assert_array_equal(corrected.doubts, mask_beside(result))
 
 
 def test_an_image_of_the_map_comes_out_flat(rig_file):
