@@ -25,6 +25,7 @@ inline constexpr const char* kRenderingCommands = "Render a rig";
 inline constexpr const char* kMapCommands = "Map its light on a flat floor";
 inline constexpr const char* kSurveyCommands = "Correct a survey";
 inline constexpr const char* kCheckCommands = "Check and measure";
+inline constexpr const char* kHelpCommands = "Help";
 
 struct Command {
     const char* name;
@@ -53,5 +54,6 @@ extern const Command kStress;
 extern const Command kCompare;
 extern const Command kBeam;
 extern const Command kData;
+extern const Command kHelp;
 
 }  // namespace aphotic::cli

@@ -6,8 +6,10 @@
 #include "base/interruption.h"
 #include "base/printable.h"
 #include "cli/command.h"
+#include "cli/completion.h"
 #include "cli/help.h"
 #include "cli/option_checks.h"
+#include "cli/unknown_word.h"
 
 #include <fmt/format.h>
 
@@ -17,32 +19,19 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace {
 
 using namespace aphotic::cli;
 
 // In the order of --help.
-constexpr std::array kCommands{&kRender,
-                               &kPlan,
-                               &kGenerate,
-                               &kIntegrate,
-                               &kTrace,
-                               &kLightmap,
-                               &kAtlas,
-                               &kDesign,
-                               &kCorrect,
-                               &kObserve,
-                               &kFit,
-                               &kBaseline,
-                               &kSurvey,
-                               &kValidate,
-                               &kStudy,
-                               &kStress,
-                               &kCompare,
-                               &kBeam,
-                               &kData};
+constexpr std::array kCommands{&kRender,   &kPlan,     &kGenerate, &kIntegrate, &kTrace,
+                               &kLightmap, &kAtlas,    &kDesign,   &kCorrect,   &kObserve,
+                               &kFit,      &kBaseline, &kSurvey,   &kValidate,  &kStudy,
+                               &kStress,   &kCompare,  &kBeam,     &kData,      &kHelp};
 
 // A message quotes what it found: nothing in it may steer the terminal.
 void say(std::string_view message) {
@@ -74,6 +63,27 @@ ExitStatus run(const Action& action) {
     }
 }
 
+// Once parsed, whatever else is on the line.
+void add_completion(CLI::App& app, Action& chosen) {
+    app.add_option_function<std::string>(
+           "--completion",
+           [&app, &chosen](const std::string& shell) {
+               chosen = [&app, shell] {
+                   fmt::print("{}", completion_script(app, shell));
+                   return kDone;
+               };
+               throw CLI::Success();
+           },
+           "Print a script by which bash, zsh or fish completes this command")
+        ->check(CLI::IsMember(std::vector<std::string>(kShells.begin(), kShells.end())))
+        ->trigger_on_parse();
+}
+
+std::string words_of_failure(const CLI::App* app, const CLI::Error& error) {
+    const std::string unknown = unknown_words(*app);
+    return unknown.empty() ? CLI::FailureMessage::simple(app, error) : unknown;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -89,11 +99,13 @@ int main(int argc, char** argv) {
     app.formatter(std::make_shared<HelpFormatter>());
     app.set_version_flag("--version", "aphotic " APHOTIC_VERSION, "Print the version and exit");
     app.require_subcommand(1);
+    app.failure_message(words_of_failure);
     app.footer(
         "Exit status: 0 done; 1 ran, and the answer is no; 2 wrong command line or input file; 3 "
         "POV-Ray or the file system failed. Ends by the signal when interrupted.");
 
     Action chosen;
+    add_completion(app, chosen);
     for (const Command* command : kCommands) {
         CLI::App* sub = app.add_subcommand(command->name, command->summary)->group(command->group);
         const Action action = command->configure(*sub);
@@ -111,6 +123,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
+        if (chosen && error.get_exit_code() == 0) return run(chosen);
         return app.exit(error) == 0 ? kDone : kBadInput;
     }
     return run(chosen);

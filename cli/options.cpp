@@ -36,7 +36,7 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
                    "Show as grey the lamps' own light (lamp, the default), the image's mean "
                    "(image), or equal signals (none)")
         ->transform(word_of(kWhites))
-        ->option_text("WHITE");
+        ->type_name("lamp|image|none");
     app.add_option("--preview-stops", options.stops, "Brighten the preview by 2^STOPS")
         ->check(in_range(-kMostStops, kMostStops))
         ->option_text("STOPS")

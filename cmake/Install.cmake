@@ -23,3 +23,23 @@ install(DIRECTORY plugin/include/ DESTINATION ${CMAKE_INSTALL_DATADIR}/aphotic/i
 install(FILES docs/aphotic.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN aphotic.1 EXCLUDE)
+
+# The command says itself what a shell should know of it. The names are those that each shell looks for.
+set(completions ${PROJECT_BINARY_DIR}/completions)
+foreach(completion
+        bash:bash-completion/completions/aphotic
+        zsh:zsh/site-functions/_aphotic
+        fish:fish/vendor_completions.d/aphotic.fish)
+    string(REGEX MATCH "^([a-z]+):(.*)/([^/]+)$" _ ${completion})
+    set(script ${completions}/${CMAKE_MATCH_3}.${CMAKE_MATCH_1})
+    set(name ${CMAKE_MATCH_3})
+    set(folder ${CMAKE_MATCH_2})
+    add_custom_command(OUTPUT ${script}
+        COMMAND ${CMAKE_COMMAND} -E make_directory ${completions}
+        COMMAND aphotic --completion ${CMAKE_MATCH_1} > ${script}
+        DEPENDS aphotic
+        VERBATIM)
+    list(APPEND completion_scripts ${script})
+    install(FILES ${script} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} RENAME ${name})
+endforeach()
+add_custom_target(aphotic_completions ALL DEPENDS ${completion_scripts})

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// aphotic help [COMMAND]: what --help prints, of the command.
+#include "base/error.h"
+#include "cli/command.h"
+#include "cli/unknown_word.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+namespace aphotic::cli {
+namespace {
+
+ExitStatus print_help(const CLI::App& all, const std::string& name) {
+    if (name.empty()) {
+        fmt::print(
+            "{}", all.get_formatter()->make_help(&all, all.get_name(), CLI::AppFormatMode::Normal));
+        return kDone;
+    }
+    for (const CLI::App* command : all.get_subcommands({})) {
+        if (command->get_name() != name) continue;
+        fmt::print("{}", command->help(all.get_name()));
+        return kDone;
+    }
+    throw InputError("help: found {}; no such command{}", name, nearest_command(all, name));
+}
+
+Action configure_help(CLI::App& app) {
+    const auto name = std::make_shared<std::string>();
+    app.add_option("COMMAND", *name, "The command; by default all of them");
+    return [&app, name] { return print_help(*app.get_parent(), *name); };
+}
+
+}  // namespace
+
+const Command kHelp{"help", kHelpCommands, "Print the help of a command", configure_help};
+
+}  // namespace aphotic::cli

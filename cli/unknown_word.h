@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Words of a command line that the parser does not know, each with the known one that was probably
+// meant (base/nearest.h):
+//
+//   aphotic: found rendr; no such command: did you mean render?
+//   aphotic plan: found --tolerence; no such option: did you mean --tolerance?
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <string_view>
+
+namespace aphotic::cli {
+
+// ": did you mean ...?", or what lists them all when none is near.
+[[nodiscard]] std::string nearest_command(const CLI::App& app, std::string_view wanted);
+
+// After a parse that failed: a line for each. Empty: all are known.
+[[nodiscard]] std::string unknown_words(const CLI::App& app);
+
+}  // namespace aphotic::cli

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Light of an underwater camera sled: rig in, arrays out. See docs/python.md."""
+
+from ._aphotic import (
+    Corrected,
+    Fit,
+    FittedNumber,
+    InputError,
+    Lightmap,
+    LightmapMaker,
+    Plan,
+    Rig,
+    RunError,
+    Table,
+    Trace,
+    __version__,
+    correct,
+    fit,
+    lightmap,
+    model_error,
+    plan,
+    spectra,
+    trace,
+)
+
+__all__ = [
+    "Corrected",
+    "Fit",
+    "FittedNumber",
+    "InputError",
+    "Lightmap",
+    "LightmapMaker",
+    "Plan",
+    "Rig",
+    "RunError",
+    "Table",
+    "Trace",
+    "__version__",
+    "correct",
+    "fit",
+    "lightmap",
+    "model_error",
+    "plan",
+    "spectra",
+    "trace",
+]

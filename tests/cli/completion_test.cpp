@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Completion in the shells themselves, held against --help.
+#include "support/run_command.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace aphotic::completion_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kTimeout_s = 600.0;  // for what hangs
+
+std::set<std::string> words_in(const std::string& text) {
+    std::istringstream words(text);
+    std::set<std::string> all;
+    for (std::string word; words >> word;) all.insert(word);
+    return all;
+}
+
+// The first long name of each line, as --help begins it.
+std::set<std::string> options_in_help(const std::string& help) {
+    const std::regex option("\n  (?:-[a-z], )?(--[a-z0-9-]+)");
+    std::set<std::string> names;
+    for (std::sregex_iterator at(help.begin(), help.end(), option), end; at != end; ++at)
+        names.insert((*at)[1].str());
+    return names;
+}
+
+std::set<std::string> commands_in_help(const std::string& help) {
+    const std::regex command("\n  ([a-z]+) {2,}");
+    std::set<std::string> names;
+    for (std::sregex_iterator at(help.begin(), help.end(), command), end; at != end; ++at)
+        names.insert((*at)[1].str());
+    return names;
+}
+
+bool is_installed(const std::string& program) {
+    return fs::exists("/usr/bin/" + program) || fs::exists("/bin/" + program);
+}
+
+class Completion : public testing::Test {
+  protected:
+    void SetUp() override { write_file(folder_.path() / "my-rig.toml", ""); }
+
+    [[nodiscard]] CommandResult aphotic(const std::vector<std::string>& arguments) const {
+        return run_aphotic(folder_.path(), arguments);
+    }
+
+    void save_script(const std::string& shell, const std::string& name) const {
+        const CommandResult run = aphotic({"--completion", shell});
+        ASSERT_EQ(run.status, 0) << run.err;
+        write_file(folder_.path() / name, run.out);
+    }
+
+    [[nodiscard]] std::string said_by(const std::string& shell,
+                                      const std::vector<std::string>& arguments) const {
+        const fs::path log = folder_.path() / "log";
+        const ProcessEnd end = run_process({.executable = shell,
+                                            .arguments = arguments,
+                                            .folder = folder_.path(),
+                                            .environment = {{"HOME", folder_.path().string()}},
+                                            .log = log},
+                                           kTimeout_s);
+        std::string said = read_text_file(log);
+        EXPECT_TRUE(end.succeeded()) << shell << ": " << end.words() << "\n" << said;
+        return said;
+    }
+
+    // What bash makes of the words, the last of which is to be completed.
+    [[nodiscard]] std::set<std::string> by_bash(std::vector<std::string> words) const {
+        words.insert(words.begin(),
+                     {"--norc",
+                      "-c",
+                      "source ./aphotic.bash && COMP_WORDS=(\"$0\" \"$@\") && COMP_CWORD=$# && "
+                      "_aphotic && echo \"${COMPREPLY[@]}\"",
+                      "aphotic"});
+        return words_in(said_by("/bin/bash", words));
+    }
+
+    // An interactive zsh, of a terminal: what the command is given once the line was completed.
+    [[nodiscard]] std::string by_zsh(const std::string& line) const {
+        write_file(folder_.path() / "type.zsh", R"(zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell "fpath=($1 \$fpath); autoload -U compinit; compinit -u -D; aphotic() { print -r -- got \${(j:,:)@}; }; print rea''dy"
+zpty -r -m shell out '*ready*'
+zpty -w shell "aphotic $2"$'\t'
+zpty -r -m shell out $'*\ngot *\n*'
+print -r -- $out
+)");
+        const std::string said =
+            said_by("/usr/bin/zsh", {"-f", "type.zsh", folder_.path().string(), line});
+        std::smatch found;
+        return std::regex_search(said, found, std::regex("got ([^\r\n]*)")) ? found[1].str() : said;
+    }
+
+    // Its lines are words with a tab and a description.
+    [[nodiscard]] std::set<std::string> by_fish(const std::string& line) const {
+        const std::string said =
+            said_by("/usr/bin/fish",
+                    {"--no-config", "-c", "source aphotic.fish; complete -C'" + line + "'"});
+        std::istringstream lines(said);
+        std::set<std::string> words;
+        for (std::string one; std::getline(lines, one);)
+            words.insert(one.substr(0, one.find('\t')));
+        return words;
+    }
+
+    TempFolder folder_;
+};
+
+using Words = std::set<std::string>;
+
+TEST_F(Completion, BashOffersTheCommandsAndOptionsOfHelp) {
+    save_script("bash", "aphotic.bash");
+    const std::set<std::string> commands = commands_in_help(aphotic({"--help"}).out);
+    EXPECT_TRUE(commands.contains("render") && commands.contains("help"));
+    EXPECT_EQ(by_bash({""}), commands);
+    for (const std::string& command : commands) {
+        const std::set<std::string> options = options_in_help(aphotic({command, "--help"}).out);
+        EXPECT_TRUE(options.contains("--help")) << command;
+        EXPECT_EQ(by_bash({command, "--"}), options) << command;
+    }
+}
+
+TEST_F(Completion, BashOffersWordsAndFiles) {
+    save_script("bash", "aphotic.bash");
+    write_file(folder_.path() / "notes.txt", "");
+    fs::create_directory(folder_.path() / "frames");
+    EXPECT_EQ(by_bash({"pl"}), Words{"plan"});
+    EXPECT_EQ(by_bash({"--completion", ""}), (Words{"bash", "zsh", "fish"}));
+    EXPECT_EQ(by_bash({"render", "r.toml", "--veil", ""}), (Words{"quadrature", "povray"}));
+    EXPECT_EQ(by_bash({"render", "r.toml", "--veil", "=", "p"}), Words{"povray"});
+    EXPECT_EQ(by_bash({"render", "r.toml", "-o", ""}), Words{"frames"});
+    EXPECT_EQ(by_bash({"plan", ""}), (Words{"my-rig.toml", "frames"}));
+    EXPECT_EQ(by_bash({"plan", "r.toml", "--tolerance", ""}), Words{});
+    EXPECT_EQ(by_bash({"help", "lightm"}), Words{"lightmap"});
+    // An old spelling is not offered and goes on working.
+    EXPECT_EQ(by_bash({"lightmap", "--altitude-m", ""}), Words{});
+}
+
+TEST_F(Completion, ZshCompletes) {
+    if (!is_installed("zsh")) GTEST_SKIP() << "zsh is not installed";
+    save_script("zsh", "_aphotic");
+    EXPECT_EQ(said_by("/usr/bin/zsh", {"-n", "_aphotic"}), "");
+    EXPECT_EQ(by_zsh("rend"), "render");
+    EXPECT_EQ(by_zsh("plan my"), "plan,my-rig.toml");
+    EXPECT_EQ(by_zsh("plan --plo"), "plan,--plot");
+    EXPECT_EQ(by_zsh("lightmap --preview-white im"), "lightmap,--preview-white,image");
+    EXPECT_EQ(by_zsh("help lightm"), "help,lightmap");
+}
+
+TEST_F(Completion, FishCompletes) {
+    if (!is_installed("fish")) GTEST_SKIP() << "fish is not installed";
+    save_script("fish", "aphotic.fish");
+    EXPECT_EQ(by_fish("aphotic pla"), Words{"plan"});
+    EXPECT_EQ(by_fish("aphotic plan my"), Words{"my-rig.toml"});
+    EXPECT_EQ(by_fish("aphotic plan --plo"), Words{"--plot"});
+    EXPECT_EQ(by_fish("aphotic lightmap --preview-white "), (Words{"lamp", "image", "none"}));
+    EXPECT_EQ(by_fish("aphotic help lightm"), Words{"lightmap"});
+}
+
+TEST_F(Completion, OfAnotherShellIsRefused) {
+    const CommandResult run = aphotic({"--completion", "tcsh"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.out, "");
+    EXPECT_NE(run.err.find("tcsh not in {bash,zsh,fish}"), std::string::npos) << run.err;
+}
+
+}  // namespace
+}  // namespace aphotic::completion_test

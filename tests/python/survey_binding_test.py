@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+import json
+
+import numpy as np
+import OpenEXR
+import pytest
+from PIL import Image
+
+import aphotic
+
+LEVELS = {"bayer": "RGGB", "black_level": 64, "white_level": 4095}
+# The stated error of two maps, whose tables are not of the same paths, and the rounding of floats.
+MAP_ERROR = 3e-5
+LEVEL_WORDS = ["--bayer", "RGGB", "--black-level", 64, "--white-level", 4095]
+
+
+@pytest.fixture
+def survey(rig_file, tmp_path, command):
+    """Raw images of floats, and a navigation by which all are of one level pose.
+
+    The command reads integers as shares of their range, and back: off by a rounding.
+    """
+    command("survey", rig_file, "--images", 3, "-o", "survey")
+    raw = []
+    for file in sorted((tmp_path / "survey/raw").iterdir()):
+        raw.append(tmp_path / f"{file.stem}.exr")
+        planes = {"Y": np.array(Image.open(file)).astype(np.float32)}
+        with OpenEXR.File({"type": OpenEXR.scanlineimage}, planes) as image:
+            image.write(str(raw[-1]))
+    pose = tmp_path / "pose.csv"
+    rows = [f"{file.name},2,0,0" for file in raw]
+    pose.write_text("\n".join(["image,altitude_m,pitch_deg,roll_deg", *rows]) + "\n")
+    return raw, pose
+
+
+SETTINGS = {"gain": [1e-3] * 3, "middle": 0.3, "read_noise": 2, "electrons": 3}
+SETTING_WORDS = [
+    "--gain", 0.001, "--middle", 0.3, "--read-noise", 2, "--electrons", 3,
+    "--mask", "--format", "exr",
+]  # fmt: skip
+
+
+def mask_beside(file):
+    return np.array(Image.open(next(file.parent.glob(f"**/{file.stem}*mask*.png"))))
+
+
+def test_an_image_by_a_map_is_the_commands_to_the_bit(rig_file, tmp_path, command, channels, survey):
+    raw, _ = survey
+    command("lightmap", rig_file, "-o", "map.exr")
+    command("correct", *raw, "--map", "map.exr", *LEVEL_WORDS, *SETTING_WORDS, "-o", "corrected")
+    light = aphotic.lightmap(aphotic.Rig.load(rig_file))
+    for file in raw:
+        corrected = aphotic.correct(channels(file)["Y"], light, **LEVELS, **SETTINGS, edge_px=0)
+        result = tmp_path / f"corrected/{file.stem}.exr"
+        for c, name in enumerate("RGB"):
+            np.testing.assert_array_equal(corrected.image[:, :, c], channels(result)[name])
+        np.testing.assert_array_equal(corrected.doubts, mask_beside(result))
+
+
+def test_an_image_by_its_pose_is_the_commands(rig_file, tmp_path, command, channels, survey):
+    raw, pose = survey
+    command(
+        "correct", *raw, "--rig", rig_file, "--nav", pose, *LEVEL_WORDS, *SETTING_WORDS,
+        "-o", "corrected",
+    )  # fmt: skip
+    level = aphotic.Rig.load(rig_file).replace(**{"sled.pitch_deg": 0.0, "sled.roll_deg": 0.0})
+    light = aphotic.LightmapMaker(level).map()
+    for file in raw:
+        corrected = aphotic.correct(channels(file)["Y"], light, **LEVELS, **SETTINGS)
+        result = tmp_path / f"corrected/{file.stem}.exr"
+        for c, name in enumerate("RGB"):
+            np.testing.assert_allclose(
+                corrected.image[:, :, c], channels(result)[name], rtol=MAP_ERROR
+            )
+        np.testing.assert_array_equal(corrected.doubts, mask_beside(result))
+
+
+def test_an_image_of_the_map_comes_out_flat(rig_file):
+    """raw = E (map + veil), so that corrected = g E where the map is bright: one number a channel."""
+    light = aphotic.lightmap(aphotic.Rig.load(rig_file))
+    exposure = 1e3 / light.floor.max()
+    corrected = aphotic.correct(exposure * light.signal, light, middle=0.5, edge_px=0)
+    good = corrected.doubts == 0
+    assert good.sum() > 500
+    rounding = 1e-6  # of floats, a few
+    np.testing.assert_allclose(corrected.image[good], 0.5, rtol=rounding)
+
+
+def test_bad_images_are_refused(rig_file):
+    light = aphotic.lightmap(aphotic.Rig.load(rig_file))
+    with pytest.raises(aphotic.InputError, match="as the map has"):
+        aphotic.correct(np.ones((10, 10), np.float32), light, bayer="RGGB")
+    with pytest.raises(aphotic.InputError, match="bayer: found 'RGBG'"):
+        aphotic.correct(np.ones((36, 48), np.float32), light, bayer="RGBG")
+    with pytest.raises(aphotic.InputError, match="raw: found 2 dimensions"):
+        aphotic.correct(np.ones((36, 48), np.float32), light)
+    with pytest.raises(aphotic.InputError, match="allowed: with a gain"):
+        aphotic.correct(np.zeros((36, 48), np.float32), light, bayer="RGGB")
+
+
+def test_a_fit_is_the_commands(rig_file, tmp_path, command):
+    command("survey", rig_file, "--images", 12, "-o", "survey")
+    nav = tmp_path / "survey/navigation-measured.txt"
+    said = command(
+        "fit", rig_file, "--images", "survey/raw", "--nav", nav, *LEVEL_WORDS,
+        "--free", "power,gain", "--blocks", 12, "-o", "fitted", "--json",
+    ).stdout  # fmt: skip
+    rig = aphotic.Rig.load(rig_file)
+    fit = aphotic.fit(
+        rig, images=[str(tmp_path / "survey/raw")], nav=nav, **LEVELS, free=["power", "gain"], blocks=12
+    )
+    assert json.loads(fit.json) == json.loads(said)
+    assert [one.key for one in fit.numbers] == [one["key"] for one in json.loads(said)["numbers"]]
+    saved = fit.save(tmp_path / "by-python")
+    assert saved.text == (tmp_path / "fitted/fitted.toml").read_text()
+
+
+def test_a_fit_says_what_it_needs(rig_file):
+    rig = aphotic.Rig.load(rig_file)
+    with pytest.raises(aphotic.InputError, match="found neither maps nor images"):
+        aphotic.fit(rig)
+    with pytest.raises(aphotic.InputError, match="images: found no navigation"):
+        aphotic.fit(rig, images=["."])
+    with pytest.raises(aphotic.InputError, match="beam: found square"):
+        aphotic.fit(rig, maps=["a.exr"], beam="square")
