@@ -225,6 +225,8 @@ FitResult result_of(const Bench& bench,
     const FitEquations::Normal normal =
         bench.equations.normal(problem.state, light, solved.shares, problem.numbers(), true);
     FitResult result;
+    untold = not_told(bench.equations, problem, light, normal.H, solved.shares, sleds_of(samples));
+    if (!untold.empty()) return result;  // refused, or fitted again: no more of it is wanted
     result.state = problem.state;
     result.shares = solved.shares;
     result.covariance =
@@ -261,7 +263,6 @@ FitResult result_of(const Bench& bench,
         }
         first += count;
     }
-    untold = not_told(bench.equations, problem, light, normal.H, solved.shares, sleds_of(samples));
     result.left = fit_residuals(bench.equations, samples, result.state, light, result.shares);
     return result;
 }
