@@ -240,7 +240,7 @@ FitResult result_of(const Bench& bench,
         bench.equations.normal(problem.state, light, solved.shares, problem.numbers(), true);
     untold = not_told(bench.equations, problem, light, normal.H, solved.shares, sleds_of(samples));
     FitResult result;
-    if (!untold.empty()) return result;
+    if (!untold.empty()) return result;  // refused, or fitted again: no more of it is wanted
     result.state = problem.state;
     result.shares = solved.shares;
     result.covariance =

@@ -45,9 +45,9 @@ TEST(CommandFit, LearnsARigFromASurvey) {
                                            "--white-level",
                                            "4095",
                                            "--blocks",
-                                           "24",
-                                           "--parts",
                                            "12",
+                                           "--parts",
+                                           "8",
                                            "-o",
                                            "fitted",
                                            "--json"});

@@ -35,49 +35,57 @@ DesignRequest request_for(const Rig& rig) {
     return request;
 }
 
-class DesignFiles : public testing::Test {
-  protected:
-    void SetUp() override {
-        fs::create_directories(out_);
-        write_design(text_, request_, result_, out_);
+struct Designed {
+    Designed() {
+        fs::create_directories(out);
+        write_design(text, request, result, out);
     }
 
-    TempFolder folder_;
-    fs::path in_ = folder_.path() / "in";
-    fs::path out_ = folder_.path() / "out";
-    RigText text_ = rig_with_a_table(in_);
-    Rig rig_ = text_.rig();
-    DesignRequest request_ = request_for(rig_);
-    DesignResult result_ = design(text_, request_);
+    TempFolder folder;
+    fs::path in = folder.path() / "in";
+    fs::path out = folder.path() / "out";
+    RigText text = rig_with_a_table(in);
+    Rig rig = text.rig();
+    DesignRequest request = request_for(rig);
+    DesignResult result = design(text, request);
 };
 
-TEST_F(DesignFiles, LeaveARigThatFindsItsTables) {
-    ASSERT_TRUE(result_.is_better);
-    const Rig left = read_rig(out_ / kDesignedRig);
-    EXPECT_EQ(left.seafloor.reflectance.at(550.0), rig_.seafloor.reflectance.at(550.0));
+// Searched for once: each case looks at what that leaves.
+const Designed& designed() {
+    static const Designed kDesigned;
+    return kDesigned;
+}
+
+TEST(DesignFiles, LeaveARigThatFindsItsTables) {
+    const Designed& of = designed();
+    ASSERT_TRUE(of.result.is_better);
+    const Rig left = read_rig(of.out / kDesignedRig);
+    EXPECT_EQ(left.seafloor.reflectance.at(550.0), of.rig.seafloor.reflectance.at(550.0));
     for (std::size_t s = 0; s < left.strobes.size(); ++s)
-        EXPECT_EQ(left.strobes[s].position_m, result_.best.places[s].position_m);
+        EXPECT_EQ(left.strobes[s].position_m, of.result.best.places[s].position_m);
     EXPECT_TRUE(contains(left.toml, "# where fore is"));
 }
 
-TEST_F(DesignFiles, LeaveThePageAndTheNumbers) {
-    const std::string page = read_text_file(out_ / kDesignPage);
+TEST(DesignFiles, LeaveThePageAndTheNumbers) {
+    const Designed& of = designed();
+    const std::string page = read_text_file(of.out / kDesignPage);
     EXPECT_EQ(first_unbalanced(page), "");
     for (const char* words : {"Evenness ", "Light on the floor", "The trade", "Over the envelope"})
         EXPECT_TRUE(contains(words_of(page), words)) << words;
     EXPECT_FALSE(contains(page, "<b>"));
-    const auto json = nlohmann::json::parse(read_text_file(out_ / kDesignNumbers));
+    const auto json = nlohmann::json::parse(read_text_file(of.out / kDesignNumbers));
     EXPECT_EQ(json.at("design").at("worst").at("evenness").get<double>(),
-              result_.best.figures.evenness);
+              of.result.best.figures.evenness);
     EXPECT_EQ(json.at("design").at("poses").size(), 3U);
-    EXPECT_EQ(json.at("front").size(), result_.front.size());
+    EXPECT_EQ(json.at("front").size(), of.result.front.size());
 }
 
 // The folder of the rig itself will do: its tables are not copied onto themselves.
-TEST_F(DesignFiles, MayStandBesideTheRig) {
-    write_design(text_, request_, result_, in_);
-    EXPECT_EQ(read_rig(in_ / kDesignedRig).strobes.size(), 2U);
-    EXPECT_EQ(read_rig(in_ / "rig.toml").digest, rig_.digest);
+TEST(DesignFiles, MayStandBesideTheRig) {
+    const Designed& of = designed();
+    write_design(of.text, of.request, of.result, of.in);
+    EXPECT_EQ(read_rig(of.in / kDesignedRig).strobes.size(), 2U);
+    EXPECT_EQ(read_rig(of.in / "rig.toml").digest, of.rig.digest);
 }
 
 }  // namespace
