@@ -215,6 +215,7 @@ TEST(Fit, FindsOutASurveyWhosePosesAreThoseOfOtherImages) {
     samples.are_maps = false;
     EXPECT_TRUE(fitted_to(samples).left.doubts.empty());
     // Each image has its neighbour's altitude, a metre off at most.
+    samples.are_maps = true;
     for (std::size_t i = 0; i + 1 < samples.images.size(); ++i)
         std::swap(samples.images[i].sled, samples.images[i + 1].sled);
     EXPECT_NE(doubts_of(fitted_to(samples)).find("darker than their poses explain"),
