@@ -128,6 +128,7 @@ ExitStatus tell_status(const SweepCommandOptions& options) {
     if (options.collect) {
         const FolderLock lock(sweep.folder, FolderUse::Write);
         remove_abandoned_files(sweep.folder);
+        join_shares_of(sweep, status.standings, this_program());
         const auto write = [&](const char* name, const std::string& text) {
             write_text_file(sweep.folder / name, text);
             status.files.push_back((options.source / name).string());

@@ -13,7 +13,9 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <string>
 #include <system_error>
+#include <utility>
 
 namespace aphotic {
 
@@ -136,18 +138,32 @@ void run_noted(const PovRay& povray,
                run);
 }
 
+// The digest of a user's scene that scenes were written for.
+fs::path scene_note(const fs::path& folder) {
+    return folder / "povray" / "scene.sha256";
+}
+
+void write_scenes_and_note(const fs::path& folder, const SceneSet& set) {
+    write_scenes(folder, set);
+    if (set.scene_file.empty()) {
+        take_away(scene_note(folder));
+    } else {
+        write_text_file(scene_note(folder), set.scene_files_digest);
+    }
+}
+
 // That of scenes which were written before. As it was then, or frames would be of two scenes.
 OwnScene scene_in(const fs::path& folder, const Manifest& manifest) {
     if (!manifest.scene) return {};
-    const ManifestScene& scene = *manifest.scene;
-    if (!scene.files || digest_of_scene(scene.file) != scene.files->sha256)
+    const std::string& file = manifest.scene->file;
+    std::string digest = digest_of_scene(file);
+    const fs::path note = scene_note(folder);
+    if (!fs::exists(note) || read_text_file(note) != digest)
         throw InputError("{}: found scenes of {} as it was; allowed: of it as it is, by `aphotic "
                          "generate`",
                          folder.string(),
-                         scene.file);
-    return {.file = scene.file,
-            .digest = scene.files->sha256,
-            .is_alone = opens_to_write(scene.file)};
+                         file);
+    return {.file = file, .digest = std::move(digest), .is_alone = opens_to_write(file)};
 }
 
 // What POV-Ray reads of these frames: their scenes, the settings, and what all scenes include.
@@ -199,7 +215,7 @@ RenderResult render(const PovRay& povray,
     result.kept = set.scenes.size() - missing.size();
     take_away_what_is_past(folder, earlier, result.manifest);
     for (const ManifestFrame& frame : missing) take_away(image_path(folder, frame));
-    write_scenes(folder, set);
+    write_scenes_and_note(folder, set);
     note_veil(folder, set, Frames::ToBeRendered, result.manifest);
     write_manifest(folder, result.manifest);
 
@@ -298,7 +314,7 @@ Manifest generate(const fs::path& folder, const SceneSet& set) {
         if (!may_be_this) take_away(image_path(folder, frame));
     }
     take_away_what_is_past(folder, earlier, manifest);
-    write_scenes(folder, set);
+    write_scenes_and_note(folder, set);
     note_veil(folder, set, Frames::ToBeRendered, manifest);
     write_manifest(folder, manifest);
     return manifest;

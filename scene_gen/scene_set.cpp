@@ -78,8 +78,7 @@ ManifestScene noted(const UserScene& scene, const LightFamily& family) {
                        .sha256 = scene.digest,
                        .materials = {},
                        .shortest_path_m = family.shortest_path_m,
-                       .longest_path_m = family.longest_path_m,
-                       .files = ManifestSceneFiles{scene.files_digest}};
+                       .longest_path_m = family.longest_path_m};
     for (const NamedSpectrum& material : scene.materials) note.materials.push_back(material.name);
     return note;
 }

@@ -209,11 +209,6 @@ void fields(const Visit& visit, Strobe& strobe) {
     visit("lamps_along", strobe.lamps_along, 1, kMostLamps);
 }
 
-template <typename Visit, Is<ManifestSceneFiles> Files>
-void fields(const Visit& visit, Files& files) {
-    visit("sha256", files.sha256);
-}
-
 template <typename Visit, Is<ManifestScene> Scene>
 void fields(const Visit& visit, Scene& scene) {
     visit("file", scene.file);
@@ -225,7 +220,6 @@ void fields(const Visit& visit, Scene& scene) {
     visit.require("longest_path_m",
                   "a number not under shortest_path_m",
                   scene.longest_path_m >= scene.shortest_path_m);
-    visit.optional("files", scene.files);
 }
 
 template <typename Visit, Is<RuleQuality> Quality>

@@ -46,11 +46,6 @@ struct ManifestStrobe {
     int lamps_along = 1;
 };
 
-// Of a scene's files when it was planned.
-struct ManifestSceneFiles {
-    std::string sha256;
-};
-
 // A scene of the user's own that the frames show.
 struct ManifestScene {
     std::string file;
@@ -58,7 +53,6 @@ struct ManifestScene {
     std::vector<std::string> materials;  // the names that it gives reflectances
     double shortest_path_m = 0.0;        // of the light that it shows
     double longest_path_m = 0.0;
-    std::optional<ManifestSceneFiles> files{};  // none: planned by an older version
 };
 
 // How frames differ from the image.

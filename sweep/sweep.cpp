@@ -108,7 +108,11 @@ fs::path results_folder(const Sweep& sweep, std::size_t number) {
     return numbered(sweep, "point", task_of(sweep, number).point + 1);
 }
 
-std::vector<std::string> arguments_of(const Sweep& sweep, std::size_t number) {
+namespace {
+
+std::vector<std::string> command_line(const Sweep& sweep,
+                                      std::size_t number,
+                                      const std::vector<std::string>& own) {
     const SweepFile& file = sweep.file;
     const std::string rig = (task_folder(sweep, number) / kTaskRig).string();
     const std::string out = results_folder(sweep, number).string();
@@ -132,10 +136,19 @@ std::vector<std::string> arguments_of(const Sweep& sweep, std::size_t number) {
         add({"-o", out});
     }
     if (!sweep.scene.empty()) add({"--scene", sweep.scene.string()});
-    const std::vector<std::string> own = own_arguments(sweep, task_of(sweep, number));
     arguments.insert(arguments.end(), own.begin(), own.end());
     add({"--jobs", std::to_string(file.cores), "--json"});
     return arguments;
+}
+
+}  // namespace
+
+std::vector<std::string> arguments_of(const Sweep& sweep, std::size_t number) {
+    return command_line(sweep, number, own_arguments(sweep, task_of(sweep, number)));
+}
+
+std::vector<std::string> joining_arguments(const Sweep& sweep, std::size_t number) {
+    return command_line(sweep, number, sweep.file.arguments);
 }
 
 Sweep write_sweep(const fs::path& file, const fs::path& folder, const fs::path& program) {

@@ -12,7 +12,8 @@
 //   DIR/task-0001/out/           what the command made
 //   DIR/task-0001/answer.json, log, result.json
 //                                what it printed, and how it ended (task_run.h)
-//   DIR/point-0001/              of a command over shares: what all shares of one rig make
+//   DIR/point-0001/              of a command over shares: what all shares of one rig make, each in
+//                                a folder of its own until they are joined
 //
 // A task writes to its own folder and to no other, whatever the others do: nothing is locked between
 // machines.
@@ -50,6 +51,9 @@ struct SweepTask {
 [[nodiscard]] std::filesystem::path results_folder(const Sweep& sweep, std::size_t number);
 // Of the command aphotic.
 [[nodiscard]] std::vector<std::string> arguments_of(const Sweep& sweep, std::size_t number);
+
+// Of the command that joins the shares of the task's point.
+[[nodiscard]] std::vector<std::string> joining_arguments(const Sweep& sweep, std::size_t number);
 
 // Every rig is read before anything is written. Tasks of an earlier sweep in the folder keep their
 // results where these depend on nothing else. program: what the lines of tasks.txt start.

@@ -6,11 +6,14 @@
 #include "base/folder_lock.h"
 #include "base/interruption.h"
 #include "base/json_text.h"
+#include "base/share.h"
 #include "plugin/process.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <system_error>
@@ -85,6 +88,15 @@ std::string message_in(const std::string& log) {
     return first;
 }
 
+TaskResult result_of(const ProcessEnd& end, const fs::path& log) {
+    constexpr int kBySignal = 128;
+    TaskResult result{.exit_status = end.signal != 0 ? kBySignal + end.signal : end.exit_code};
+    if (result.is_done()) return result;
+    result.error = message_in(read_text_file(log));
+    if (result.error.empty()) result.error = end.words();
+    return result;
+}
+
 ProcessEnd run_command(const Sweep& sweep, std::size_t number, const fs::path& program) {
     const fs::path folder = task_folder(sweep, number);
     RunningSign sign(folder / kRunning);
@@ -118,6 +130,29 @@ TaskStanding standing_of(const Sweep& sweep, std::size_t number) {
     return {.state = result->is_done() ? TaskState::Done : TaskState::Failed, .result = *result};
 }
 
+void join_shares_of(const Sweep& sweep,
+                    std::span<const TaskStanding> standings,
+                    const fs::path& program) {
+    const auto shares = static_cast<std::size_t>(sweep.file.shares);
+    for (std::size_t first = 0; shares > 1 && first < standings.size(); first += shares) {
+        const fs::path folder = results_folder(sweep, first + 1);
+        const bool is_done = std::ranges::all_of(
+            standings.subspan(first, shares),
+            [](const TaskStanding& standing) { return standing.state == TaskState::Done; });
+        if (!is_done || share_folders(folder).empty()) continue;
+        const fs::path log = folder.string() + ".log";
+        const ProcessEnd end = run_process({.executable = program,
+                                            .arguments = joining_arguments(sweep, first + 1),
+                                            .folder = sweep.home,
+                                            .log = log,
+                                            .output = folder.string() + ".json"},
+                                           std::numeric_limits<double>::infinity());
+        const TaskResult result = result_of(end, log);
+        if (!result.is_done())
+            throw RunError("{}: its shares cannot be joined: {}", folder.string(), result.error);
+    }
+}
+
 TaskStanding run_task(const Sweep& sweep, std::size_t number, const fs::path& program) {
     const fs::path folder = task_folder(sweep, number);
     const FolderLock lock(folder, FolderUse::Write);
@@ -128,17 +163,10 @@ TaskStanding run_task(const Sweep& sweep, std::size_t number, const fs::path& pr
     if (standing.state == TaskState::Done) return standing;
     make_folder(results_folder(sweep, number));
     const auto start = std::chrono::steady_clock::now();
-    const ProcessEnd end = run_command(sweep, number, program);
-    constexpr int kBySignal = 128;
-    TaskResult result{
-        .digest = sweep.digests[number - 1],
-        .exit_status = end.signal != 0 ? kBySignal + end.signal : end.exit_code,
-        .seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
-    if (!result.is_done()) {
-        result.error = message_in(read_text_file(folder / kLog));
-        if (result.error.empty()) result.error = end.words();
-    }
+    TaskResult result = result_of(run_command(sweep, number, program), folder / kLog);
+    result.digest = sweep.digests[number - 1];
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     write_result(folder, result);
     return standing_of(sweep, number);
 }

@@ -15,12 +15,13 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace aphotic {
 
 struct TaskResult {
-    std::string digest;  // of what it depended on (sweep.h)
+    std::string digest{};  // of what it depended on (sweep.h)
     int exit_status = 0;  // as a shell tells it: 128 + the signal
     double seconds = 0.0;
     std::string error{};  // the first line of the command's message; empty: it ended with an answer
@@ -56,5 +57,12 @@ struct TaskStanding {
 TaskStanding run_task(const Sweep& sweep,
                       std::size_t number,
                       const std::filesystem::path& program);
+
+// Of a command over shares: joins those of every rig whose tasks are all done, by the command itself,
+// which finds its work done. In DIR, point-0001.json and point-0001.log are what it printed. Throws
+// RunError where it fails.
+void join_shares_of(const Sweep& sweep,
+                    std::span<const TaskStanding> standings,
+                    const std::filesystem::path& program);
 
 }  // namespace aphotic
