@@ -32,8 +32,9 @@ Share parse_share(std::string_view text) {
     const auto number = whole_number_of(text.substr(0, slash));
     const auto of = whole_number_of(text.substr(std::min(slash + 1, text.size())));
     if (number && of && *number >= 1 && *number <= *of && *of <= kMostShares) return {*number, *of};
-    throw InputError(
-        "found {}; allowed: I/N, such as 2/4, with I from 1 to N and N up to {}", text, kMostShares);
+    throw InputError("found {}; allowed: I/N, such as 2/4, with I from 1 to N and N up to {}",
+                     text,
+                     kMostShares);
 }
 
 fs::path share_folder(const fs::path& folder, Share share) {

@@ -85,21 +85,23 @@ nlohmann::ordered_json to_json(const RenderedShare& rendered) {
 }
 
 void print(const RenderedShare& rendered) {
-    fmt::print("POV-Ray {}: {} rendered, {} kept, in {:.1f} s\n"
-               "  {}: join the shares by `aphotic integrate`\n",
-               rendered.povray_version,
-               counted(rendered.result.rendered, "frame"),
-               rendered.result.kept,
-               rendered.povray_s,
-               rendered.folder.string());
+    fmt::print(
+        "POV-Ray {}: {} rendered, {} kept, in {:.1f} s\n"
+        "  {}: join the shares by `aphotic integrate`\n",
+        rendered.povray_version,
+        counted(rendered.result.rendered, "frame"),
+        rendered.result.kept,
+        rendered.povray_s,
+        rendered.folder.string());
 }
 
 ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
     const fs::path folder = options.planning.rig_file;
     if (!fs::exists(manifest_path(folder)))
-        throw InputError("{}: found no manifest.json; allowed with --frames: a folder of `aphotic "
-                         "generate`",
-                         folder.string());
+        throw InputError(
+            "{}: found no manifest.json; allowed with --frames: a folder of `aphotic "
+            "generate`",
+            folder.string());
     const PovRay povray = find_povray(options.planning.povray);
     const fs::path own = share_folder(folder, options.share);
     const FolderLock whole(folder, FolderUse::Read);

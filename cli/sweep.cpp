@@ -53,21 +53,22 @@ nlohmann::ordered_json to_json(const WrittenSweep& written) {
 void print(const WrittenSweep& written) {
     const auto& [sweep] = written;
     const std::string folder = shell_word(sweep.folder.string());
-    fmt::print("{} of aphotic {} in {}: run them by one of\n"
-               "  parallel -j 4 < {}/tasks.txt\n"
-               "  sbatch {}/array.sbatch\n"
-               "  snakemake --cores 4 --keep-going -s {}/Snakefile\n"
-               "  condor_submit {}/submit.sub\n"
-               "then run\n"
-               "  aphotic sweep {} --collect\n",
-               counted(sweep.tasks(), "task"),
-               sweep.file.command,
-               sweep.folder.string(),
-               folder,
-               folder,
-               folder,
-               folder,
-               folder);
+    fmt::print(
+        "{} of aphotic {} in {}: run them by one of\n"
+        "  parallel -j 4 < {}/tasks.txt\n"
+        "  sbatch {}/array.sbatch\n"
+        "  snakemake --cores 4 --keep-going -s {}/Snakefile\n"
+        "  condor_submit {}/submit.sub\n"
+        "then run\n"
+        "  aphotic sweep {} --collect\n",
+        counted(sweep.tasks(), "task"),
+        sweep.file.command,
+        sweep.folder.string(),
+        folder,
+        folder,
+        folder,
+        folder,
+        folder);
 }
 
 struct SweepStatus {
@@ -106,8 +107,7 @@ void print(const SweepStatus& status) {
         const auto& [state, result] = status.standings[i];
         if (state == TaskState::Failed) fmt::print("  task {} failed: {}\n", i + 1, result.error);
     }
-    if (!status.is_whole())
-        fmt::print("  not done: {}\n", numbers_not_done(status.standings));
+    if (!status.is_whole()) fmt::print("  not done: {}\n", numbers_not_done(status.standings));
     for (const std::string& file : status.files) fmt::print("  {}\n", file);
 }
 
@@ -145,8 +145,7 @@ ExitStatus sweep_rigs(const SweepCommandOptions& options) {
     if (options.task > 0) return run_one(options);
     if (options.status || options.collect) return tell_status(options);
     if (options.folder.empty())
-        throw InputError(
-            "found none of -o, --task, --status and --collect; allowed: one of them");
+        throw InputError("found none of -o, --task, --status and --collect; allowed: one of them");
     show(WrittenSweep{write_sweep(options.source, options.folder, this_program())}, options.json);
     return kDone;
 }

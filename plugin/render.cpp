@@ -130,12 +130,8 @@ void run_noted(const PovRay& povray,
         }
         write_manifest(folder, manifest);
     };
-    run_frames(povray,
-               folder,
-               frames,
-               manifest.width_px,
-               manifest.height_px + manifest.rows_above(),
-               run);
+    run_frames(
+        povray, folder, frames, manifest.width_px, manifest.height_px + manifest.rows_above(), run);
 }
 
 // The digest of a user's scene that scenes were written for.
@@ -159,10 +155,11 @@ OwnScene scene_in(const fs::path& folder, const Manifest& manifest) {
     std::string digest = digest_of_scene(file);
     const fs::path note = scene_note(folder);
     if (!fs::exists(note) || read_text_file(note) != digest)
-        throw InputError("{}: found scenes of {} as it was; allowed: of it as it is, by `aphotic "
-                         "generate`",
-                         folder.string(),
-                         file);
+        throw InputError(
+            "{}: found scenes of {} as it was; allowed: of it as it is, by `aphotic "
+            "generate`",
+            folder.string(),
+            file);
     return {.file = file, .digest = std::move(digest), .is_alone = opens_to_write(file)};
 }
 

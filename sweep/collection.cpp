@@ -42,9 +42,8 @@ void add_columns(const nlohmann::json& json, const std::string& name, Columns& c
         for (const auto& [key, value] : json.items())
             add_columns(value, name.empty() ? key : name + "." + key, columns);
     } else if (json.is_array()) {
-        const bool is_short = json.size() <= kMostOfAList && std::ranges::all_of(json, [](auto& x) {
-            return x.is_number();
-        });
+        const bool is_short = json.size() <= kMostOfAList &&
+                              std::ranges::all_of(json, [](auto& x) { return x.is_number(); });
         for (std::size_t i = 0; is_short && i < json.size(); ++i)
             add_columns(json[i], fmt::format("{}.{}", name, i), columns);
     } else if (json.is_string()) {

@@ -214,10 +214,11 @@ Sweep read_sweep(const fs::path& folder) {
     } catch (const nlohmann::json::exception& error) {
         throw InputError("{}: is not ours: {}", notes.string(), error.what());
     }
-    throw InputError("{}: was edited since its tasks were written; allowed: edit the sweep's own "
-                     "file, and repeat `aphotic sweep SWEEP -o {}`",
-                     file.string(),
-                     folder.string());
+    throw InputError(
+        "{}: was edited since its tasks were written; allowed: edit the sweep's own "
+        "file, and repeat `aphotic sweep SWEEP -o {}`",
+        file.string(),
+        folder.string());
 }
 
 }  // namespace aphotic

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A sweep's folder: one command for each point of a sweep (sweep_file.h), to be run in any order, on
-// any machine that sees the folder, by whatever engine starts the lines of tasks.txt.
+// A sweep's folder: one command for each point of a sweep (sweep_file.h), to be run in any order,
+// on any machine that sees the folder, by whatever engine starts the lines of tasks.txt.
 //
 //   DIR/sweep.toml               the sweep's file
 //   DIR/sweep.json               what each task depends on, as digests
@@ -15,8 +15,8 @@
 //   DIR/point-0001/              of a command over shares: what all shares of one rig make, each in
 //                                a folder of its own until they are joined
 //
-// A task writes to its own folder and to no other, whatever the others do: nothing is locked between
-// machines.
+// A task writes to its own folder and to no other, whatever the others do: nothing is locked
+// between machines.
 #pragma once
 
 #include "sweep/sweep_file.h"
@@ -29,8 +29,8 @@ namespace aphotic {
 
 struct Sweep {
     SweepFile file;
-    std::filesystem::path home;    // where its file was, and relative paths start; absolute
-    std::filesystem::path folder;  // absolute
+    std::filesystem::path home;     // where its file was, and relative paths start; absolute
+    std::filesystem::path folder;   // absolute
     std::filesystem::path scene{};  // of the user's own, which the rig names; none: none
     std::vector<SweepPoint> points;
     std::vector<std::string> digests;  // by task: of all that its results depend on

@@ -19,8 +19,8 @@
 //   between = [1, 4]                          # of a Latin hypercube, see samples and seed
 //
 // Lists and ranges are combined, each value with each; all keys with `between` together are one
-// Latin hypercube of `samples` points: of as many equal parts of each key's interval, each holds one
-// point, which the seed draws. The last key changes first, and the hypercube before all others.
+// Latin hypercube of `samples` points: of as many equal parts of each key's interval, each holds
+// one point, which the seed draws. The last key changes first, and the hypercube before all others.
 #pragma once
 
 #include <cstddef>
@@ -63,8 +63,8 @@ inline constexpr std::size_t kMostTasks = 20000;
 using SweepPoint = std::vector<SweepValue>;
 [[nodiscard]] std::vector<SweepPoint> points_of(const SweepFile& sweep);
 
-// As a table's cell has it: numbers with the fewest digits that give them back, those of a list with
-// blanks between them.
+// As a table's cell has it: numbers with the fewest digits that give them back, those of a list
+// with blanks between them.
 [[nodiscard]] std::string words_of(const SweepValue& value);
 
 }  // namespace aphotic

@@ -122,8 +122,7 @@ TaskStanding standing_of(const Sweep& sweep, std::size_t number) {
     const auto sign = fs::last_write_time(folder / kRunning, is_not_running);
     if (!is_not_running) {
         const std::chrono::duration<double> age = fs::file_time_type::clock::now() - sign;
-        return {.state =
-                    age.count() <= kSilence_s ? TaskState::Running : TaskState::Interrupted};
+        return {.state = age.count() <= kSilence_s ? TaskState::Running : TaskState::Interrupted};
     }
     const auto result = result_in(folder);
     if (!result || result->digest != sweep.digests[number - 1]) return {};

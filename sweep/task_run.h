@@ -22,7 +22,7 @@ namespace aphotic {
 
 struct TaskResult {
     std::string digest{};  // of what it depended on (sweep.h)
-    int exit_status = 0;  // as a shell tells it: 128 + the signal
+    int exit_status = 0;   // as a shell tells it: 128 + the signal
     double seconds = 0.0;
     std::string error{};  // the first line of the command's message; empty: it ended with an answer
 
@@ -54,13 +54,11 @@ struct TaskStanding {
 
 // Runs it, unless it is done. program: the command aphotic. A RunError where this machine runs it
 // already.
-TaskStanding run_task(const Sweep& sweep,
-                      std::size_t number,
-                      const std::filesystem::path& program);
+TaskStanding run_task(const Sweep& sweep, std::size_t number, const std::filesystem::path& program);
 
-// Of a command over shares: joins those of every rig whose tasks are all done, by the command itself,
-// which finds its work done. In DIR, point-0001.json and point-0001.log are what it printed. Throws
-// RunError where it fails.
+// Of a command over shares: joins those of every rig whose tasks are all done, by the command
+// itself, which finds its work done. In DIR, point-0001.json and point-0001.log are what it
+// printed. Throws RunError where it fails.
 void join_shares_of(const Sweep& sweep,
                     std::span<const TaskStanding> standings,
                     const std::filesystem::path& program);

@@ -38,8 +38,21 @@ TEST(Share, IsWrittenAsTwoNumbers) {
     EXPECT_EQ(parse_share("2/4").number, 2U);
     EXPECT_EQ(parse_share("2/4").of, 4U);
     EXPECT_TRUE(parse_share("1/1").is_whole());
-    for (const char* wrong : {"", "2", "/", "2/", "/4", "0/4", "5/4", "2/4/6", "2 /4", "-1/4",
-                              "+1/4", "1/100001", "a/4", "2/4 ", "1/99999999999999999999"}) {
+    for (const char* wrong : {"",
+                              "2",
+                              "/",
+                              "2/",
+                              "/4",
+                              "0/4",
+                              "5/4",
+                              "2/4/6",
+                              "2 /4",
+                              "-1/4",
+                              "+1/4",
+                              "1/100001",
+                              "a/4",
+                              "2/4 ",
+                              "1/99999999999999999999"}) {
         EXPECT_THROW((void)parse_share(wrong), InputError) << wrong;
     }
 }

@@ -90,7 +90,8 @@ TEST_F(Shares, OfARendersFrames) {
 TEST_F(Shares, OfFramesGoOnWhereTheyStopped) {
     run_well({"generate", "rig.toml", "--bands", "13", "-o", "many"});
     run_well({"render", "many", "--frames", "1/2"});
-    const auto second = nlohmann::json::parse(run({"render", "many", "--frames", "1/2", "--json"}).out);
+    const auto second =
+        nlohmann::json::parse(run({"render", "many", "--frames", "1/2", "--json"}).out);
     EXPECT_EQ(second.at("frames_rendered"), 0);
     EXPECT_EQ(second.at("frames_kept"), 3);
     // What no share has rendered is missed by name, and rendered by render.
@@ -125,9 +126,7 @@ TEST_F(Shares, OfAnAtlassBins) {
 
 class SurveyShares : public Shares {
   protected:
-    void SetUp() override {
-        run_well({"survey", "rig.toml", "--images", "9", "-o", "survey"});
-    }
+    void SetUp() override { run_well({"survey", "rig.toml", "--images", "9", "-o", "survey"}); }
 
     [[nodiscard]] Arguments correct(const std::string& folder) const {
         return {"correct",

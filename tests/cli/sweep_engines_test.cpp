@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A sweep of 24 rigs by real engines: GNU parallel, Snakemake, and Slurm on a node of its own. Each is
-// stopped midway and started again, and one task fails twice. In the end all tasks are done, and their
-// images are those of a run without an engine, bit for bit.
+// A sweep of 24 rigs by real engines: GNU parallel, Snakemake, and Slurm on a node of its own. Each
+// is stopped midway and started again, and one task fails twice. In the end all tasks are done, and
+// their images are those of a run without an engine, bit for bit.
 #include "base/atomic_file.h"
 #include "plugin/process.h"
 #include "support/command_under_way.h"
@@ -100,9 +100,7 @@ between = [0.5, 2]
         return run_process(shell(script), kEngine_s).exit_code;
     }
 
-    [[nodiscard]] std::string log() const {
-        return read_text_file(small_.folder() / "engine.log");
-    }
+    [[nodiscard]] std::string log() const { return read_text_file(small_.folder() / "engine.log"); }
 
     [[nodiscard]] std::size_t ended() const {
         std::size_t count = 0;
@@ -131,21 +129,19 @@ between = [0.5, 2]
     }
 
     void expect_whole() const {
-        const CommandResult status =
-            run_aphotic(small_.folder(), {"sweep", "out", "--collect"});
+        const CommandResult status = run_aphotic(small_.folder(), {"sweep", "out", "--collect"});
         EXPECT_EQ(status.status, 0) << status.out << log();
         EXPECT_EQ(read_text_file(out("failures")).size(), kFailures);
         expect_no_leftovers(out(""));
         // Without an engine, a task after the other.
-        ASSERT_EQ(
-            run_aphotic(small_.folder(), {"sweep", "sweep.toml", "-o", "alone"}).status, 0);
+        ASSERT_EQ(run_aphotic(small_.folder(), {"sweep", "sweep.toml", "-o", "alone"}).status, 0);
         const fs::path alone = small_.folder() / "alone";
         write_file(alone / "failures", "xx");  // it fails no more
         for (std::size_t number = 1; number <= kTasks; ++number) {
-            ASSERT_EQ(run_aphotic(small_.folder(),
-                                  {"sweep", "alone", "--task", std::to_string(number)})
-                          .status,
-                      0);
+            ASSERT_EQ(
+                run_aphotic(small_.folder(), {"sweep", "alone", "--task", std::to_string(number)})
+                    .status,
+                0);
             for (const char* file : {"image.exr", "spectral.exr", "preview.png"}) {
                 const fs::path image = fs::path(task_name(number)) / "out" / file;
                 EXPECT_TRUE(read_text_file(alone / image) == read_text_file(out(image.string())))

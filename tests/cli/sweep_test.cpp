@@ -65,9 +65,9 @@ TEST_F(CommandSweep, ATaskMakesWhatTheCommandMakesByItself) {
     const std::vector<std::pair<std::string, std::string>> tasks{
         {"0.5", "task-0001"}, {"1", "task-0002"}, {"2", "task-0003"}};
     for (const auto& [multiple, task] : tasks) {
-        const CommandResult alone = run_aphotic(
-            small_.folder(),
-            {"lightmap", "rig.toml", "--water-multiple", multiple, "-o", "alone.exr"});
+        const CommandResult alone =
+            run_aphotic(small_.folder(),
+                        {"lightmap", "rig.toml", "--water-multiple", multiple, "-o", "alone.exr"});
         ASSERT_EQ(alone.status, 0) << alone.err;
         // Metadata name another rig's digest; samples do not.
         const CommandResult same =
@@ -166,7 +166,8 @@ TEST_F(CommandSweep, CollectsKeysResultsTimesAndPictures) {
     EXPECT_EQ(first_unbalanced(page), "");
     EXPECT_TRUE(contains(words_of(page), "5 of 6 tasks done")) << words_of(page);
     std::size_t pictures = 0;
-    for (std::size_t at = page.find("<img"); at != std::string::npos; at = page.find("<img", at + 1))
+    for (std::size_t at = page.find("<img"); at != std::string::npos;
+         at = page.find("<img", at + 1))
         ++pictures;
     EXPECT_EQ(pictures, 5U);
     expect_no_leftovers(out(""));
@@ -176,10 +177,9 @@ TEST_F(CommandSweep, CollectsKeysResultsTimesAndPictures) {
 TEST_F(CommandSweep, TasksSideBySideNeedNoLocks) {
     make("lightmap", kThreeWaters);
     ASSERT_EQ(sweep({"sweep.toml", "-o", "alone"}).status, 0);
-    for (const char* number : {"1", "2"})
-        ASSERT_EQ(sweep({"alone", "--task", number}).status, 0);
-    const std::map<std::string, std::string> no_locks{
-        {"LD_PRELOAD", APHOTIC_NO_LOCKS}, {"ASAN_OPTIONS", "verify_asan_link_order=0"}};
+    for (const char* number : {"1", "2"}) ASSERT_EQ(sweep({"alone", "--task", number}).status, 0);
+    const std::map<std::string, std::string> no_locks{{"LD_PRELOAD", APHOTIC_NO_LOCKS},
+                                                      {"ASAN_OPTIONS", "verify_asan_link_order=0"}};
     std::vector<std::unique_ptr<Command>> commands;
     std::array<TempFolder, 2> lanes;
     for (std::size_t i = 0; i < lanes.size(); ++i)

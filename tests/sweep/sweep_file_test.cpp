@@ -111,9 +111,9 @@ TEST(SweepFile, HypercubeTakesEachOrderAlike) {
     constexpr double kFiveSigma = 5.0 * 29.0;
     std::map<std::vector<bool>, int> counts;
     for (int seed = 0; seed < kDraws; ++seed) {
-        const std::vector<SweepPoint> points = points_of(
-            parsed("samples = 3\nseed = " + std::to_string(seed) +
-                   "\n[[vary]]\nkey = \"a\"\nbetween = [0, 1]\n"));
+        const std::vector<SweepPoint> points =
+            points_of(parsed("samples = 3\nseed = " + std::to_string(seed) +
+                             "\n[[vary]]\nkey = \"a\"\nbetween = [0, 1]\n"));
         const std::vector<double> x = numbers_of(points, 0);
         ++counts[{x[0] < x[1], x[1] < x[2], x[0] < x[2]}];
     }

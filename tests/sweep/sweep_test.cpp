@@ -87,18 +87,18 @@ TEST(Sweep, ATaskDependsOnItsRigTablesAndArguments) {
     const SmallSweep small;
     const fs::path out = small.folder() / "out";
     const Sweep first = write_sweep(small.write("trace", kThreeWaters), out, kProgram);
-    const Sweep fewer = write_sweep(
-        small.write("trace", "[[vary]]\nkey = \"water.multiple\"\nvalues = [0.5]\n"),
-        out,
-        kProgram);
+    const Sweep fewer =
+        write_sweep(small.write("trace", "[[vary]]\nkey = \"water.multiple\"\nvalues = [0.5]\n"),
+                    out,
+                    kProgram);
     EXPECT_EQ(fewer.digests.front(), first.digests.front());
     const Sweep other = write_sweep(
         small.write("trace", std::string("arguments = [\"--fitted\", \"3\"]\n") + kThreeWaters),
         out,
         kProgram);
     EXPECT_NE(other.digests.front(), first.digests.front());
-    const Sweep cores = write_sweep(
-        small.write("trace", std::string("cores = 2\n") + kThreeWaters), out, kProgram);
+    const Sweep cores =
+        write_sweep(small.write("trace", std::string("cores = 2\n") + kThreeWaters), out, kProgram);
     EXPECT_EQ(cores.digests, first.digests);  // they make the same images
     write_file(small.folder() / "lamps/lamp.csv",
                "wavelength_nm,relative_power\n400,1\n500,1.6\n720,1\n");
@@ -116,8 +116,8 @@ TEST(Sweep, WritesNothingWhileARigIsWrong) {
     message = message_of(
         small.write("trace", "[[vary]]\nkey = \"strobe.for.power\"\nvalues = [1]\n"), out);
     EXPECT_NE(message.find("strobe.for.power: found no 'for'"), std::string::npos) << message;
-    message = message_of(small.write("trace", "[[vary]]\nkey = \"water.multipel\"\nvalues = [1]\n"),
-                         out);
+    message =
+        message_of(small.write("trace", "[[vary]]\nkey = \"water.multipel\"\nvalues = [1]\n"), out);
     EXPECT_NE(message.find("multipel"), std::string::npos) << message;
     EXPECT_FALSE(fs::exists(out));
 }
@@ -156,8 +156,7 @@ TEST(Sweep, NamesTheRigsSceneToTheCommandsThatTakeOne) {
 TEST(Sweep, SharesOfOneRigWriteBelowOneFolder) {
     const SmallSweep small;
     const Sweep sweep = write_sweep(
-        small.write("correct",
-                    std::string("images = [\"survey\"]\nshares = 2\n") + kThreeWaters),
+        small.write("correct", std::string("images = [\"survey\"]\nshares = 2\n") + kThreeWaters),
         small.folder() / "out",
         kProgram);
     ASSERT_EQ(sweep.tasks(), 6U);
