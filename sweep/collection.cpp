@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <map>
 #include <utility>
+#include <variant>
 
 namespace aphotic {
 
@@ -72,9 +73,9 @@ Columns own_columns(const Sweep& sweep, std::size_t number, const TaskStanding& 
     const bool has_ended = !standing.result.digest.empty();
     columns.emplace_back("exit_status",
                          has_ended ? std::to_string(standing.result.exit_status) : "");
-    columns.emplace_back("seconds",
+    columns.emplace_back("task_seconds",
                          has_ended ? fmt::format("{:.3f}", standing.result.seconds) : "");
-    columns.emplace_back("error", standing.result.error);
+    columns.emplace_back("message", standing.result.error);
     return columns;
 }
 
@@ -119,10 +120,13 @@ SmallPicture small_picture(const fs::path& file, const fs::path& scratch) {
 
 std::string caption_of(const Sweep& sweep, std::size_t number) {
     const SweepPoint& point = sweep.points[task_of(sweep, number).point];
-    std::string caption = fmt::format("{}", number);
-    for (std::size_t k = 0; k < point.size(); ++k)
-        caption += fmt::format(
-            "<br/>{} {}", user_text(sweep.file.vary[k].key), user_text(words_of(point[k])));
+    std::string caption = fmt::format("task {}", number);
+    for (std::size_t k = 0; k < point.size(); ++k) {
+        const double* value = std::get_if<double>(&point[k]);
+        caption += fmt::format("<br/>{} {}",
+                               user_text(sweep.file.vary[k].key),
+                               value != nullptr ? plain(*value) : user_text(words_of(point[k])));
+    }
     return caption;
 }
 

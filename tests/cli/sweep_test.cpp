@@ -152,7 +152,7 @@ TEST_F(CommandSweep, CollectsKeysResultsTimesAndPictures) {
     const std::vector<std::string> lines = lines_of(read_text_file(out("results.csv")));
     ASSERT_EQ(lines.size(), 7U);
     EXPECT_TRUE(lines[0].starts_with(
-        "task,water.multiple,strobe.fore.position_m,state,exit_status,seconds,error,"))
+        "task,water.multiple,strobe.fore.position_m,state,exit_status,task_seconds,message,"))
         << lines[0];
     EXPECT_TRUE(lines[1].starts_with("1,0.5,0.5 0 0,done,0,")) << lines[1];
     EXPECT_TRUE(lines[4].starts_with("4,1,0.6 0 0,done,0,")) << lines[4];
