@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,6 +19,7 @@ namespace aphotic::shares_test {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr auto kLongest = std::chrono::minutes(15);  // for what hangs
 using Arguments = std::vector<std::string>;
 
 class Shares : public testing::Test {
@@ -47,7 +49,7 @@ class Shares : public testing::Test {
             commands.push_back(std::make_unique<Command>(lane, all, no_locks));
         }
         for (std::size_t i = 0; i < commands.size(); ++i)
-            EXPECT_EQ(commands[i]->wait(), 0)
+            EXPECT_EQ(commands[i]->wait(kLongest), 0)
                 << read_text_file(streams.path() / std::to_string(i + 1) / "stderr");
     }
 
@@ -193,6 +195,22 @@ arguments = ["--nav", "survey/navigation-measured.txt", "--bayer", "RGGB", "--bl
     run_well({"sweep", "out", "--collect"});
     expect_same_files("one", "out/point-0001");
     run_well({"sweep", "out", "--collect"});
+}
+
+// An image is skipped, which is an answer of correct's: its task is done, and not done again.
+TEST_F(SurveyShares, OfASweepMayAnswerNo) {
+    write_file(path("survey/raw/broken.tif"), "no image");
+    small_.write("correct", R"(images = ["survey/raw"]
+arguments = ["--nav", "survey/navigation-measured.txt", "--bayer", "RGGB", "--black-level", "64",
+             "--white-level", "4095"]
+)");
+    run_well({"sweep", "sweep.toml", "-o", "out"});
+    run_well({"sweep", "out", "--task", "1"});
+    const std::string result = read_text_file(path("out/task-0001/result.json"));
+    EXPECT_EQ(nlohmann::json::parse(result).at("exit_status"), 1);
+    run_well({"sweep", "out", "--status"});
+    run_well({"sweep", "out", "--task", "1"});
+    EXPECT_EQ(read_text_file(path("out/task-0001/result.json")), result);
 }
 
 TEST_F(Shares, SayWhatIsWrong) {

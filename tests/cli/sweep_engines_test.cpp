@@ -49,7 +49,7 @@ class SweepEngines : public testing::Test {
   protected:
     void SetUp() override {
         write_script(small_.folder() / "povray-of-tests",
-                     R"(case $PWD in
+                     R"sh(case $PWD in
 */task-0005/*)
     failures=${PWD%/task-0005/*}/failures
     touch "$failures"
@@ -61,7 +61,7 @@ class SweepEngines : public testing::Test {
     ;;
 esac
 exec povray "$@"
-)");
+)sh");
         small_.write("render", R"(arguments = ["--fitted", "3", "--povray", "./povray-of-tests"]
 samples = 6
 [[vary]]

@@ -23,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr auto kLongest = std::chrono::minutes(15);  // for what hangs
 constexpr const char* kResult = "task-0001/result.json";
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -127,19 +128,6 @@ TEST_F(CommandSweep, TellsHowItsTasksStand) {
     EXPECT_EQ(json.at("failures").size(), 0U);
 }
 
-TEST_F(CommandSweep, AnswersOfNoAreAnswers) {
-    // The images of one rig are not those of the other within 1e-9: validate says no. It needs
-    // POV-Ray; correct, of which an image is skipped, does not.
-    fs::create_directories(small_.folder() / "survey");
-    write_file(small_.folder() / "survey/broken.tif", "no image");
-    write_file(small_.folder() / "nav.csv", "image,altitude_m\nbroken.tif,2\n");
-    make("correct",
-         "images = [\"survey\"]\narguments = [\"--nav\", \"nav.csv\", \"--gain\", \"1\"]\n");
-    const CommandResult run = sweep({"out", "--task", "1"});
-    const auto result = nlohmann::json::parse(read_text_file(out(kResult)));
-    EXPECT_EQ(run.status, result.at("exit_status") == 1 ? 0 : 2) << run.err;
-}
-
 TEST_F(CommandSweep, CollectsKeysResultsTimesAndPictures) {
     make("lightmap",
          std::string(kThreeWaters) +
@@ -157,7 +145,13 @@ TEST_F(CommandSweep, CollectsKeysResultsTimesAndPictures) {
     EXPECT_TRUE(lines[1].starts_with("1,0.5,0.5 0 0,done,0,")) << lines[1];
     EXPECT_TRUE(lines[4].starts_with("4,1,0.6 0 0,done,0,")) << lines[4];
     EXPECT_TRUE(lines[6].starts_with("6,2,0.6 0 0,pending,,,,")) << lines[6];
-    const auto cells = [](const std::string& line) { return std::ranges::count(line, ','); };
+    const auto cells = [](const std::string& line) {
+        bool is_quoted = false;
+        return std::ranges::count_if(line, [&](char c) {
+            if (c == '"') is_quoted = !is_quoted;
+            return c == ',' && !is_quoted;
+        });
+    };
     for (const std::string& line : lines) EXPECT_EQ(cells(line), cells(lines[0])) << line;
     EXPECT_TRUE(contains(lines[0], ",altitude_m,")) << lines[0];
     EXPECT_TRUE(contains(lines[0], ",peak.0,")) << lines[0];
@@ -187,7 +181,7 @@ TEST_F(CommandSweep, TasksSideBySideNeedNoLocks) {
             lanes[i].path(),
             std::vector<std::string>{"sweep", out("").string(), "--task", std::to_string(i + 1)},
             no_locks));
-    for (const auto& command : commands) EXPECT_EQ(command->wait(), 0);
+    for (const auto& command : commands) EXPECT_EQ(command->wait(kLongest), 0);
     for (const char* file : {"task-0001/out/lightmap.exr", "task-0002/out/lightmap.exr"})
         EXPECT_EQ(read_text_file(out(file)), read_text_file(small_.folder() / "alone" / file));
     expect_no_leftovers(out(""));
