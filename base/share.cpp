@@ -27,7 +27,7 @@ std::optional<std::size_t> whole_number_of(std::string_view text) {
 
 }  // namespace
 
-Share parse_share(std::string_view text) {
+WorkShare parse_share(std::string_view text) {
     const std::size_t slash = std::min(text.find('/'), text.size());
     const auto number = whole_number_of(text.substr(0, slash));
     const auto of = whole_number_of(text.substr(std::min(slash + 1, text.size())));
@@ -37,7 +37,7 @@ Share parse_share(std::string_view text) {
                      kMostShares);
 }
 
-fs::path share_folder(const fs::path& folder, Share share) {
+fs::path share_folder(const fs::path& folder, WorkShare share) {
     return share.is_whole() ? folder
                             : folder / fmt::format("share-{}-of-{}", share.number, share.of);
 }

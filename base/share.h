@@ -16,7 +16,7 @@
 
 namespace aphotic {
 
-struct Share {
+struct WorkShare {
     std::size_t number = 1;  // from 1
     std::size_t of = 1;
 
@@ -28,10 +28,10 @@ struct Share {
 inline constexpr std::size_t kMostShares = 100000;
 
 // Of "2/4". Throws InputError.
-[[nodiscard]] Share parse_share(std::string_view text);
+[[nodiscard]] WorkShare parse_share(std::string_view text);
 
 template <typename Piece>
-[[nodiscard]] std::vector<Piece> share_of(const std::vector<Piece>& all, Share share) {
+[[nodiscard]] std::vector<Piece> share_of(const std::vector<Piece>& all, WorkShare share) {
     std::vector<Piece> own;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (share.has(i)) own.push_back(all[i]);
@@ -40,7 +40,8 @@ template <typename Piece>
 }
 
 // The folder itself, of all the work.
-[[nodiscard]] std::filesystem::path share_folder(const std::filesystem::path& folder, Share share);
+[[nodiscard]] std::filesystem::path share_folder(const std::filesystem::path& folder,
+                                                 WorkShare share);
 
 // Those that are there, of whatever shares, sorted by name.
 [[nodiscard]] std::vector<std::filesystem::path> share_folders(const std::filesystem::path& folder);

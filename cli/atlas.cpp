@@ -154,7 +154,7 @@ struct AtlasCommandOptions {
     double tolerance = 0.0;  // 0: every value of the axes
     double model_tolerance = kModelTolerance;
     std::vector<std::string> exports;
-    Share share{};
+    WorkShare share{};
     LightmapOptions map{.error = 1e-5, .threads = all_cores()};
     bool ignore_needs = false;
     bool json = false;
@@ -216,7 +216,7 @@ AtlasWork work_of(const AtlasCommandOptions& options, const Rig& rig, const MapA
             .has_oplab = is_exported(options, "oplab")};
 }
 
-std::size_t bins_of(Share share, const MapAxes& axes) {
+std::size_t bins_of(WorkShare share, const MapAxes& axes) {
     return (bin_count(axes) + share.of - share.number) / share.of;
 }
 
@@ -249,7 +249,7 @@ struct MadeAtlas {
     Rig rig;
     fs::path folder;
     ChosenAxes chosen;
-    Share share{};
+    WorkShare share{};
     std::optional<ManifestModel> model{};  // of its highest map, in the thickest water
     std::size_t computed = 0;
     AtlasExports exports{};

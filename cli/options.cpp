@@ -26,7 +26,7 @@ void add_rig(CLI::App& app, std::string& file) {
 
 CLI::Option* add_share(CLI::App& app,
                        const std::string& name,
-                       Share& share,
+                       WorkShare& share,
                        const std::string& words) {
     const auto read = [&share](const std::string& text) { share = parse_share(text); };
     const auto check = [](const std::string& text) {

@@ -65,7 +65,7 @@ void add_jobs(CLI::App& app, Count& jobs, const std::string& words) {
 // I/N, of work that other machines share.
 CLI::Option* add_share(CLI::App& app,
                        const std::string& name,
-                       Share& share,
+                       WorkShare& share,
                        const std::string& words);
 
 void add_preview_options(CLI::App& app, PreviewOptions& options);

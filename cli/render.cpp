@@ -31,7 +31,7 @@ struct RenderCommandOptions {
     std::string folder;
     int jobs = all_cores();
     PreviewOptions preview;
-    Share share{};
+    WorkShare share{};
     bool is_share = false;
     bool json = false;
 };

@@ -64,7 +64,7 @@ struct AtlasRequest {
     LightmapOptions map;
     std::string version;
     std::function<void(double)> progress;  // share of the bins
-    Share share{};                         // of the bins that are computed: to its own folder
+    WorkShare share{};                     // of the bins that are computed: to its own folder
 };
 
 // Throws InputError, which names pose and strobe, unless every bin holds all lamps over the floor.

@@ -231,7 +231,7 @@ RenderResult render(const PovRay& povray,
 
 RenderResult render_share(const PovRay& povray,
                           const fs::path& folder,
-                          Share share,
+                          WorkShare share,
                           const RunOptions& options) {
     const Manifest whole = read_manifest(folder);
     const OwnScene scene = scene_in(folder, whole);

@@ -42,7 +42,7 @@ RenderResult render(const PovRay& povray,
 // there. The folder itself is only read: of a scene of the user's own, options name the includes.
 RenderResult render_share(const PovRay& povray,
                           const std::filesystem::path& folder,
-                          Share share,
+                          WorkShare share,
                           const RunOptions& options);
 
 // Takes the frames that shares left below the folder, where they are of its scenes, into it and its

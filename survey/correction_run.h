@@ -24,7 +24,7 @@ namespace aphotic {
 
 struct CorrectionOptions {
     ImageRunOptions run{};       // of a share: its own folder
-    Share share{};               // of the images that are corrected; gain and warnings are of all
+    WorkShare share{};           // of the images that are corrected; gain and warnings are of all
     std::vector<double> gain{};  // one for all channels, or three; none: taken from the survey
     std::filesystem::path gain_from{};  // a folder of results that has one; empty: none
     std::optional<double> middle{};     // none: the floor's colour, grey where nobody knows it
