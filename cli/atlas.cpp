@@ -154,6 +154,7 @@ struct AtlasCommandOptions {
     double tolerance = 0.0;  // 0: every value of the axes
     double model_tolerance = kModelTolerance;
     std::vector<std::string> exports;
+    WorkShare share{};
     LightmapOptions map{.error = 1e-5, .threads = all_cores()};
     bool ignore_needs = false;
     bool json = false;
@@ -200,6 +201,8 @@ ChosenAxes choose(const AtlasCommandOptions& options, const Rig& rig, const MapA
     const MeasureOptions measure{.threads = options.map.threads,
                                  .progress = shown_as("measuring", line)};
     if (options.tolerance > 0.0) return axes_for(rig, finest, options.tolerance, measure);
+    // The atlas measures it, once for all shares.
+    if (!options.share.is_whole()) return {.axes = finest, .interpolation = {}};
     return {.axes = finest,
             .interpolation = interpolation_error(rig, finest, kWholeLimit, measure)};
 }
@@ -213,12 +216,16 @@ AtlasWork work_of(const AtlasCommandOptions& options, const Rig& rig, const MapA
             .has_oplab = is_exported(options, "oplab")};
 }
 
+std::size_t bins_of(WorkShare share, const MapAxes& axes) {
+    return (bin_count(axes) + share.of - share.number) / share.of;
+}
+
 // Says what is to come, and refuses it where the disk has no room for it.
 void announce(const AtlasCommandOptions& options,
               const MapAxes& chosen,
               AtlasWork work,
               bool has_veil) {
-    const std::size_t all = bin_count(chosen);
+    const std::size_t all = bins_of(options.share, chosen);
     // One more, for a bin is written beside the one that it replaces.
     work.bins = std::min(all, bins_missing(options.folder, chosen) + 1);
     if (has_veil) {  // as many planes again
@@ -242,6 +249,7 @@ struct MadeAtlas {
     Rig rig;
     fs::path folder;
     ChosenAxes chosen;
+    WorkShare share{};
     std::optional<ManifestModel> model{};  // of its highest map, in the thickest water
     std::size_t computed = 0;
     AtlasExports exports{};
@@ -271,12 +279,14 @@ nlohmann::ordered_json to_json(const MadeAtlas& made) {
     nlohmann::ordered_json json{{"title", made.rig.title},
                                 {"rig_sha256", made.rig.digest},
                                 {"folder", made.folder.string()},
-                                {"bins", bin_count(made.chosen.axes)},
+                                {"bins", bins_of(made.share, made.chosen.axes)},
                                 {"computed", made.computed},
-                                {"interpolation", interpolation_json(made.chosen.interpolation)},
+                                {"interpolation", nullptr},
                                 {"holds_tolerance", made.holds()},
                                 {"exports", exports},
                                 {"atlas_s", made.seconds}};
+    if (made.share.is_whole())
+        json["interpolation"] = interpolation_json(made.chosen.interpolation);
     put_model_error(json, made.model);
     return json;
 }
@@ -286,9 +296,14 @@ void print(const MadeAtlas& made) {
     const InterpolationError& error = made.chosen.interpolation;
     fmt::print("{}: {}, {} of them computed, in {:.1f} s\n",
                made.rig.title,
-               counted(bin_count(made.chosen.axes), "bin"),
+               counted(bins_of(made.share, made.chosen.axes), "bin"),
                made.computed,
                made.seconds);
+    if (!made.share.is_whole()) {
+        fmt::print("  {}: join the shares by the same command without --share\n",
+                   made.folder.string());
+        return;
+    }
     fmt::print(
         "  measured between bins, light without the beams' edges is off by up to {:.2g}, {:.2g} "
         "rms\n",
@@ -342,6 +357,7 @@ MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes
     MadeAtlas made{.rig = rig,
                    .folder = options.folder,
                    .chosen = {},
+                   .share = options.share,
                    .model = model_error(darkest, options.rig_file, options.model_tolerance),
                    .tolerance = options.tolerance};
     made.chosen = choose(options, rig, finest);
@@ -357,13 +373,16 @@ MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes
                                      .interpolation = made.chosen.interpolation,
                                      .map = options.map,
                                      .version = APHOTIC_VERSION,
-                                     .progress = shown_as("mapping", line)});
+                                     .progress = shown_as("mapping", line),
+                                     .share = options.share});
     }
+    if (!options.share.is_whole()) return made;
     made.exports = export_maps(options, rig, finest.altitude_m);
     return made;
 }
 
-ExitStatus make_atlas(const AtlasCommandOptions& options) {
+ExitStatus make_atlas(AtlasCommandOptions options) {
+    options.folder = share_folder(options.folder, options.share).string();
     const auto start = std::chrono::steady_clock::now();
     const Rig rig = read_rig(options.rig_file);
     const MapAxes finest = axes_of(options.axes, rig);
@@ -396,6 +415,11 @@ Action configure_atlas(CLI::App& app) {
         ->option_text("bayer,exponential,oplab");
     add_model_tolerance(app, options->model_tolerance);
     add_jobs(app, options->map.threads, "Map with N threads");
+    add_share(app,
+              "--share",
+              options->share,
+              "Map of each N bins the Ith alone, to ATLAS/share-I-of-N: the same command without "
+              "it then joins all shares");
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json);
     app.footer(

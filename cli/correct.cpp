@@ -192,6 +192,8 @@ ExitStatus correct(CorrectCommandOptions options) {
         options.navigation.source = options.ifdo;
     const std::optional<IfdoTask> task = ifdo_task(options);
     const auto [survey, model, readout] = task_of(options);
+    CorrectionOptions& correction = options.correction;
+    correction.run.folder = share_folder(correction.run.folder, correction.share);
     take_noise(options, readout);
     const CorrectionReport report =
         correct_survey(survey, options.correction, terminal_watch(options.strict));
@@ -204,8 +206,11 @@ ExitStatus correct(CorrectCommandOptions options) {
         print_navigation(survey.navigation);
         print_model_error(model);
     }
-    if (task) write_ifdo(*task, options, survey, report);
-    return status_of_skips(report.run->skipped.size(), survey.files.size(), options.allowed_skips);
+    // Of a share it would be of images that are not there.
+    if (task && correction.share.is_whole()) write_ifdo(*task, options, survey, report);
+    const std::size_t skipped = report.run->skipped.size();
+    const std::size_t images = report.run->corrected + report.run->kept + skipped;
+    return status_of_skips(skipped, images, options.allowed_skips);
 }
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
@@ -308,6 +313,11 @@ Action configure_correct(CLI::App& app) {
     add_raw_options(app, *options);
     const Settle settle = add_result_options(app, *options);
     add_jobs(app, options->correction.run.jobs, "Correct N images at a time");
+    add_share(app,
+              "--share",
+              options->correction.share,
+              "Correct of each N images the Ith alone, to DIR/share-I-of-N: the same command "
+              "without it then joins all shares");
     app.add_flag("--report",
                  options->correction.report,
                  "Also write DIR/report.html: images before and after, light over altitude, gains, "

@@ -4,11 +4,13 @@
 // to those of a rig of other water, lamps, materials or sensor.
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/share.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
+#include "plugin/render.h"
 #include "rig/rig_reader.h"
 #include "scene_gen/reweighting.h"
 #include "scene_gen/veil_planes.h"
@@ -90,6 +92,10 @@ Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest
 ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     const fs::path images = images_folder(options);
     require_own_folder(images, options);
+    if (!share_folders(options.folder).empty()) {
+        const FolderLock lock(options.folder, FolderUse::Write);
+        join_frames(options.folder);
+    }
     // Frames that cannot serve, and images that have no room, leave no folder behind.
     require_room(images_needs(image_size(manifest_of(options))), images, options.ignore_needs);
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/options.h"
 
+#include "base/error.h"
+
 #include <algorithm>
 #include <map>
 #include <thread>
@@ -20,6 +22,24 @@ int all_cores() {
 
 void add_rig(CLI::App& app, std::string& file) {
     app.add_option("RIG", file, "The rig file (TOML)")->required();
+}
+
+CLI::Option* add_share(CLI::App& app,
+                       const std::string& name,
+                       WorkShare& share,
+                       const std::string& words) {
+    const auto read = [&share](const std::string& text) { share = parse_share(text); };
+    const auto check = [](const std::string& text) {
+        try {
+            (void)parse_share(text);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    return app.add_option_function<std::string>(name, read, words)
+        ->check(CLI::Validator(check, ""))
+        ->option_text("I/N");
 }
 
 void add_json(CLI::App& app, bool& json, const std::string& words) {

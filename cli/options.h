@@ -4,6 +4,7 @@
 // that --help shows; the others are those of version 0.1.
 #pragma once
 
+#include "base/share.h"
 #include "cli/model_error.h"
 #include "cli/option_checks.h"
 #include "image/preview.h"
@@ -60,6 +61,12 @@ void add_jobs(CLI::App& app, Count& jobs, const std::string& words) {
     app.add_option("--jobs,--threads", jobs, words + "; by default one per core")
         ->check(in_range(1, kMostJobs));
 }
+
+// I/N, of work that other machines share.
+CLI::Option* add_share(CLI::App& app,
+                       const std::string& name,
+                       WorkShare& share,
+                       const std::string& words);
 
 void add_preview_options(CLI::App& app, PreviewOptions& options);
 

@@ -162,6 +162,13 @@ RunOptions run_options(const PlanningOptions& options, int jobs) {
         .jobs = jobs, .library_paths = options.library_paths, .stall_s = options.stall_timeout_s};
 }
 
+std::function<void(const FrameProgress&)> shown_on(ProgressLine& line) {
+    return [&line](const FrameProgress& progress) {
+        line.show(fmt::format("rendering: {} of {} frames", progress.frames_done, progress.frames),
+                  progress.share);
+    };
+}
+
 RenderedFrames render_frames(const PovRay& povray,
                              const std::filesystem::path& folder,
                              const SceneSet& scenes,
@@ -169,10 +176,7 @@ RenderedFrames render_frames(const PovRay& povray,
     const auto start = std::chrono::steady_clock::now();
     RenderedFrames frames;
     ProgressLine line;
-    options.report = [&](const FrameProgress& progress) {
-        line.show(fmt::format("rendering: {} of {} frames", progress.frames_done, progress.frames),
-                  progress.share);
-    };
+    options.report = shown_on(line);
     frames.result = render(povray, folder, scenes, options);
     frames.povray_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -3,6 +3,7 @@
 // A rig, its plan, its scenes and its frames, the same for every command that plans a render.
 #pragma once
 
+#include "base/progress.h"
 #include "cli/model_error.h"
 #include "cli/options.h"
 #include "plugin/render.h"
@@ -10,6 +11,7 @@
 #include "scene_gen/scene_set.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace aphotic::cli {
@@ -34,6 +36,8 @@ struct PlannedRender {
                                 const std::string& folder);
 
 [[nodiscard]] RunOptions run_options(const PlanningOptions& options, int jobs);
+
+[[nodiscard]] std::function<void(const FrameProgress&)> shown_on(ProgressLine& line);
 
 struct RenderedFrames {
     RenderResult result;

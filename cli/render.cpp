@@ -3,6 +3,8 @@
 // aphotic render RIG -o DIR: the main job, from a rig file to a camera image through POV-Ray.
 #include "plugin/render.h"
 
+#include "base/error.h"
+#include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/options.h"
@@ -12,17 +14,25 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 
 namespace aphotic::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct RenderCommandOptions {
     PlanningOptions planning;
     std::string folder;
     int jobs = all_cores();
     PreviewOptions preview;
+    WorkShare share{};
+    bool is_share = false;
     bool json = false;
 };
 
@@ -59,6 +69,68 @@ void print(const Rendered& rendered) {
     print(rendered.integration);
 }
 
+struct RenderedShare {
+    fs::path folder;
+    RenderResult result;
+    std::string povray_version;
+    double povray_s = 0.0;
+};
+
+nlohmann::ordered_json to_json(const RenderedShare& rendered) {
+    return {{"folder", rendered.folder.string()},
+            {"povray_version", rendered.povray_version},
+            {"frames_rendered", rendered.result.rendered},
+            {"frames_kept", rendered.result.kept},
+            {"povray_s", rendered.povray_s}};
+}
+
+void print(const RenderedShare& rendered) {
+    fmt::print(
+        "POV-Ray {}: {} rendered, {} kept, in {:.1f} s\n"
+        "  {}: join the shares by `aphotic integrate`\n",
+        rendered.povray_version,
+        counted(rendered.result.rendered, "frame"),
+        rendered.result.kept,
+        rendered.povray_s,
+        rendered.folder.string());
+}
+
+ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
+    const fs::path folder = options.planning.rig_file;
+    if (!fs::exists(manifest_path(folder)))
+        throw InputError(
+            "{}: found no manifest.json; allowed with --frames: a folder of `aphotic "
+            "generate`",
+            folder.string());
+    const PovRay povray = find_povray(options.planning.povray);
+    const fs::path own = share_folder(folder, options.share);
+    const FolderLock whole(folder, FolderUse::Read);
+    const FolderLock lock = claim_folder(own);
+    RunOptions run = run_options(options.planning, options.jobs);
+    ProgressLine line;
+    run.report = shown_on(line);
+    const auto start = std::chrono::steady_clock::now();
+    RenderedShare rendered{.folder = own,
+                           .result = render_share(povray, folder, options.share, run),
+                           .povray_version = povray.version};
+    rendered.povray_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    line.wipe();
+    show(rendered, options.json);
+    return kDone;
+}
+
+// A share takes the scenes as they are: what would plan others has no say.
+void refuse_what_plans(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options()) {
+        static const std::set<std::string> kOfShares{
+            "RIG", "--frames", "--jobs", "--json", "--povray", "--stall-timeout", "--library-path"};
+        const std::string name = option->get_name(false, false);
+        if (option->count() == 0 || kOfShares.contains(name)) continue;
+        throw InputError("{}: found with --frames; allowed: with a rig", name);
+    }
+}
+
 ExitStatus render_rig(const RenderCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     const SceneSet scenes = scenes_of(planned, options.planning);
@@ -83,13 +155,27 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
 
 Action configure_render(CLI::App& app) {
     const auto options = std::make_shared<RenderCommandOptions>();
-    add_output_folder(app, options->folder)->required();
+    add_output_folder(app, options->folder);
     add_jobs(app, options->jobs, "Render N frames at a time");
     add_needs_option(app, options->planning.ignore_needs);
     add_json(app, options->json);
     add_planning_options(app, options->planning);
     add_preview_options(app, options->preview);
-    return [options] { return render_rig(*options); };
+    add_share(app,
+              "--frames",
+              options->share,
+              "Given a folder of `aphotic generate` for RIG: render of each N frames the Ith "
+              "alone, to DIR/share-I-of-N; `aphotic integrate DIR` then joins all shares")
+        ->each([options](const std::string&) { options->is_share = true; });
+    return [options, &app] {
+        if (options->is_share) {
+            refuse_what_plans(app);
+            return render_frames_of_share(*options);
+        }
+        if (options->folder.empty())
+            throw InputError("--output: is missing; allowed without it: --frames");
+        return render_rig(*options);
+    };
 }
 
 }  // namespace

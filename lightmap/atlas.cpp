@@ -4,9 +4,11 @@
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/folder_lock.h"
 #include "base/json_text.h"
 #include "base/printable.h"
 #include "base/sha256.h"
+#include "base/share.h"
 #include "image/exr.h"
 #include "image/image_size.h"
 #include "lightmap/planes.h"
@@ -271,6 +273,25 @@ void remove_others(const fs::path& folder, const std::vector<MapPoint>& points) 
     for (const fs::path& file : others) fs::remove(file);
 }
 
+// Bins that shares of the same atlas have made; what is left in their folders nobody needs.
+void take_shares(const fs::path& folder,
+                 const std::vector<MapPoint>& points,
+                 AtlasManifest& manifest) {
+    for (const fs::path& share : share_folders(folder)) {
+        const FolderLock lock(share, FolderUse::Write);
+        std::vector<fs::path> left{"atlas.json"};
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const fs::path made = bin_path(share, points[i]);
+            left.push_back(fs::relative(made, share));
+            if (!manifest.checksums[i].empty() || !fs::exists(made)) continue;
+            if (!is_bin_of(made, manifest, points[i])) continue;
+            fs::rename(made, bin_path(folder, points[i]));
+            manifest.checksums[i] = sha256_of_file(bin_path(folder, points[i]));
+        }
+        remove_joined(share, left);
+    }
+}
+
 }  // namespace
 
 nlohmann::ordered_json interpolation_json(const InterpolationError& error) {
@@ -337,6 +358,7 @@ std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasReque
     }
     MapSource source(rig, request.axes, request.map);
     make_folder(folder / "bins");
+    if (request.share.is_whole()) take_shares(folder, points, manifest);
     write_manifest(folder, manifest);
     remove_others(folder, points);
     remove_exports(folder);
@@ -350,7 +372,7 @@ std::size_t write_atlas(const fs::path& folder, const Rig& rig, const AtlasReque
         if (request.progress) {
             request.progress(static_cast<double>(i) / static_cast<double>(points.size()));
         }
-        if (!manifest.checksums[i].empty()) continue;
+        if (!manifest.checksums[i].empty() || !request.share.has(i)) continue;
         const fs::path file = bin_path(folder, points[i]);
         write_bin(file, attributes_of(manifest, points[i]), source.map(points[i]));
         manifest.checksums[i] = sha256_of_file(file);

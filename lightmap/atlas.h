@@ -15,6 +15,7 @@
 // says that it is of all the same.
 #pragma once
 
+#include "base/share.h"
 #include "lightmap/atlas_export.h"
 #include "lightmap/atlas_plan.h"
 #include "lightmap/map_axes.h"
@@ -63,12 +64,14 @@ struct AtlasRequest {
     LightmapOptions map;
     std::string version;
     std::function<void(double)> progress;  // share of the bins
+    WorkShare share{};                     // of the bins that are computed: to its own folder
 };
 
 // Throws InputError, which names pose and strobe, unless every bin holds all lamps over the floor.
 void require_over_floor(const Rig& rig, const MapAxes& axes);
 
-// Returns how many bins it computed; the others were there. Exports of an earlier run go.
+// Returns how many bins it computed; the others were there, or are of another share. Exports of an
+// earlier run go. Of all bins, takes those that shares left below the folder.
 std::size_t write_atlas(const std::filesystem::path& folder,
                         const Rig& rig,
                         const AtlasRequest& request);

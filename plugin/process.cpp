@@ -5,9 +5,11 @@
 #include "base/interruption.h"
 #include "plugin/life_signs.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
+#include <unistd.h>
 #include <boost/process.hpp>
 #include <boost/process/extend.hpp>
 
@@ -17,6 +19,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -35,6 +38,26 @@ struct DieWithParent : bp::extend::handler {
         ::setpgid(0, 0);
     }
 };
+
+// A file of its own, in place of the log that it shares with stderr.
+struct OwnOutput : bp::extend::handler {
+    explicit OwnOutput(const std::filesystem::path& output) : file(output.string()) {}
+    template <typename Executor>
+    void on_exec_setup(Executor&) const {
+        if (file.empty()) return;
+        constexpr int kMode = 0666;
+        const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
+        if (descriptor < 0) return;
+        ::dup2(descriptor, STDOUT_FILENO);
+        ::close(descriptor);
+    }
+    std::string file;
+};
+
+void require_writable(const std::filesystem::path& file) {
+    if (std::ofstream(file)) return;
+    throw RunError("{}: cannot be written: {}", file.string(), std::strerror(errno));
+}
 
 bp::environment environment_of(const ProcessRequest& request) {
     bp::environment environment = boost::this_process::environment();
@@ -106,9 +129,8 @@ Process::Process(const ProcessRequest& request) {
                        request.executable.string(),
                        request.folder.string());
     }
-    if (!std::ofstream(request.log)) {
-        throw RunError("{}: cannot be written: {}", request.log.string(), std::strerror(errno));
-    }
+    require_writable(request.log);
+    if (!request.output.empty()) require_writable(request.output);
     std::error_code error;
     bp::child child(bp::exe = request.executable.string(),
                     bp::args = request.arguments,
@@ -116,6 +138,7 @@ Process::Process(const ProcessRequest& request) {
                     environment_of(request),
                     bp::std_in<bp::null, (bp::std_out & bp::std_err)> request.log.string(),
                     DieWithParent{},
+                    OwnOutput(request.output),
                     error);
     if (error) {
         throw RunError("{}: cannot be started: {}", request.executable.string(), error.message());

@@ -34,6 +34,7 @@ struct ProcessRequest {
     std::filesystem::path folder;                      // where it runs
     std::map<std::string, std::string> environment{};  // on top of ours; "" removes a variable
     std::filesystem::path log;                         // takes its stdout and stderr
+    std::filesystem::path output{};                    // takes its stdout instead; none: the log
     // So long it may neither write to its log nor use the processor, it and what it started.
     double stall_s = std::numeric_limits<double>::infinity();
     std::uintmax_t most_log_bytes = kMostLogBytes;

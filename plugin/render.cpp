@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/folder_lock.h"
 #include "base/sha256.h"
 #include "image/frame_check.h"
 #include "image/traced_image.h"
@@ -12,7 +13,9 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <string>
 #include <system_error>
+#include <utility>
 
 namespace aphotic {
 
@@ -103,6 +106,79 @@ void take_away_what_is_past(const fs::path& folder,
         take_away(folder / image);
 }
 
+struct OwnScene {
+    fs::path file{};  // absolute; none: the rig's floor
+    std::string digest{};
+    bool is_alone = false;  // no two frames at a time
+};
+
+// Renders these, and notes each in the manifest as it is done.
+void run_noted(const PovRay& povray,
+               const fs::path& folder,
+               const std::vector<ManifestFrame>& frames,
+               const OwnScene& scene,
+               const RunOptions& options,
+               Manifest& manifest) {
+    RunOptions run = options;
+    run.scene_folder = scene.file.parent_path();
+    run.one_at_a_time = scene.is_alone;
+    run.checked = [&](const ManifestFrame& frame, const fs::path& image) {
+        // A frame of a scene that was edited under way may be of either.
+        if (!scene.file.empty()) require_unchanged(scene.file, scene.digest);
+        for (ManifestFrame& noted : manifest.frames) {
+            if (noted.name == frame.name) noted.image_sha256 = sha256_of_file(image);
+        }
+        write_manifest(folder, manifest);
+    };
+    run_frames(
+        povray, folder, frames, manifest.width_px, manifest.height_px + manifest.rows_above(), run);
+}
+
+// The digest of a user's scene that scenes were written for.
+fs::path scene_note(const fs::path& folder) {
+    return folder / "povray" / "scene.sha256";
+}
+
+void write_scenes_and_note(const fs::path& folder, const SceneSet& set) {
+    write_scenes(folder, set);
+    if (set.scene_file.empty()) {
+        take_away(scene_note(folder));
+    } else {
+        write_text_file(scene_note(folder), set.scene_files_digest);
+    }
+}
+
+// That of scenes which were written before. As it was then, or frames would be of two scenes.
+OwnScene scene_in(const fs::path& folder, const Manifest& manifest) {
+    if (!manifest.scene) return {};
+    const std::string& file = manifest.scene->file;
+    std::string digest = digest_of_scene(file);
+    const fs::path note = scene_note(folder);
+    if (!fs::exists(note) || read_text_file(note) != digest)
+        throw InputError(
+            "{}: found scenes of {} as it was; allowed: of it as it is, by `aphotic "
+            "generate`",
+            folder.string(),
+            file);
+    return {.file = file, .digest = std::move(digest), .is_alone = opens_to_write(file)};
+}
+
+// What POV-Ray reads of these frames: their scenes, the settings, and what all scenes include.
+void copy_scenes(const fs::path& from,
+                 const fs::path& to,
+                 const std::vector<ManifestFrame>& frames) {
+    make_folder(to / "povray");
+    const auto copy = [](const fs::path& source, const fs::path& place) {
+        write_text_file(place, read_text_file(source));
+    };
+    for (const auto& entry : fs::directory_iterator(from / "povray")) {
+        const fs::path extension = entry.path().extension();
+        if (extension == ".inc" || extension == ".ini")
+            copy(entry.path(), to / "povray" / entry.path().filename());
+    }
+    for (const ManifestFrame& frame : frames) copy(scene_path(from, frame), scene_path(to, frame));
+}
+
 enum class Frames { ToBeRendered, Done };
 
 // Of the bare floor it is known beforehand; else when the frames are there, of which one tells how
@@ -124,6 +200,7 @@ RenderResult render(const PovRay& povray,
     RenderResult result{.manifest = set.manifest, .rendered = 0, .kept = 0};
     result.manifest.povray_version = povray.version;
 
+    join_frames(folder);
     const std::optional<Manifest> earlier = earlier_manifest(folder);
     if (earlier && earlier->povray_version == povray.version) {
         keep_what_holds(folder, *earlier, result.manifest);
@@ -135,30 +212,85 @@ RenderResult render(const PovRay& povray,
     result.kept = set.scenes.size() - missing.size();
     take_away_what_is_past(folder, earlier, result.manifest);
     for (const ManifestFrame& frame : missing) take_away(image_path(folder, frame));
-    write_scenes(folder, set);
+    write_scenes_and_note(folder, set);
     note_veil(folder, set, Frames::ToBeRendered, result.manifest);
     write_manifest(folder, result.manifest);
 
-    RunOptions run = options;
-    run.scene_folder = set.scene_file.parent_path();
-    run.one_at_a_time = set.scene_writes_files;
-    run.checked = [&](const ManifestFrame& frame, const fs::path& image) {
-        // A frame of a scene that was edited under way may be of either.
-        if (!set.scene_file.empty()) require_unchanged(set.scene_file, set.scene_files_digest);
-        for (ManifestFrame& noted : result.manifest.frames) {
-            if (noted.name == frame.name) noted.image_sha256 = sha256_of_file(image);
-        }
-        write_manifest(folder, result.manifest);
-    };
-    run_frames(povray,
-               folder,
-               missing,
-               set.manifest.width_px,
-               set.manifest.height_px + set.manifest.rows_above(),
-               run);
+    run_noted(povray,
+              folder,
+              missing,
+              {.file = set.scene_file,
+               .digest = set.scene_files_digest,
+               .is_alone = set.scene_writes_files},
+              options,
+              result.manifest);
     note_veil(folder, set, Frames::Done, result.manifest);
     write_manifest(folder, result.manifest);
     return result;
+}
+
+RenderResult render_share(const PovRay& povray,
+                          const fs::path& folder,
+                          WorkShare share,
+                          const RunOptions& options) {
+    const Manifest whole = read_manifest(folder);
+    const OwnScene scene = scene_in(folder, whole);
+    std::vector<ManifestFrame> frames = share_of(whole.frames, share);
+    std::erase_if(frames, &ManifestFrame::done);
+    const fs::path own = share_folder(folder, share);
+    copy_scenes(folder, own, frames);
+    RenderResult result{.manifest = whole};
+    result.manifest.povray_version = povray.version;
+    for (ManifestFrame& frame : result.manifest.frames) frame.image_sha256.clear();
+    const std::optional<Manifest> earlier = earlier_manifest(own);
+    if (earlier && earlier->povray_version == povray.version)
+        keep_what_holds(own, *earlier, result.manifest);
+    const std::size_t all = frames.size();
+    std::erase_if(frames, [&](const ManifestFrame& frame) {
+        return frame_named(result.manifest, frame.name)->done();
+    });
+    result.rendered = frames.size();
+    result.kept = all - frames.size();
+    write_manifest(own, result.manifest);
+    run_noted(povray, own, frames, scene, options, result.manifest);
+    return result;
+}
+
+std::size_t join_frames(const fs::path& folder) {
+    const std::vector<fs::path> shares = share_folders(folder);
+    if (shares.empty()) return 0;
+    Manifest manifest = read_manifest(folder);
+    std::size_t count = 0;
+    for (const fs::path& share : shares) {
+        const FolderLock lock(share, FolderUse::Write);
+        const std::optional<Manifest> made = earlier_manifest(share);
+        if (!made) continue;
+        const auto has_frame = [](const Manifest& one) {
+            return std::ranges::any_of(one.frames, &ManifestFrame::done);
+        };
+        if (!has_frame(manifest)) manifest.povray_version = made->povray_version;
+        if (has_frame(*made) && made->povray_version != manifest.povray_version)
+            throw InputError(
+                "{}: found frames of POV-Ray {}; allowed: of {}, as the others. Remove it, and "
+                "render its frames anew",
+                share.string(),
+                made->povray_version,
+                manifest.povray_version);
+        for (ManifestFrame& frame : manifest.frames) {
+            const std::optional<ManifestFrame> own = frame_named(*made, frame.name);
+            if (frame.done() || !own || !still_holds(share, *own, frame, manifest)) continue;
+            make_folder(folder / "povray" / "frames");
+            make_folder(folder / "povray" / "logs");
+            fs::rename(image_path(share, *own), image_path(folder, frame));
+            fs::rename(log_path(share, *own), log_path(folder, frame));
+            frame.image_sha256 = own->image_sha256;
+            ++count;
+        }
+        write_manifest(folder, manifest);
+        fs::remove_all(share / "povray");
+        remove_joined(share, {manifest_path(share).filename()});
+    }
+    return count;
 }
 
 Manifest generate(const fs::path& folder, const SceneSet& set) {
@@ -179,7 +311,7 @@ Manifest generate(const fs::path& folder, const SceneSet& set) {
         if (!may_be_this) take_away(image_path(folder, frame));
     }
     take_away_what_is_past(folder, earlier, manifest);
-    write_scenes(folder, set);
+    write_scenes_and_note(folder, set);
     note_veil(folder, set, Frames::ToBeRendered, manifest);
     write_manifest(folder, manifest);
     return manifest;

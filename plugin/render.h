@@ -14,10 +14,12 @@
 // those noted before belong to the scene as it was, so the next run renders them again.
 #pragma once
 
+#include "base/share.h"
 #include "plugin/frame_runner.h"
 #include "plugin/povray.h"
 #include "scene_gen/scene_set.h"
 
+#include <cstddef>
 #include <filesystem>
 
 namespace aphotic {
@@ -34,6 +36,19 @@ RenderResult render(const PovRay& povray,
                     const std::filesystem::path& folder,
                     const SceneSet& set,
                     const RunOptions& options);
+
+// A share (base/share.h) of the frames of a folder whose scenes are there, by render() or
+// generate(): into its own folder, and no image is made of them. Frames that the folder has stay
+// there. The folder itself is only read: of a scene of the user's own, options name the includes.
+RenderResult render_share(const PovRay& povray,
+                          const std::filesystem::path& folder,
+                          WorkShare share,
+                          const RunOptions& options);
+
+// Takes the frames that shares left below the folder, where they are of its scenes, into it and its
+// manifest; render() does so by itself. Returns how many. An InputError where other frames are of
+// another version of POV-Ray.
+std::size_t join_frames(const std::filesystem::path& folder);
 
 // Writes scenes and manifest without rendering. Images of earlier scenes, and the reference
 // tracer's, are taken away, so that they cannot be taken for images of these.

@@ -7,6 +7,7 @@
 #include "base/sha256.h"
 #include "survey/contact_sheet.h"
 #include "survey/correction_page.h"
+#include "survey/share_join.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -215,6 +216,7 @@ CorrectionReport correct_survey(const Survey& survey,
                          options.gain.size());
     }
     const ResultFolder folder(options.run, survey.files);
+    if (options.share.is_whole()) join_shares(survey.files, options.run);
     const fs::path notes = options.run.folder / kCorrectionNotes;
     CorrectionReport report;
     const std::optional<SurveyGain> given = given_gain(survey, options, report.looks_wrong);
@@ -224,7 +226,10 @@ CorrectionReport correct_survey(const Survey& survey,
     if (options.run.format.srgb) report.srgb = shown_as(survey, options, report.gain);
     // Before the first image: also what an interrupted run leaves is no survey.
     write_text_file(notes, json_text(to_json(report)));
-    report.run = run_images(survey.files, options.run, work_of(survey, options, report), watch);
+    report.run = run_images(share_of(survey.files, options.share),
+                            options.run,
+                            work_of(survey, options, report),
+                            watch);
     const PlaneSize size = survey.light.size;
     report.run->pixels = static_cast<double>(report.run->corrected + report.run->kept) *
                          size.width_px * size.height_px;

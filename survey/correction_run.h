@@ -8,6 +8,7 @@
 //   corrected.jsonl   what is done (journal.h)
 #pragma once
 
+#include "base/share.h"
 #include "survey/gain.h"
 #include "survey/image_run.h"
 #include "survey/survey.h"
@@ -22,7 +23,8 @@
 namespace aphotic {
 
 struct CorrectionOptions {
-    ImageRunOptions run{};
+    ImageRunOptions run{};       // of a share: its own folder
+    WorkShare share{};           // of the images that are corrected; gain and warnings are of all
     std::vector<double> gain{};  // one for all channels, or three; none: taken from the survey
     std::filesystem::path gain_from{};  // a folder of results that has one; empty: none
     std::optional<double> middle{};     // none: the floor's colour, grey where nobody knows it

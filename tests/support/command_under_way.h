@@ -104,8 +104,8 @@ class Command {
         return status_.has_value();
     }
     // As a shell tells it.
-    int wait() {
-        const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    int wait(std::chrono::seconds patience = kPatience) {
+        const auto deadline = std::chrono::steady_clock::now() + patience;
         while (!has_ended()) {
             if (std::chrono::steady_clock::now() > deadline)
                 throw std::runtime_error("the command does not end");

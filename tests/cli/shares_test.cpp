@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Large work in shares, as several machines would do it: side by side, without a lock between them.
+// Joined, it is bit for bit what one machine makes.
+#include "support/command_under_way.h"
+#include "support/run_command.h"
+#include "support/small_sweep.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace aphotic::shares_test {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr auto kLongest = std::chrono::minutes(15);  // for what hangs
+using Arguments = std::vector<std::string>;
+
+class Shares : public testing::Test {
+  protected:
+    [[nodiscard]] fs::path path(const std::string& name) const { return small_.folder() / name; }
+
+    [[nodiscard]] CommandResult run(const Arguments& arguments) const {
+        return run_aphotic(small_.folder(), arguments);
+    }
+
+    void run_well(const Arguments& arguments) const {
+        const CommandResult result = run(arguments);
+        ASSERT_EQ(result.status, 0) << result.err << testing::PrintToString(arguments);
+    }
+
+    // All shares at once, blind to each other.
+    void run_shares(const Arguments& arguments, const std::string& option, int of) const {
+        const std::map<std::string, std::string> no_locks{
+            {"LD_PRELOAD", APHOTIC_NO_LOCKS}, {"ASAN_OPTIONS", "verify_asan_link_order=0"}};
+        const TempFolder streams;
+        std::vector<std::unique_ptr<Command>> commands;
+        for (int number = 1; number <= of; ++number) {
+            const fs::path lane = streams.path() / std::to_string(number);
+            fs::create_directories(lane);
+            Arguments all = arguments;
+            all.insert(all.end(), {option, std::to_string(number) + "/" + std::to_string(of)});
+            commands.push_back(std::make_unique<Command>(lane, all, no_locks));
+        }
+        for (std::size_t i = 0; i < commands.size(); ++i)
+            EXPECT_EQ(commands[i]->wait(kLongest), 0)
+                << read_text_file(streams.path() / std::to_string(i + 1) / "stderr");
+    }
+
+    // Every file of one folder that has this extension, in the other, and none but these.
+    void expect_same_files(const std::string& one, const std::string& other) const {
+        std::map<std::string, std::string> found;
+        for (const std::string& folder : {one, other}) {
+            for (const auto& entry : fs::recursive_directory_iterator(path(folder))) {
+                const std::string name = fs::relative(entry.path(), path(folder)).string();
+                if (entry.path().extension() != ".exr") continue;
+                if (name.find("povray") != std::string::npos) continue;  // these tell the time
+                const std::string bytes = read_text_file(entry.path());
+                const auto [known, is_new] = found.emplace(name, bytes);
+                EXPECT_EQ(is_new, folder == one) << name;
+                EXPECT_TRUE(known->second == bytes) << name;
+            }
+        }
+        EXPECT_FALSE(found.empty());
+        for (const auto& entry : fs::directory_iterator(path(other)))
+            EXPECT_FALSE(entry.path().filename().string().starts_with("share-")) << entry.path();
+        expect_no_leftovers(path(other));
+    }
+
+    SmallSweep small_;
+};
+
+TEST_F(Shares, OfARendersFrames) {
+    run_well({"render", "rig.toml", "--bands", "13", "-o", "one"});
+    run_well({"generate", "rig.toml", "--bands", "13", "-o", "many"});
+    run_shares({"render", path("many").string()}, "--frames", 2);
+    EXPECT_FALSE(fs::exists(path("many/image.exr")));
+    run_well({"integrate", "many"});
+    expect_same_files("one", "many");
+    // Joined frames are noted as rendered: nothing is left to do.
+    const CommandResult again =
+        run({"render", "rig.toml", "--bands", "13", "-o", "many", "--json"});
+    EXPECT_EQ(nlohmann::json::parse(again.out).at("frames_rendered"), 0) << again.out;
+}
+
+TEST_F(Shares, OfFramesGoOnWhereTheyStopped) {
+    run_well({"generate", "rig.toml", "--bands", "13", "-o", "many"});
+    run_well({"render", "many", "--frames", "1/2"});
+    const auto second =
+        nlohmann::json::parse(run({"render", "many", "--frames", "1/2", "--json"}).out);
+    EXPECT_EQ(second.at("frames_rendered"), 0);
+    EXPECT_EQ(second.at("frames_kept"), 3);
+    // What no share has rendered is missed by name, and rendered by render.
+    const CommandResult missing = run({"integrate", "many"});
+    EXPECT_EQ(missing.status, 3) << missing.err;
+    run_well({"render", "rig.toml", "--bands", "13", "-o", "many"});
+    run_well({"render", "rig.toml", "--bands", "13", "-o", "one"});
+    expect_same_files("one", "many");
+}
+
+TEST_F(Shares, OfAnAtlassBins) {
+    const Arguments atlas{"atlas",
+                          path("rig.toml").string(),
+                          "--altitude",
+                          "1:2:0.25",
+                          "--water-multiple",
+                          "1:2:0.5",
+                          "-o"};
+    Arguments one = atlas;
+    one.push_back(path("one").string());
+    run_well(one);
+    Arguments many = atlas;
+    many.push_back(path("many").string());
+    run_shares(many, "--share", 4);
+    many.push_back("--json");
+    const CommandResult joined = run(many);
+    EXPECT_EQ(joined.status, 0) << joined.err;
+    EXPECT_EQ(nlohmann::json::parse(joined.out).at("computed"), 0);
+    expect_same_files("one", "many");
+    EXPECT_EQ(read_text_file(path("one/atlas.json")), read_text_file(path("many/atlas.json")));
+}
+
+class SurveyShares : public Shares {
+  protected:
+    void SetUp() override { run_well({"survey", "rig.toml", "--images", "9", "-o", "survey"}); }
+
+    [[nodiscard]] Arguments correct(const std::string& folder) const {
+        return {"correct",
+                path("survey/raw").string(),
+                "--rig",
+                path("rig.toml").string(),
+                "--nav",
+                path("survey/navigation-measured.txt").string(),
+                "--bayer",
+                "RGGB",
+                "--black-level",
+                "64",
+                "--white-level",
+                "4095",
+                "--format",
+                "exr",
+                "-o",
+                path(folder).string()};
+    }
+};
+
+TEST_F(SurveyShares, OfASurveysImages) {
+    run_well(correct("one"));
+    run_shares(correct("many"), "--share", 2);
+    Arguments join = correct("many");
+    join.push_back("--json");
+    const CommandResult joined = run(join);
+    ASSERT_EQ(joined.status, 0) << joined.err;
+    const auto json = nlohmann::json::parse(joined.out);
+    EXPECT_EQ(json.at("corrected"), 0);
+    EXPECT_EQ(json.at("kept"), 9);
+    const auto alone = nlohmann::json::parse(read_text_file(path("one/correction.json")));
+    for (const char* key : {"gain", "settings_sha256", "doubtful", "gain_from"})
+        EXPECT_EQ(json.at(key), alone.at(key)) << key;
+    expect_same_files("one", "many");
+}
+
+TEST_F(SurveyShares, WhatNoShareHasDoneIsDoneWhenTheyAreJoined) {
+    run_well(correct("one"));
+    Arguments share = correct("many");
+    share.insert(share.end(), {"--share", "2/3"});
+    run_well(share);
+    Arguments join = correct("many");
+    join.push_back("--json");
+    const auto json = nlohmann::json::parse(run(join).out);
+    EXPECT_EQ(json.at("corrected"), 6);
+    EXPECT_EQ(json.at("kept"), 3);
+    expect_same_files("one", "many");
+}
+
+// A sweep's tasks leave shares, which --collect joins.
+TEST_F(SurveyShares, OfASweepAreJoinedWhenTheyAreCollected) {
+    run_well(correct("one"));
+    small_.write("correct", R"(images = ["survey/raw"]
+shares = 3
+arguments = ["--nav", "survey/navigation-measured.txt", "--bayer", "RGGB", "--black-level", "64",
+             "--white-level", "4095", "--format", "exr"]
+)");
+    run_well({"sweep", "sweep.toml", "-o", "out"});
+    for (const char* number : {"3", "1", "2"}) {
+        EXPECT_EQ(run({"sweep", "out", "--collect"}).status, 1);
+        run_well({"sweep", "out", "--task", number});
+    }
+    run_well({"sweep", "out", "--collect"});
+    expect_same_files("one", "out/point-0001");
+    run_well({"sweep", "out", "--collect"});
+}
+
+// An image is skipped, which is an answer of correct's: its task is done, and not done again.
+TEST_F(SurveyShares, OfASweepMayAnswerNo) {
+    write_file(path("survey/raw/broken.tif"), "no image");
+    small_.write("correct", R"(images = ["survey/raw"]
+arguments = ["--nav", "survey/navigation-measured.txt", "--bayer", "RGGB", "--black-level", "64",
+             "--white-level", "4095"]
+)");
+    run_well({"sweep", "sweep.toml", "-o", "out"});
+    run_well({"sweep", "out", "--task", "1"});
+    const std::string result = read_text_file(path("out/task-0001/result.json"));
+    EXPECT_EQ(nlohmann::json::parse(result).at("exit_status"), 1);
+    run_well({"sweep", "out", "--status"});
+    run_well({"sweep", "out", "--task", "1"});
+    EXPECT_EQ(read_text_file(path("out/task-0001/result.json")), result);
+}
+
+TEST_F(Shares, SayWhatIsWrong) {
+    const auto expect = [&](const Arguments& arguments, const std::string& part) {
+        const CommandResult result = run(arguments);
+        EXPECT_EQ(result.status, 2) << result.err;
+        EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    };
+    expect({"render", "rig.toml"}, "--output: is missing");
+    expect({"render", "rig.toml", "--frames", "1/2"}, "found no manifest.json");
+    expect({"render", "lamps", "--frames", "3/2"}, "found 3/2; allowed: I/N");
+    expect({"render", "lamps", "--frames", "1/2", "--bands", "3"},
+           "--bands: found with --frames; allowed: with a rig");
+    expect({"atlas", "rig.toml", "--altitude", "2", "-o", "out", "--share", "x"}, "allowed: I/N");
+}
+
+}  // namespace
+}  // namespace aphotic::shares_test
