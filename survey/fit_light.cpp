@@ -212,6 +212,51 @@ Eigen::Matrix2d turns_of_axis(const Rig& rig, const FitState& state, std::size_t
     return turns;
 }
 
+// What places and nodes have in common.
+struct Scene {
+    const FitState& state;
+    const PathLight& light;
+    Floor floor;
+    std::vector<Lamp> lamps;
+    std::size_t versions;  // of the light that are looked at
+
+    Scene(const Rig& rig,
+          const FitState& in_state,
+          const PathLight& in_light,
+          const Sled& sled,
+          bool has_slopes)
+        : state(in_state),
+          light(in_light),
+          floor(floor_of({.altitude_m = sled.altitude_m + state.offset.altitude_m,
+                          .pitch_rad = sled.pitch_rad + state.offset.pitch_rad,
+                          .roll_rad = sled.roll_rad + state.offset.roll_rad})),
+          versions(has_slopes ? light.versions() : 1) {
+        for (std::size_t s = 0; s < rig.strobes.size(); ++s)
+            lamps.push_back(lamp_of(rig, state, floor, s));
+    }
+    [[nodiscard]] bool has_slopes() const { return versions > 1; }
+
+    // Of each ray that comes down to the floor and each lamp: take(ray, landing, lamp, lit).
+    template <typename Take>
+    void for_each_way(const std::vector<WaterRay>& rays,
+                      std::size_t row,
+                      Lit& lit,
+                      const Take& take) const {
+        lit.row = row;
+        for (std::size_t r = 0; r < rays.size(); ++r) {
+            const std::optional<Landing> landing = landing_of(floor, rays[r]);
+            if (!landing) continue;
+            lit.landing = &*landing;
+            lit.first_channel = rays.size() == 1 ? 0 : r;
+            lit.last_channel = rays.size() == 1 ? kChannels : r + 1;
+            for (lit.strobe = 0; lit.strobe < lamps.size(); ++lit.strobe) {
+                lit.lamp = &lamps[lit.strobe];
+                take(rays[r], *landing, lamps[lit.strobe]);
+            }
+        }
+    }
+};
+
 }  // namespace
 
 FitLight::FitLight(const Rig& rig, const FitPlaces& places) : rig_(rig), places_(places) {
@@ -268,49 +313,7 @@ std::size_t FitLight::part_columns(const FitState& state) {
     return columns;
 }
 
-// What places and nodes have in common.
-struct FitLight::Scene {
-    const FitState& state;
-    const PathLight& light;
-    Floor floor;
-    std::vector<Lamp> lamps;
-    std::size_t versions;  // of the light that are looked at
-
-    Scene(const Rig& rig,
-          const FitState& in_state,
-          const PathLight& in_light,
-          const Sled& sled,
-          bool has_slopes)
-        : state(in_state),
-          light(in_light),
-          floor(floor_of({.altitude_m = sled.altitude_m + state.offset.altitude_m,
-                          .pitch_rad = sled.pitch_rad + state.offset.pitch_rad,
-                          .roll_rad = sled.roll_rad + state.offset.roll_rad})),
-          versions(has_slopes ? light.versions() : 1) {
-        for (std::size_t s = 0; s < rig.strobes.size(); ++s)
-            lamps.push_back(lamp_of(rig, state, floor, s));
-    }
-    [[nodiscard]] bool has_slopes() const { return versions > 1; }
-
-    // Of each ray that comes down to the floor and each lamp: take(ray, landing, lamp, lit).
-    template <typename Take>
-    void for_each_way(const Rays& rays, std::size_t row, Lit& lit, const Take& take) const {
-        lit.row = row;
-        for (std::size_t r = 0; r < rays.size(); ++r) {
-            const std::optional<Landing> landing = landing_of(floor, rays[r]);
-            if (!landing) continue;
-            lit.landing = &*landing;
-            lit.first_channel = rays.size() == 1 ? 0 : r;
-            lit.last_channel = rays.size() == 1 ? kChannels : r + 1;
-            for (lit.strobe = 0; lit.strobe < lamps.size(); ++lit.strobe) {
-                lit.lamp = &lamps[lit.strobe];
-                take(rays[r], *landing, lamps[lit.strobe]);
-            }
-        }
-    }
-};
-
-template <typename Add>
+template <typename Scene, typename Add>
 void FitLight::light_floor(const Scene& scene, const Add& add) const {
     const FitState& state = scene.state;
     std::vector<double> T(scene.light.versions() * kChannels);
@@ -345,7 +348,7 @@ void FitLight::light_floor(const Scene& scene, const Add& add) const {
         scene.for_each_way(sights_[place].rays, kChannels * place, lit, take);
 }
 
-template <typename Add>
+template <typename Scene, typename Add>
 void FitLight::light_water(const Scene& scene, const Add& add) const {
     const FitState& state = scene.state;
     const std::size_t scatterers = scene.light.scatterers();

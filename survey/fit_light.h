@@ -116,10 +116,9 @@ class FitLight {
         double from_middle2 = 0.0;  // p^2 of vignetting
         double vignetting = 1.0;    // the rig's own
     };
-    struct Scene;
-    template <typename Add>
+    template <typename Scene, typename Add>
     void light_floor(const Scene& scene, const Add& add) const;
-    template <typename Add>
+    template <typename Scene, typename Add>
     void light_water(const Scene& scene, const Add& add) const;
     // From what the nodes see of the veil to what the places do.
     void add_between_nodes(const Rows& of_nodes, Rows& rows) const;
