@@ -218,33 +218,37 @@ struct Scene {
     const PathLight& light;
     Floor floor;
     std::vector<Lamp> lamps;
-    std::size_t versions;  // of the light that are looked at
+    bool has_slopes;
+    std::size_t versions;  // of the light that are looked at; one of light without derivatives
 
     Scene(const Rig& rig,
           const FitState& in_state,
           const PathLight& in_light,
           const Sled& sled,
-          bool has_slopes)
+          bool in_has_slopes)
         : state(in_state),
           light(in_light),
           floor(floor_of({.altitude_m = sled.altitude_m + state.offset.altitude_m,
                           .pitch_rad = sled.pitch_rad + state.offset.pitch_rad,
                           .roll_rad = sled.roll_rad + state.offset.roll_rad})),
+          has_slopes(in_has_slopes),
           versions(has_slopes ? light.versions() : 1) {
         for (std::size_t s = 0; s < rig.strobes.size(); ++s)
             lamps.push_back(lamp_of(rig, state, floor, s));
     }
-    [[nodiscard]] bool has_slopes() const { return versions > 1; }
 
-    // Of each ray that comes down to the floor and each lamp: take(ray, landing, lamp, lit).
+    // Of each ray and each lamp: take(ray, landing, lamp). Rays that do not come down to the floor
+    // end where `beyond` says; without it they are passed over.
     template <typename Take>
     void for_each_way(const std::vector<WaterRay>& rays,
+                      const std::optional<Landing>& beyond,
                       std::size_t row,
                       Lit& lit,
                       const Take& take) const {
         lit.row = row;
         for (std::size_t r = 0; r < rays.size(); ++r) {
-            const std::optional<Landing> landing = landing_of(floor, rays[r]);
+            std::optional<Landing> landing = landing_of(floor, rays[r]);
+            if (!landing) landing = beyond;
             if (!landing) continue;
             lit.landing = &*landing;
             lit.first_channel = rays.size() == 1 ? 0 : r;
@@ -333,7 +337,7 @@ void FitLight::light_floor(const Scene& scene, const Add& add) const {
             for (std::size_t v = 1; v < scene.versions; ++v)
                 lit.by_water[v - 1][c] = state.gain[c] * spread * T[v * kChannels + c];
         }
-        if (scene.has_slopes()) {
+        if (scene.has_slopes) {
             table.slopes_at(d + landing.length_m, T_by_length.data());
             lit.w_by_length = (lamp.into_frame * ray.direction - lit.w * d_by_length) / d;
             for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
@@ -345,7 +349,7 @@ void FitLight::light_floor(const Scene& scene, const Add& add) const {
         add(lit);
     };
     for (std::size_t place = 0; place < sights_.size(); ++place)
-        scene.for_each_way(sights_[place].rays, kChannels * place, lit, take);
+        scene.for_each_way(sights_[place].rays, std::nullopt, kChannels * place, lit, take);
 }
 
 template <typename Scene, typename Add>
@@ -396,7 +400,7 @@ void FitLight::light_water(const Scene& scene, const Add& add) const {
                     t + away_m / std::cos(phi));
             add(lit);
         }
-        if (!scene.has_slopes()) return;
+        if (!scene.has_slopes) return;
         lit.by = LitBy::End;
         const Vector3d way = from_lamp + landing.length_m * ray.direction;
         const double d = way.norm();
@@ -404,8 +408,11 @@ void FitLight::light_water(const Scene& scene, const Add& add) const {
         scatter(power / (d * d), last + 0.5 * pi, d + landing.length_m);
         add(lit);
     };
+    // About as far as the longest path that is tabulated, there and back.
+    const CubicTable& table = scene.light.veil(0);
+    const Landing beyond{.length_m = 0.5 * table.place(table.nodes() - 1)};
     for (std::size_t node = 0; node < veil_nodes_.size(); ++node)
-        scene.for_each_way(veil_nodes_[node], kChannels * node, lit, take);
+        scene.for_each_way(veil_nodes_[node], beyond, kChannels * node, lit, take);
 }
 
 void FitLight::add_between_nodes(const Rows& of_nodes, Rows& rows) const {

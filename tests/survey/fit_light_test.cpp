@@ -18,6 +18,8 @@ namespace {
 constexpr double kBands = 3e-4;
 // Besides, twenty points over the veil's angle, and a phase function's table.
 constexpr double kVeilRule = 2e-3;
+// Where all of the signal is veil, from farther away than twelve points are made for.
+constexpr double kVeilOfTheHorizon = 1e-2;
 // Central differences of the light, and the water's own.
 constexpr double kDifference = 2e-5;
 // Where the veil ends moves a rule whose panel a spline's knots cross.
@@ -44,14 +46,14 @@ struct Known {
     }
 };
 
-double worst_against_lightmap(const FitRigNumbers& numbers) {
+double worst_against_lightmap(const FitRigNumbers& numbers, const Sled& sled = kTilted) {
     const Known known(numbers);
     const FitLight light(known.rig, known.places);
-    const PathLight path(known.text, known.state.water, {}, light.paths({kTilted}), false);
+    const PathLight path(known.text, known.state.water, {}, light.paths({sled}), false);
     FitLight::Rows rows;
-    light.parts_into(known.state, path, kTilted, rows);
-    const LightmapMaker maker(known.rig, paths_of(known.rig, {kTilted}), {});
-    const std::vector<float> map = signal_of(maker.map(kTilted));
+    light.parts_into(known.state, path, sled, rows);
+    const LightmapMaker maker(known.rig, paths_of(known.rig, {sled}), {});
+    const std::vector<float> map = signal_of(maker.map(sled));
     const std::size_t pixels = map.size() / kChannels;
     double worst = 0.0;
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -72,6 +74,13 @@ TEST(FitLight, HasTheVeilOfTheSameRig) {
     FitRigNumbers numbers;
     numbers.water = "type = \"jerlov-1C\"\nmultiple = {}";
     EXPECT_LT(worst_against_lightmap(numbers), kVeilRule);
+}
+
+TEST(FitLight, HasTheVeilUpToTheHorizon) {
+    FitRigNumbers numbers;
+    numbers.water = "type = \"jerlov-1C\"\nmultiple = {}";
+    const Sled ahead{.altitude_m = 4.0, .pitch_rad = 80.0 * kRadiansPerDegree, .roll_rad = 0.0};
+    EXPECT_LT(worst_against_lightmap(numbers, ahead), kVeilOfTheHorizon);
 }
 
 // Every number there is, and the pose's three.
@@ -128,6 +137,30 @@ void expect_slopes(const FitRigNumbers& numbers, const FitBeam& beam, double mos
         const auto column = shares.size() + static_cast<Eigen::Index>(k);
         const double off = (all.col(column) - wanted).norm();
         EXPECT_LT(off, most * wanted.norm()) << "number " << k;
+    }
+}
+
+// The pose's need no derivatives over the water, which an image's own pose is found without.
+TEST(FitLight, SlopesOfThePoseWithoutThoseOfTheWater) {
+    for (const char* water :
+         {"absorption = \"pope-fry-1997\"\nmultiple = {}", "type = \"jerlov-1C\"\nmultiple = {}"}) {
+        FitRigNumbers numbers;
+        numbers.water = water;
+        const Known known(numbers);
+        const FitLight light(known.rig, known.places);
+        const PathRange paths = light.paths({kTilted});
+        const auto pose_columns = [&](bool has_derivatives) {
+            FitLight::Rows all;
+            light.columns_into(
+                known.state,
+                {known.text, known.state.water, known.state.floor, paths, has_derivatives},
+                kTilted,
+                Eigen::VectorXd::Ones(1),
+                {},
+                all);
+            return FitLight::Rows(all.middleCols(1, FitLight::kPoseColumns));
+        };
+        EXPECT_EQ(pose_columns(false), pose_columns(true));
     }
 }
 
