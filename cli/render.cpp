@@ -104,7 +104,8 @@ ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
             folder.string());
     const PovRay povray = find_povray(options.planning.povray);
     const fs::path own = share_folder(folder, options.share);
-    const FolderLock whole(folder, FolderUse::Read);
+    std::optional<FolderLock> whole;
+    if (!options.share.is_whole()) whole.emplace(folder, FolderUse::Read);
     const FolderLock lock = claim_folder(own);
     RunOptions run = run_options(options.planning, options.jobs);
     ProgressLine line;
@@ -173,7 +174,7 @@ Action configure_render(CLI::App& app) {
             return render_frames_of_share(*options);
         }
         if (options->folder.empty())
-            throw InputError("--output: is missing; allowed without it: --frames");
+            throw InputError("--output: is missing; only --frames does without");
         return render_rig(*options);
     };
 }

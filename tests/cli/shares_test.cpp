@@ -89,6 +89,14 @@ TEST_F(Shares, OfARendersFrames) {
     EXPECT_EQ(nlohmann::json::parse(again.out).at("frames_rendered"), 0) << again.out;
 }
 
+TEST_F(Shares, OneOfOneIsRenderedInPlace) {
+    run_well({"render", "rig.toml", "--bands", "13", "-o", "one"});
+    run_well({"generate", "rig.toml", "--bands", "13", "-o", "many"});
+    run_well({"render", "many", "--frames", "1/1"});
+    run_well({"integrate", "many"});
+    expect_same_files("one", "many");
+}
+
 TEST_F(Shares, OfFramesGoOnWhereTheyStopped) {
     run_well({"generate", "rig.toml", "--bands", "13", "-o", "many"});
     run_well({"render", "many", "--frames", "1/2"});
