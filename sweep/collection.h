@@ -3,9 +3,8 @@
 // What the tasks of a sweep have made, together:
 //
 //   DIR/results.csv          a line for each task: its number, the rig's keys, how it stands, its
-//   time,
-//                            every number and short text of what the command answered, and the
-//                            first line of the message of one that failed
+//                            time, every number and short text of what the command answered, and
+//                            the first line of the message of one that failed
 //   DIR/contact_sheet.html   the previews of those that made one, small
 #pragma once
 
