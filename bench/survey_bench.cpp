@@ -10,6 +10,7 @@
 // cores; at most twice as long as reading and writing.)
 #include "base/atomic_file.h"
 #include "base/parallel.h"
+#include "bench/processor_time.h"
 #include "lightmap/lightmap.h"
 #include "plugin/process.h"
 #include "rig/rig_reader.h"
@@ -18,7 +19,6 @@
 #include <OpenImageIO/imageio.h>
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -173,24 +173,15 @@ const Survey& survey_of(const std::string& rig, std::size_t images) {
     return surveys.try_emplace({rig, images}, rig, images).first->second;
 }
 
-// Of this process, and of those that it waited for.
-double processor_s() {
-    double sum_s = 0.0;
-    for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-        rusage use{};
-        ::getrusage(who, &use);
-        for (const timeval& time : {use.ru_utime, use.ru_stime}) {
-            sum_s += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-        }
-    }
-    return sum_s;
+double own_and_childrens_s() {
+    return processor_s(RUSAGE_SELF) + processor_s(RUSAGE_CHILDREN);
 }
 
 void time_work(benchmark::State& state, const std::function<void()>& work) {
     const auto images = static_cast<double>(state.range(0));
-    const double before_s = processor_s();
+    const double before_s = own_and_childrens_s();
     for (auto _ : state) work();
-    state.counters["processor_ms_an_image"] = 1e3 * (processor_s() - before_s) / images;
+    state.counters["processor_ms_an_image"] = 1e3 * (own_and_childrens_s() - before_s) / images;
     state.counters["images_a_second"] = benchmark::Counter(images, benchmark::Counter::kIsRate);
 }
 

@@ -4,6 +4,7 @@
 // disk, beside POV-Ray's for the frames, the least of several passes each. (Goal: under a tenth.)
 // Smooth beams, and HabCam's sharp cones, along whose edges the veil is computed pixel by pixel;
 // both in Jerlov's 1C.
+#include "bench/processor_time.h"
 #include "plugin/frame_runner.h"
 #include "plugin/render.h"
 #include "rig/rig_text.h"
@@ -12,7 +13,6 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -33,15 +33,6 @@ Rig in_coastal_water(const std::string& name) {
     text.set("water.type", "jerlov-1C");
     text.set("camera.range_nm", std::vector<double>{400.0, 700.0});  // where Jerlov's tables end
     return text.rig();
-}
-
-double processor_s(int who) {
-    rusage use{};
-    ::getrusage(who, &use);
-    double sum_s = 0.0;
-    for (const timeval& time : {use.ru_utime, use.ru_stime})
-        sum_s += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-    return sum_s;
 }
 
 void veil_beside_frames(benchmark::State& state, const std::string& name) {
