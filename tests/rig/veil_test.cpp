@@ -266,6 +266,27 @@ TEST(Veil, IsTheIntegralAlongTheRay) {
     EXPECT_GT(lit, 30);
 }
 
+// A beam that is far narrower than a tabulated phase function's steps.
+TEST(Veil, OfASteepBeamBetweenKinks) {
+    constexpr double kOfDefinition = 1e-8;  // adaptive quadrature across kinks
+    std::vector<double> angles;
+    std::vector<double> values;
+    for (int degrees = 0; degrees <= 180; degrees += 5) {
+        angles.push_back(degrees * kDegree_rad);
+        values.push_back(1.0 / (1.0 + 0.1 * degrees));
+    }
+    Beam steep = half_isotropic();
+    steep.cones[0].exponent = 3000.0;
+    for (const double tilt : {-0.1, 0.0, 0.2, 0.43}) {
+        const Rig rig = one_lamp(
+            {0.5, 0.0, 0.0}, {-1.0, 0.0, 1.0 + tilt}, steep, phase_table("table", angles, values));
+        EXPECT_NEAR(Veil(rig).radiance(kDown, 2.0, kNm) / by_definition(rig, kDown, 2.0),
+                    1.0,
+                    kOfDefinition)
+            << tilt;
+    }
+}
+
 TEST(Veil, StatesItsError) {
     Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
     EXPECT_EQ(veil_error(rig), 0.0);
