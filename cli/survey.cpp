@@ -15,6 +15,7 @@
 #include "cli/planning.h"
 #include "plugin/survey_render.h"
 #include "rig/rig_reader.h"
+#include "survey/camera_numbers.h"
 #include "survey/navigation_file.h"
 
 #include <fmt/format.h>
@@ -101,7 +102,9 @@ Readout readout_of(const Readout& said, Readout readout) {
                             &Readout::white_level_dn,
                             &Readout::gain_dn_per_e,
                             &Readout::read_noise_e,
-                            &Readout::saturation_e}) {
+                            &Readout::saturation_e,
+                            &Readout::exposure_ms,
+                            &Readout::f_number}) {
         if (said.*part) readout.*part = said.*part;
     }
     return readout;
@@ -167,6 +170,9 @@ SimulatedSurvey survey_of(const SurveyCommandOptions& options) {
             return electrons_for_share(
                 survey.rig, survey.corners, survey.camera.saturation_e, options.floor_share);
         });
+    // The rig's exposure is what that is for; another is as many times as bright.
+    survey.camera.electrons_per_signal *=
+        relative_exposure(survey.camera.shot, {.reference = shot_of(survey.rig.camera.readout)});
     const bool by_povray = is_by_povray(options, survey.rig);
     survey.texture = by_povray ? 0.0 : options.texture;
     survey.made_by = {{"flight", flight_settings(options)},
@@ -352,6 +358,11 @@ void add_floor_options(CLI::App& app, SurveyCommandOptions& options) {
 }
 
 void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {
+    // The rig's own bounds.
+    constexpr double kLeastExposure_ms = 1e-4;
+    constexpr double kMostExposure_ms = 1e6;
+    constexpr double kLeastFNumber = 0.1;
+    constexpr double kMostFNumber = 1000.0;
     const OptionGroup group(app, kCameraOptions);
     Readout& readout = options.readout;
     app.add_option("--bayer",
@@ -385,6 +396,16 @@ void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {
         readout.gain_dn_per_e,
         "Numbers per electron; by default the rig's `gain_dn_per_e`, or white at saturation",
         positive());
+    add("--exposure-ms",
+        readout.exposure_ms,
+        "Open the shutter for this many milliseconds. Images are brighter than by the rig's "
+        "`exposure_ms` as the light of continuous lamps is; by default the rig's",
+        in_range(kLeastExposure_ms, kMostExposure_ms));
+    add("--f-number",
+        readout.f_number,
+        "Stop the lens down to this. Images are brighter or darker than by the rig's `f_number`; "
+        "by default the rig's",
+        in_range(kLeastFNumber, kMostFNumber));
     app.add_option("--floor-share",
                    options.floor_share,
                    "Expose so that the rig's bare floor, at its brightest below the lowest "

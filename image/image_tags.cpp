@@ -31,4 +31,12 @@ ShotExposure exposure_of(const ImageTags& tags) {
     return exposure;
 }
 
+SharedTags tags_of(const ShotExposure& exposure) {
+    using Tags = void (*)(const ShotExposure&, SharedTags&);
+    SharedTags tags;
+    if (exposure.time_s || exposure.iso || exposure.f_number)
+        from_part<Tags>("aphotic_tags_of_exposure")(exposure, tags);
+    return tags;
+}
+
 }  // namespace aphotic

@@ -37,4 +37,8 @@ struct ShotExposure {
 };
 [[nodiscard]] ShotExposure exposure_of(const ImageTags& tags);
 
+// To be written; none where nothing is told. Exif holds a time to 1 ns and, of 1 s and more, to
+// 1 us, an f-number to 1e-6, an ISO number without a fraction.
+[[nodiscard]] SharedTags tags_of(const ShotExposure& exposure);
+
 }  // namespace aphotic

@@ -139,6 +139,21 @@ ShotExposure exposure_in(const Exiv2::ExifData& exif) {
     return exposure;
 }
 
+Exiv2::URational fraction(double number, std::uint32_t below) {
+    return {static_cast<std::uint32_t>(std::llround(number * below)), below};
+}
+
+void add_iso(Exiv2::ExifData& exif, double number) {
+    if (number < kTooLargeIso) {
+        exif["Exif.Photo.ISOSpeedRatings"] = static_cast<std::uint16_t>(std::lround(number));
+        return;
+    }
+    constexpr std::uint16_t kIsTheRecommendedIndex = 2;
+    exif["Exif.Photo.ISOSpeedRatings"] = static_cast<std::uint16_t>(kTooLargeIso);
+    exif["Exif.Photo.SensitivityType"] = kIsTheRecommendedIndex;
+    exif["Exif.Photo.RecommendedExposureIndex"] = static_cast<std::uint32_t>(std::lround(number));
+}
+
 std::unique_ptr<Exiv2::Image> tagged(const std::filesystem::path& file) {
     make_ready();
     std::unique_ptr<Exiv2::Image> image(Exiv2::ImageFactory::open(file.string()).release());
@@ -200,4 +215,20 @@ extern "C" void aphotic_words_of_tags(const aphotic::ImageTags& tags,
 extern "C" void aphotic_exposure_of_tags(const aphotic::ImageTags& tags,
                                          aphotic::ShotExposure& exposure) {
     exposure = tags.exposure;
+}
+
+extern "C" void aphotic_tags_of_exposure(const aphotic::ShotExposure& exposure,
+                                         aphotic::SharedTags& tags) {
+    using namespace aphotic;
+    constexpr std::uint32_t kNanoseconds = 1'000'000'000;
+    constexpr std::uint32_t kMillionths = 1'000'000;
+    auto made = std::make_shared<ImageTags>();
+    if (const auto time_s = exposure.time_s)
+        made->exif["Exif.Photo.ExposureTime"] =
+            fraction(*time_s, *time_s < 1.0 ? kNanoseconds : kMillionths);
+    if (exposure.f_number)
+        made->exif["Exif.Photo.FNumber"] = fraction(*exposure.f_number, kMillionths);
+    if (exposure.iso) add_iso(made->exif, *exposure.iso);
+    made->exposure = exposure_in(made->exif);
+    tags = std::move(made);
 }

@@ -49,7 +49,6 @@ Crop crop_of(const CameraNumbers& camera, PlaneSize file) {
 }
 
 CameraNumbers with_rig(CameraNumbers camera, const Camera& rig) {
-    constexpr double kSecondsPerMillisecond = 1e-3;
     const Readout& readout = rig.readout;
     const auto level = [](std::optional<double> dn) {
         return dn ? std::optional(static_cast<float>(*dn)) : std::nullopt;
@@ -65,10 +64,17 @@ CameraNumbers with_rig(CameraNumbers camera, const Camera& rig) {
     if (!camera.black_level) camera.black_level = level(readout.black_level_dn);
     if (!camera.white_level) camera.white_level = level(readout.white_level_dn);
     if (camera.exposure_by == ExposureBy::Nothing) return camera;
-    camera.reference = {.iso = readout.iso, .f_number = readout.f_number};
-    if (readout.exposure_ms && camera.exposure_by == ExposureBy::Exif)
-        camera.reference.time_s = *readout.exposure_ms * kSecondsPerMillisecond;
+    camera.reference = shot_of(readout);
+    if (camera.exposure_by == ExposureBy::Flash) camera.reference.time_s.reset();
     return camera;
+}
+
+ShotExposure shot_of(const Readout& readout) {
+    constexpr double kMillisecondsPerSecond =
+        1e3;  // to divide by: 2.5 ms are 0.0025 s, rounded once
+    ShotExposure shot{.iso = readout.iso, .f_number = readout.f_number};
+    if (readout.exposure_ms) shot.time_s = *readout.exposure_ms / kMillisecondsPerSecond;
+    return shot;
 }
 
 double electrons_per_number(const Readout& readout) {

@@ -54,6 +54,9 @@ struct CameraNumbers {
 // mono of a camera of colours, or colours of a mono camera.
 [[nodiscard]] CameraNumbers with_rig(CameraNumbers camera, const Camera& rig);
 
+// What the rig's camera tells of its exposure.
+[[nodiscard]] ShotExposure shot_of(const Readout& readout);
+
 // The noise of the rig's camera in its numbers, by what it tells of EMVA 1288: electrons to a
 // number, 1/K, or 0; and without light sqrt((K read_noise_e)^2 + 1/12), rounding's included, or
 // none.

@@ -2,6 +2,7 @@
 #include "survey/raw_camera.h"
 
 #include "base/error.h"
+#include "survey/camera_numbers.h"
 #include "survey/random_draw.h"
 
 #include <nlohmann/json.hpp>
@@ -25,6 +26,7 @@ RawCamera raw_camera_of(const Readout& readout, bool is_mono) {
     camera.black_dn = readout.black_level_dn.value_or(camera.black_dn);
     camera.white_dn = readout.white_level_dn.value_or(camera.white_dn);
     camera.read_noise_e = readout.read_noise_e.value_or(camera.read_noise_e);
+    camera.shot = shot_of(readout);
     constexpr double kMost = std::numeric_limits<std::uint16_t>::max();
     if (camera.white_dn <= camera.black_dn || camera.white_dn > kMost) {
         throw InputError("white_level_dn: found {:g}; allowed: over the black level, {:g}, to {:g}",
@@ -44,13 +46,17 @@ RawCamera raw_camera_of(const Readout& readout, bool is_mono) {
 }
 
 nlohmann::ordered_json to_json(const RawCamera& camera) {
-    return {{"bayer", mosaic_name(camera.mosaic)},
-            {"black_level_dn", camera.black_dn},
-            {"white_level_dn", camera.white_dn},
-            {"gain_dn_per_e", camera.gain_dn_per_e},
-            {"read_noise_e", camera.read_noise_e},
-            {"saturation_e", camera.saturation_e},
-            {"electrons_per_signal", camera.electrons_per_signal}};
+    nlohmann::ordered_json json{{"bayer", mosaic_name(camera.mosaic)},
+                                {"black_level_dn", camera.black_dn},
+                                {"white_level_dn", camera.white_dn},
+                                {"gain_dn_per_e", camera.gain_dn_per_e},
+                                {"read_noise_e", camera.read_noise_e},
+                                {"saturation_e", camera.saturation_e},
+                                {"electrons_per_signal", camera.electrons_per_signal}};
+    if (camera.shot.time_s) json["exposure_s"] = *camera.shot.time_s;
+    if (camera.shot.iso) json["iso"] = *camera.shot.iso;
+    if (camera.shot.f_number) json["f_number"] = *camera.shot.f_number;
+    return json;
 }
 
 std::vector<std::uint16_t> raw_samples(const CameraImage& image,

@@ -15,6 +15,7 @@
 #pragma once
 
 #include "image/camera_image.h"
+#include "image/image_tags.h"
 #include "rig/rig.h"
 #include "survey/raw_image.h"
 
@@ -36,6 +37,7 @@ struct RawCamera {
     double read_noise_e = 8.0;
     double saturation_e = 15000.0;
     double electrons_per_signal = 1.0;  // g
+    ShotExposure shot{};                // what its files tell in their Exif
 };
 
 // What a camera does not tell is as above; of gain and saturation what is not told follows from

@@ -103,7 +103,8 @@ void write_raw(const SimulatedSurvey& survey, const Leg& leg) {
                     {.width_px = truth.width_px,
                      .height_px = truth.height_px,
                      .channels = {"Y"},
-                     .planes = plane});
+                     .planes = plane,
+                     .tags = tags_of(survey.camera.shot)});
 }
 
 // work(leg) of those whose file is not there, some at a time.

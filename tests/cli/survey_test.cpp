@@ -3,6 +3,7 @@
 // `aphotic survey` of a flat floor, and what `aphotic correct` makes of it.
 #include "base/atomic_file.h"
 #include "image/exr.h"
+#include "image/image_tags.h"
 #include "image/output_images.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
@@ -138,6 +139,72 @@ TEST_F(SurveyCommand, TakesItsCameraFromTheRig) {
     EXPECT_DOUBLE_EQ(settings["read_noise"], std::sqrt(0.36 + 1.0 / 12.0));
 }
 
+// A stop down is half the light, as the file's Exif tells, by which `correct` brings it back.
+TEST_F(SurveyCommand, TellsItsExposure) {
+    std::string toml = text("rig.toml");
+    toml.insert(toml.find("resolution"), "exposure_ms = 2.5\niso = 400\nf_number = 4\n");
+    write_file(path("rig.toml"), toml);
+    const auto electrons = [&](const std::string& folder, std::vector<std::string> more) {
+        more.insert(more.begin(),
+                    {"survey",
+                     "rig.toml",
+                     "--images",
+                     "1",
+                     "--no-noise",
+                     "--white-level",
+                     "65535",
+                     "--json",
+                     "-o",
+                     folder});
+        const CommandResult made = run(more);
+        EXPECT_EQ(made.status, 0) << made.err;
+        return Json::parse(made.out).at("camera").at("electrons_per_signal").get<double>();
+    };
+    const double as_set = electrons("set", {});
+    EXPECT_DOUBLE_EQ(electrons("down", {"--f-number", "8"}), as_set / 4.0);
+    EXPECT_DOUBLE_EQ(electrons("long", {"--exposure-ms", "5"}), as_set * 2.0);
+    EXPECT_EQ(run({"survey", "rig.toml", "--images", "1", "--f-number", "8", "-o", "set"}).status,
+              2)
+        << "another exposure's folder";
+
+    const ShotExposure shot = exposure_of(*read_image_tags(path("down/raw/000001.tif")));
+    EXPECT_EQ(shot.time_s, 0.0025);
+    EXPECT_EQ(shot.iso, 400.0);
+    EXPECT_EQ(shot.f_number, 8.0);
+
+    const auto corrected = [&](const std::string& folder) {
+        const CommandResult result = run({"correct",
+                                          folder + "/raw",
+                                          "--rig",
+                                          "rig.toml",
+                                          "--nav",
+                                          folder + "/navigation.txt",
+                                          "--white-level",
+                                          "65535",
+                                          "--bayer",
+                                          "RGGB",
+                                          "--black-level",
+                                          "64",
+                                          "--exposure",
+                                          "exif",
+                                          "--format",
+                                          "exr",
+                                          "-o",
+                                          folder + "-corrected"});
+        EXPECT_EQ(result.status, 0) << result.err;
+        return read_signals(path(folder + "-corrected/000001.exr")).samples;
+    };
+    const std::vector<float> expected = corrected("set");
+    for (const char* folder : {"down", "long"}) {
+        const std::vector<float> found = corrected(folder);
+        ASSERT_EQ(found.size(), expected.size());
+        // Half a number of the darkest, which has a thousand of them.
+        constexpr double kRounding = 2e-3;
+        for (std::size_t i = 0; i < found.size(); ++i)
+            ASSERT_NEAR(found[i], expected[i], kRounding * expected[i]) << folder << ' ' << i;
+    }
+}
+
 TEST_F(SurveyCommand, RefusesWhatMakesNoSurvey) {
     const auto refused = [&](std::vector<std::string> more, const std::string& words) {
         more.insert(more.begin(), {"survey", "rig.toml", "-o", "out"});
@@ -152,6 +219,7 @@ TEST_F(SurveyCommand, RefusesWhatMakesNoSurvey) {
     refused({"--bayer", "mono"}, "bayer: found mono");
     refused({"--white-level", "100000"}, "white_level_dn: found 100000");
     refused({"--flight", "nowhere.csv"}, "nowhere.csv");
+    refused({"--f-number", "0"}, "--f-number");
     refused({"--flight", "rig.toml", "--images", "3"}, "--images");
 }
 

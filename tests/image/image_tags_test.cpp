@@ -139,6 +139,33 @@ TEST(ImageTags, AsWordsForFormatsOfNoTags) {
     EXPECT_EQ(words["Xmp.dc.creator"], "Jane Doe");
 }
 
+TEST(ImageTags, OfAnExposureAsExiftoolFindsThem) {
+    if (!has_exiftool()) GTEST_SKIP() << "needs exiftool";
+    const TempFolder folder;
+    const std::filesystem::path file = folder.path() / "a.tif";
+    write_grey(file, tags_of({.time_s = 0.0025, .iso = 400.0, .f_number = 5.6}));
+    const nlohmann::json found = tags_by_exiftool(file);
+    EXPECT_EQ(found.at("ExifIFD:ExposureTime"), 0.0025);
+    EXPECT_EQ(found.at("ExifIFD:ISO"), 400);
+    EXPECT_EQ(found.at("ExifIFD:FNumber"), 5.6);
+}
+
+// The ends of what a rig may tell.
+TEST(ImageTags, OfAnExposureComeBack) {
+    const TempFolder folder;
+    const std::filesystem::path file = folder.path() / "a.tif";
+    for (const ShotExposure& shot : {ShotExposure{.time_s = 1e-7, .iso = 1.0, .f_number = 0.1},
+                                     ShotExposure{.time_s = 1000.0, .iso = 1e7, .f_number = 1000.0},
+                                     ShotExposure{.f_number = 2.8}}) {
+        write_grey(file, tags_of(shot));
+        const ShotExposure found = exposure_of(*read_image_tags(file));
+        EXPECT_EQ(found.time_s, shot.time_s);
+        EXPECT_EQ(found.iso, shot.iso);
+        EXPECT_EQ(found.f_number, shot.f_number);
+    }
+    EXPECT_EQ(tags_of({}), nullptr);
+}
+
 TEST(ImageTags, TheSameTagsAreTheSameBytes) {
     if (!has_exiftool()) GTEST_SKIP() << "needs exiftool";
     const TempFolder folder;
