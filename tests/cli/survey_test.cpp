@@ -3,7 +3,6 @@
 // `aphotic survey` of a flat floor, and what `aphotic correct` makes of it.
 #include "base/atomic_file.h"
 #include "image/exr.h"
-#include "image/image_tags.h"
 #include "image/output_images.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
@@ -167,11 +166,6 @@ TEST_F(SurveyCommand, TellsItsExposure) {
               2)
         << "another exposure's folder";
 
-    const ShotExposure shot = exposure_of(*read_image_tags(path("down/raw/000001.tif")));
-    EXPECT_EQ(shot.time_s, 0.0025);
-    EXPECT_EQ(shot.iso, 400.0);
-    EXPECT_EQ(shot.f_number, 8.0);
-
     const auto corrected = [&](const std::string& folder) {
         const CommandResult result = run({"correct",
                                           folder + "/raw",
@@ -198,8 +192,8 @@ TEST_F(SurveyCommand, TellsItsExposure) {
     for (const char* folder : {"down", "long"}) {
         const std::vector<float> found = corrected(folder);
         ASSERT_EQ(found.size(), expected.size());
-        // Half a number of the darkest, which has a thousand of them.
-        constexpr double kRounding = 2e-3;
+        // Half a number of the hundred that the darkest pixel has.
+        constexpr double kRounding = 5e-3;
         for (std::size_t i = 0; i < found.size(); ++i)
             ASSERT_NEAR(found[i], expected[i], kRounding * expected[i]) << folder << ' ' << i;
     }
