@@ -183,6 +183,18 @@ void add_planning_options(CLI::App& app, PlanningOptions& options) {
                    "Trace N x N extra rays through each pixel: smooths edges, which then differ "
                    "from the reference; takes N x N times as long")
         ->check(in_range(0, kMostAntialias));
+    app.add_option_function<std::string>(
+           "--frame-format",
+           [&options](const std::string& name) {
+               options.format =
+                   name == kFrameFormatNames.front() ? FrameFormat::Exr : FrameFormat::Png16;
+           },
+           "Let POV-Ray write frames as exr, or as png16 where it was built without OpenEXR: that "
+           "clips, and dark corners have fewer digits")
+        ->check(CLI::IsMember(
+            std::vector<std::string>(kFrameFormatNames.begin(), kFrameFormatNames.end())))
+        ->option_text("FORMAT")
+        ->default_str(std::string(kFrameFormatNames.front()));
     app.add_option("--emitter-lamps",
                    options.emitter_lamps,
                    "Model an emitter as this many point lamps, such as 4,2; by default as many as "

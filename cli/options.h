@@ -93,6 +93,7 @@ struct PlanningOptions {
     std::string veil{kVeilMakers.front()};
     int veil_samples = kVeilSamples;
     int antialias = 0;
+    FrameFormat format = FrameFormat::Exr;
     std::vector<std::string> povray_ini;
     std::string povray;
     bool ignore_needs = false;

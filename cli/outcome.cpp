@@ -87,6 +87,19 @@ Integration integrate_folder(const fs::path& folder,
     return {.manifest = manifest, .images = made, .seconds = elapsed.count()};
 }
 
+namespace {
+
+// Of each channel's brightest signal: from which on 16-bit frames have their digits, and the
+// promise is of the pixel's own signal.
+double share_with_digits(const Integration& integration) {
+    double share = 0.0;
+    for (std::size_t c = 0; c < kChannels; ++c)
+        share = std::max(share, integration.manifest.black(c) / integration.images.signals[c].most);
+    return share;
+}
+
+}  // namespace
+
 Json to_json(const Integration& integration) {
     const Manifest& manifest = integration.manifest;
     Json json = to_json(integration.images);
@@ -94,6 +107,7 @@ Json to_json(const Integration& integration) {
     json["wavelengths"] = manifest.wavelengths.size();
     json["frames"] = manifest.frames.size();
     json["frame_error"] = manifest.frame_error;
+    if (manifest.png) json["digits_from"] = share_with_digits(integration);
     put_promises(json, manifest);
     put_model_error(json, manifest.model);
     json["integration_s"] = integration.seconds;
@@ -115,6 +129,10 @@ void print(const Integration& integration) {
                    manifest.promise(0),
                    manifest.promise(1),
                    manifest.promise(2));
+        if (manifest.png) {
+            fmt::print("  16-bit PNG frames: darker than {:.2g} of the brightest, of that share\n",
+                       share_with_digits(integration));
+        }
     } else {
         print_no_promise(manifest.no_promise);
     }

@@ -94,7 +94,8 @@ DiskNeeds needs_of_scenes(const SceneSet& scenes) {
 ImageSize image_size(const Manifest& manifest) {
     return {.width_px = manifest.width_px,
             .height_px = manifest.height_px,
-            .wavelengths = manifest.wavelengths.size()};
+            .wavelengths = manifest.wavelengths.size(),
+            .frames = manifest.frame_format()};
 }
 
 FolderLock claim_folder(const fs::path& folder) {

@@ -67,6 +67,7 @@ PlanRequest request_of(const PlanningOptions& options) {
                                   .pixel_shift = options.pixel_shift,
                                   .emitter_lamps = std::nullopt}};
     request.scene.antialias = options.antialias;
+    request.scene.format = options.format;
     if (options.veil == "povray") request.scene.veil_samples = options.veil_samples;
     for (const std::string& setting : options.povray_ini) {
         request.scene.ini_lines.push_back(ini_line(setting));
@@ -146,7 +147,9 @@ PovRay povray_for(const PlannedRender& planned,
                   const PlanningOptions& options,
                   const std::string& folder) {
     try {
-        return find_povray(options.povray);
+        PovRay povray = find_povray(options.povray);
+        require_format(povray, options.format);
+        return povray;
     } catch (const RunError& error) {
         if (planned.plan.scene.user_scene) throw;
         throw RunError(

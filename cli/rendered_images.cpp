@@ -41,7 +41,8 @@ RenderedImages images_in(const fs::path& folder,
     std::vector<std::string> channels;
     for (const PlannedWavelength& w : manifest.wavelengths) {
         images.lambda_nm.push_back(w.lambda_nm);
-        images.exposure_log2.push_back(w.exposure_log2);
+        images.radiance_black.push_back(
+            std::ldexp(1.0, held_log2(manifest.frame_format()) - w.exposure_log2));
         channels.push_back(spectral_channel(w.lambda_nm));
         images.index_nm.push_back(w.index_nm);
         images.shift_error.push_back(

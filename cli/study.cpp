@@ -11,7 +11,6 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
-#include "image/any_image.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
 #include "scene_gen/pov_scene.h"
@@ -31,9 +30,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A 16-bit PNG ends at 1: the brightest pixel stays under a half, whatever the bound's margin.
-constexpr int kPngPeakLog2 = -1;
-
 struct StudyCommandOptions {
     std::string rig_file;
     std::string folder;
@@ -51,7 +47,7 @@ RenderPlan plan_for(const Rig& rig, const StudySetting& setting) {
     if (setting.bands > 0) request.bands = setting.bands;
     request.scene.wavelengths_per_frame = setting.per_frame;
     request.scene.soft_edges = setting.one_soft_lamp;
-    if (setting.png) request.scene.peak_log2 = kPngPeakLog2;
+    if (setting.png) request.scene.format = FrameFormat::Png16;
     return plan_render(rig, request);
 }
 
@@ -62,27 +58,6 @@ void change_setting(std::string& ini, const std::string& line, const std::string
     ini.replace(at, line.size(), to);
 }
 
-// Makes a float EXR of the 16-bit PNG beside it: POV-Ray adds a format's ending to a foreign name.
-void png_to_exr(const fs::path& file) {
-    const fs::path png_file = file.string() + ".png";
-    const AnyImage png = open_any_image(png_file);
-    // Where nothing is in view, fog is white: 1 - exp(-infinity).
-    const bool is_fog = file.filename().string().find(kFogFrame) != std::string::npos;
-    const std::vector<std::string> channels{"R", "G", "B"};
-    std::vector<float> samples;
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        const std::vector<float> plane = png.samples(c);
-        if (!is_fog && std::ranges::max(plane) >= 1.0F) {
-            throw RunError("{}: a pixel is clipped", png_file.string());
-        }
-        samples.insert(samples.end(), plane.begin(), plane.end());
-    }
-    ExrWriter exr(file, png.width_px, png.height_px, channels, {});
-    exr.write_rows(png.height_px, samples);
-    exr.finish();
-    fs::remove(png_file);
-}
-
 // The frames of one setting by POV-Ray.
 StudyFrames render_setting(const PovRay& povray,
                            double stall_s,
@@ -91,18 +66,14 @@ StudyFrames render_setting(const PovRay& povray,
                            const fs::path& folder) {
     const RenderPlan plan = plan_for(rig, setting);
     SceneSet set = make_scene_set(rig, plan);
-    RunOptions options{.jobs = setting.jobs, .stall_s = stall_s};
     if (setting.antialias) {
         change_setting(set.ini,
                        "Antialias=off",
                        "Antialias=on\nSampling_Method=2\nAntialias_Threshold=0.01\n"
                        "Antialias_Depth=3\nJitter=off");
     }
-    if (setting.png) {
-        change_setting(set.ini, "Output_File_Type=E", "Output_File_Type=N\nBits_Per_Color=16");
-        options.convert = png_to_exr;
-    }
-    RenderedFrames frames = render_frames(povray, folder, set, options);
+    RenderedFrames frames =
+        render_frames(povray, folder, set, {.jobs = setting.jobs, .stall_s = stall_s});
     return {.manifest = std::move(frames.result.manifest),
             .promise = plan.promise(),
             .render_s = frames.povray_s};

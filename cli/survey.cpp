@@ -131,6 +131,7 @@ Json light_settings(const SurveyCommandOptions& options, const Rig& rig) {
                {"veil", planning.veil},
                {"clock", planning.clock},
                {"declared", options.declared}};
+    if (planning.format == FrameFormat::Png16) light["frame_format"] = "png16";
     if (const fs::path scene = scene_of(options, rig); !scene.empty())
         light["scene_sha256"] = digest_of_scene(scene);
     return light;

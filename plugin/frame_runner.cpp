@@ -142,7 +142,7 @@ void check(const Running& run,
            const RunOptions& options) {
     const fs::path& part = run.part->path();
     try {
-        if (options.convert) options.convert(part);
+        if (options.convert) options.convert(run.frame, part);
         if (!fs::exists(part)) throw RunError("POV-Ray exited normally without an image");
         check_frame(part, width_px, height_px);
     } catch (const RunError& error) {

@@ -32,9 +32,9 @@ struct RunOptions {
     // Frames at a time; the threads of each, so that they use as many cores together.
     int jobs = 1;
     std::function<void(const FrameProgress&)> report{};
-    // Called with the name of each image before it is checked: for scenes whose settings ask
-    // POV-Ray for another format than EXR, makes the EXR of what stands beside it.
-    std::function<void(const std::filesystem::path&)> convert{};
+    // Called with each image before it is checked: for scenes whose settings ask POV-Ray for
+    // another format than EXR, makes the EXR of what stands beside it.
+    std::function<void(const ManifestFrame&, const std::filesystem::path& image)> convert{};
     // For a scene of the user's own: its folder, in which POV-Ray runs, and where it looks for
     // includes beside the user's own library_paths.
     std::filesystem::path scene_folder{};

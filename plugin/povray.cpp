@@ -69,7 +69,7 @@ std::optional<Version> introduced_version(const std::string& printed) {
 }
 
 // A line "Supported image formats: ... openexr ...".
-bool writes_openexr(std::string_view printed) {
+bool lists_openexr(std::string_view printed) {
     std::istringstream lines{std::string(printed)};
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);
@@ -84,7 +84,7 @@ bool writes_openexr(std::string_view printed) {
 
 }  // namespace
 
-std::string version_from(std::string_view printed) {
+PovRay povray_from(std::string_view printed) {
     // It introduces itself first, after a complaint or two; and what prints without end is not it.
     constexpr std::size_t kIntroduction_bytes = 16384;
     printed = printed.substr(0, kIntroduction_bytes);
@@ -97,10 +97,18 @@ std::string version_from(std::string_view printed) {
                        kLeastVersion.first,
                        kLeastVersion.second);
     }
-    if (!writes_openexr(printed)) {
-        throw RunError("it was built without OpenEXR, in which frames are written");
-    }
-    return version->words;
+    return {.executable = {}, .version = version->words, .has_openexr = lists_openexr(printed)};
+}
+
+void require_openexr(const PovRay& povray, std::string_view why) {
+    if (povray.has_openexr) return;
+    throw RunError(
+        "POV-Ray: {}: it was built without OpenEXR, {}", povray.executable.string(), why);
+}
+
+void require_format(const PovRay& povray, FrameFormat format) {
+    if (format == FrameFormat::Exr)
+        require_openexr(povray, "in which frames are written; --frame-format png16 does without");
 }
 
 std::string path_option(std::string_view option, const fs::path& path) {
@@ -126,7 +134,9 @@ PovRay find_povray(const std::string& named) {
                                        kProbeTimeoutS);
     try {
         if (!end.succeeded()) throw RunError("--version ended with " + end.words());
-        return {.executable = executable, .version = version_from(read_log(log))};
+        PovRay povray = povray_from(read_log(log));
+        povray.executable = executable;
+        return povray;
     } catch (const RunError& error) {
         throw RunError("POV-Ray: {}: {}{}",
                        executable.string(),

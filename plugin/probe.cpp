@@ -648,6 +648,7 @@ UserScene survey_scene(const PovRay& povray,
                        const Rig& rig,
                        const fs::path& scene_file,
                        const SurveyOptions& options) {
+    require_openexr(povray, "in which a scene of your own is measured before it is planned");
     return Survey(povray, rig, scene_file, options).run();
 }
 

@@ -6,6 +6,7 @@
 #include "base/folder_lock.h"
 #include "base/sha256.h"
 #include "image/frame_check.h"
+#include "image/png_frame.h"
 #include "image/traced_image.h"
 #include "scene_gen/user_scene.h"
 #include "scene_gen/veil_planes.h"
@@ -122,6 +123,15 @@ void run_noted(const PovRay& povray,
     RunOptions run = options;
     run.scene_folder = scene.file.parent_path();
     run.one_at_a_time = scene.is_alone;
+    if (manifest.png) {
+        // A fog's light ends at 1: where nothing is in view, it is white.
+        const bool has_fog = manifest.veil && manifest.veil->fog_m > 0.0;
+        run.convert = [has_fog, fog = manifest.frames.back().name](const ManifestFrame& frame,
+                                                                   const fs::path& image) {
+            exr_of_png_frame(image,
+                             has_fog && frame.name == fog ? White::IsWhite : White::IsClipped);
+        };
+    }
     run.checked = [&](const ManifestFrame& frame, const fs::path& image) {
         // A frame of a scene that was edited under way may be of either.
         if (!scene.file.empty()) require_unchanged(scene.file, scene.digest);
@@ -195,6 +205,7 @@ RenderResult render(const PovRay& povray,
                     const fs::path& folder,
                     const SceneSet& set,
                     const RunOptions& options) {
+    require_format(povray, set.manifest.frame_format());
     require_place_for_scenes(folder, set);
     make_folder(folder);
     RenderResult result{.manifest = set.manifest, .rendered = 0, .kept = 0};
@@ -234,6 +245,7 @@ RenderResult render_share(const PovRay& povray,
                           WorkShare share,
                           const RunOptions& options) {
     const Manifest whole = read_manifest(folder);
+    require_format(povray, whole.frame_format());
     const OwnScene scene = scene_in(folder, whole);
     std::vector<ManifestFrame> frames = share_of(whole.frames, share);
     std::erase_if(frames, &ManifestFrame::done);

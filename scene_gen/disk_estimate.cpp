@@ -51,8 +51,9 @@ std::uint64_t images_bytes(const FileSizes& files) {
 
 FileSizes largest_files(const ImageSize& size) {
     const std::uint64_t pixels = pixels_of(size);
-    return {.frame_bytes =
-                exr_bytes(size, kChannels, kHalf_bytes) + kHeader_bytes + pixels / kPixelsOfLogByte,
+    const std::uint64_t sample_bytes = size.frames == FrameFormat::Exr ? kHalf_bytes : kFloat_bytes;
+    return {.frame_bytes = exr_bytes(size, kChannels, sample_bytes) + kHeader_bytes +
+                           pixels / kPixelsOfLogByte,
             .image_bytes = exr_bytes(size, kChannels, kFloat_bytes),
             .spectral_bytes = exr_bytes(size, channels_of(size), kFloat_bytes),
             // PNG's own overhead: a byte a row, and under a thousandth.

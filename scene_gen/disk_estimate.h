@@ -5,7 +5,7 @@
 //
 // As if nothing could be compressed, P pixels, n wavelengths,
 //
-//   frame         6 P             three half floats a pixel; and its log
+//   frame         6 P             three half floats a pixel; and its log. 12 P from a PNG: floats
 //   image.exr     12 P            three floats a pixel
 //   spectral.exr  (12 + 4 n) P    one float a wavelength more
 //   preview.png   3 P             three bytes a pixel
@@ -15,6 +15,8 @@
 // keeps beside the frame what it would need to go on, 21 P, and where its image exceeds 128 MiB
 // that image too in /tmp, 20 P.
 #pragma once
+
+#include "image/frame_format.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -27,6 +29,7 @@ struct ImageSize {
     int width_px = 0;
     int height_px = 0;
     std::size_t wavelengths = 0;
+    FrameFormat frames = FrameFormat::Exr;
 };
 
 struct FileSizes {

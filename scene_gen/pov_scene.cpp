@@ -423,11 +423,13 @@ double scene_unit_m(const Rig& rig) {
 }
 
 double fog_m(const Rig& rig, const SceneOptions& options) {
-    constexpr double kPaths = 64.0;
+    constexpr double kExrPaths = 64.0;
+    constexpr double kPngPaths = 4.0;
     if (!rig.water.scatters() || options.povray_veil) return 0.0;
     if (rig.objects.empty() && !options.user_scene) return 0.0;
     const PathRange paths = options.user_scene ? options.user_scene->paths : path_range(rig);
-    return kPaths * (paths.shortest_m > 0.0 ? paths.shortest_m : 1.0);
+    return (options.format == FrameFormat::Exr ? kExrPaths : kPngPaths) *
+           (paths.shortest_m > 0.0 ? paths.shortest_m : 1.0);
 }
 
 std::vector<LampGrid> scene_lamps(const Rig& rig,
@@ -455,6 +457,9 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
     require_place(rig, lamps);
     const Parts parts = parts_of(rig, lamps, options);
     const std::vector<std::string> labels = wavelength_labels(wavelengths);
+    // Under a half, whatever the bound's margin: a PNG ends at 1.
+    constexpr int kPngPeakLog2 = -1;
+    const int peak_log2 = options.format == FrameFormat::Exr ? options.peak_log2 : kPngPeakLog2;
     std::vector<FrameScene> scenes;
     std::optional<RadianceBound> bound;
     if (!options.user_scene) bound.emplace(rig);
@@ -462,7 +467,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
         w.radiance_bound = bound ? bound->at(w.lambda_nm)
                                  : options.user_scene->brightest_radiance(rig, w.lambda_nm);
         w.exposure_log2 = exposure_log2(
-            w.radiance_bound, brightest_colour(rig, w.lambda_nm, parts.fade_m), options.peak_log2);
+            w.radiance_bound, brightest_colour(rig, w.lambda_nm, parts.fade_m), peak_log2);
         if (w.veil) {
             w.veil->exposure_log2 = exposure_log2(w.veil->radiance_bound,
                                                   brightest_colour(rig, w.lambda_nm, parts.fade_m),
@@ -548,6 +553,12 @@ std::string antialias_ini(int rays) {
         rays);
 }
 
+std::string format_ini(FrameFormat format) {
+    if (format == FrameFormat::Exr)
+        return "; OpenEXR: half floats, linear, unclipped.\nOutput_File_Type=E\n";
+    return "; PNG: 16 bits, linear, clipped at 1.\nOutput_File_Type=N\nBits_Per_Color=16\n";
+}
+
 }  // namespace
 
 std::string render_ini(const Rig& rig, const SceneOptions& options) {
@@ -557,9 +568,8 @@ std::string render_ini(const Rig& rig, const SceneOptions& options) {
         "; Every option that changes pixels is set here, none is left to the user's own ini.\n"
         "Width={}\n"
         "Height={}\n"
-        "; OpenEXR: half floats, linear, unclipped.\n"
+        "{}"
         "Output_To_File=on\n"
-        "Output_File_Type=E\n"
         "Output_Alpha=off\n"
         "File_Gamma=1.0\n"
         "{}"
@@ -576,6 +586,7 @@ std::string render_ini(const Rig& rig, const SceneOptions& options) {
         "{}",
         rig.camera.width_px,
         rig.camera.height_px + above,
+        format_ini(options.format),
         antialias_ini(options.antialias),
         above > 0 ? above + 1 : 0,
         fmt::join(options.ini_lines, ""));

@@ -19,6 +19,7 @@
 // That holds for a rig's floor and for a scene of the user's own alike.
 #pragma once
 
+#include "image/frame_format.h"
 #include "rig/geometry.h"
 #include "rig/rig.h"
 #include "scene_gen/exposure.h"
@@ -50,6 +51,7 @@ struct SceneOptions {
     std::optional<LampGrid> emitter_lamps;  // none: lamp_grid() chooses per strobe
     bool omit = true;                       // false: what changes nothing is written all the same
     int peak_log2 = kTargetLog2;            // where a frame's brightest pixel goes, or a bit under
+    FrameFormat format = FrameFormat::Exr;
     // One lamp for every emitter: each cone's edge falls from one end of what the emitter spans,
     // seen from the floor below it, to the other.
     bool soft_edges = false;
@@ -67,8 +69,8 @@ struct SceneOptions {
 
 // Of the frame that tells how far each pixel sees, by a white fog (spectral/manifest.h), in water
 // that scatters over anything but the rig's bare floor, unless POV-Ray makes the veil; else 0. So
-// large that the fog is about
-// proportional to the distance, whose digits are a half float's.
+// large that the fog is about proportional to the distance, whose digits are a half float's; for a
+// PNG, whose steps are even, as large as what is in view is far.
 [[nodiscard]] double fog_m(const Rig& rig, const SceneOptions& options);
 inline constexpr auto kFogFrame = "distance";
 

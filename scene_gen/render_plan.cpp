@@ -234,6 +234,11 @@ void take_weights(const FittedRule& rule, std::span<PlannedWavelength> wavelengt
 namespace {
 
 RenderPlan plan_direct_light(const Rig& rig, const PlanRequest& request) {
+    if (request.scene.format == FrameFormat::Png16 && request.scene.veil_samples) {
+        throw InputError(
+            "--frame-format: found png16 with --veil povray, whose lobes cancel and leave such "
+            "frames too few digits; allowed: exr, or --veil quadrature");
+    }
     if (rig.camera.lens && request.scene.antialias > 0) {
         throw InputError(
             "--antialias: found {} with a calibrated lens; allowed: none, since POV-Ray has one "

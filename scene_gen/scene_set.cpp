@@ -22,8 +22,12 @@
 
 namespace aphotic {
 
-void require_light_that_counts(std::span<const PlannedWavelength> wavelengths, double frame_error) {
-    constexpr double kHeldLog2 = -8.0;  // also a pixel 64 times darker has all of its digits
+void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
+                               double frame_error,
+                               FrameFormat format) {
+    // Well held: also a pixel 64 times darker has all of its digits, of a PNG one 4 times darker.
+    const double well_log2 = format == FrameFormat::Exr ? -8.0 : -4.0;
+    const int held = held_log2(format);
     const auto peak_log2 = [](const PlannedWavelength& w) {
         return std::log2(w.radiance_bound) + w.exposure_log2;
     };
@@ -37,11 +41,11 @@ void require_light_that_counts(std::span<const PlannedWavelength> wavelengths, d
             return signal(w) > frame_error * most;
         };
         if (std::ranges::none_of(wavelengths, [&](const PlannedWavelength& w) {
-                return counts(w) && peak_log2(w) >= kHeldLog2;
+                return counts(w) && peak_log2(w) >= well_log2;
             }))
             continue;
         for (const PlannedWavelength& w : wavelengths) {
-            if (!counts(w) || peak_log2(w) >= kSmallestNormalHalfLog2) continue;
+            if (!counts(w) || peak_log2(w) >= held) continue;
             throw InputError(fmt::format(
                 "found light of at most {:.1e} at {} nm, fainter than frames hold, which counts in "
                 "{} by a weight of {:.1e}; allowed: wavelengths that frames hold, or that count "
@@ -113,6 +117,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.rig_sha256 = rig.digest;
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
+    if (plan.scene.format == FrameFormat::Png16) manifest.png.emplace();
     if (rig.camera.lens || rig.camera.vignetting) {
         manifest.camera = ManifestCamera{.rows_above = rows_above(rig.camera)};
     }
@@ -149,7 +154,7 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
                                    .scene_sha256 = sha256_of_text(scene.sdl + around),
                                    .image_sha256 = ""});
     }
-    require_light_that_counts(manifest.wavelengths, manifest.frame_error);
+    require_light_that_counts(manifest.wavelengths, manifest.frame_error, plan.scene.format);
     return set;
 }
 

@@ -46,8 +46,10 @@ struct SceneSet {
 // channel's, beside others that are held, what is lost has no bound.
 //
 // Throws InputError where a wavelength counts whose light is not held. What is less than
-// frame_error of the largest does not count.
-void require_light_that_counts(std::span<const PlannedWavelength> wavelengths, double frame_error);
+// frame_error of the largest does not count. Of PNG frames the same, from 2^-6.
+void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
+                               double frame_error,
+                               FrameFormat format = FrameFormat::Exr);
 
 // What the lamps alone would signal: the sum over strobes of their light, undimmed and white, over
 // the full spectrum.

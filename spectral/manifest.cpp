@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/sha256.h"
-#include "image/frame_check.h"
 #include "image/image_size.h"
 
 #include <fmt/format.h>
@@ -271,6 +270,11 @@ void fields(const Visit& visit, Camera& camera) {
     visit("vignetting_sha256", camera.vignetting_sha256);
 }
 
+template <typename Visit, Is<ManifestPng> Png>
+void fields(const Visit& visit, Png& png) {
+    visit("bits", png.bits, 16, 16);
+}
+
 template <typename Visit, Is<ManifestPovrayVeil> Veil>
 void fields(const Visit& visit, Veil& veil) {
     constexpr int kMostSamples = 1'000'000;
@@ -313,6 +317,7 @@ void fields(const Visit& visit, Whole& manifest) {
     visit("width_px", manifest.width_px, 1, kLargestImagePx);
     visit("height_px", manifest.height_px, 1, kLargestImagePx);
     visit.optional("camera", manifest.camera);
+    visit.optional("png", manifest.png);
     visit("lamp_signal", manifest.lamp_signal);
     visit("method", manifest.method);
     visit("tolerance", manifest.tolerance);
@@ -345,12 +350,13 @@ std::size_t Manifest::direct_frames() const {
 }
 
 double Manifest::black(std::size_t channel) const {
-    constexpr double kRoom = 64.0;
+    const double room = png ? 1.0 : 64.0;
+    const int held = held_log2(frame_format());
     double sum = 0.0;
     for (const PlannedWavelength& w : wavelengths) {
-        sum += std::ldexp(std::abs(w.weight[channel]), kSmallestNormalHalfLog2 - w.exposure_log2);
+        sum += std::ldexp(std::abs(w.weight[channel]), held - w.exposure_log2);
     }
-    return kRoom * sum;
+    return room * sum;
 }
 
 fs::path manifest_path(const fs::path& folder) {

@@ -15,6 +15,7 @@
 // whose checksum stands beside it.
 #pragma once
 
+#include "image/frame_format.h"
 #include "spectral/planned_wavelength.h"
 #include "spectral/quadrature_fit.h"
 
@@ -62,6 +63,11 @@ struct ManifestCamera {
     std::string vignetting_sha256{};
 };
 
+// Frames that POV-Ray wrote as PNG (image/frame_format.h).
+struct ManifestPng {
+    int bits = 16;
+};
+
 // A veil that POV-Ray makes. Behind the frames of the wavelengths' direct light come as many of
 // each lobe, in their order, and then those of what shines without the water's scattering, to be
 // taken off.
@@ -101,6 +107,7 @@ struct Manifest {
     int width_px = 0;
     int height_px = 0;
     std::optional<ManifestCamera> camera{};  // none: frames are as the image is
+    std::optional<ManifestPng> png{};        // none: POV-Ray wrote half floats
     // What the lamps themselves would signal: the sum over strobes of int Phi Q_c dlambda. The
     // preview's white.
     std::array<double, kChannels> lamp_signal{};
@@ -128,14 +135,20 @@ struct Manifest {
     [[nodiscard]] std::size_t direct_frames() const;
 
     [[nodiscard]] int rows_above() const { return camera ? camera->rows_above : 0; }
+    [[nodiscard]] FrameFormat frame_format() const {
+        return png ? FrameFormat::Png16 : FrameFormat::Exr;
+    }
     [[nodiscard]] bool has_promise() const { return no_promise.empty(); }
     [[nodiscard]] double promise(std::size_t channel) const {
         return quality[channel].promise(frame_error);
     }
 
-    // The signal under which the promise is of it, not of the pixel's own: 64 sum_j |w_cj|
-    // 2^(-14 - e_j), for a frame's half floats are normal from 2^-14 up, and what is under it
-    // rounds by up to 2^-25 all the same.
+    // The signal under which the promise is of it, not of the pixel's own:
+    //
+    //   r sum_j |w_cj| 2^(h - e_j)      h  from which power of two on frames have their digits
+    //
+    // Half floats have them from h = -14, and what is under it rounds by up to 2^-25 all the same:
+    // r = 64 makes little of that. A 16-bit PNG rounds everything by up to 2^-17: h = -6, r = 1.
     [[nodiscard]] double black(std::size_t channel) const;
 };
 

@@ -261,14 +261,13 @@ void compare(const Rig& rig, const RenderedImages& rendered, StressFound& found)
     const std::vector<float> planes = rendered.radiance(0, rendered.lambda_nm.size());
     for (std::size_t j = 0; j < rendered.lambda_nm.size(); ++j) {
         const auto [first_nm, last_nm] = std::minmax(rendered.lambda_nm[j], rendered.index_nm[j]);
-        const double half_floor = std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[j]);
         found.peak = std::max(found.peak, peak_of(answer.radiance[j]));
         radiance.take_in(
             {.answer = answer.radiance[j],
              .rendered = plane_of(planes, j),
              .traced = plane_of(traced, kChannels + j),
              .on_edge = tracer.on_edges({.first_nm = first_nm, .last_nm = last_nm}),
-             .floor = std::max(kSmallestNormalFloat, half_floor),
+             .floor = std::max(kSmallestNormalFloat, rendered.radiance_black[j]),
              .bound = kHalfFloatBound + rendered.shift_error[j],
              .traced_bound = rig.water.scatters() ? kTracedVeilBound : kTracedRadianceBound});
     }

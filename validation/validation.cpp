@@ -127,7 +127,7 @@ void compare_radiance(const Rig& rig,
                  .rendered = std::span(found).subspan(k * pixels, pixels),
                  .traced = std::span(traced).subspan(k * pixels, pixels),
                  .of_lamps = again,
-                 .black = std::exp2(kSmallestNormalHalfLog2 - rendered.exposure_log2[first + k]),
+                 .black = rendered.radiance_black[first + k],
                  .bound = kHalfFloatBound + rendered.shift_error[first + k] + rendered.veil_error},
                 *edges,
                 rig.camera.width_px));

@@ -36,11 +36,11 @@ inline constexpr double kBlackShare = 1e-8;
 // A render, as the commands bring it.
 struct RenderedImages {
     std::vector<double> lambda_nm;
-    std::vector<int> exposure_log2;
     // By wavelength: whose refractive indices its frame has, and what that may change.
     std::vector<double> index_nm;
     std::vector<double> shift_error;
-    double veil_error = 0.0;  // of the radiance of wavelengths
+    std::vector<double> radiance_black;  // and under which frames lose digits
+    double veil_error = 0.0;             // of the radiance of wavelengths
     std::array<double, kChannels> promise{};
     std::array<double, kChannels> black{};
     // The planes of radiance of wavelengths [first, first + count), one after another.

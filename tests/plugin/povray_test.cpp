@@ -33,23 +33,27 @@ std::string message_of(const std::function<void()>& action) {
 }
 
 TEST(PovRay, VersionIsReadFromWhatItPrints) {
-    EXPECT_EQ(version_from(kPrinted), "3.7.0.10.unofficial");
-    EXPECT_EQ(version_from(replaced(kPrinted, "3.7.0.10.unofficial", "3.8.0-beta.2")),
+    EXPECT_EQ(povray_from(kPrinted).version, "3.7.0.10.unofficial");
+    EXPECT_EQ(povray_from(replaced(kPrinted, "3.7.0.10.unofficial", "3.8.0-beta.2")).version,
               "3.8.0-beta.2");
 }
 
 TEST(PovRay, OldVersionIsRefused) {
     const std::string old = replaced(kPrinted, "3.7.0.10", "3.6.1");
-    EXPECT_EQ(message_of([&] { (void)version_from(old); }),
+    EXPECT_EQ(message_of([&] { (void)povray_from(old); }),
               "found version 3.6; allowed: 3.7 or later");
 }
 
-TEST(PovRay, BuildWithoutOpenExrIsRefused) {
+TEST(PovRay, BuildWithoutOpenExrIsToldAndRefusedWhereItMatters) {
+    EXPECT_TRUE(povray_from(kPrinted).has_openexr);
+    require_openexr(povray_from(kPrinted), "");
     // "Unsupported: openexr" must not be taken for support.
     std::string without = replaced(kPrinted, " openexr", "");
     without = replaced(without, "formats: -", "formats: openexr");
-    EXPECT_NE(message_of([&] { (void)version_from(without); }).find("without OpenEXR"),
-              std::string::npos);
+    PovRay povray = povray_from(without);
+    povray.executable = "/opt/povray";
+    EXPECT_EQ(message_of([&] { require_openexr(povray, "in which frames are written"); }),
+              "POV-Ray: /opt/povray: it was built without OpenEXR, in which frames are written");
 }
 
 TEST(PovRay, OtherProgramIsRefused) {
@@ -72,22 +76,21 @@ TEST(PovRay, LiesAboutTheVersionAreRefused) {
                                        std::string("3."),
                                        std::string("")}) {
         EXPECT_EQ(message_of([&] {
-                      (void)version_from(replaced(kPrinted, "3.7.0.10.unofficial", version));
+                      (void)povray_from(replaced(kPrinted, "3.7.0.10.unofficial", version));
                   }),
                   "it does not identify itself as POV-Ray")
             << version.substr(0, 40);
     }
-    EXPECT_EQ(message_of([&] {
-                  (void)version_from(replaced(kPrinted, " openexr", std::string(3'000'000, ' ')));
-              }),
-              "it was built without OpenEXR, in which frames are written");
-    EXPECT_EQ(message_of([&] { (void)version_from(std::string(3'000'000, 'x') + kPrinted); }),
+    EXPECT_FALSE(
+        povray_from(replaced(kPrinted, " openexr", std::string(3'000'000, ' '))).has_openexr);
+    EXPECT_EQ(message_of([&] { (void)povray_from(std::string(3'000'000, 'x') + kPrinted); }),
               "it does not identify itself as POV-Ray");
 }
 
 TEST(PovRay, ComplaintsBeforeItsNameArePassedOver) {
     EXPECT_EQ(
-        version_from("povray: POV-Ray cannot open POV-Ray 3.x settings\n" + std::string(kPrinted)),
+        povray_from("povray: POV-Ray cannot open POV-Ray 3.x settings\n" + std::string(kPrinted))
+            .version,
         "3.7.0.10.unofficial");
 }
 

@@ -95,6 +95,17 @@ std::string wavelength_error(const std::string& key, const Json& value) {
     return error_after([&](Json& json) { json["wavelengths"][1][key] = value; });
 }
 
+// By hand: one weight of 0.1 at an exposure of 2^12.
+TEST(Manifest, BlackIsWhereFramesLoseTheirDigits) {
+    Manifest manifest = some_manifest();
+    EXPECT_DOUBLE_EQ(manifest.black(0), 64.0 * 0.1 * 0x1p-26);
+    manifest.png.emplace();
+    EXPECT_DOUBLE_EQ(manifest.black(0), 0.1 * 0x1p-18);
+    const TempFolder folder;
+    write_manifest(folder.path(), manifest);
+    EXPECT_EQ(read_manifest(folder.path()).frame_format(), FrameFormat::Png16);
+}
+
 TEST(Manifest, ComesBackWhole) {
     const TempFolder folder;
     const Manifest written = some_manifest();

@@ -36,16 +36,15 @@ RenderedImages perfect(const Rig& rig) {
     const std::vector<double> rows = tracer.rows(0, rig.camera.height_px);
     const auto signals = static_cast<std::ptrdiff_t>(rows.size() / 5 * 3);
     RenderedImages images{.lambda_nm = lambda_nm,
-                          .exposure_log2 = {0, 0},
                           .index_nm = lambda_nm,
                           .shift_error = {0.0, 0.0},
+                          .radiance_black = {0x1p-34, 0x1p-34},
                           .promise = {1e-6, 1e-6, 1e-6},
                           .black = {},
                           .radiance = {},
                           .signals = {.width_px = rig.camera.width_px,
                                       .height_px = rig.camera.height_px,
                                       .samples = {rows.begin(), rows.begin() + signals}}};
-    images.exposure_log2 = {20, 20};
     images.radiance = [planes = std::vector<float>(rows.begin() + signals, rows.end())](
                           std::size_t, std::size_t) { return planes; };
     return images;

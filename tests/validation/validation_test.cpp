@@ -34,9 +34,9 @@ RenderedImages render(const Rig& rig) {
     const std::vector<double> rows = Tracer(rig, options).rows(0, rig.camera.height_px);
     const auto signals = static_cast<std::ptrdiff_t>(rows.size() / 5 * 3);
     RenderedImages images{.lambda_nm = kLambda_nm,
-                          .exposure_log2 = {20, 20},
                           .index_nm = kLambda_nm,
                           .shift_error = {0.0, 0.0},
+                          .radiance_black = {0x1p-34, 0x1p-34},
                           .promise = {kPromise, kPromise, kPromise},
                           .black = {},
                           .radiance = {},

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Frames as 16-bit PNG, by a POV-Ray that says it has no OpenEXR and by one that has.
+#include "image/exr.h"
+#include "support/run_command.h"
+#include "support/small_scene.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace aphotic::frame_format_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class FrameFormatOption : public testing::Test {
+  protected:
+    FrameFormatOption() {
+        // POV-Ray as conda-forge builds it: it says so among the formats, and nobody asks it for
+        // any.
+        write_script(
+            path("povray"),
+            "if [ \"$1\" = --version ]; then povray --version 2>&1 | sed 's/ openexr//' >&2\n"
+            "else exec povray \"$@\"; fi\n");
+    }
+    void put(const char* scene) const {
+        put_small_scene(fs::path(APHOTIC_SOURCE_DIR) / "scenes" / scene, path(""));
+    }
+    void make_water_scatter() const {
+        std::string toml = read_text_file(path("rig.toml"));
+        toml = std::regex_replace(toml,
+                                  std::regex(R"(absorption = .*\n *(multiple .*\n)?)"),
+                                  "chlorophyll_mg_m3 = 0.3\n");
+        toml = std::regex_replace(toml, std::regex(R"(\[400, 720\])"), "[400, 700]");
+        write_file(path("rig.toml"), toml);
+    }
+    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+    [[nodiscard]] CommandResult run(const std::vector<std::string>& arguments) const {
+        return run_aphotic(folder_.path(), arguments);
+    }
+    [[nodiscard]] CommandResult run_without_openexr(
+        const std::vector<std::string>& arguments) const {
+        return run_aphotic(
+            folder_.path(), arguments, {{"APHOTIC_POVRAY", path("povray").string()}});
+    }
+    [[nodiscard]] std::vector<float> image(const std::string& folder) const {
+        return ExrReader(path(folder) / "image.exr")
+            .planes(std::vector<std::string>{"R", "G", "B"});
+    }
+
+    TempFolder folder_;
+};
+
+TEST_F(FrameFormatOption, ServesAPovRayWithoutOpenExr) {
+    put("habcam.toml");
+    const CommandResult refused = run_without_openexr({"render", "rig.toml", "-o", "exr"});
+    EXPECT_EQ(refused.status, 3);
+    EXPECT_NE(refused.err.find("built without OpenEXR, in which frames are written; --frame-format "
+                               "png16 does without"),
+              std::string::npos)
+        << refused.err;
+    EXPECT_FALSE(fs::exists(path("exr")));
+
+    const CommandResult rendered =
+        run_without_openexr({"render", "rig.toml", "--frame-format", "png16", "-o", "png"});
+    ASSERT_EQ(rendered.status, 0) << rendered.err;
+    EXPECT_NE(rendered.out.find("16-bit PNG frames"), std::string::npos) << rendered.out;
+    const CommandResult validated =
+        run({"validate", "rig.toml", "--rendered", "png", "-o", "validation"});
+    EXPECT_EQ(validated.status, 0) << validated.out << validated.err;
+
+    const CommandResult own =
+        run_without_openexr({"render",
+                             std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/reef/reef.toml",
+                             "--frame-format",
+                             "png16",
+                             "-o",
+                             "own"});
+    EXPECT_EQ(own.status, 3);
+    EXPECT_NE(own.err.find("in which a scene of your own is measured"), std::string::npos)
+        << own.err;
+}
+
+// By half floats and by PNG, each within its promise: with a frame of fog, whose white is no fault.
+TEST_F(FrameFormatOption, ShowsTheSame) {
+    put("objects.toml");
+    make_water_scatter();
+    ASSERT_EQ(run({"render", "rig.toml", "-o", "exr"}).status, 0);
+    const CommandResult made =
+        run({"render", "rig.toml", "--frame-format", "png16", "--json", "-o", "png"});
+    ASSERT_EQ(made.status, 0) << made.err;
+    const Json json = Json::parse(made.out);
+    const double digits_from = json.at("digits_from");
+    EXPECT_GT(digits_from, 0.0);
+    EXPECT_LT(digits_from, 0.5);
+    EXPECT_TRUE(fs::exists(path("png/povray/frames/distance.exr")));
+
+    const std::vector<float> expected = image("exr");
+    const std::vector<float> found = image("png");
+    ASSERT_EQ(found.size(), expected.size());
+    const std::size_t plane = found.size() / 3;
+    constexpr double kFrames = 2.0 * 4.9e-4;  // what each of the two rounds by, at the most
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto first = expected.begin() + static_cast<std::ptrdiff_t>(c * plane);
+        const double brightest =
+            *std::max_element(first, first + static_cast<std::ptrdiff_t>(plane));
+        for (std::size_t i = c * plane; i < (c + 1) * plane; ++i) {
+            const double size = std::max<double>(expected[i], digits_from * brightest);
+            ASSERT_NEAR(found[i], expected[i], kFrames * size) << i;
+        }
+    }
+}
+
+TEST_F(FrameFormatOption, IsRefusedWhereItCannotServe) {
+    put("habcam.toml");
+    const CommandResult result = run({"render", "rig.toml", "--frame-format", "tiff", "-o", "out"});
+    EXPECT_EQ(result.status, 2);
+    make_water_scatter();
+    const CommandResult veil =
+        run({"render", "rig.toml", "--frame-format", "png16", "--veil", "povray", "-o", "out"});
+    EXPECT_EQ(veil.status, 2);
+    EXPECT_NE(veil.err.find("--frame-format: found png16 with --veil povray"), std::string::npos)
+        << veil.err;
+}
+
+}  // namespace
+}  // namespace aphotic::frame_format_test
