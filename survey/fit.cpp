@@ -244,10 +244,13 @@ FitResult result_of(const Bench& bench,
     result.state = problem.state;
     result.shares = solved.shares;
     result.covariance =
-        covariance_of(normal, solved.shares, problem.free, bench.equations.huber_factor());
+        covariance_of(normal, solved.shares, problem.free, bench.equations.weights_factor());
     const std::size_t groups = std::min(kGroups, samples.images.size());
-    if (groups >= kFewGroups && !samples.are_maps)
-        widen(jackknife(bench, problem, groups), result.covariance);
+    if (groups >= kFewGroups && !samples.are_maps) {
+        // It holds the weights, which would move with the fit.
+        const double f = bench.equations.weights_factor();
+        widen(f * f * jackknife(bench, problem, groups), result.covariance);
+    }
     result.effects = bench.equations.effects();
     result.noise = bench.equations.noise();
     result.blocks = bench.equations.blocks();

@@ -23,6 +23,19 @@ constexpr double kFirstNoise = 0.05;
 constexpr double kFirstFloor = 0.003;  // of the brightest
 constexpr double kNormal = 1.4826;     // standard deviation of a normal over its median deviation
 
+// Of a block that is off by this many of its noise: its weight, and the slope of size times weight.
+struct Biweight {
+    explicit Biweight(double size) {
+        const double u2 = std::pow(size / kBiweight, 2.0);
+        if (u2 >= 1.0) return;
+        weight = (1.0 - u2) * (1.0 - u2);
+        slope = (1.0 - u2) * (1.0 - 5.0 * u2);
+    }
+    double weight = 0.0;
+    double slope = 0.0;
+};
+constexpr double kLeastWeight = 1e-9;  // 0 is a block that is left out
+
 double median_of(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -292,14 +305,14 @@ void FitEquations::learn_noise(const FitState& state,
                 const double variance =
                     image.noise_scale * noise_.at(std::max(0.0, signals[i](row)));
                 const double size = std::abs(residuals[i](row)) / std::sqrt(variance);
-                const double huber = size > kHuber ? kHuber / size : 1.0;
-                image.weight(row) = huber / variance;
-                weights += huber;
-                slopes += size > kHuber ? 0.0 : 1.0;
+                const Biweight biweight(size);
+                image.weight(row) = std::max(biweight.weight, kLeastWeight) / variance;
+                weights += biweight.weight;
+                slopes += biweight.slope;
             }
             settle(image);
         }
-        huber_factor_ = weights / std::max(slopes, 1.0);
+        weights_factor_ = weights / std::max(slopes, 1.0);
     }
 }
 

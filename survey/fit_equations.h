@@ -24,10 +24,16 @@
 // differences of these, with kBend. So a beam goes on as it was where nobody looks, and where few
 // do it does not swing between parts that make up for each other.
 //
-// Blocks that are off by more than kHuber of their noise, as shells and stones are, count less
-// (Huber's weights). The covariance of what is fitted is the sandwich
+// Blocks that are off count less, those by more than kBiweight of their noise nothing: on rough
+// floors stones shade what is behind them, where the light is no flat floor's. The weight is J. W.
+// Tukey's biweight, (1 - u^2)^2 for u under 1, u = e/(kBiweight sigma) (A. E. Beaton and J. W.
+// Tukey, Technometrics 16, 1974, 147); of normal noise errors are a twelfth larger for it. The
+// covariance of what is fitted is the sandwich
 //
-//   C = H^-1 ( sum over tiles s s^T + sum over images Z Gamma Z^T ) H^-1,    H = A^T V^-1 A
+//   C = f^2 H^-1 ( sum over tiles s s^T + sum over images Z Gamma Z^T ) H^-1,    H = A^T V^-1 A
+//
+// f: mean weight over mean slope of the influence e w(e), by which weights that move with the fit
+// widen it (P. J. Huber, Robust Statistics, 1981, 6.5).
 //
 // with s = (D V^-1 A)^T D^-1 (y - A x - U c) over a tile, a part of an image within which noise may
 // be correlated as it likes, and Z = A^T V^-1 U. It holds though e is none that D says
@@ -47,7 +53,7 @@ namespace aphotic {
 
 inline constexpr double kTie = 0.3;
 inline constexpr double kBend = 0.1;
-inline constexpr double kHuber = 2.5;
+inline constexpr double kBiweight = 3.44;
 inline constexpr std::size_t kTilesAcross = 8;
 inline constexpr std::size_t kTilesDown = 6;
 
@@ -131,9 +137,8 @@ class FitEquations {
                                        const PathLight& light,
                                        const Eigen::VectorXd& shares) const;
 
-    // How much Huber's weights narrow the errors that H tells: mean weight over mean slope of the
-    // influence.
-    [[nodiscard]] double huber_factor() const { return huber_factor_; }
+    // f.
+    [[nodiscard]] double weights_factor() const { return weights_factor_; }
     [[nodiscard]] std::size_t blocks() const { return blocks_; }
 
   private:
@@ -186,7 +191,7 @@ class FitEquations {
     EffectVariances effects_{};
     Eigen::MatrixXd tie_;  // what it adds to the parts' G; of no size: nothing
     BlockNoise noise_;
-    double huber_factor_ = 1.0;
+    double weights_factor_ = 1.0;
     std::size_t blocks_ = 0;
 };
 

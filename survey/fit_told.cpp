@@ -202,7 +202,7 @@ std::string words_of(const NotTold& one) {
 MatrixXd covariance_of(const FitEquations::Normal& normal,
                        const VectorXd& shares,
                        const std::vector<FreeNumber>& free,
-                       double huber_factor) {
+                       double weights_factor) {
     const Index parts = shares.size();
     // Those at 0 as well: a bound that holds one part makes none of the others surer.
     std::vector<Index> seen = seen_parts(normal.H, parts);
@@ -226,7 +226,7 @@ MatrixXd covariance_of(const FitEquations::Normal& normal,
             scale.asDiagonal() * MatrixXd(normal.meat(seen, seen)) * scale.asDiagonal();
         const double few =
             static_cast<double>(normal.tiles) / static_cast<double>(normal.tiles - seen.size());
-        C = few * huber_factor * huber_factor * inverse * meat * inverse;
+        C = few * weights_factor * weights_factor * inverse * meat * inverse;
         // What few tiles see has too small a sandwich; none is smaller than H's own.
         const VectorXd wider =
             inverse.diagonal().cwiseQuotient(C.diagonal()).cwiseSqrt().cwiseMax(1.0);

@@ -53,7 +53,7 @@ struct NotTold {
 [[nodiscard]] Eigen::MatrixXd covariance_of(const FitEquations::Normal& normal,
                                             const Eigen::VectorXd& shares,
                                             const std::vector<FreeNumber>& free,
-                                            double huber_factor);
+                                            double weights_factor);
 
 // Of numbers whose errors are correlated by more than 0.9, the largest first.
 [[nodiscard]] std::vector<Confounded> confounded_in(const Eigen::MatrixXd& covariance,
