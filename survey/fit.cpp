@@ -322,7 +322,8 @@ FitResult fit(const RigText& text,
 
     std::vector<NotTold> held;
     FitResult result;
-    constexpr int kRounds = 4;
+    constexpr int kHuberRounds = 2;
+    constexpr int kRounds = 5;
     int steps = 0;
     for (int attempt = 0;; ++attempt) {
         equations.assume_noise();
@@ -341,7 +342,11 @@ FitResult fit(const RigText& text,
             const Solved solved = shares_of(equations.parts(problem.state, path_light));
             if (round == 0) equations.set_effects(effects);
             equations.tie_parts(problem.state, solved.shares);
-            equations.learn_noise(problem.state, path_light, solved.shares, learns_effects);
+            equations.learn_noise(problem.state,
+                                  path_light,
+                                  solved.shares,
+                                  round < kHuberRounds ? Robust::Huber : Robust::Biweight,
+                                  learns_effects);
         }
         std::vector<NotTold> untold;
         result = result_of(bench, problem, samples, untold);

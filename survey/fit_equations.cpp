@@ -23,18 +23,22 @@ constexpr double kFirstNoise = 0.05;
 constexpr double kFirstFloor = 0.003;  // of the brightest
 constexpr double kNormal = 1.4826;     // standard deviation of a normal over its median deviation
 
-// Of a block that is off by this many of its noise: its weight, and the slope of size times weight.
-struct Biweight {
-    explicit Biweight(double size) {
-        const double u2 = std::pow(size / kBiweight, 2.0);
-        if (u2 >= 1.0) return;
-        weight = (1.0 - u2) * (1.0 - u2);
-        slope = (1.0 - u2) * (1.0 - 5.0 * u2);
-    }
+struct Influence {
     double weight = 0.0;
-    double slope = 0.0;
+    double slope = 0.0;  // of size times weight
 };
-constexpr double kLeastWeight = 1e-9;  // 0 is a block that is left out
+
+// Of a block that is off by this many of its noise.
+Influence influence_of(double size, Robust robust) {
+    if (robust == Robust::Huber)
+        return size > kHuber ? Influence{.weight = kHuber / size} : Influence{1.0, 1.0};
+    const double u2 = std::pow(size / kBiweight, 2.0);
+    if (u2 >= 1.0) return {};
+    return {.weight = (1.0 - u2) * (1.0 - u2), .slope = (1.0 - u2) * (1.0 - 5.0 * u2)};
+}
+
+// Of a block that is not left out: what no other sees has a solution all the same.
+constexpr double kLeastWeight = 1e-3;
 
 double median_of(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -268,6 +272,7 @@ void FitEquations::learn_effects(const std::vector<VectorXd>& off) {
 void FitEquations::learn_noise(const FitState& state,
                                const PathLight& light,
                                const VectorXd& shares,
+                               Robust robust,
                                bool estimate_effects) {
     std::vector<VectorXd> signals(images_.size());
     std::vector<VectorXd> off(images_.size());
@@ -305,10 +310,10 @@ void FitEquations::learn_noise(const FitState& state,
                 const double variance =
                     image.noise_scale * noise_.at(std::max(0.0, signals[i](row)));
                 const double size = std::abs(residuals[i](row)) / std::sqrt(variance);
-                const Biweight biweight(size);
-                image.weight(row) = std::max(biweight.weight, kLeastWeight) / variance;
-                weights += biweight.weight;
-                slopes += biweight.slope;
+                const Influence influence = influence_of(size, robust);
+                image.weight(row) = std::max(influence.weight, kLeastWeight) / variance;
+                weights += influence.weight;
+                slopes += influence.slope;
             }
             settle(image);
         }

@@ -27,8 +27,9 @@
 // Blocks that are off count less, those by more than kBiweight of their noise nothing: on rough
 // floors stones shade what is behind them, where the light is no flat floor's. The weight is J. W.
 // Tukey's biweight, (1 - u^2)^2 for u under 1, u = e/(kBiweight sigma) (A. E. Beaton and J. W.
-// Tukey, Technometrics 16, 1974, 147); of normal noise errors are a twelfth larger for it. The
-// covariance of what is fitted is the sandwich
+// Tukey, Technometrics 16, 1974, 147); of normal noise errors are a twelfth larger for it. Far from
+// the rig it would take what is right for stones, so the first rounds weigh by Huber's kHuber sigma
+// / |e|, which forgets nothing. The covariance of what is fitted is the sandwich
 //
 //   C = f^2 H^-1 ( sum over tiles s s^T + sum over images Z Gamma Z^T ) H^-1,    H = A^T V^-1 A
 //
@@ -54,6 +55,8 @@ namespace aphotic {
 inline constexpr double kTie = 0.3;
 inline constexpr double kBend = 0.1;
 inline constexpr double kBiweight = 3.44;
+inline constexpr double kHuber = 2.5;
+enum class Robust { Huber, Biweight };
 inline constexpr std::size_t kTilesAcross = 8;
 inline constexpr std::size_t kTilesDown = 6;
 
@@ -84,6 +87,7 @@ class FitEquations {
     void learn_noise(const FitState& state,
                      const PathLight& light,
                      const Eigen::VectorXd& shares,
+                     Robust robust,
                      bool estimate_effects);
     // From now on without every image whose number leaves this one over `groups`; 0 groups: with
     // all.

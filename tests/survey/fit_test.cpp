@@ -105,12 +105,37 @@ TEST(Fit, FindsTheRigThatMadeTheMaps) {
     EXPECT_GT(off_at(guess().rig(), truth, {.altitude_m = 3.0}), 5.0 * kPredicted);
 }
 
+// Of every eighth block in the lower half most is in the shade: too little light for its noise,
+// which taken for light, if only for as much of it as Huber's weights do, makes another beam.
+TEST(Fit, LooksPastWhatStonesShade) {
+    const Rig truth = fit_rig({}).rig();
+    constexpr double kRough = 0.05;
+    FitSamples samples = fit_samples_of(truth, flown({1.2, 1.5, 2.0, 2.5}), kRough, 1);
+    constexpr std::size_t kOf = 8;
+    constexpr float kShade = 0.4F;
+    const FitPlaces& places = samples.places;
+    for (std::size_t image = 0; image < samples.images.size(); ++image) {
+        for (std::size_t place = image; place < places.size(); place += kOf) {
+            if (places.rows[place] < 0.5 * places.height_px) continue;
+            for (std::size_t c = 0; c < kChannels; ++c)
+                samples.images[image].signal[kChannels * place + c] *= kShade;
+        }
+    }
+    const FitResult result = fit(guess(), samples, exact_poses(), {});
+    expect_told(result, "strobe.fore.aim_along_deg", 4.0 * std::cos(std::atan2(0.1, 0.5)));
+    expect_told(result, "strobe.aft.power", 0.8);
+    const TempFolder folder;
+    write_fitted_rig(guess(), result, folder.path());
+    EXPECT_LT(off_at(RigText(folder.path() / kFittedRig).rig(), truth, {.altitude_m = 2.0}),
+              kPredicted);
+}
+
 TEST(Fit, FindsTheRigInWaterThatScatters) {
     FitRigNumbers numbers;
     numbers.water = "chlorophyll_mg_m3 = {}";
     numbers.multiple = 0.4;
-    numbers.width_px = 12;
-    numbers.height_px = 9;
+    numbers.width_px = 14;
+    numbers.height_px = 11;
     const Rig truth = fit_rig(numbers).rig();
     const FitSamples samples = fit_samples_of(truth, flown({1.2, 1.6, 2.0, 2.5}), kNoise, 2);
     numbers.multiple = 0.8;
