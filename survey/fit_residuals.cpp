@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace aphotic {
@@ -11,24 +12,30 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Sums over images of the residual at one place and channel.
-struct InPlace {
-    double sum = 0.0;
-    double squares = 0.0;
-    double count = 0.0;
-};
+// The residuals of all images at one place and channel.
+using InPlace = std::vector<float>;
 
-// How much of the residuals stays in place from image to image: rms of the means, less what chance
-// makes of them.
-double pattern_of(const std::vector<InPlace>& places) {
-    constexpr double kFew = 3.0;
+float median_of(InPlace& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// How much of the residuals stays in place from image to image: rms of the medians, for shade is no
+// pattern, less what chance makes of them.
+double pattern_of(std::vector<InPlace>& places) {
+    constexpr std::size_t kFew = 3;
+    constexpr double kNormal = 1.4826;  // standard deviation of a normal over its median deviation
     double pattern = 0.0;
     double counted = 0.0;
-    for (const InPlace& at : places) {
-        if (at.count < kFew) continue;
-        const double mean = at.sum / at.count;
-        const double chance = (at.squares / at.count - mean * mean) / (at.count - 1.0);
-        pattern += mean * mean - chance;
+    for (InPlace& at : places) {
+        if (at.size() < kFew) continue;
+        const float median = median_of(at);
+        for (float& off : at) off = std::abs(off - median);
+        const double deviation = kNormal * median_of(at);
+        const double chance =
+            0.5 * std::numbers::pi * deviation * deviation / static_cast<double>(at.size() - 1);
+        pattern += double{median} * median - chance;
         counted += 1.0;
     }
     return std::sqrt(std::max(0.0, pattern) / std::max(1.0, counted));
@@ -136,10 +143,7 @@ FitResiduals fit_residuals(const FitEquations& equations,
         for (Index row = 0; row < found.residual.size(); ++row) {
             if (!std::isfinite(found.residual(row)) || found.signal(row) < kDim * most) continue;
             const double off = found.residual(row) / found.signal(row);
-            InPlace& at = places[static_cast<std::size_t>(row)];
-            at.sum += off;
-            at.squares += off * off;
-            at.count += 1.0;
+            places[static_cast<std::size_t>(row)].push_back(static_cast<float>(off));
             of_image += off * off;
             count += 1.0;
         }

@@ -227,9 +227,11 @@ MatrixXd covariance_of(const FitEquations::Normal& normal,
         const double few =
             static_cast<double>(normal.tiles) / static_cast<double>(normal.tiles - seen.size());
         C = few * weights_factor * weights_factor * inverse * meat * inverse;
-        // What few tiles see has too small a sandwich; none is smaller than H's own.
+        // What few tiles see has too small a sandwich: none is smaller than H's own, less the tenth
+        // by which a sandwich of some hundred tiles is off by chance.
+        constexpr double kOwn = 0.9;
         const VectorXd wider =
-            inverse.diagonal().cwiseQuotient(C.diagonal()).cwiseSqrt().cwiseMax(1.0);
+            (kOwn * inverse.diagonal().cwiseQuotient(C.diagonal()).cwiseSqrt()).cwiseMax(1.0);
         C = wider.asDiagonal() * C * wider.asDiagonal();
     }
     C = scale.asDiagonal() * C * scale.asDiagonal();
