@@ -41,7 +41,13 @@ double pattern_of(std::vector<InPlace>& places) {
     return std::sqrt(std::max(0.0, pattern) / std::max(1.0, counted));
 }
 
-double correlation_with_altitude(const std::vector<ImageOutcome>& images) {
+// Of what is left of the images' brightness.
+struct Trend {
+    double correlation = 0.0;
+    double rms = 0.0;  // of the part that goes with the altitude
+};
+
+Trend trend_with_altitude(const std::vector<ImageOutcome>& images) {
     const auto count = static_cast<Index>(images.size());
     VectorXd altitude(count);
     VectorXd level(count);
@@ -53,7 +59,10 @@ double correlation_with_altitude(const std::vector<ImageOutcome>& images) {
     altitude.array() -= altitude.mean();
     level.array() -= level.mean();
     const double size = altitude.norm() * level.norm();
-    return size > 0.0 ? altitude.dot(level) / size : 0.0;
+    if (!(size > 0.0)) return {};
+    const double correlation = altitude.dot(level) / size;
+    return {.correlation = correlation,
+            .rms = std::abs(correlation) * level.norm() / std::sqrt(static_cast<double>(count))};
 }
 
 void look_for_doubts(const FitSamples& samples, FitResiduals& result) {
@@ -72,12 +81,14 @@ void look_for_doubts(const FitSamples& samples, FitResiduals& result) {
         result.doubts.push_back({"saturated samples, left out; share", saturated});
     constexpr std::size_t kFew = 10;
     constexpr double kSigmas = 4.0;  // of the correlation of as many images by chance
-    const double correlation = correlation_with_altitude(result.images);
-    if (result.images.size() >= kFew &&
-        std::abs(correlation) > kSigmas / std::sqrt(static_cast<double>(result.images.size()))) {
+    constexpr double kTrend =
+        0.02;  // of a rough floor more is resolved from nearby, and less is shade
+    const Trend trend = trend_with_altitude(result.images);
+    if (result.images.size() >= kFew && trend.rms > kTrend &&
+        std::abs(trend.correlation) >
+            kSigmas / std::sqrt(static_cast<double>(result.images.size()))) {
         result.doubts.push_back(
-            {"what is left of the images' brightness goes with their altitude; correlation",
-             correlation});
+            {"what is left of the images' brightness goes with their altitude; rms", trend.rms});
     }
     constexpr double kMostLevel = 0.25;
     double squares = 0.0;
