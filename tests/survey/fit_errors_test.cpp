@@ -176,8 +176,8 @@ TEST(FitErrors, HoldForImagesWhosePosesAndFloorsAreOff) {
 }
 
 // Its waves are longer than a tile, and alike in all channels. Twice the error should hold in 95 %
-// and does in 88 % of these: two broad beams in one line can make up for each other, and where they
-// do so in two ways the jackknife sees but one. Without it 70 % do.
+// and does in 85 % of these: two broad beams in one line can make up for each other, and where they
+// do so in two ways the jackknife sees but one.
 TEST(FitErrors, MostlyHoldOnARoughFloor) {
     constexpr double kLeastOnRough = 0.8;
     const double share =
