@@ -87,6 +87,17 @@ void require_place_and_room(const SceneSet& scenes,
     require_room(needs_of(scenes, folder, jobs), folder, ignore_needs);
 }
 
+DiskNeeds needs_of_share(const Manifest& whole, const fs::path& own, WorkShare share, int jobs) {
+    const std::vector<ManifestFrame> frames = share_of(whole.frames, share);
+    const auto missing = std::ranges::count_if(frames, [&](const ManifestFrame& frame) {
+        return !frame.done() && !fs::exists(image_path(own, frame));
+    });
+    return render_needs({.size = image_size(whole),
+                         .frames = static_cast<std::size_t>(missing),
+                         .scenes_bytes = 0,
+                         .jobs = jobs});
+}
+
 DiskNeeds needs_of_scenes(const SceneSet& scenes) {
     return {.folder_bytes = scenes_bytes(scenes)};
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/folder_lock.h"
+#include "base/share.h"
 #include "scene_gen/disk_estimate.h"
 #include "scene_gen/scene_set.h"
 
@@ -42,6 +43,12 @@ void require_place_and_room(const SceneSet& scenes,
                             const std::filesystem::path& folder,
                             int jobs,
                             bool ignore_needs);
+
+// Of a share of the frames of scenes that are there, into its own folder.
+[[nodiscard]] DiskNeeds needs_of_share(const Manifest& whole,
+                                       const std::filesystem::path& own,
+                                       WorkShare share,
+                                       int jobs);
 
 // Of scenes and manifest alone.
 [[nodiscard]] DiskNeeds needs_of_scenes(const SceneSet& scenes);

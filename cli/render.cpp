@@ -104,6 +104,9 @@ ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
             folder.string());
     const PovRay povray = find_povray(options.planning.povray);
     const fs::path own = share_folder(folder, options.share);
+    require_room(needs_of_share(read_manifest(folder), own, options.share, options.jobs),
+                 own,
+                 options.planning.ignore_needs);
     std::optional<FolderLock> whole;
     if (!options.share.is_whole()) whole.emplace(folder, FolderUse::Read);
     const FolderLock lock = claim_folder(own);
@@ -124,8 +127,14 @@ ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
 // A share takes the scenes as they are: what would plan others has no say.
 void refuse_what_plans(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options()) {
-        static const std::set<std::string> kOfShares{
-            "RIG", "--frames", "--jobs", "--json", "--povray", "--stall-timeout", "--library-path"};
+        static const std::set<std::string> kOfShares{"RIG",
+                                                     "--frames",
+                                                     "--jobs",
+                                                     "--json",
+                                                     "--povray",
+                                                     "--stall-timeout",
+                                                     "--library-path",
+                                                     "--ignore-needs"};
         const std::string name = option->get_name(false, false);
         if (option->count() == 0 || kOfShares.contains(name)) continue;
         throw InputError("{}: found with --frames; allowed: with a rig", name);

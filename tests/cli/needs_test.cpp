@@ -222,6 +222,20 @@ TEST(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
     }
 }
 
+// Scenes that fit, whose frames do not.
+TEST(Needs, AShareOfFramesIsRefusedBeforeItBegins) {
+    const TempFolder folder;
+    rig_of(folder.path(), 640, 480);
+    const OnSmallDisk run = on_small_disk(
+        folder.path(),
+        "1m",
+        fmt::format("generate rig.toml --bands 12 -o disk/out && '{}' render disk/out --frames 1/2",
+                    APHOTIC_COMMAND));
+    if (!run.is_possible) GTEST_SKIP() << "no tmpfs of our own here: " << run.said;
+    EXPECT_EQ(run.status, 3) << run.said;
+    EXPECT_NE(run.said.find("Nothing was begun"), std::string::npos) << run.said;
+}
+
 TEST(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
     const TempFolder folder;
     rig_of(folder.path(), 64, 48);
