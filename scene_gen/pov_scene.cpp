@@ -266,6 +266,7 @@ struct Parts {
 // Of the veil's brightest: room above for what the coarse grid of its bound missed, and for strobes
 // of a user's scene that stand elsewhere.
 constexpr int kVeilTargetLog2 = 8;
+constexpr auto kFogFrame = "distance";
 
 // The wavelengths of one frame.
 using Frame = std::span<const PlannedWavelength>;
@@ -553,23 +554,19 @@ std::string antialias_ini(int rays) {
         rays);
 }
 
-std::string format_ini(FrameFormat format) {
-    if (format == FrameFormat::Exr)
-        return "; OpenEXR: half floats, linear, unclipped.\nOutput_File_Type=E\n";
-    return "; PNG: 16 bits, linear, clipped at 1.\nOutput_File_Type=N\nBits_Per_Color=16\n";
-}
-
 }  // namespace
 
 std::string render_ini(const Rig& rig, const SceneOptions& options) {
     const int above = rows_above(rig.camera);
+    const bool is_exr = options.format == FrameFormat::Exr;
     return fmt::format(
         "; POV-Ray's settings for the scenes of this folder: povray render.ini +I<scene>.pov\n"
         "; Every option that changes pixels is set here, none is left to the user's own ini.\n"
         "Width={}\n"
         "Height={}\n"
-        "{}"
+        "; {}\n"
         "Output_To_File=on\n"
+        "Output_File_Type={}\n"
         "Output_Alpha=off\n"
         "File_Gamma=1.0\n"
         "{}"
@@ -586,7 +583,8 @@ std::string render_ini(const Rig& rig, const SceneOptions& options) {
         "{}",
         rig.camera.width_px,
         rig.camera.height_px + above,
-        format_ini(options.format),
+        is_exr ? "OpenEXR: half floats, linear, unclipped." : "PNG: 16 bits, linear, clipped at 1.",
+        is_exr ? "E" : "N\nBits_Per_Color=16",
         antialias_ini(options.antialias),
         above > 0 ? above + 1 : 0,
         fmt::join(options.ini_lines, ""));

@@ -72,7 +72,6 @@ struct SceneOptions {
 // large that the fog is about proportional to the distance, whose digits are a half float's; for a
 // PNG, whose steps are even, as large as what is in view is far.
 [[nodiscard]] double fog_m(const Rig& rig, const SceneOptions& options);
-inline constexpr auto kFogFrame = "distance";
 
 // By strobe of the rig, the lamps that stand for its emitter at these wavelengths.
 [[nodiscard]] std::vector<LampGrid> scene_lamps(const Rig& rig,
