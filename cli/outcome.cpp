@@ -93,8 +93,10 @@ namespace {
 // promise is of the pixel's own signal.
 double share_with_digits(const Integration& integration) {
     double share = 0.0;
-    for (std::size_t c = 0; c < kChannels; ++c)
-        share = std::max(share, integration.manifest.black(c) / integration.images.signals[c].most);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const double most = integration.images.signals[c].most;
+        if (most > 0.0) share = std::max(share, integration.manifest.black(c) / most);
+    }
     return share;
 }
 
@@ -130,8 +132,10 @@ void print(const Integration& integration) {
                    manifest.promise(1),
                    manifest.promise(2));
         if (manifest.png) {
-            fmt::print("  16-bit PNG frames: darker than {:.2g} of the brightest, of that share\n",
-                       share_with_digits(integration));
+            fmt::print(
+                "  relative to the pixel, or to {:.2g} of the brightest if that is more: frames "
+                "were PNG\n",
+                share_with_digits(integration));
         }
     } else {
         print_no_promise(manifest.no_promise);
