@@ -399,13 +399,14 @@ void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {
         positive());
     add("--exposure-ms",
         readout.exposure_ms,
-        "Open the shutter for this many milliseconds. Images are brighter than by the rig's "
-        "`exposure_ms` as the light of continuous lamps is; by default the rig's",
+        "Open the shutter for this many milliseconds, by default the rig's `exposure_ms`. Where "
+        "the "
+        "rig tells that, images are brighter or darker as by continuous lamps",
         in_range(kLeastExposure_ms, kMostExposure_ms));
     add("--f-number",
         readout.f_number,
-        "Stop the lens down to this. Images are brighter or darker than by the rig's `f_number`; "
-        "by default the rig's",
+        "Stop the lens down to this, by default the rig's `f_number`. Where the rig tells that, "
+        "images are brighter or darker by that",
         in_range(kLeastFNumber, kMostFNumber));
     app.add_option("--floor-share",
                    options.floor_share,

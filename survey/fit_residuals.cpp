@@ -81,8 +81,8 @@ void look_for_doubts(const FitSamples& samples, FitResiduals& result) {
         result.doubts.push_back({"saturated samples, left out; share", saturated});
     constexpr std::size_t kFew = 10;
     constexpr double kSigmas = 4.0;  // of the correlation of as many images by chance
-    constexpr double kTrend =
-        0.02;  // of a rough floor more is resolved from nearby, and less is shade
+    // Of a rough floor more is resolved from nearby, and less of it is shade.
+    constexpr double kTrend = 0.02;
     const Trend trend = trend_with_altitude(result.images);
     if (result.images.size() >= kFew && trend.rms > kTrend &&
         std::abs(trend.correlation) >

@@ -53,7 +53,8 @@ nlohmann::ordered_json to_json(const RawCamera& camera) {
                                 {"read_noise_e", camera.read_noise_e},
                                 {"saturation_e", camera.saturation_e},
                                 {"electrons_per_signal", camera.electrons_per_signal}};
-    if (camera.shot.time_s) json["exposure_s"] = *camera.shot.time_s;
+    constexpr double kMillisecondsPerSecond = 1e3;
+    if (camera.shot.time_s) json["exposure_ms"] = *camera.shot.time_s * kMillisecondsPerSecond;
     if (camera.shot.iso) json["iso"] = *camera.shot.iso;
     if (camera.shot.f_number) json["f_number"] = *camera.shot.f_number;
     return json;
