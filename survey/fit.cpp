@@ -245,16 +245,18 @@ FitResult result_of(const Bench& bench,
     result.shares = solved.shares;
     result.covariance =
         covariance_of(normal, solved.shares, problem.free, bench.equations.weights_factor());
-    const std::size_t groups = std::min(kGroups, samples.images.size());
-    if (groups >= kFewGroups && !samples.are_maps) {
-        // It holds the weights, which would move with the fit.
-        const double f = bench.equations.weights_factor();
-        widen(f * f * jackknife(bench, problem, groups), result.covariance);
-    }
     result.effects = bench.equations.effects();
     result.noise = bench.equations.noise();
     result.blocks = bench.equations.blocks();
     result.tiles = normal.tiles;
+    result.left = fit_residuals(bench.equations, samples, result.state, light, result.shares);
+    const std::size_t groups = std::min(kGroups, samples.images.size());
+    if (groups >= kFewGroups && !samples.are_maps) {
+        // The biweight's weights take what another answer would explain for stones, and would hold
+        // the fit to this one.
+        bench.equations.learn_noise(problem.state, light, solved.shares, Robust::Huber, false);
+        widen(jackknife(bench, problem, groups), result.covariance);
+    }
     const Index parts = solved.shares.size();
     for (std::size_t k = 0; k < problem.free.size(); ++k) {
         const FreeNumber& one = problem.free[k];
@@ -280,7 +282,6 @@ FitResult result_of(const Bench& bench,
         }
         first += count;
     }
-    result.left = fit_residuals(bench.equations, samples, result.state, light, result.shares);
     return result;
 }
 

@@ -21,7 +21,8 @@
 // altitude at which further images would part them.
 //
 // Errors are the sandwich of fit_equations.h; of ten images and more they are no smaller than the
-// jackknife's: how far the fit moves as each group of images in turn is left out,
+// jackknife's, by Huber's weights: how far the fit moves as each group of images in turn is left
+// out,
 //
 //   (n - 1)/n sum over groups (x_g - mean x_g)^2       n = min(kGroups, images)
 //

@@ -176,10 +176,11 @@ TEST(FitErrors, HoldForImagesWhosePosesAndFloorsAreOff) {
 }
 
 // Its waves are longer than a tile, and alike in all channels. Twice the error should hold in 95 %
-// and does in 85 % of these: two broad beams in one line can make up for each other, and where they
-// do so in two ways the jackknife sees but one.
+// and does in 89 % of these: two broad beams in one line can make up for each other, and where they
+// do so in two ways the jackknife may see but one. By the biweight's own weights it sees one more
+// often, 85 %.
 TEST(FitErrors, MostlyHoldOnARoughFloor) {
-    constexpr double kLeastOnRough = 0.8;
+    constexpr double kLeastOnRough = 0.87;
     const double share =
         share_within({.rigs = 12, .images = 40, .noise = 0.01, .level = 0.04, .texture = 0.1});
     EXPECT_GT(share, kLeastOnRough);
