@@ -144,11 +144,11 @@ Action configure_fit(CLI::App& app) {
     app.add_option("--parts", options->fit.parts, "Splines of a beam's table")
         ->check(in_range(4, 200))
         ->capture_default_str();
-    app.add_option(
-           "--free",
-           options->free,
-           "Fit these alone: beam, aim, power, water, vignetting, altitude, attitude, gain, or a "
-           "key of [water]")
+    app.add_option("--free",
+                   options->free,
+                   "Fit these alone: beam, aim, power, water, vignetting, floor, altitude, "
+                   "attitude, gain, or "
+                   "a key of [water]")
         ->delimiter(',')
         ->type_name("WHAT,...");
     app.add_option("--altitude-error",
@@ -172,8 +172,8 @@ Action configure_fit(CLI::App& app) {
     add_json(app, options->json);
     app.footer(
         "Leaves fitted.toml, a rig with the beam's table beside it, fit.json with errors and "
-        "covariance, and report.html. Without --free, fits beam, aim, power, water and vignetting, "
-        "and holds what the images cannot tell.");
+        "covariance, and report.html. Without --free, fits beam, aim, power, water, vignetting "
+        "and floor, and holds what the images cannot tell.");
     return [&app, options] { return fit_survey(app, *options); };
 }
 

@@ -305,7 +305,7 @@ void bind_fit(nb::module_& module) {
                nb::arg("black_level") = nb::none(),
                nb::arg("white_level") = nb::none(),
                nb::arg("beam") = "table",
-               nb::arg("parts") = 24,
+               nb::arg("parts") = FitOptions{}.parts,
                nb::arg("free") = nb::none(),
                nb::arg("altitude_error_m") = 0.02,
                nb::arg("attitude_error_deg") = 0.5,

@@ -187,11 +187,12 @@ FitEquations::Rows FitEquations::effects_at(const FitState& state,
     Rows columns;
     light_.columns_into(state, light, sled, shares, {}, columns);
     signal = columns.rightCols<1>();
+    const VectorXd of_floor = columns.rightCols<2>().col(0);
     Rows effects = Rows::Zero(signal.size(), kEffects);
-    effects.col(0) = signal;
+    effects.col(0) = of_floor;
     for (Index row = 0; row < signal.size(); row += kChannels) {
-        effects(row, 1) = signal(row);
-        effects(row + 2, 2) = signal(row + 2);
+        effects(row, 1) = of_floor(row);
+        effects(row + 2, 2) = of_floor(row + 2);
     }
     effects.middleCols(kPoseEffect, FitLight::kPoseColumns) =
         columns.middleCols(shares.size(), FitLight::kPoseColumns);
@@ -204,7 +205,7 @@ FitEquations::Rows FitEquations::effects_at(const FitState& state,
             const double wave = std::cos(all[k].a * x) * std::cos(all[k].b * y);
             for (std::size_t c = 0; c < kChannels; ++c) {
                 const auto row = static_cast<Index>(kChannels * place + c);
-                effects(row, static_cast<Index>(kWaveEffect + k)) = wave * signal(row);
+                effects(row, static_cast<Index>(kWaveEffect + k)) = wave * of_floor(row);
             }
         }
     }

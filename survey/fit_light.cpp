@@ -169,6 +169,8 @@ double& number_in(FitState& state, const FitNumber& number) {
             return state.water[number.of].value;
         case FitPart::FloorColour:
             return state.floor[number.which];
+        case FitPart::FloorBrightness:
+            return state.floor_brightness;
         case FitPart::Aim:
             return state.aim_rad[number.of][number.which];
         case FitPart::Power:
@@ -263,7 +265,45 @@ struct Scene {
 
 }  // namespace
 
-FitLight::FitLight(const Rig& rig, const FitPlaces& places) : rig_(rig), places_(places) {
+namespace {
+
+// Second differences along one way of a grid, at its ends those beside them: places by places.
+void add_differences(std::size_t places,
+                     std::size_t count,
+                     std::size_t apart,
+                     double factor,
+                     std::vector<Eigen::Triplet<double>>& weights) {
+    if (count < 3) return;
+    for (std::size_t k = 0; k < places; ++k) {
+        const std::size_t along = k / apart % count;
+        const std::size_t middle = std::clamp<std::size_t>(along, 1, count - 2);
+        const std::size_t at = k - along * apart + middle * apart;
+        for (const auto& [place, weight] :
+             {std::pair{at - apart, 1.0}, {at, -2.0}, {at + apart, 1.0}})
+            weights.emplace_back(static_cast<int>(k), static_cast<int>(place), factor * weight);
+    }
+}
+
+Eigen::SparseMatrix<double, Eigen::RowMajor> means_over_blocks(const FitPlaces& places) {
+    Eigen::SparseMatrix<double, Eigen::RowMajor> means;
+    if (places.block_px < 2) return means;
+    const std::size_t across =
+        static_cast<std::size_t>(std::ranges::count(places.rows, places.rows.front()));
+    const double factor = (1.0 - std::pow(places.block_px, -2.0)) / 24.0;
+    std::vector<Eigen::Triplet<double>> weights;
+    for (std::size_t k = 0; k < places.size(); ++k)
+        weights.emplace_back(static_cast<int>(k), static_cast<int>(k), 1.0);
+    add_differences(places.size(), across, 1, factor, weights);
+    add_differences(places.size(), places.size() / across, across, factor, weights);
+    means.resize(static_cast<Index>(places.size()), static_cast<Index>(places.size()));
+    means.setFromTriplets(weights.begin(), weights.end());
+    return means;
+}
+
+}  // namespace
+
+FitLight::FitLight(const Rig& rig, const FitPlaces& places)
+    : rig_(rig), places_(places), means_(means_over_blocks(places)) {
     const Camera& camera = rig.camera;
     std::vector<double> lambda_nm;
     if (camera.port) {
@@ -329,7 +369,8 @@ void FitLight::light_floor(const Scene& scene, const Add& add) const {
         const double d = way.norm();
         const double d_by_length = way.dot(ray.direction) / d;
         lit.w = lamp.into_frame * way / d;
-        const double spread = state.power[lit.strobe] * lamp.height_m / (pi * d * d * d);
+        const double spread =
+            state.floor_brightness * state.power[lit.strobe] * lamp.height_m / (pi * d * d * d);
         const CubicTable& table = scene.light.floor(lit.strobe);
         table.at(d + landing.length_m, T.data());
         for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c) {
@@ -422,6 +463,13 @@ void FitLight::add_between_nodes(const Rows& of_nodes, Rows& rows) const {
     Eigen::Map<Rows>(rows.data(), from_nodes_.rows(), columns) += from_nodes_ * from;
 }
 
+void FitLight::average_over_blocks(Rows& rows) const {
+    if (means_.size() == 0) return;
+    const Index columns = kChannels * rows.cols();
+    const Rows middles = Eigen::Map<const Rows>(rows.data(), means_.cols(), columns);
+    Eigen::Map<Rows>(rows.data(), means_.rows(), columns) = means_ * middles;
+}
+
 void FitLight::multiply_by_vignetting(const FitState& state, Rows& rows) const {
     for (std::size_t place = 0; place < sights_.size(); ++place) {
         const double q = sights_[place].from_middle2;
@@ -463,6 +511,7 @@ void FitLight::parts_into(const FitState& state,
         add_between_nodes(of_nodes, rows_of);
     }
     multiply_by_vignetting(state, rows_of);
+    average_over_blocks(rows_of);
 }
 
 void FitLight::columns_into(const FitState& state,
@@ -509,7 +558,8 @@ void FitLight::columns_into(const FitState& state,
         water.push_back(column_of(FitPart::FloorColour, 0, k));
 
     const Index of_pose = first_number + count;
-    const Index of_signal = of_pose + static_cast<Index>(kPoseColumns);
+    const Index of_floor = of_pose + static_cast<Index>(kPoseColumns);
+    const Index of_signal = of_floor + 1;
     std::vector<BeamPartValue> values;
     const auto add_to = [&](Rows& lit_rows) {
         return [&](const Lit& lit) {
@@ -544,6 +594,7 @@ void FitLight::columns_into(const FitState& state,
                 for (const BeamPartValue& part : values)
                     row(first_part[b] + static_cast<Index>(part.part)) += part.value * lit.light[c];
                 row(of_signal) += value;
+                if (lit.by == LitBy::Floor) row(of_floor) += value;
                 add(of.aim[0], by_aim(0) * lit.light[c]);
                 add(of.aim[1], by_aim(1) * lit.light[c]);
                 add(of.power, value / state.power[lit.strobe]);
@@ -578,6 +629,8 @@ void FitLight::columns_into(const FitState& state,
         const FitNumber& number = numbers[static_cast<std::size_t>(k)];
         if (number.part == FitPart::Offset)
             all.col(first_number + k) = all.col(of_pose + static_cast<Index>(number.which));
+        if (number.part == FitPart::FloorBrightness)
+            all.col(first_number + k) = all.col(of_floor) / state.floor_brightness;
         for (Index row = 0; row < all.rows(); ++row) {
             const auto at = static_cast<std::size_t>(row);
             if (number.part == FitPart::Gain && at % kChannels == number.of)
@@ -589,6 +642,7 @@ void FitLight::columns_into(const FitState& state,
             }
         }
     }
+    average_over_blocks(all);
 }
 
 PathRange FitLight::paths(const std::vector<Sled>& sleds) const {

@@ -3,17 +3,21 @@
 // The signal of places of an image as a linear function of the shares of the beams' parts, and its
 // derivatives over all else that a fit looks for:
 //
-//   S_c = g_c V sum_s P_s sum_m beta_m [ f_m(w) cos(i)/(pi d^2) T_c(d + r)
+//   S_c = g_c V sum_s P_s sum_m beta_m [ B f_m(w) cos(i)/(pi d^2) T_c(d + r)
 //                                        + sum_i int p_i(psi) f_m(w) V_ic(t + d) / d^2 dt ]
 //
 // g_c    the channel's gain, 1 of green      V     vignetting: the rig's, or 1 + a1 p^2 + ...
 // P_s    the strobe's power                  f_m   parts of the beam (fit_beam.h), w in the frame
 // T, V   survey/path_light.h                       of the strobe as it is aimed
+// B      the floor's brightness, 1 of the rig's: the veil is as bright above any floor
 //
 // All else is rig/veil.h's and docs/physics.md's. Lamps are points, the floor is flat and matt.
 // Behind a port each channel has the ray of its mean wavelength. The veil is integrated by
 // kFitVeilPoints of Gauss and Legendre's over the angle at the lamp, at kFitVeilNodes across and
 // down the image at most; between these it is the cubic through the four next of each way.
+//
+// The mean over a block of b pixels a side is that of its middle and (1 - 1/b^2)/24 of its second
+// differences from the blocks beside it, each way; at the image's edge, of its neighbour's.
 //
 // Aim is turned by two small angles, towards `along` and `across` of the rig's own frame of the
 // strobe (rig/beam.h). Offsets are added to the altitude, pitch and roll that the navigation tells.
@@ -41,10 +45,11 @@ inline constexpr std::size_t kFitVeilNodes = 13;
 inline constexpr double kAimRoom_rad = 0.15;
 inline constexpr double kVeilRoom_rad = 0.25;
 
-// Places of the image, pixels' centres at .5.
+// Places of the image, pixels' centres at .5: the middles of blocks, in rows from the top left.
 struct FitPlaces {
     int width_px = 0;
     int height_px = 0;
+    int block_px = 1;
     std::vector<double> columns{};
     std::vector<double> rows{};
 
@@ -58,13 +63,24 @@ struct FitState {
     std::vector<std::array<double, 2>> aim_rad;  // by strobe, off the rig's: along, across
     std::vector<double> power;                   // by strobe
     std::vector<WaterNumber> water;
-    FloorTint floor{};               // q1, q2 of path_light.h
+    FloorTint floor{};  // q1, q2 of path_light.h
+    double floor_brightness = 1.0;
     std::vector<double> vignetting;  // a1, a2, a3; empty: the rig's own
     std::array<double, kChannels> gain{1.0, 1.0, 1.0};
     Sled offset;
 };
 
-enum class FitPart { Water, FloorColour, Aim, Power, BeamShape, LensFactor, Offset, Gain };
+enum class FitPart {
+    Water,
+    FloorColour,
+    FloorBrightness,
+    Aim,
+    Power,
+    BeamShape,
+    LensFactor,
+    Offset,
+    Gain
+};
 
 // One number of the state that is free.
 struct FitNumber {
@@ -91,7 +107,7 @@ class FitLight {
                     Rows& rows) const;
 
     // Columns of parts, then of the numbers, of altitude, pitch and roll, all as derivatives of the
-    // signal with these shares, and the signal itself.
+    // signal with these shares, what of the signal is the floor's light, and the signal itself.
     static constexpr std::size_t kPoseColumns = 3;
     void columns_into(const FitState& state,
                       const PathLight& light,
@@ -122,6 +138,8 @@ class FitLight {
     void light_water(const Scene& scene, const Add& add) const;
     // From what the nodes see of the veil to what the places do.
     void add_between_nodes(const Rows& of_nodes, Rows& rows) const;
+    // From middles of blocks to their means.
+    void average_over_blocks(Rows& rows) const;
     // The lens' V.
     void multiply_by_vignetting(const FitState& state, Rows& rows) const;
 
@@ -130,6 +148,7 @@ class FitLight {
     std::vector<Place> sights_;
     std::vector<Rays> veil_nodes_;
     Eigen::SparseMatrix<double, Eigen::RowMajor> from_nodes_;  // by place and node
+    Eigen::SparseMatrix<double, Eigen::RowMajor> means_;       // by place and place; none: points
 };
 
 }  // namespace aphotic

@@ -90,7 +90,7 @@ std::uint32_t residual_colour(float residual) {
 }
 
 std::string views(const FitSamples& samples, const FitResult& result) {
-    const int width_px = samples.places.width_px / samples.block_px;
+    const int width_px = samples.places.width_px / samples.places.block_px;
     const int height_px = static_cast<int>(samples.places.size()) / width_px;
     std::string figures;
     for (const FitView& view : result.left.views) {
@@ -117,7 +117,7 @@ std::string views(const FitSamples& samples, const FitResult& result) {
                                    "than the fit, in full colour "
                                    "from {:.0f} % on. Each block is {} pixels wide.",
                                    100.0 * kShownResidual,
-                                   samples.block_px)) +
+                                   samples.places.block_px)) +
             fmt::format("<div class=\"sheet\">\n{}</div>\n", figures));
 }
 

@@ -33,8 +33,8 @@ constexpr std::array<WaterBounds, 3> kCase1Numbers{{{"chlorophyll_mg_m3", 1.0, 0
 
 // What is asked for by one word each.
 constexpr std::array kWords{
-    "beam", "aim", "power", "water", "vignetting", "altitude", "attitude", "gain"};
-constexpr std::size_t kByDefault = 5;
+    "beam", "aim", "power", "water", "vignetting", "floor", "altitude", "attitude", "gain"};
+constexpr std::size_t kByDefault = 6;
 
 bool is_asked(const FitOptions& options, const std::string& word) {
     if (!options.free)
@@ -43,7 +43,7 @@ bool is_asked(const FitOptions& options, const std::string& word) {
     return std::ranges::find(*options.free, word) != options.free->end();
 }
 
-void require_known(const FitOptions& options) {
+void require_known(const FitOptions& options, const Rig& rig) {
     for (const std::string& word : options.free.value_or(std::vector<std::string>{})) {
         if (std::ranges::find(kWords, word) != kWords.end() || word.starts_with("water.")) continue;
         throw InputError(
@@ -51,6 +51,11 @@ void require_known(const FitOptions& options) {
             "water.multiple",
             word,
             fmt::join(kWords, ", "));
+    }
+    if (options.free && is_asked(options, "floor") && !rig.water.scatters()) {
+        throw InputError(
+            "--free: found floor in water that does not scatter; allowed: without it, for only the "
+            "veil tells how bright the floor is");
     }
 }
 
@@ -197,13 +202,22 @@ void add_camera(const Rig& rig,
                         .per_unit = kDegreesPerRadian,
                         .group = "attitude"});
     }
+    if (rig.water.scatters() && is_asked(options, "floor")) {
+        constexpr double kDarkest = 0.02;  // times the rig's; the brightest reflects all
+        free.push_back({.number = {FitPart::FloorBrightness, 0, 0},
+                        .key = "floor.brightness",
+                        .plausible = 0.7,
+                        .least = kDarkest,
+                        .most = 1.0 / std::ranges::max(rig.seafloor.reflectance.values()),
+                        .group = "floor"});
+    }
     if (rig.camera.sensor.is_mono()) return;
     if (!is_asked(options, "gain")) {
         for (std::size_t k = 0; k < state.floor.size(); ++k) {
             free.push_back({.number = {FitPart::FloorColour, 0, k},
                             .key = k == 0 ? "floor.redness" : "floor.bend",
                             .plausible = 1.0,
-                            .group = "floor"});
+                            .group = kFloorColour});
         }
         return;
     }
@@ -233,8 +247,8 @@ FitState FitProblem::at(const double* x) const {
 }
 
 FitProblem fit_problem(const RigText& text, const FitOptions& options, double widest_rad) {
-    require_known(options);
     const Rig rig = text.rig();
+    require_known(options, rig);
     FitProblem problem;
     FitState& state = problem.state;
     for (const Strobe& strobe : rig.strobes) {

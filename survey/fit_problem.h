@@ -17,17 +17,21 @@ namespace aphotic {
 
 struct FitOptions {
     FitBeamKind beam = FitBeamKind::Table;
-    std::size_t parts = 24;      // of a table
+    std::size_t parts = 40;      // of a table
     bool has_beam_each = false;  // each strobe its own
-    // beam, aim, power, water, vignetting, altitude, attitude, gain, or a key of [water]; none: the
-    // first five, as far as they can be told. The floor's colour is free besides, unless the
-    // channels' gains are: these two cannot be parted.
+    // beam, aim, power, water, vignetting, floor, altitude, attitude, gain, or a key of [water];
+    // none: the first six, as far as they can be told. floor is its brightness, which in water that
+    // scatters the veil tells. Its colour is free besides, unless the channels' gains are: these
+    // two cannot be parted.
     std::optional<std::vector<std::string>> free{};
     // Standard deviations of what the navigation tells, image by image.
     double altitude_error_m = 0.02;
     double attitude_error_rad = 0.0087;
     int threads = 1;
 };
+
+// The group of the colour's numbers, which nobody asks for.
+inline constexpr const char* kFloorColour = "the floor's colour";
 
 // A number that is free: where it begins, how far from there it may plausibly be, its bounds.
 struct FreeNumber {

@@ -134,11 +134,11 @@ FitImage image_of_map(const std::string& map, const Camera& camera, int block_px
 
 }  // namespace
 
-FitPlaces fit_places(int width_px, int height_px, int blocks_across, int& block_px) {
+FitPlaces fit_places(int width_px, int height_px, int blocks_across) {
     // Even, so that a block of a mosaic holds as many sites of each kind everywhere.
-    block_px = std::max(1, width_px / std::max(1, blocks_across));
+    int block_px = std::max(1, width_px / std::max(1, blocks_across));
     if (block_px > 1) block_px -= block_px % 2;
-    FitPlaces places{.width_px = width_px, .height_px = height_px};
+    FitPlaces places{.width_px = width_px, .height_px = height_px, .block_px = block_px};
     for (std::size_t j = 0; j < blocks_along(height_px, block_px); ++j) {
         for (std::size_t i = 0; i < blocks_along(width_px, block_px); ++i) {
             places.columns.push_back((static_cast<double>(i) + 0.5) * block_px);
@@ -154,7 +154,7 @@ FitSamples samples_of_images(const Survey& survey,
                              std::size_t jobs,
                              const RunWatch& watch) {
     FitSamples samples;
-    samples.places = fit_places(size.width_px, size.height_px, blocks_across, samples.block_px);
+    samples.places = fit_places(size.width_px, size.height_px, blocks_across);
     const auto skip = [&](std::size_t i, const std::string& why) {
         samples.skipped.push_back({.image = survey.files[i].source.string(), .why = why});
         watch.skipped(samples.skipped.back());
@@ -168,7 +168,7 @@ FitSamples samples_of_images(const Survey& survey,
             SurveyImage taken = read_survey_image(survey.files[i].source, survey.camera);
             require_size(taken.raw, size.width_px, size.height_px, "as the rig's camera has");
             take_off_black(taken);
-            average(taken.raw, taken.levels.white, samples.block_px, image);
+            average(taken.raw, taken.levels.white, samples.places.block_px, image);
             return image;
         },
         [&](std::size_t i, FitImage image) {
@@ -189,9 +189,9 @@ FitSamples samples_of_maps(const std::vector<std::string>& maps,
                            int blocks_across) {
     FitSamples samples;
     samples.are_maps = true;
-    samples.places = fit_places(camera.width_px, camera.height_px, blocks_across, samples.block_px);
+    samples.places = fit_places(camera.width_px, camera.height_px, blocks_across);
     for (const std::string& map : maps)
-        samples.images.push_back(image_of_map(map, camera, samples.block_px));
+        samples.images.push_back(image_of_map(map, camera, samples.places.block_px));
     return samples;
 }
 

@@ -4,9 +4,7 @@
 // channel the mean of the block's samples less the black level, at the reference exposure.
 //
 // A block is left out (NaN) in a channel where more than kMostSaturated of its samples are
-// saturated, for their mean would be too dark, or more than half were not observed. A block is no
-// point: where the light bends by S'' over b pixels the mean is off by b^2 S''/24, 1e-3 of light
-// that falls to half over a tenth of the image, with kBlocksAcross.
+// saturated, for their mean would be too dark, or more than half were not observed.
 #pragma once
 
 #include "survey/fit_light.h"
@@ -33,14 +31,13 @@ struct FitImage {
 
 struct FitSamples {
     FitPlaces places{};
-    int block_px = 0;
     std::vector<FitImage> images{};
     bool are_maps = false;
     std::vector<Skipped> skipped{};
 };
 
 // Blocks of a width that gives about so many across.
-[[nodiscard]] FitPlaces fit_places(int width_px, int height_px, int blocks_across, int& block_px);
+[[nodiscard]] FitPlaces fit_places(int width_px, int height_px, int blocks_across);
 
 // The survey has a navigation. Images are read `jobs` at a time and kept as their blocks alone. An
 // InputError when none can be used.

@@ -87,13 +87,15 @@ struct Told {
     const std::vector<FreeNumber>& free;
     Index first_number;
     const VectorXd& shares;
+    std::vector<bool> is_held;
 
-    // With a group of numbers known, or the beam.
+    // With a group of numbers known, or the beam; 0 of what is known or held.
     [[nodiscard]] VectorXd errors(const MatrixXd& H_of, const std::string& known) const {
         std::vector<Index> numbers;
         std::vector<Index> at;
         for (Index k = 0; k < static_cast<Index>(free.size()); ++k) {
-            if (free[static_cast<std::size_t>(k)].group == known) continue;
+            const auto at_free = static_cast<std::size_t>(k);
+            if (is_held[at_free] || free[at_free].group == known) continue;
             numbers.push_back(first_number + k);
             at.push_back(k);
         }
@@ -126,17 +128,24 @@ std::vector<NotTold> not_told(const FitEquations& equations,
                               const VectorXd& shares,
                               const std::vector<Sled>& sleds) {
     if (problem.free.empty()) return {};
-    const Told told{.H = H_of_fit,
-                    .parts = active_parts(shares),
-                    .free = problem.free,
-                    .first_number = shares.size(),
-                    .shares = shares};
+    Told told{.H = H_of_fit,
+              .parts = active_parts(shares),
+              .free = problem.free,
+              .first_number = shares.size(),
+              .shares = shares,
+              .is_held = std::vector<bool>(problem.free.size(), false)};
     std::vector<NotTold> all;
-    const VectorXd errors = told.errors(told.H, "");
     std::vector<Index> bad;
-    for (Index k = 0; k < errors.size(); ++k) {
+    // The worst first: with it held the others may be told.
+    while (true) {
+        VectorXd errors = told.errors(told.H, "");
+        for (Index k = 0; k < errors.size(); ++k) {
+            const std::string& group = told.free[static_cast<std::size_t>(k)].group;
+            if (group == "gain" || group == kFloorColour) errors(k) = 0.0;
+        }
+        Index k = 0;
+        if (errors.maxCoeff(&k) <= kTold) break;
         const FreeNumber& one = told.free[static_cast<std::size_t>(k)];
-        if (errors(k) <= kTold || one.group == "gain" || one.group == "floor") continue;
         NotTold not_one{.key = one.key, .error = errors(k) * one.plausible * one.per_unit};
         double best = errors(k);
         for (const std::string group : {"beam",
@@ -147,6 +156,7 @@ std::vector<NotTold> not_told(const FitEquations& equations,
                                         "altitude",
                                         "attitude",
                                         "floor",
+                                        kFloorColour,
                                         "gain"}) {
             if (group == one.group) continue;
             const double error = told.errors(told.H, group)(k);
@@ -156,8 +166,10 @@ std::vector<NotTold> not_told(const FitEquations& equations,
         }
         all.push_back(not_one);
         bad.push_back(k);
+        told.is_held[static_cast<std::size_t>(k)] = true;
     }
     if (all.empty()) return all;
+    told.is_held.assign(told.is_held.size(), false);
     // How to fly instead: the nearest altitude from which as many images again tell most.
     const auto [low, high] = std::ranges::minmax(sleds, {}, &Sled::altitude_m);
     for (const double altitude_m : {1.5 * high.altitude_m,

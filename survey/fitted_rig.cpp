@@ -83,6 +83,17 @@ void set_strobes(const Rig& rig, const FitResult& result, const fs::path& folder
     }
 }
 
+void set_floor(const Spectrum& was, double brightness, const fs::path& folder, RigText& text) {
+    if (brightness == 1.0) return;
+    std::string csv = "# source: aphotic fit\nwavelength_nm,reflectance\n";
+    for (std::size_t i = 0; i < was.values().size(); ++i) {
+        csv +=
+            fmt::format("{},{}\n", was.lambda_nm()[i], std::min(1.0, brightness * was.values()[i]));
+    }
+    write_text_file(folder / kFittedFloor, csv);
+    text.set("seafloor.reflectance", kFittedFloor);
+}
+
 }  // namespace
 
 void write_fitted_rig(const RigText& rig_text, const FitResult& result, const fs::path& folder) {
@@ -91,6 +102,7 @@ void write_fitted_rig(const RigText& rig_text, const FitResult& result, const fs
     rig_text.copy_files(folder);
     set_strobes(rig, result, folder, text);
     const FitState& state = result.state;
+    set_floor(rig.seafloor.reflectance, state.floor_brightness, folder, text);
     for (const WaterNumber& number : state.water) text.set(number.key, number.value);
     if (!state.vignetting.empty()) {
         text.erase("camera.vignetting");

@@ -9,6 +9,7 @@
 //                before
 //   water        the keys of [water]
 //   vignetting   { radial = [...] }
+//   floor        the rig's reflectance times the brightness that the veil tells, fitted-floor.csv
 //   offsets      added to altitude_offset_m, and to the camera's orientation_deg
 //
 // Gains of the channels and the colour of the images' floor are no part of a rig, whose map is that
@@ -22,6 +23,7 @@
 namespace aphotic {
 
 inline constexpr const char* kFittedRig = "fitted.toml";
+inline constexpr const char* kFittedFloor = "fitted-floor.csv";
 inline constexpr const char* kFitNumbers = "fit.json";
 inline constexpr const char* kFitPage = "report.html";
 

@@ -78,8 +78,7 @@ inline FitSamples fit_samples_of(const Rig& rig,
                                  double gain = 100.0) {
     FitSamples samples;
     samples.are_maps = true;
-    samples.places = fit_places(
-        rig.camera.width_px, rig.camera.height_px, rig.camera.width_px, samples.block_px);
+    samples.places = fit_places(rig.camera.width_px, rig.camera.height_px, rig.camera.width_px);
     const LightmapMaker maker(rig, paths_of(rig, sleds), {});
     std::mt19937_64 dice(seed);
     std::normal_distribution<double> normal;

@@ -60,8 +60,7 @@ Drawn draw(std::uint64_t seed, const Flight& flight) {
     }
     FitSamples& samples = drawn.samples;
     samples.are_maps = flight.level == 0.0;
-    samples.places =
-        fit_places(numbers.width_px, numbers.height_px, numbers.width_px, samples.block_px);
+    samples.places = fit_places(numbers.width_px, numbers.height_px, numbers.width_px);
     const FitLight light(rig, samples.places);
     drawn.widest_rad = light.widest_rad(sleds);
 

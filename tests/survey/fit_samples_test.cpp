@@ -52,7 +52,7 @@ class FitSamplesOfAnImage : public testing::Test {
 // Red's sites stand half a pixel before a block's middle, blue's half a pixel behind.
 TEST_F(FitSamplesOfAnImage, ABlockOfAMosaicHasTheSlopesMiddle) {
     const FitSamples found = samples(0);
-    ASSERT_EQ(found.block_px, 4);
+    ASSERT_EQ(found.places.block_px, 4);
     ASSERT_EQ(found.places.size(), 24U);
     for (std::size_t i = 0; i < found.places.size(); ++i) {
         const double column = found.places.columns[i];

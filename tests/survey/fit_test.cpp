@@ -149,6 +149,33 @@ TEST(Fit, FindsTheRigInWaterThatScatters) {
               kPredicted);
 }
 
+// Above a brighter floor there is less veil beside its light. Taken for the rig's own, the beams
+// would make up for that.
+TEST(Fit, FindsTheFloorsBrightnessByTheVeil) {
+    constexpr double kBrightness = 1.6;
+    FitRigNumbers numbers;
+    numbers.water = "chlorophyll_mg_m3 = {}";
+    numbers.multiple = 0.4;
+    numbers.width_px = 14;
+    numbers.height_px = 11;
+    const RigText start = fit_rig(numbers);
+    Rig truth = start.rig();
+    const Spectrum& sand = truth.seafloor.reflectance;
+    std::vector<double> brighter(sand.values().begin(), sand.values().end());
+    for (double& value : brighter) value *= kBrightness;
+    truth.seafloor.reflectance =
+        Spectrum("brighter", {sand.lambda_nm().begin(), sand.lambda_nm().end()}, brighter);
+    const FitSamples samples = fit_samples_of(truth, flown({1.2, 1.6, 2.0, 2.5}), kNoise, 2);
+    FitOptions options = exact_poses();
+    options.free = {{"beam", "aim", "power", "vignetting", "floor"}};
+    const FitResult result = fit(start, samples, options, {});
+    expect_told(result, "floor.brightness", kBrightness);
+    const TempFolder folder;
+    write_fitted_rig(start, result, folder.path());
+    EXPECT_LT(off_at(RigText(folder.path() / kFittedRig).rig(), truth, {.altitude_m = 3.0}),
+              kPredicted);
+}
+
 // cos^6, whose exponent is a shape of the beam.
 TEST(Fit, FindsTheExponentOfACosine) {
     const FitSamples samples = fit_samples_of(fit_rig({}).rig(), flown({1.2, 2.0, 2.8}), kNoise, 3);
@@ -173,8 +200,10 @@ TEST(Fit, HoldsWhatItIsToldTo) {
     expect_told(result, "water.multiple", 1.0);
     for (const FittedNumber& one : result.numbers)
         EXPECT_TRUE(one.key == "water.multiple" || one.key.starts_with("floor.")) << one.key;
-    options.free = {{"colour"}};
-    EXPECT_THROW(static_cast<void>(fit(fit_rig(known), samples, options, {})), InputError);
+    for (const char* word : {"colour", "floor"}) {  // no word, and nothing that clear water tells
+        options.free = {{word}};
+        EXPECT_THROW(static_cast<void>(fit(fit_rig(known), samples, options, {})), InputError);
+    }
 }
 
 // One altitude: an offset of it and the water's loss change the light alike, to within the noise of
