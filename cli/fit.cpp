@@ -147,8 +147,7 @@ Action configure_fit(CLI::App& app) {
     app.add_option("--free",
                    options->free,
                    "Fit these alone: beam, aim, power, water, vignetting, floor, altitude, "
-                   "attitude, gain, or "
-                   "a key of [water]")
+                   "attitude, gain, or a key of [water]")
         ->delimiter(',')
         ->type_name("WHAT,...");
     app.add_option("--altitude-error",

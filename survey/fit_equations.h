@@ -5,12 +5,13 @@
 //   A   columns: the beams' parts (fit_light.h), then the numbers that are free
 //   e   noise of a block: variance v_0 + v_1 S + v_2 S^2, found from the residuals themselves; read
 //       noise, shot noise and the floor's texture
-//   U c what blocks of an image share: their level, and that of red and of blue beside it, for
-//       floors are brighter here than there and of another hue; errors of the image's own altitude,
-//       pitch and roll; and the floor's brightness across the image, for its texture has waves as
-//       long as an image: cos(a pi x) cos(b pi y), a + b from 1 to kWaves, x and y from 0 to 1. c
-//       is random, with a variance each: of the pose as the instruments have it, of the floor found
-//       where images are many, one for all waves of the same a + b (Dempster, Laird and Rubin's EM)
+//   U c what blocks of an image share: the floor's level, and that of red and of blue beside it,
+//       for floors are brighter here than there and of another hue, and its brightness across the
+//       image, for its texture has waves as long as an image: cos(a pi x) cos(b pi y), a + b from 1
+//       to kWaves, x and y from 0 to 1, all of the floor's light and not of the veil before it; and
+//       errors of the image's own altitude, pitch and roll. c is random, with a variance each: of
+//       the pose as the instruments have it, of the floor found where images are many, one for all
+//       waves of the same a + b (Dempster, Laird and Rubin's EM)
 //
 // Poses go into the light as no straight line: each image's is moved to where its light tells it,
 // round by round, and what the navigation says becomes the mean of what is left of it in c.

@@ -58,6 +58,7 @@ VectorXd told_errors(const MatrixXd& H,
                      const std::vector<Index>& numbers,
                      const std::vector<FreeNumber>& free,
                      Index first_number) {
+    if (numbers.empty()) return {};  // all are held
     VectorXd scale(static_cast<Index>(numbers.size()));
     for (Index k = 0; k < scale.size(); ++k)
         scale(k) =

@@ -234,6 +234,26 @@ TEST(Fit, SaysWhatCannotBeTold) {
     }
 }
 
+// Of a single dark image by a camera of one channel no number is told: all are held, and the beam
+// alone is fitted.
+TEST(Fit, HoldsEveryNumberWhereNoneIsTold) {
+    const TempFolder folder;
+    write_file(folder.path() / "flat.csv", "wavelength_nm,quantum_efficiency\n380,0.5\n780,0.5\n");
+    FitRigNumbers numbers;
+    numbers.width_px = 8;
+    numbers.height_px = 6;
+    std::string toml = fit_rig(numbers).text();
+    const std::string colours = "\"nikon-d5100\"";
+    toml.replace(toml.find(colours), colours.size(), R"({ quantum_efficiency = "flat.csv" })");
+    const RigText mono(toml, "mono.toml", folder.path());
+    FitSamples samples = fit_samples_of(mono.rig(), flown({2.0}), 3.0, 10);
+    for (std::size_t i = 0; i < samples.images[0].signal.size(); ++i)
+        if (i % kChannels > 0) samples.images[0].signal[i] = std::nanf("");
+    const FitResult result = fit(mono, samples, exact_poses(), {});
+    EXPECT_TRUE(result.numbers.empty());
+    EXPECT_FALSE(result.held.empty());
+}
+
 // As maps, whose errors no jackknife finds: it is most of the work, and doubts know nothing of it.
 FitSamples thirty_maps(std::uint64_t seed) {
     std::vector<Sled> sleds;
