@@ -11,7 +11,10 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <span>
 
 namespace aphotic {
 namespace {
@@ -27,8 +30,13 @@ struct Bench {
     FitEquations& equations;
     PathRange paths;
 
+    bool learns_effects = false;  // their variances
+
     [[nodiscard]] PathLight path_light(const FitState& state, bool has_derivatives) const {
         return {rig, state.water, state.floor, paths, has_derivatives};
+    }
+    [[nodiscard]] Bench with(FitEquations& others) const {
+        return {rig, light, others, paths, learns_effects};
     }
 };
 
@@ -42,6 +50,10 @@ Solved shares_of(const FitEquations::Parts& parts) {
     return {.shares = shares,
             .squares = std::max(
                 0.0, parts.squares - 2.0 * parts.b.dot(shares) + shares.dot(parts.G * shares))};
+}
+
+VectorXd shares_at(const Bench& bench, const FitState& state) {
+    return shares_of(bench.equations.parts(state, bench.path_light(state, false))).shares;
 }
 
 std::vector<Index> numbers_after(Index parts, Index count) {
@@ -66,13 +78,8 @@ class Reduced : public ceres::CostFunction {
         const auto count = static_cast<Index>(problem_.free.size());
         const PathLight light = bench_.path_light(state, has_slopes);
         const Solved& solved = solved_at(VectorXd::Map(x[0], count), state, light);
-        VectorXd off(count);  // from where it began
-        double squares = solved.squares;
-        for (Index k = 0; k < count; ++k) {
-            const FreeNumber& one = problem_.free[static_cast<std::size_t>(k)];
-            off(k) = x[0][k] - one.start / one.plausible;
-            squares += off(k) * off(k);
-        }
+        const VectorXd off = VectorXd::Map(x[0], count) - problem_.start();
+        const double squares = solved.squares + off.squaredNorm();
         if (!std::isfinite(squares)) return false;
         Eigen::Map<VectorXd> r(residuals, count + 1);
         r.setZero();
@@ -81,9 +88,7 @@ class Reduced : public ceres::CostFunction {
         const FitEquations::Normal normal =
             bench_.equations.normal(state, light, solved.shares, problem_.numbers(), false);
         const Index parts = solved.shares.size();
-        VectorXd scale(count);
-        for (Index k = 0; k < count; ++k)
-            scale(k) = problem_.free[static_cast<std::size_t>(k)].plausible;
+        const VectorXd scale = problem_.plausible();
         MatrixXd S =
             scale.asDiagonal() *
             eliminated(normal.H, active_parts(solved.shares), numbers_after(parts, count)) *
@@ -125,12 +130,10 @@ class Reduced : public ceres::CostFunction {
 // Moves the problem's state to the least of the objective. Steps that it took.
 int search(const Bench& bench, FitProblem& problem, int most_steps) {
     if (problem.free.empty()) return 0;
-    std::vector<double> x;
-    for (const FreeNumber& one : problem.free)
-        x.push_back(number_in(problem.state, one.number) / one.plausible);
+    VectorXd x = problem.now();
     ceres::Problem minimised;
     minimised.AddResidualBlock(new Reduced(bench, problem), nullptr, x.data());
-    for (std::size_t k = 0; k < x.size(); ++k) {
+    for (std::size_t k = 0; k < problem.free.size(); ++k) {
         const FreeNumber& one = problem.free[k];
         const auto at = static_cast<int>(k);
         if (std::isfinite(one.least))
@@ -165,31 +168,67 @@ void start_gains(const Bench& bench, FitProblem& problem) {
     }
 }
 
+// Ties, noise and poses as this answer leaves them.
+void learn(const Bench& bench, const FitProblem& problem, Robust robust) {
+    const PathLight light = bench.path_light(problem.state, false);
+    const Solved solved = shares_of(bench.equations.parts(problem.state, light));
+    bench.equations.tie_parts(problem.state, solved.shares);
+    bench.equations.learn_noise(problem.state, light, solved.shares, robust, bench.learns_effects);
+}
+
+// How blocks count, round by round: far from the rig Tukey's weights would take what is right for
+// stones.
+constexpr std::array kRounds{
+    Robust::Huber, Robust::Huber, Robust::Biweight, Robust::Biweight, Robust::Biweight};
+constexpr std::array kRoundsNearby{Robust::Huber, Robust::Biweight, Robust::Biweight};
+
+// The share of the work that is done after so many of kRounds and the search before them.
+double share_after(std::size_t searches) {
+    return static_cast<double>(searches) / static_cast<double>(kRounds.size() + 1);
+}
+
+// What is learned and the search that follows, so many times. Steps that it took.
+int search_in_rounds(const Bench& bench,
+                     FitProblem& problem,
+                     std::span<const Robust> rounds,
+                     const std::function<void(std::size_t round)>& progress) {
+    constexpr int kSteps = 12;
+    int steps = 0;
+    for (std::size_t round = 0; round < rounds.size(); ++round) {
+        progress(round);
+        learn(bench, problem, rounds[round]);
+        steps += search(bench, problem, kSteps);
+    }
+    return steps;
+}
+
 constexpr std::size_t kGroups = 12;  // of images, each left out once
 constexpr std::size_t kFewGroups = 10;
 
+// Shares, then numbers.
+VectorXd values_of(const Bench& bench, const FitProblem& problem) {
+    const VectorXd shares = shares_at(bench, problem.state);
+    VectorXd all(shares.size() + static_cast<Index>(problem.free.size()));
+    all << shares, problem.now().cwiseProduct(problem.plausible());
+    return all;
+}
+
 // Variances of shares and numbers by the jackknife: what they move by as each group of images is
-// left out in turn. It knows no model of the noise, nor that the light is anything like a straight
-// line.
-VectorXd jackknife(const Bench& bench, const FitProblem& problem, std::size_t groups) {
+// left out in turn, and the fit finds its weights anew.
+VectorXd jackknife(const Bench& bench,
+                   const FitProblem& problem,
+                   std::size_t groups,
+                   const RunWatch& watch) {
     std::vector<VectorXd> found;
     for (std::size_t group = 0; group < groups; ++group) {
-        bench.equations.leave_out(group, groups);
+        watch.progress("its errors", static_cast<double>(group) / static_cast<double>(groups));
+        FitEquations equations = bench.equations;
+        equations.leave_out(group, groups);
         FitProblem without = problem;
-        constexpr int kMostSteps = 12;
-        search(bench, without, kMostSteps);
-        const VectorXd shares =
-            shares_of(bench.equations.parts(without.state, bench.path_light(without.state, false)))
-                .shares;
-        VectorXd all(shares.size() + static_cast<Index>(without.free.size()));
-        all.head(shares.size()) = shares;
-        for (std::size_t k = 0; k < without.free.size(); ++k) {
-            all(shares.size() + static_cast<Index>(k)) =
-                number_in(without.state, without.free[k].number);
-        }
-        found.push_back(std::move(all));
+        const Bench own = bench.with(equations);
+        search_in_rounds(own, without, kRoundsNearby, [](std::size_t) {});
+        found.push_back(values_of(own, without));
     }
-    bench.equations.leave_out(0, 0);
     VectorXd mean = VectorXd::Zero(found.front().size());
     for (const VectorXd& one : found) mean += one / static_cast<double>(groups);
     VectorXd variances = VectorXd::Zero(mean.size());
@@ -197,12 +236,18 @@ VectorXd jackknife(const Bench& bench, const FitProblem& problem, std::size_t gr
     return variances * static_cast<double>(groups - 1) / static_cast<double>(groups);
 }
 
-// The covariance, widened to these variances where its own are smaller.
-void widen(const VectorXd& variances, MatrixXd& covariance) {
-    VectorXd factor = VectorXd::Ones(variances.size());
-    for (Index k = 0; k < variances.size(); ++k) {
+// Of a variance by kGroups: by chance it is so many times the true one or more in a twentieth of
+// all cases; and Student's t over the normal's, squared.
+constexpr double kBeyondChance = 1.8;
+constexpr double kFew = 1.25;
+
+// The covariance, with the jackknife's variances where these are larger by more than chance.
+void widen(const VectorXd& jackknife, MatrixXd& covariance) {
+    VectorXd factor = VectorXd::Ones(jackknife.size());
+    for (Index k = 0; k < jackknife.size(); ++k) {
         const double own = covariance(k, k);
-        if (own > 0.0) factor(k) = std::sqrt(std::max(1.0, variances(k) / own));
+        if (own > 0.0 && jackknife(k) > kBeyondChance * own)
+            factor(k) = std::sqrt(kFew * jackknife(k) / own);
     }
     covariance = factor.asDiagonal() * covariance * factor.asDiagonal();
 }
@@ -229,46 +274,137 @@ std::vector<BeamPoint> curve_of(const FitBeam& beam,
     return points;
 }
 
-// What cannot be told is found first: then there is no result.
+// Another answer to the same images.
+struct Rival {
+    VectorXd values;      // shares, then numbers
+    double excess = 0.0;  // of its objective over the answer's
+};
+
+double objective(const Bench& bench, const FitProblem& problem) {
+    const auto parts = bench.equations.parts(problem.state, bench.path_light(problem.state, false));
+    return shares_of(parts).squares + (problem.now() - problem.start()).squaredNorm();
+}
+
+constexpr int kFirstSteps = 25;
+
+// Of one answer's objective over another's, by the noise as the other leaves it and Huber's
+// weights: Tukey's take what speaks against the answer that they come from for stones.
+double excess_of(const FitProblem& one, const Bench& bench, const FitProblem& other) {
+    FitEquations equations = bench.equations;
+    const Bench own = bench.with(equations);
+    learn(own, other, Robust::Huber);
+    return objective(own, one) - objective(own, other);
+}
+
+// The search once more from the rig, by the noise that is known now: the first steps of the first
+// knew none, and on a rough floor two answers may explain the images all but alike. The better by
+// the noise of both stays; the other is returned.
+Rival search_again(const Bench& bench, FitProblem& problem, const RunWatch& watch, int& steps) {
+    FitEquations equations = bench.equations;
+    const Bench own = bench.with(equations);
+    FitProblem again = problem;
+    learn(own, problem, Robust::Huber);
+    again.state = problem.at(problem.start().data());
+    steps += search(own, again, kFirstSteps);
+    steps += search_in_rounds(own, again, kRounds, [&](std::size_t round) {
+        watch.progress("fitting again", share_after(round + 1));
+    });
+    const double excess = 0.5 * (excess_of(again, bench, problem) - excess_of(problem, own, again));
+    if (excess < 0.0) {
+        std::swap(problem, again);
+        std::swap(bench.equations, equations);
+    }
+    return {.values = values_of(own, again), .excess = std::abs(excess)};
+}
+
+// What an answer says of itself: how surely.
+struct Equations {
+    PathLight light;
+    Solved solved;
+    FitEquations::Normal normal;
+};
+
+Equations equations_at(const Bench& bench, const FitProblem& problem) {
+    PathLight light = bench.path_light(problem.state, true);
+    Solved solved = shares_of(bench.equations.parts(problem.state, light));
+    FitEquations::Normal normal =
+        bench.equations.normal(problem.state, light, solved.shares, problem.numbers(), true);
+    return {std::move(light), std::move(solved), std::move(normal)};
+}
+
+// How much larger the variances of the numbers are than noise alone would have them.
+double dispersion_of(const MatrixXd& covariance, const Equations& at, const FitProblem& problem) {
+    const auto count = static_cast<Index>(problem.free.size());
+    const Index parts = at.solved.shares.size();
+    const VectorXd scale = problem.plausible();
+    MatrixXd S =
+        scale.asDiagonal() *
+        eliminated(at.normal.H, active_parts(at.solved.shares), numbers_after(parts, count)) *
+        scale.asDiagonal();
+    S.diagonal().array() += 1.0;
+    const VectorXd own = S.llt().solve(MatrixXd::Identity(count, count)).diagonal();
+    const VectorXd told = covariance.diagonal().tail(count).cwiseQuotient(scale.cwiseAbs2());
+    return std::max(1.0, told.cwiseQuotient(own).mean());
+}
+
+// A rival that is as good, by the noise that the errors tell, and elsewhere: errors become those of
+// both, each as likely, and a doubt names the number that it has most otherwise.
+void look_at_rival(const Rival& rival,
+                   const Equations& at,
+                   const FitProblem& problem,
+                   FitResult& result) {
+    constexpr double kAsGood = 9.0;  // of its objective, in squares of standard errors
+    constexpr double kElsewhere = 2.0;
+    const double dispersion = dispersion_of(result.covariance, at, problem);
+    VectorXd values(rival.values.size());
+    values << result.shares, problem.now().cwiseProduct(problem.plausible());
+    const VectorXd off = rival.values - values;
+    const VectorXd errors = result.covariance.diagonal().cwiseSqrt();
+    const auto count = static_cast<Index>(problem.free.size());
+    Index worst = 0;
+    const double most =
+        off.tail(count).cwiseAbs().cwiseQuotient(errors.tail(count)).maxCoeff(&worst);
+    if (rival.excess > kAsGood * dispersion || most < kElsewhere) return;
+    result.covariance += 0.5 * off * off.transpose();
+    const FreeNumber& number = problem.free[static_cast<std::size_t>(worst)];
+    result.left.doubts.push_back(
+        {fmt::format("another rig explains the images as well, with {} of", number.key),
+         number.per_unit * rival.values(result.shares.size() + worst)});
+}
+
 FitResult result_of(const Bench& bench,
                     const FitProblem& problem,
                     const FitSamples& samples,
-                    std::vector<NotTold>& untold) {
-    const PathLight light = bench.path_light(problem.state, true);
-    const Solved solved = shares_of(bench.equations.parts(problem.state, light));
-    const FitEquations::Normal normal =
-        bench.equations.normal(problem.state, light, solved.shares, problem.numbers(), true);
-    untold = not_told(bench.equations, problem, light, normal.H, solved.shares, sleds_of(samples));
+                    const std::optional<Rival>& rival,
+                    const RunWatch& watch) {
+    const Equations at = equations_at(bench, problem);
     FitResult result;
-    if (!untold.empty()) return result;  // refused, or fitted again: no more of it is wanted
     result.state = problem.state;
-    result.shares = solved.shares;
-    result.covariance =
-        covariance_of(normal, solved.shares, problem.free, bench.equations.weights_factor());
+    result.shares = at.solved.shares;
+    result.covariance = covariance_of(at.normal, result.shares, problem.free);
     result.effects = bench.equations.effects();
     result.noise = bench.equations.noise();
     result.blocks = bench.equations.blocks();
-    result.tiles = normal.tiles;
-    result.left = fit_residuals(bench.equations, samples, result.state, light, result.shares);
-    const std::size_t groups = std::min(kGroups, samples.images.size());
-    if (groups >= kFewGroups && !samples.are_maps) {
-        // The biweight's weights take what another answer would explain for stones, and would hold
-        // the fit to this one.
-        bench.equations.learn_noise(problem.state, light, solved.shares, Robust::Huber, false);
-        widen(jackknife(bench, problem, groups), result.covariance);
+    result.tiles = at.normal.tiles;
+    result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
+    if (rival) {
+        const std::size_t groups = std::min(kGroups, samples.images.size());
+        widen(jackknife(bench, problem, groups, watch), result.covariance);
+        if (!problem.free.empty()) look_at_rival(*rival, at, problem, result);
     }
-    const Index parts = solved.shares.size();
+    const Index parts = result.shares.size();
     for (std::size_t k = 0; k < problem.free.size(); ++k) {
         const FreeNumber& one = problem.free[k];
-        const Index at = parts + static_cast<Index>(k);
+        const Index at_number = parts + static_cast<Index>(k);
         const double value = number_in(result.state, one.number);
-        result.numbers.push_back({.number = one.number,
-                                  .key = one.key,
-                                  .start = one.start * one.per_unit,
-                                  .value = value * one.per_unit,
-                                  .error = one.per_unit * std::sqrt(result.covariance(at, at)),
-                                  .per_unit = one.per_unit,
-                                  .is_at_bound = value <= one.least || value >= one.most});
+        result.numbers.push_back(
+            {.number = one.number,
+             .key = one.key,
+             .start = one.start * one.per_unit,
+             .value = value * one.per_unit,
+             .error = one.per_unit * std::sqrt(result.covariance(at_number, at_number)),
+             .per_unit = one.per_unit,
+             .is_at_bound = value <= one.least || value >= one.most});
     }
     result.confounded = confounded_in(result.covariance, parts, problem.free);
     Index first = 0;
@@ -283,6 +419,35 @@ FitResult result_of(const Bench& bench,
         first += count;
     }
     return result;
+}
+
+// Variances of what images share, at first.
+EffectVariances first_effects(const FitOptions& options, bool are_maps) {
+    constexpr double kLevel = 0.05;  // of floors
+    constexpr double kHue = 0.02;
+    const double altitude = options.altitude_error_m * options.altitude_error_m;
+    const double attitude = options.attitude_error_rad * options.attitude_error_rad;
+    const bool is_exact = altitude + attitude == 0.0 && are_maps;
+    EffectVariances effects{};
+    effects.fill(is_exact ? 0.0 : kLevel * kLevel);
+    effects[1] = effects[2] = is_exact ? 0.0 : kHue * kHue;
+    effects[kPoseEffect] = altitude;
+    effects[kPoseEffect + 1] = effects[kPoseEffect + 2] = attitude;
+    return effects;
+}
+
+// Held at the rig's, or where they were asked for, refused.
+void hold(const std::vector<NotTold>& untold, const FitOptions& options, FitProblem& problem) {
+    if (options.free) {
+        std::vector<std::string> words;
+        for (const NotTold& one : untold) words.push_back(words_of(one));
+        throw InputError("{}", fmt::join(words, "; "));
+    }
+    for (const NotTold& one : untold) {
+        const auto at = std::ranges::find(problem.free, one.key, &FreeNumber::key);
+        number_in(problem.state, at->number) = at->start;
+        problem.free.erase(at);
+    }
 }
 
 }  // namespace
@@ -304,69 +469,41 @@ FitResult fit(const RigText& text,
     if (paths.longest_m <= 0.0) throw InputError("no image sees the floor");
     FitEquations equations(light, samples, options.threads);
     FitProblem problem = fit_problem(text, options, light.widest_rad(sleds));
-    const Bench bench{.rig = text, .light = light, .equations = equations, .paths = paths};
-
-    EffectVariances effects{};
-    constexpr double kLevel = 0.05;  // of floors, at first
-    constexpr double kHue = 0.02;
-    const double altitude = options.altitude_error_m * options.altitude_error_m;
-    const double attitude = options.attitude_error_rad * options.attitude_error_rad;
-    const bool is_exact = altitude + attitude == 0.0 && samples.are_maps;
-    const double level = is_exact ? 0.0 : kLevel * kLevel;
-    const double hue = is_exact ? 0.0 : kHue * kHue;
-    effects.fill(level);
-    effects[1] = effects[2] = hue;
-    effects[kPoseEffect] = altitude;
-    effects[kPoseEffect + 1] = effects[kPoseEffect + 2] = attitude;
     constexpr std::size_t kManyImages = 30;  // that tell the variances of what they share
-    const bool learns_effects = samples.images.size() >= kManyImages;
-
+    const Bench bench{.rig = text,
+                      .light = light,
+                      .equations = equations,
+                      .paths = paths,
+                      .learns_effects = samples.images.size() >= kManyImages};
+    const EffectVariances effects = first_effects(options, samples.are_maps);
     std::vector<NotTold> held;
-    FitResult result;
-    constexpr int kHuberRounds = 2;
-    constexpr int kRounds = 5;
     int steps = 0;
-    for (int attempt = 0;; ++attempt) {
+    for (bool is_first = true;; is_first = false) {
+        const auto progress = [&](std::size_t round) {
+            watch.progress("fitting", share_after(round));
+        };
+        progress(0);
         equations.assume_noise();
-        if (attempt == 0) start_gains(bench, problem);
-        equations.tie_parts(
-            problem.state,
-            shares_of(equations.parts(problem.state, bench.path_light(problem.state, false)))
-                .shares);
-        for (int round = 0; round <= kRounds; ++round) {
-            watch.progress("fitting", static_cast<double>(round) / (kRounds + 1));
-            constexpr int kFirstSteps = 25;
-            constexpr int kSteps = 12;
-            steps += search(bench, problem, round == 0 ? kFirstSteps : kSteps);
-            if (round == kRounds) break;
-            const PathLight path_light = bench.path_light(problem.state, false);
-            const Solved solved = shares_of(equations.parts(problem.state, path_light));
-            if (round == 0) equations.set_effects(effects);
-            equations.tie_parts(problem.state, solved.shares);
-            equations.learn_noise(problem.state,
-                                  path_light,
-                                  solved.shares,
-                                  round < kHuberRounds ? Robust::Huber : Robust::Biweight,
-                                  learns_effects);
-        }
-        std::vector<NotTold> untold;
-        result = result_of(bench, problem, samples, untold);
+        if (is_first) start_gains(bench, problem);
+        equations.tie_parts(problem.state, shares_at(bench, problem.state));
+        steps += search(bench, problem, kFirstSteps);
+        equations.set_effects(effects);
+        steps += search_in_rounds(
+            bench, problem, kRounds, [&](std::size_t round) { progress(round + 1); });
+        const Equations at = equations_at(bench, problem);
+        const std::vector<NotTold> untold =
+            not_told(equations, problem, at.light, at.normal.H, at.solved.shares, sleds);
         if (untold.empty()) break;
-        if (options.free) {
-            std::vector<std::string> words;
-            for (const NotTold& one : untold) words.push_back(words_of(one));
-            throw InputError("{}", fmt::join(words, "; "));
-        }
-        for (const NotTold& one : untold) {
-            held.push_back(one);
-            const auto at = std::ranges::find(problem.free, one.key, &FreeNumber::key);
-            number_in(problem.state, at->number) = at->start;
-            problem.free.erase(at);
-        }
+        hold(untold, options, problem);
+        held.insert(held.end(), untold.begin(), untold.end());
     }
+    std::optional<Rival> rival;
+    const bool has_many_images = !samples.are_maps && samples.images.size() >= kFewGroups;
+    if (has_many_images) rival = search_again(bench, problem, watch, steps);
+    FitResult result = result_of(bench, problem, samples, rival, watch);
     watch.progress("fitting", 1.0);
     result.held = std::move(held);
-    result.rounds = kRounds + 1;
+    result.rounds = static_cast<int>(kRounds.size()) + 1;
     result.steps = steps;
     return result;
 }

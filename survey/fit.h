@@ -20,9 +20,14 @@
 // not, are held; or where they were asked for, refused, with what they are confounded with and the
 // altitude at which further images would part them.
 //
-// Errors are the sandwich of fit_equations.h; of ten images and more they are no smaller than the
-// jackknife's, by Huber's weights: how far the fit moves as each group of images in turn is left
-// out,
+// Images, ten and more, are fitted twice, the second time from the rig again by the noise that is
+// known by then: on a rough floor two rigs may explain them all but alike, and steps that know no
+// noise may lead to either. The better stays. Where the other is as good, to three standard errors,
+// and over two elsewhere, a doubt says so, and errors are those of both, each as likely.
+//
+// Errors are the sandwich of fit_equations.h; of images, where it is larger than chance would have
+// it, the jackknife: how far the fit, its weights found anew, moves as each group of images in turn
+// is left out,
 //
 //   (n - 1)/n sum over groups (x_g - mean x_g)^2       n = min(kGroups, images)
 //

@@ -21,69 +21,8 @@ using Eigen::VectorXd;
 
 constexpr double kFirstNoise = 0.05;
 constexpr double kFirstFloor = 0.003;  // of the brightest
-constexpr double kNormal = 1.4826;     // standard deviation of a normal over its median deviation
-
-struct Influence {
-    double weight = 0.0;
-    double slope = 0.0;  // of size times weight
-};
-
-// Of a block that is off by this many of its noise.
-Influence influence_of(double size, Robust robust) {
-    if (robust == Robust::Huber)
-        return size > kHuber ? Influence{.weight = kHuber / size} : Influence{1.0, 1.0};
-    const double u2 = std::pow(size / kBiweight, 2.0);
-    if (u2 >= 1.0) return {};
-    return {.weight = (1.0 - u2) * (1.0 - u2), .slope = (1.0 - u2) * (1.0 - 5.0 * u2)};
-}
-
 // Of a block that is not left out: what no other sees has a solution all the same.
 constexpr double kLeastWeight = 1e-3;
-
-double median_of(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-struct Deviation {
-    double signal;
-    double residual;  // at the noise of an image of scale 1
-};
-
-// v_0, v_1, v_2 from the median deviations of blocks of like signal.
-BlockNoise noise_of(std::vector<Deviation> deviations) {
-    constexpr std::size_t kLeastOfBin = 50;
-    constexpr std::size_t kMostBins = 16;
-    std::sort(deviations.begin(), deviations.end(), [](const auto& a, const auto& b) {
-        return a.signal < b.signal;
-    });
-    const std::size_t bins = std::clamp<std::size_t>(deviations.size() / kLeastOfBin, 1, kMostBins);
-    MatrixXd A(static_cast<Index>(bins), 3);
-    VectorXd y(static_cast<Index>(bins));
-    const double most = std::max(deviations.back().signal, std::numeric_limits<double>::min());
-    for (std::size_t bin = 0; bin < bins; ++bin) {
-        const std::size_t from = bin * deviations.size() / bins;
-        const std::size_t to = (bin + 1) * deviations.size() / bins;
-        std::vector<double> sizes;
-        double signal = 0.0;
-        for (std::size_t i = from; i < to; ++i) {
-            sizes.push_back(std::abs(deviations[i].residual));
-            signal += std::max(0.0, deviations[i].signal) / static_cast<double>(to - from) / most;
-        }
-        const double sigma = std::max(kNormal * median_of(sizes), 1e-9 * most);
-        // Each bin's own variance counts alike.
-        const auto row = static_cast<Index>(bin);
-        A.row(row) << 1.0, signal, signal * signal;
-        A.row(row) /= sigma * sigma;
-        y(row) = 1.0;
-    }
-    const VectorXd v = non_negative_fit(A.transpose() * A, A.transpose() * y);
-    // Never none: what the fit makes dark has a weight, too.
-    constexpr double kLeast = 1e-6;
-    const double least = kLeast * kLeast * most * most;
-    return {.variance = {std::max(v(0), least), v(1) / most, v(2) / (most * most)}};
-}
 
 // a and b of each wave, by a + b: rings of like length.
 struct Wave {
@@ -91,12 +30,21 @@ struct Wave {
     int b;
 };
 
-std::vector<Wave> waves() {
+FitLight::Rows waves_at(const FitPlaces& places) {
     std::vector<Wave> all;
     for (int ring = 1; ring <= kWaves; ++ring) {
         for (int a = 0; a <= ring; ++a) all.push_back({a, ring - a});
     }
-    return all;
+    FitLight::Rows waves(static_cast<Index>(places.size()), static_cast<Index>(all.size()));
+    for (std::size_t place = 0; place < places.size(); ++place) {
+        const double x = places.columns[place] / places.width_px * std::numbers::pi;
+        const double y = places.rows[place] / places.height_px * std::numbers::pi;
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            waves(static_cast<Index>(place), static_cast<Index>(k)) =
+                std::cos(all[k].a * x) * std::cos(all[k].b * y);
+        }
+    }
+    return waves;
 }
 
 // The mean over each ring's waves in place of each: waves of one length vary alike.
@@ -112,6 +60,21 @@ void pool_waves(EffectVariances& variances) {
     }
 }
 
+// X^T X.
+MatrixXd squared(const FitLight::Rows& X) {
+    MatrixXd all = MatrixXd::Zero(X.cols(), X.cols());
+    all.selfadjointView<Eigen::Lower>().rankUpdate(X.transpose());
+    return all.selfadjointView<Eigen::Lower>();
+}
+
+// work(image, its number).
+template <typename Images, typename Work>
+void for_each_image(Images& images, int threads, const Work& work) {
+    parallel_for(images.size(), static_cast<std::size_t>(threads), [&](std::size_t i, std::size_t) {
+        work(images[i], i);
+    });
+}
+
 template <typename Sum>
 Sum added_up(const std::vector<Sum>& of, const auto& add) {
     Sum all = of.front();
@@ -121,21 +84,52 @@ Sum added_up(const std::vector<Sum>& of, const auto& add) {
 
 }  // namespace
 
+bool FitEquations::Image::has(Index row) const {
+    const auto c = row % kChannels;
+    return whitening[static_cast<std::size_t>(row / kChannels)](c, c) > 0.0;
+}
+
+BlockChannels FitEquations::Image::block(const VectorXd& of, std::size_t place) const {
+    const Index row = kChannels * static_cast<Index>(place);
+    BlockChannels values = of.segment<kChannels>(row);
+    for (Index c = 0; c < kChannels; ++c)
+        if (!has(row + c)) values(c) = std::numeric_limits<double>::quiet_NaN();
+    return values;
+}
+
+FitEquations::Rows FitEquations::Image::white(Rows columns) const {
+    for (std::size_t place = 0; place < whitening.size(); ++place) {
+        auto block = columns.middleRows<kChannels>(kChannels * static_cast<Index>(place));
+        block = (whitening[place] * block).eval();
+    }
+    return columns;
+}
+
+VectorXd FitEquations::Image::effects_in(const VectorXd& off) const {
+    return effect_covariance * (white_effects.transpose() * white(off));
+}
+
+VectorXd FitEquations::Image::white_rest(const VectorXd& off) const {
+    const VectorXd all = white(off);
+    return all - white_effects * (effect_covariance * (white_effects.transpose() * all));
+}
+
 FitEquations::FitEquations(const FitLight& light, const FitSamples& samples, int threads)
-    : light_(light), threads_(threads) {
+    : light_(&light), threads_(threads), waves_(waves_at(samples.places)) {
     double mean_images = 0.0;
     for (const FitImage& image : samples.images)
         mean_images += image.images / static_cast<double>(samples.images.size());
     for (const FitImage& from : samples.images) {
-        Image image{.signal = VectorXd::Zero(static_cast<Index>(light.rows())),
-                    .weight = VectorXd::Zero(static_cast<Index>(light.rows())),
-                    .effects = Rows::Zero(static_cast<Index>(light.rows()), kEffects),
-                    .noise_scale = mean_images / from.images,
-                    .sled = from.sled};
+        Image image{
+            .signal = VectorXd::Zero(static_cast<Index>(light.rows())),
+            .whitening = std::vector<ChannelMatrix>(samples.places.size(), ChannelMatrix::Zero()),
+            .effects = Rows::Zero(static_cast<Index>(light.rows()), kEffects),
+            .noise_scale = mean_images / from.images,
+            .sled = from.sled};
         for (std::size_t row = 0; row < light.rows(); ++row) {
             if (!std::isfinite(from.signal[row])) continue;
             image.signal(static_cast<Index>(row)) = from.signal[row];
-            image.weight(static_cast<Index>(row)) = 1.0;
+            image.whitening[row / kChannels].diagonal()(static_cast<Index>(row % kChannels)) = 1.0;
             ++blocks_;
         }
         image.moved = image.signal;
@@ -164,19 +158,18 @@ void FitEquations::assume_noise() {
     for (const Image& image : images_) most = std::max(most, image.signal.maxCoeff());
     noise_ = {.variance = {std::pow(kFirstFloor * most, 2.0), 0.0, std::pow(kFirstNoise, 2.0)}};
     effects_.fill(0.0);
-    for (Image& image : images_) {
-        for (Index row = 0; row < image.weight.size(); ++row) {
-            if (image.weight(row) <= 0.0) continue;
-            image.weight(row) =
-                1.0 / (image.noise_scale * noise_.at(std::max(0.0, image.signal(row))));
+    for_each_image(images_, threads_, [&](Image& image, std::size_t) {
+        for (std::size_t place = 0; place < image.whitening.size(); ++place) {
+            image.whitening[place] =
+                noise_.whitening(image.block(image.signal, place), image.noise_scale);
         }
         settle(image);
-    }
+    });
 }
 
 void FitEquations::set_effects(const EffectVariances& variances) {
     effects_ = variances;
-    for (Image& image : images_) settle(image);
+    for_each_image(images_, threads_, [&](Image& image, std::size_t) { settle(image); });
 }
 
 FitEquations::Rows FitEquations::effects_at(const FitState& state,
@@ -185,7 +178,7 @@ FitEquations::Rows FitEquations::effects_at(const FitState& state,
                                             const Sled& sled,
                                             VectorXd& signal) const {
     Rows columns;
-    light_.columns_into(state, light, sled, shares, {}, columns);
+    light_->columns_into(state, light, sled, shares, {}, columns);
     signal = columns.rightCols<1>();
     const VectorXd of_floor = columns.rightCols<2>().col(0);
     Rows effects = Rows::Zero(signal.size(), kEffects);
@@ -196,19 +189,8 @@ FitEquations::Rows FitEquations::effects_at(const FitState& state,
     }
     effects.middleCols(kPoseEffect, FitLight::kPoseColumns) =
         columns.middleCols(shares.size(), FitLight::kPoseColumns);
-    const FitPlaces& places = light_.places();
-    const std::vector<Wave> all = waves();
-    for (std::size_t place = 0; place < places.size(); ++place) {
-        const double x = places.columns[place] / places.width_px * std::numbers::pi;
-        const double y = places.rows[place] / places.height_px * std::numbers::pi;
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            const double wave = std::cos(all[k].a * x) * std::cos(all[k].b * y);
-            for (std::size_t c = 0; c < kChannels; ++c) {
-                const auto row = static_cast<Index>(kChannels * place + c);
-                effects(row, static_cast<Index>(kWaveEffect + k)) = wave * of_floor(row);
-            }
-        }
-    }
+    for (Index row = 0; row < signal.size(); ++row)
+        effects.row(row).tail(waves_.cols()) = of_floor(row) * waves_.row(row / kChannels);
     return effects;
 }
 
@@ -216,18 +198,12 @@ void FitEquations::settle(Image& image) const {
     VectorXd root(static_cast<Index>(kEffects));
     for (std::size_t k = 0; k < kEffects; ++k)
         root(static_cast<Index>(k)) = std::sqrt(effects_[k] * image.noise_scale);
-    image.weighted_effects = image.weight.asDiagonal() * image.effects;
+    image.white_effects = image.white(image.effects);
     // Gamma^1/2 (1 + Gamma^1/2 U^T D^-1 U Gamma^1/2)^-1 Gamma^1/2 needs no inverse of Gamma.
     const MatrixXd inner = MatrixXd::Identity(kEffects, kEffects) +
-                           root.asDiagonal() *
-                               MatrixXd(image.effects.transpose() * image.weighted_effects) *
-                               root.asDiagonal();
+                           root.asDiagonal() * squared(image.white_effects) * root.asDiagonal();
     const MatrixXd gamma_root = root.asDiagonal();
     image.effect_covariance = gamma_root * inner.ldlt().solve(gamma_root);
-}
-
-VectorXd FitEquations::effects_in(const Image& image, const VectorXd& off) {
-    return image.effect_covariance * (image.weighted_effects.transpose() * off);
 }
 
 // The image's effects at its pose, and all that follows from them.
@@ -253,21 +229,41 @@ void FitEquations::move_pose(const VectorXd& effects, Image& image) {
 }
 
 void FitEquations::learn_effects(const std::vector<VectorXd>& off) {
+    std::vector<VectorXd> squares(images_.size());
+    for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
+        squares[i] = image.effects_in(off[i]).cwiseAbs2() + image.effect_covariance.diagonal();
+        squares[i] /= image.noise_scale * static_cast<double>(images_.size());
+    });
+    const VectorXd all = added_up(squares, [](VectorXd& sum, const VectorXd& one) { sum += one; });
     EffectVariances found{};
-    for (std::size_t i = 0; i < images_.size(); ++i) {
-        const VectorXd effects = effects_in(images_[i], off[i]);
-        const VectorXd variances = images_[i].effect_covariance.diagonal();
-        for (std::size_t k = 0; k < kEffects; ++k) {
-            const auto at = static_cast<Index>(k);
-            found[k] += (effects(at) * effects(at) + variances(at)) /
-                        (images_[i].noise_scale * static_cast<double>(images_.size()));
-        }
-    }
+    std::ranges::copy(all, found.begin());
     pool_waves(found);
     for (std::size_t k = 0; k < kEffects; ++k) {
         const bool is_of_pose = k >= kPoseEffect && k < kWaveEffect;
         if (!is_of_pose) effects_[k] = found[k];
     }
+}
+
+// The weights that an image's residuals have by the noise as it is now, and what they sum to.
+FitEquations::Influences FitEquations::weigh(const VectorXd& signals,
+                                             const VectorXd& residuals,
+                                             Robust robust,
+                                             Image& image) const {
+    Influences all;
+    for (std::size_t place = 0; place < image.whitening.size(); ++place) {
+        const BlockChannels signal = image.block(signals, place);
+        const auto channels = static_cast<std::size_t>(signal.array().isFinite().count());
+        if (channels == 0) continue;
+        const ChannelMatrix W = noise_.whitening(signal, image.noise_scale);
+        const double d =
+            (W * residuals.segment<kChannels>(kChannels * static_cast<Index>(place))).norm();
+        const Influence influence = influence_of(d, channels, robust);
+        image.whitening[place] = std::sqrt(std::max(influence.weight, kLeastWeight)) * W;
+        all.weights += static_cast<double>(channels) * influence.weight;
+        all.slopes += static_cast<double>(channels) * influence.slope;
+    }
+    settle(image);
+    return all;
 }
 
 void FitEquations::learn_noise(const FitState& state,
@@ -277,48 +273,37 @@ void FitEquations::learn_noise(const FitState& state,
                                bool estimate_effects) {
     std::vector<VectorXd> signals(images_.size());
     std::vector<VectorXd> off(images_.size());
-    parallel_for(
-        images_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
-            Image& image = images_[i];
-            look_from(state, light, shares, image, signals[i]);
-            const VectorXd effects = effects_in(image, image.moved - signals[i]);
-            move_pose(effects, image);
-            look_from(state, light, shares, image, signals[i]);
-            off[i] = image.moved - signals[i];
-        });
+    for_each_image(images_, threads_, [&](Image& image, std::size_t i) {
+        look_from(state, light, shares, image, signals[i]);
+        const VectorXd effects = image.effects_in(image.moved - signals[i]);
+        move_pose(effects, image);
+        look_from(state, light, shares, image, signals[i]);
+        off[i] = image.moved - signals[i];
+    });
     constexpr int kSweeps = 3;  // noise and effects each need the other
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
-        std::vector<Deviation> deviations;
-        std::vector<VectorXd> residuals;
-        for (std::size_t i = 0; i < images_.size(); ++i) {
-            const Image& image = images_[i];
-            residuals.push_back(off[i] - image.effects * effects_in(image, off[i]));
-            for (Index row = 0; row < off[i].size(); ++row) {
-                if (image.weight(row) <= 0.0) continue;
-                deviations.push_back(
-                    {.signal = signals[i](row),
-                     .residual = residuals[i](row) / std::sqrt(image.noise_scale)});
+        const std::size_t places = light_->places().size();
+        std::vector<VectorXd> residuals(images_.size());
+        std::vector<BlockResidual> blocks(images_.size() * places);
+        for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
+            residuals[i] = off[i] - image.effects * image.effects_in(off[i]);
+            const double scale = std::sqrt(image.noise_scale);
+            for (std::size_t place = 0; place < places; ++place) {
+                blocks[i * places + place] = {.signal = image.block(signals[i], place),
+                                              .residual = image.block(residuals[i], place) / scale};
             }
-        }
+        });
         if (estimate_effects) learn_effects(off);
-        noise_ = noise_of(std::move(deviations));
-        double weights = 0.0;
-        double slopes = 0.0;
-        for (std::size_t i = 0; i < images_.size(); ++i) {
-            Image& image = images_[i];
-            for (Index row = 0; row < image.weight.size(); ++row) {
-                if (image.weight(row) <= 0.0) continue;
-                const double variance =
-                    image.noise_scale * noise_.at(std::max(0.0, signals[i](row)));
-                const double size = std::abs(residuals[i](row)) / std::sqrt(variance);
-                const Influence influence = influence_of(size, robust);
-                image.weight(row) = std::max(influence.weight, kLeastWeight) / variance;
-                weights += influence.weight;
-                slopes += influence.slope;
-            }
-            settle(image);
-        }
-        weights_factor_ = weights / std::max(slopes, 1.0);
+        noise_ = noise_of(blocks);
+        std::vector<Influences> of(images_.size());
+        for_each_image(images_, threads_, [&](Image& image, std::size_t i) {
+            of[i] = weigh(signals[i], residuals[i], robust, image);
+        });
+        const Influences all = added_up(of, [](Influences& sum, const Influences& one) {
+            sum.weights += one.weights;
+            sum.slopes += one.slopes;
+        });
+        weights_factor_ = all.weights / std::max(all.slopes, 1.0);
     }
 }
 
@@ -343,10 +328,9 @@ void FitEquations::tie_parts(const FitState& state, const VectorXd& shares) {
     }
 }
 
-MatrixXd FitEquations::information(const Image& image, const Rows& A) {
-    const Rows weighted = image.weight.asDiagonal() * A;
-    const MatrixXd across = image.weighted_effects.transpose() * A;
-    return A.transpose() * weighted - across.transpose() * image.effect_covariance * across;
+MatrixXd FitEquations::information(const Image& image, const Rows& white) {
+    const MatrixXd across = image.white_effects.transpose() * white;
+    return squared(white) - across.transpose() * image.effect_covariance * across;
 }
 
 FitEquations::Parts FitEquations::parts(const FitState& state, const PathLight& light) const {
@@ -354,12 +338,12 @@ FitEquations::Parts FitEquations::parts(const FitState& state, const PathLight& 
     parallel_for(used_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
         const Image& image = images_[used_[i]];
         Rows A;
-        light_.parts_into(state, light, image.sled, A);
-        // V^-1 y
-        const VectorXd y = image.weight.cwiseProduct(image.moved) -
-                           image.weighted_effects * effects_in(image, image.moved);
-        of[i] = {
-            .G = information(image, A), .b = A.transpose() * y, .squares = y.dot(image.signal)};
+        light_->parts_into(state, light, image.sled, A);
+        const Rows white = image.white(std::move(A));
+        const VectorXd rest = image.white_rest(image.moved);
+        of[i] = {.G = information(image, white),
+                 .b = white.transpose() * rest,
+                 .squares = rest.dot(image.white(image.moved).col(0))};
     });
     Parts all = added_up(of, [](Parts& sum, const Parts& one) {
         sum.G += one.G;
@@ -372,25 +356,25 @@ FitEquations::Parts FitEquations::parts(const FitState& state, const PathLight& 
 
 std::array<double, kChannels> FitEquations::gains(const FitState& state,
                                                   const PathLight& light) const {
-    struct Sums {
-        MatrixXd G;  // of green
-        VectorXd b;
-    };
-    std::vector<Sums> of(images_.size());
     constexpr Index kGreen = 1;
     const auto of_channel = [](const auto& rows, Index channel) {
         return Rows(
             rows(Eigen::seq(channel, Eigen::last, static_cast<Index>(kChannels)), Eigen::all));
     };
-    std::vector<Rows> parts(images_.size());
-    parallel_for(
-        images_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
-            light_.parts_into(state, light, images_[i].sled, parts[i]);
-            const Rows A = of_channel(parts[i], kGreen);
-            const Rows weighted = of_channel(images_[i].weight, kGreen).col(0).asDiagonal() * A;
-            of[i] = {.G = A.transpose() * weighted,
-                     .b = weighted.transpose() * of_channel(images_[i].signal, kGreen).col(0)};
-        });
+    struct Sums {
+        MatrixXd G;  // of green
+        VectorXd b;
+    };
+    std::vector<Sums> of(images_.size());
+    std::vector<Rows> parts(images_.size());  // white, as yet channel by channel
+    std::vector<Rows> signals(images_.size());
+    for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
+        light_->parts_into(state, light, image.sled, parts[i]);
+        parts[i] = image.white(std::move(parts[i]));
+        signals[i] = image.white(image.signal);
+        const Rows A = of_channel(parts[i], kGreen);
+        of[i] = {.G = squared(A), .b = A.transpose() * of_channel(signals[i], kGreen).col(0)};
+    });
     const Sums all = added_up(of, [](Sums& sum, const Sums& one) {
         sum.G += one.G;
         sum.b += one.b;
@@ -401,11 +385,9 @@ std::array<double, kChannels> FitEquations::gains(const FitState& state,
         double along = 0.0;
         double squares = 0.0;
         for (std::size_t i = 0; i < images_.size(); ++i) {
-            const auto at = static_cast<Index>(c);
-            const VectorXd signal = of_channel(parts[i], at) * shares;
-            const VectorXd weight = of_channel(images_[i].weight, at).col(0);
-            along += signal.dot(weight.cwiseProduct(of_channel(images_[i].signal, at).col(0)));
-            squares += signal.dot(weight.cwiseProduct(signal));
+            const VectorXd signal = of_channel(parts[i], static_cast<Index>(c)) * shares;
+            along += signal.dot(of_channel(signals[i], static_cast<Index>(c)).col(0));
+            squares += signal.squaredNorm();
         }
         gains[c] = along > 0.0 && squares > 0.0 ? along / squares : 1.0;
     }
@@ -419,7 +401,7 @@ FitEquations::Rows FitEquations::columns_at(const FitState& state,
                                             const std::vector<FitNumber>& numbers,
                                             const Sled& sled) const {
     Rows all;
-    light_.columns_into(state, light, sled, shares, numbers, all);
+    light_->columns_into(state, light, sled, shares, numbers, all);
     return all.leftCols(shares.size() + static_cast<Index>(numbers.size()));
 }
 
@@ -431,15 +413,14 @@ FitEquations::Normal FitEquations::normal(const FitState& state,
     std::vector<Normal> of(used_.size());
     parallel_for(used_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
         const Image& image = images_[used_[i]];
-        const Rows A = columns_at(state, light, shares, numbers, image.sled);
+        Rows A = columns_at(state, light, shares, numbers, image.sled);
         const VectorXd off = image.moved - A.leftCols(shares.size()) * shares;
-        // D^-1 e
-        const VectorXd left =
-            image.weight.cwiseProduct(off) - image.weighted_effects * effects_in(image, off);
+        const VectorXd left = image.white_rest(off);
+        const Rows white = image.white(std::move(A));
         Normal& normal = of[i];
-        normal.H = information(image, A);
-        normal.gradient = A.transpose() * left;
-        if (has_meat) add_meat(image, A, left, normal);
+        normal.H = information(image, white);
+        normal.gradient = white.transpose() * left;
+        if (has_meat) add_meat(image, white, left, normal);
     });
     Normal all = added_up(of, [&](Normal& sum, const Normal& one) {
         sum.H += one.H;
@@ -456,27 +437,27 @@ FitEquations::Normal FitEquations::normal(const FitState& state,
 }
 
 void FitEquations::add_meat(const Image& image,
-                            const Rows& A,
+                            const Rows& white,
                             const VectorXd& left,
                             Normal& normal) const {
     const MatrixXd& C = image.effect_covariance;
-    const MatrixXd across = image.weighted_effects.transpose() * A;
-    // D V^-1 A: what of the columns the image's own effects cannot take up.
-    const Rows own = A - image.effects * (C * across);
-    MatrixXd scores = MatrixXd::Zero(A.cols(), kTilesAcross * kTilesDown);
-    for (Index row = 0; row < A.rows(); ++row) {
+    const MatrixXd across = image.white_effects.transpose() * white;
+    // W D V^-1 A: what of the columns the image's own effects cannot take up.
+    const Rows own = white - image.white_effects * (C * across);
+    MatrixXd scores = MatrixXd::Zero(white.cols(), kTilesAcross * kTilesDown);
+    for (Index row = 0; row < white.rows(); ++row) {
         if (left(row) == 0.0) continue;
         const auto tile = tile_of_place_[static_cast<std::size_t>(row) / kChannels];
         scores.col(static_cast<Index>(tile)) += left(row) * own.row(row).transpose();
     }
     // Z = A^T V^-1 U = A^T D^-1 U (1 - C U^T D^-1 U)
-    const MatrixXd Z =
-        across.transpose() * (MatrixXd::Identity(kEffects, kEffects) -
-                              C * MatrixXd(image.effects.transpose() * image.weighted_effects));
+    const MatrixXd Z = across.transpose() *
+                       (MatrixXd::Identity(kEffects, kEffects) - C * squared(image.white_effects));
     VectorXd variances(static_cast<Index>(kEffects));
     for (std::size_t k = 0; k < kEffects; ++k)
         variances(static_cast<Index>(k)) = effects_[k] * image.noise_scale;
-    normal.meat = scores * scores.transpose() + Z * variances.asDiagonal() * Z.transpose();
+    normal.meat = weights_factor_ * weights_factor_ * scores * scores.transpose() +
+                  Z * variances.asDiagonal() * Z.transpose();
     normal.tiles = static_cast<std::size_t>((scores.colwise().squaredNorm().array() > 0.0).count());
 }
 
@@ -487,10 +468,12 @@ MatrixXd FitEquations::normal_of(const FitState& state,
                                  const Sled& sled) const {
     Image image;
     image.effects = effects_at(state, light, shares, sled, image.signal);
-    image.weight = image.signal.unaryExpr(
-        [&](double signal) { return 1.0 / noise_.at(std::max(0.0, signal)); });
+    for (std::size_t place = 0; place < light_->places().size(); ++place) {
+        const auto row = static_cast<Index>(kChannels * place);
+        image.whitening.push_back(noise_.whitening(image.signal.segment<kChannels>(row), 1.0));
+    }
     settle(image);
-    return information(image, columns_at(state, light, shares, numbers, sled));
+    return information(image, image.white(columns_at(state, light, shares, numbers, sled)));
 }
 
 FitEquations::Residual FitEquations::residual_of(std::size_t i,
@@ -501,11 +484,10 @@ FitEquations::Residual FitEquations::residual_of(std::size_t i,
     Residual found;
     look_from(state, light, shares, image, found.signal);
     const VectorXd off = image.moved - found.signal;
-    const VectorXd effects = effects_in(image, off);
+    const VectorXd effects = image.effects_in(off);
     found.residual = off - image.effects * effects;
     for (Index row = 0; row < off.size(); ++row) {
-        if (image.weight(row) <= 0.0)
-            found.residual(row) = std::numeric_limits<double>::quiet_NaN();
+        if (!image.has(row)) found.residual(row) = std::numeric_limits<double>::quiet_NaN();
     }
     std::copy(effects.begin(), effects.end(), found.effects.begin());
     return found;

@@ -3,8 +3,7 @@
 // The normal equations of a fit, over all of its images: of the signal y = A x + U c + e of each,
 //
 //   A   columns: the beams' parts (fit_light.h), then the numbers that are free
-//   e   noise of a block: variance v_0 + v_1 S + v_2 S^2, found from the residuals themselves; read
-//       noise, shot noise and the floor's texture
+//   e   noise of a block over its channels (fit_noise.h), found from the residuals themselves
 //   U c what blocks of an image share: the floor's level, and that of red and of blue beside it,
 //       for floors are brighter here than there and of another hue, and its brightness across the
 //       image, for its texture has waves as long as an image: cos(a pi x) cos(b pi y), a + b from 1
@@ -16,26 +15,25 @@
 // Poses go into the light as no straight line: each image's is moved to where its light tells it,
 // round by round, and what the navigation says becomes the mean of what is left of it in c.
 //
-// so that y has the covariance V = D + U Gamma U^T, and
+// so that y has the covariance V = D + U Gamma U^T, D that of e, W^T W = D^-1 block by block, and
 //
-//   A^T V^-1 A = A^T D^-1 A - A^T D^-1 U (Gamma^-1 + U^T D^-1 U)^-1 U^T D^-1 A
+//   A^T V^-1 A = (W A)^T (W A) - (W A)^T W U (Gamma^-1 + (W U)^T W U)^-1 (W U)^T W A
 //
 // A table's parts are tied so weakly that little changes where the images see them: their
 // differences are random, with the standard deviation kTie of the largest share, and so are the
 // differences of these, with kBend. So a beam goes on as it was where nobody looks, and where few
 // do it does not swing between parts that make up for each other.
 //
-// Blocks that are off count less, those by more than kBiweight of their noise nothing: on rough
-// floors stones shade what is behind them, where the light is no flat floor's. The weight is J. W.
-// Tukey's biweight, (1 - u^2)^2 for u under 1, u = e/(kBiweight sigma) (A. E. Beaton and J. W.
-// Tukey, Technometrics 16, 1974, 147); of normal noise errors are a twelfth larger for it. Far from
-// the rig it would take what is right for stones, so the first rounds weigh by Huber's kHuber sigma
-// / |e|, which forgets nothing. The covariance of what is fitted is the sandwich
+// Blocks that are off count less, by the biweight, and those far off nothing: on rough floors
+// stones shade what is behind them, where the light is no flat floor's. Far from the rig that would
+// take what is right for stones, so the first rounds weigh by Huber's, which forgets nothing. The
+// covariance of what is fitted is the sandwich
 //
-//   C = f^2 H^-1 ( sum over tiles s s^T + sum over images Z Gamma Z^T ) H^-1,    H = A^T V^-1 A
+//   C = H^-1 ( f^2 sum over tiles s s^T + sum over images Z Gamma Z^T ) H^-1,    H = A^T V^-1 A
 //
 // f: mean weight over mean slope of the influence e w(e), by which weights that move with the fit
-// widen it (P. J. Huber, Robust Statistics, 1981, 6.5).
+// widen what noise does to it (P. J. Huber, Robust Statistics, 1981, 6.5); what all blocks of an
+// image share moves weights and slopes alike.
 //
 // with s = (D V^-1 A)^T D^-1 (y - A x - U c) over a tile, a part of an image within which noise may
 // be correlated as it likes, and Z = A^T V^-1 U. It holds though e is none that D says
@@ -43,6 +41,7 @@
 #pragma once
 
 #include "survey/fit_light.h"
+#include "survey/fit_noise.h"
 #include "survey/fit_samples.h"
 
 #include <Eigen/Core>
@@ -55,9 +54,6 @@ namespace aphotic {
 
 inline constexpr double kTie = 0.3;
 inline constexpr double kBend = 0.1;
-inline constexpr double kBiweight = 3.44;
-inline constexpr double kHuber = 2.5;
-enum class Robust { Huber, Biweight };
 inline constexpr std::size_t kTilesAcross = 8;
 inline constexpr std::size_t kTilesDown = 6;
 
@@ -67,14 +63,6 @@ inline constexpr std::size_t kPoseEffect = 3;  // the first of the pose's
 inline constexpr std::size_t kWaveEffect = 6;  // and of the waves'
 inline constexpr std::size_t kEffects = kWaveEffect + (kWaves + 1) * (kWaves + 2) / 2 - 1;
 using EffectVariances = std::array<double, kEffects>;
-
-struct BlockNoise {
-    std::array<double, 3> variance{};  // v_0, v_1, v_2
-
-    [[nodiscard]] double at(double signal) const {
-        return variance[0] + signal * (variance[1] + signal * variance[2]);
-    }
-};
 
 class FitEquations {
   public:
@@ -142,22 +130,30 @@ class FitEquations {
                                        const PathLight& light,
                                        const Eigen::VectorXd& shares) const;
 
-    // f.
-    [[nodiscard]] double weights_factor() const { return weights_factor_; }
     [[nodiscard]] std::size_t blocks() const { return blocks_; }
 
   private:
     struct Image {
-        Eigen::VectorXd signal;  // 0 where there is none
-        Eigen::VectorXd weight;  // 0 where there is none
-        Rows effects;            // U
+        Eigen::VectorXd signal;                // 0 where there is none
+        std::vector<ChannelMatrix> whitening;  // by place; its rows are 0 where there is none
+        Rows effects;                          // U
         double noise_scale = 1.0;
         Sled sled{};                                        // as far as the light tells it
         std::array<double, FitLight::kPoseColumns> back{};  // from there to the navigation's
         Eigen::VectorXd moved{};                            // signal less what `back` makes of it
-        // What follows from these: D^-1 U, and (Gamma^-1 + U^T D^-1 U)^-1.
-        Rows weighted_effects{};
+        // What follows from these: W U, and (Gamma^-1 + U^T D^-1 U)^-1.
+        Rows white_effects{};
         Eigen::MatrixXd effect_covariance{};
+
+        [[nodiscard]] bool has(Eigen::Index row) const;
+        // Values of a block, NaN where it has none.
+        [[nodiscard]] BlockChannels block(const Eigen::VectorXd& of, std::size_t place) const;
+        // W of these.
+        [[nodiscard]] Rows white(Rows columns) const;
+        // W (1 - U C U^T D^-1) of what is off: what its own effects cannot take up.
+        [[nodiscard]] Eigen::VectorXd white_rest(const Eigen::VectorXd& off) const;
+        // Its effects, as what is off tells them.
+        [[nodiscard]] Eigen::VectorXd effects_in(const Eigen::VectorXd& off) const;
     };
     [[nodiscard]] Rows effects_at(const FitState& state,
                                   const PathLight& light,
@@ -171,32 +167,39 @@ class FitEquations {
                    Image& image,
                    Eigen::VectorXd& signal) const;
     static void move_pose(const Eigen::VectorXd& effects, Image& image);
-    // The image's own effects, as the residuals of a signal tell them.
-    [[nodiscard]] static Eigen::VectorXd effects_in(const Image& image, const Eigen::VectorXd& off);
     // Columns of parts, then of numbers.
     [[nodiscard]] Rows columns_at(const FitState& state,
                                   const PathLight& light,
                                   const Eigen::VectorXd& shares,
                                   const std::vector<FitNumber>& numbers,
                                   const Sled& sled) const;
-    // A^T V^-1 A of an image's columns.
-    [[nodiscard]] static Eigen::MatrixXd information(const Image& image, const Rows& A);
-    // The sandwich's, where left is D^-1 e.
+    // A^T V^-1 A of an image's columns, as W A.
+    [[nodiscard]] static Eigen::MatrixXd information(const Image& image, const Rows& white);
+    // The sandwich's, where left is W of what is left.
     void add_meat(const Image& image,
-                  const Rows& A,
+                  const Rows& white,
                   const Eigen::VectorXd& left,
                   Normal& normal) const;
+    struct Influences {
+        double weights = 0.0;
+        double slopes = 0.0;
+    };
+    [[nodiscard]] Influences weigh(const Eigen::VectorXd& signals,
+                                   const Eigen::VectorXd& residuals,
+                                   Robust robust,
+                                   Image& image) const;
     void learn_effects(const std::vector<Eigen::VectorXd>& off);
 
-    const FitLight& light_;
+    const FitLight* light_;  // so that it can be assigned
     int threads_;
+    Rows waves_;  // by place
     std::vector<Image> images_;
     std::vector<std::size_t> used_;  // of these, by parts() and normal()
     std::vector<std::size_t> tile_of_place_;
     EffectVariances effects_{};
     Eigen::MatrixXd tie_;  // what it adds to the parts' G; of no size: nothing
     BlockNoise noise_;
-    double weights_factor_ = 1.0;
+    double weights_factor_ = 1.0;  // f
     std::size_t blocks_ = 0;
 };
 

@@ -239,6 +239,28 @@ std::vector<FitNumber> FitProblem::numbers() const {
     return all;
 }
 
+Eigen::VectorXd FitProblem::start() const {
+    Eigen::VectorXd x(static_cast<Eigen::Index>(free.size()));
+    std::ranges::transform(
+        free, x.begin(), [](const FreeNumber& one) { return one.start / one.plausible; });
+    return x;
+}
+
+Eigen::VectorXd FitProblem::now() const {
+    FitState read = state;  // number_in() hands out what may be changed
+    Eigen::VectorXd x(static_cast<Eigen::Index>(free.size()));
+    std::ranges::transform(free, x.begin(), [&](const FreeNumber& one) {
+        return number_in(read, one.number) / one.plausible;
+    });
+    return x;
+}
+
+Eigen::VectorXd FitProblem::plausible() const {
+    Eigen::VectorXd scale(static_cast<Eigen::Index>(free.size()));
+    std::ranges::transform(free, scale.begin(), &FreeNumber::plausible);
+    return scale;
+}
+
 FitState FitProblem::at(const double* x) const {
     FitState moved = state;
     for (std::size_t k = 0; k < free.size(); ++k)

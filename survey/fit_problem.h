@@ -7,6 +7,8 @@
 #include "rig/rig_text.h"
 #include "survey/fit_light.h"
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -50,8 +52,12 @@ struct FitProblem {
     std::vector<FreeNumber> free;
 
     [[nodiscard]] std::vector<FitNumber> numbers() const;
-    // x: the numbers, each over what is plausible.
+    // x: the numbers, each over what is plausible. Where they began, where they are, and the state
+    // where they are these.
+    [[nodiscard]] Eigen::VectorXd start() const;
+    [[nodiscard]] Eigen::VectorXd now() const;
     [[nodiscard]] FitState at(const double* x) const;
+    [[nodiscard]] Eigen::VectorXd plausible() const;
 };
 
 // widest_rad: of a beam's table. An InputError for a word that is none.

@@ -25,7 +25,6 @@ float median_of(InPlace& values) {
 // pattern, less what chance makes of them.
 double pattern_of(std::vector<InPlace>& places) {
     constexpr std::size_t kFew = 3;
-    constexpr double kNormal = 1.4826;  // standard deviation of a normal over its median deviation
     double pattern = 0.0;
     double counted = 0.0;
     for (InPlace& at : places) {

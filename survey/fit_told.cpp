@@ -214,8 +214,7 @@ std::string words_of(const NotTold& one) {
 
 MatrixXd covariance_of(const FitEquations::Normal& normal,
                        const VectorXd& shares,
-                       const std::vector<FreeNumber>& free,
-                       double weights_factor) {
+                       const std::vector<FreeNumber>& free) {
     const Index parts = shares.size();
     // Those at 0 as well: a bound that holds one part makes none of the others surer.
     std::vector<Index> seen = seen_parts(normal.H, parts);
@@ -239,7 +238,7 @@ MatrixXd covariance_of(const FitEquations::Normal& normal,
             scale.asDiagonal() * MatrixXd(normal.meat(seen, seen)) * scale.asDiagonal();
         const double few =
             static_cast<double>(normal.tiles) / static_cast<double>(normal.tiles - seen.size());
-        C = few * weights_factor * weights_factor * inverse * meat * inverse;
+        C = few * inverse * meat * inverse;
         // What few tiles see has too small a sandwich: none is smaller than H's own, less the tenth
         // by which a sandwich of some hundred tiles is off by chance.
         constexpr double kOwn = 0.9;

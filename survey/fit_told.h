@@ -52,8 +52,7 @@ struct NotTold {
 // are 0.
 [[nodiscard]] Eigen::MatrixXd covariance_of(const FitEquations::Normal& normal,
                                             const Eigen::VectorXd& shares,
-                                            const std::vector<FreeNumber>& free,
-                                            double weights_factor);
+                                            const std::vector<FreeNumber>& free);
 
 // Of numbers whose errors are correlated by more than 0.9, the largest first.
 [[nodiscard]] std::vector<Confounded> confounded_in(const Eigen::MatrixXd& covariance,

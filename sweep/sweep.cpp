@@ -8,6 +8,7 @@
 #include "base/sha256.h"
 #include "base/words.h"
 #include "rig/rig_text.h"
+#include "sweep/sweep_inputs.h"
 #include "sweep/wrapper.h"
 
 #include <fmt/format.h>
@@ -63,14 +64,17 @@ std::vector<std::string> own_arguments(const Sweep& sweep, SweepTask task) {
     return own;
 }
 
-// What results depend on, the number of cores aside, and what images and navigation hold.
-std::string digest_of(const Sweep& sweep, SweepTask task, const std::string& rig) {
+// What results depend on, the number of cores aside.
+std::string digest_of(const Sweep& sweep,
+                      SweepTask task,
+                      const std::string& rig,
+                      const std::string& inputs) {
     const nlohmann::json all{APHOTIC_VERSION,
                              sweep.file.command,
                              sweep.file.images,
                              own_arguments(sweep, task),
                              rig,
-                             sweep.scene.empty() ? "" : sha256_of_file(sweep.scene)};
+                             sha256_of_text(inputs)};
     return sha256_of_text(all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
@@ -163,11 +167,16 @@ Sweep write_sweep(const fs::path& file, const fs::path& folder, const fs::path& 
     RigText rig(sweep.home / sweep.file.rig);
     if (takes_scene(sweep.file)) sweep.scene = rig.rig().scene;
     rig.erase("scene");
+    const std::string inputs = state_of({.home = sweep.home,
+                                         .images = sweep.file.images,
+                                         .arguments = sweep.file.arguments,
+                                         .scene = sweep.scene,
+                                         .folder = sweep.folder});
     std::vector<PointRig> rigs;
     for (const SweepPoint& point : sweep.points) {
         rigs.push_back(naming(file.string(), [&] { return rig_at(sweep.file, point, rig); }));
         for (int share = 0; share < sweep.file.shares; ++share)
-            sweep.digests.push_back(digest_of(sweep, {.share = share}, rigs.back().digest));
+            sweep.digests.push_back(digest_of(sweep, {.share = share}, rigs.back().digest, inputs));
     }
 
     make_folder(sweep.folder);

@@ -117,9 +117,15 @@ struct Count {
     int all = 0;
 };
 
-double share_within(const Flight& flight) {
+struct Outcome {
+    double share_within = 0.0;
+    int doubts = 0;
+};
+
+Outcome outcome_of(const Flight& flight) {
     std::map<std::string, Count> by_key;
     Count total;
+    int doubts = 0;
     for (int i = 0; i < flight.rigs; ++i) {
         const Drawn drawn = draw(static_cast<std::uint64_t>(1000 + i), flight);
         FitOptions options;
@@ -130,6 +136,7 @@ double share_within(const Flight& flight) {
         // What a rough floor hides is held.
         if (flight.texture == 0.0) options.free = {{"beam", "aim", "power", "water", "vignetting"}};
         const FitResult result = fit(drawn.text, drawn.samples, options, {});
+        doubts += static_cast<int>(result.left.doubts.size());
         FitState truth = drawn.truth;
         const auto add = [&](const std::string& key, double off, double error) {
             const bool is_within = std::abs(off) <= 2.0 * error;
@@ -153,36 +160,39 @@ double share_within(const Flight& flight) {
         const double few = 5.0 * std::sqrt(0.954 * 0.046 / count.all);
         EXPECT_GT(static_cast<double>(count.within) / count.all, 0.954 - few) << key;
     }
-    return static_cast<double>(total.within) / total.all;
+    return {.share_within = static_cast<double>(total.within) / total.all, .doubts = doubts};
+}
+
+void expect_held(const Flight& flight) {
+    const Outcome outcome = outcome_of(flight);
+    EXPECT_GT(outcome.share_within, kLeast);
+    EXPECT_LT(outcome.share_within, kMost);
+    EXPECT_EQ(outcome.doubts, 0);
 }
 
 TEST(FitErrors, HoldAsOftenAsTheySayForMaps) {
-    const double share = share_within({});
-    EXPECT_GT(share, kLeast);
-    EXPECT_LT(share, kMost);
+    expect_held({});
 }
 
 TEST(FitErrors, HoldForImagesWhosePosesAndFloorsAreOff) {
-    const double share = share_within({.rigs = 40,
-                                       .images = 40,
-                                       .noise = 0.03,
-                                       .level = 0.04,
-                                       .hue = 0.01,
-                                       .altitude_error_m = 0.02,
-                                       .attitude_error_rad = 0.008});
-    EXPECT_GT(share, kLeast);
-    EXPECT_LT(share, kMost);
+    expect_held({.rigs = 40,
+                 .images = 40,
+                 .noise = 0.03,
+                 .level = 0.04,
+                 .hue = 0.01,
+                 .altitude_error_m = 0.02,
+                 .attitude_error_rad = 0.008});
 }
 
-// Its waves are longer than a tile, and alike in all channels. Twice the error should hold in 95 %
-// and does in 89 % of these: two broad beams in one line can make up for each other, and where they
-// do so in two ways the jackknife may see but one. By the biweight's own weights it sees one more
-// often, 85 %.
+// Its waves are longer than a tile, and alike in all channels. Two broad beams in one line can make
+// up for each other: of some of these rigs another explains the images as well, and the fit says
+// so. Twice the error holds in 90 % of these.
 TEST(FitErrors, MostlyHoldOnARoughFloor) {
-    constexpr double kLeastOnRough = 0.87;
-    const double share =
-        share_within({.rigs = 12, .images = 40, .noise = 0.01, .level = 0.04, .texture = 0.1});
-    EXPECT_GT(share, kLeastOnRough);
+    const Outcome outcome =
+        outcome_of({.rigs = 12, .images = 40, .noise = 0.01, .level = 0.04, .texture = 0.1});
+    constexpr double kLeastOnRough = 0.88;
+    EXPECT_GT(outcome.share_within, kLeastOnRough);
+    EXPECT_GT(outcome.doubts, 0);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace aphotic::fit_test {
 namespace {
@@ -174,6 +175,31 @@ TEST(Fit, FindsTheFloorsBrightnessByTheVeil) {
     write_fitted_rig(start, result, folder.path());
     EXPECT_LT(off_at(RigText(folder.path() / kFittedRig).rig(), truth, {.altitude_m = 3.0}),
               kPredicted);
+}
+
+// Texture that darkens all channels at once leaves their ratios: the water is told far better than
+// by as much noise of each channel's own.
+TEST(Fit, TellsTheWaterByTheColoursOfAGreyFloor) {
+    constexpr double kTexture = 0.1;
+    constexpr double kBetter = 0.5;
+    const Rig truth = fit_rig({}).rig();
+    const std::vector<Sled> sleds = flown({1.2, 1.5, 2.0, 2.5});
+    FitSamples grey = fit_samples_of(truth, sleds, kNoise, 11);
+    std::mt19937_64 dice(11);
+    std::normal_distribution<double> normal;
+    for (FitImage& image : grey.images) {
+        for (std::size_t i = 0; i < image.signal.size(); i += kChannels) {
+            const double texture = 1.0 + kTexture * normal(dice);
+            for (std::size_t c = 0; c < kChannels; ++c)
+                image.signal[i + c] = static_cast<float>(image.signal[i + c] * texture);
+        }
+    }
+    const auto water_of = [](const FitSamples& samples) {
+        const FitResult result = fit(guess(), samples, exact_poses(), {});
+        expect_told(result, "water.multiple", 1.0);
+        return std::ranges::find(result.numbers, "water.multiple", &FittedNumber::key)->error;
+    };
+    EXPECT_LT(water_of(grey), kBetter * water_of(fit_samples_of(truth, sleds, kTexture, 11)));
 }
 
 // cos^6, whose exponent is a shape of the beam.

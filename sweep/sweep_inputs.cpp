@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep/sweep_inputs.h"
+
+#include "base/atomic_file.h"
+#include "base/error.h"
+#include "base/sha256.h"
+#include "survey/image_files.h"
+
+#include <fmt/format.h>
+
+#include <regex>
+#include <set>
+
+namespace aphotic {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string stamp_of(const fs::path& file) {
+    std::error_code none;
+    if (!fs::is_regular_file(file, none)) return "";
+    return fmt::format("{} {} {}\n",
+                       file.string(),
+                       fs::file_size(file, none),
+                       fs::last_write_time(file, none).time_since_epoch().count());
+}
+
+std::string stamps_of_images(const std::string& argument, const fs::path& folder) {
+    std::string stamps;
+    try {
+        for (const ImageFile& image : image_files({argument}, folder))
+            stamps += stamp_of(image.source);
+    } catch (const InputError&) {
+        return "";
+    }
+    return stamps;
+}
+
+// POV-Ray is run in the scene's folder, where names in includes start as well.
+void add_scene(const fs::path& folder,
+               const fs::path& name,
+               std::set<fs::path>& seen,
+               std::string& contents) {
+    std::error_code none;
+    const fs::path file = folder / name;
+    if (!fs::is_regular_file(file, none) || !seen.insert(file.lexically_normal()).second) return;
+    const std::string text = read_text_file(file);
+    contents += fmt::format("{} {}\n", name.string(), sha256_of_text(text));
+    static const std::regex include(R"re(#\s*include\s*"([^"]+)")re");
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it)
+        add_scene(folder, (*it)[1].str(), seen, contents);
+}
+
+}  // namespace
+
+std::string state_of(const SweepInputs& inputs) {
+    std::string state;
+    for (const std::string& argument : inputs.images)
+        state += stamps_of_images((inputs.home / argument).string(), inputs.folder);
+    for (const std::string& argument : inputs.arguments) state += stamp_of(inputs.home / argument);
+    std::set<fs::path> seen;
+    add_scene(inputs.scene.parent_path(), inputs.scene.filename(), seen, state);
+    return state;
+}
+
+}  // namespace aphotic
