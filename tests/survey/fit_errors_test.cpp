@@ -175,7 +175,7 @@ TEST(FitErrors, HoldAsOftenAsTheySayForMaps) {
 }
 
 TEST(FitErrors, HoldForImagesWhosePosesAndFloorsAreOff) {
-    expect_held({.rigs = 40,
+    expect_held({.rigs = 24,
                  .images = 40,
                  .noise = 0.03,
                  .level = 0.04,
