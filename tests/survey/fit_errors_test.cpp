@@ -127,7 +127,7 @@ Outcome outcome_of(const Flight& flight) {
     Count total;
     int doubts = 0;
     for (int i = 0; i < flight.rigs; ++i) {
-        const Drawn drawn = draw(static_cast<std::uint64_t>(1000 + i), flight);
+        const Drawn drawn = draw(1000U + static_cast<std::uint64_t>(i), flight);
         FitOptions options;
         options.parts = kParts;
         options.altitude_error_m = flight.altitude_error_m;

@@ -35,6 +35,7 @@ class SweepInputsTest : public testing::Test {
                          .folder = home() / "out"});
     }
 
+  private:
     TempFolder folder_;
 };
 
