@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 class SweepInputsTest : public testing::Test {
   protected:
     SweepInputsTest() {
+        for (const char* folder : {"dive", "parts", "out/point-0001"})
+            fs::create_directories(home() / folder);
         write_file(home() / "dive/1.tif", "one");
         write_file(home() / "dive/notes.txt", "none of the images");
         write_file(home() / "nav.csv", "there");
