@@ -47,7 +47,8 @@ void add_scene(const fs::path& folder,
     if (!fs::is_regular_file(file, none) || !seen.insert(file.lexically_normal()).second) return;
     const std::string text = read_text_file(file);
     contents += fmt::format("{} {}\n", name.string(), sha256_of_text(text));
-    static const std::regex kInclude(R"re(#\s*include\s*"([^"]+)")re");
+    // On one line: std::regex recurses by the character.
+    static const std::regex kInclude(R"re(#[ \t]*include[ \t]*"([^"\n]+)")re");
     for (std::sregex_iterator it(text.begin(), text.end(), kInclude), end; it != end; ++it)
         add_scene(folder, (*it)[1].str(), seen, contents);
 }

@@ -106,6 +106,27 @@ TEST(Sweep, ATaskDependsOnItsRigTablesAndArguments) {
     EXPECT_NE(lamp.digests.front(), first.digests.front());
 }
 
+TEST(Sweep, ATaskDependsOnWhatItReads) {
+    const SmallSweep small;
+    const fs::path rig = small.folder() / "rig.toml";
+    write_file(small.folder() / "my.pov", "#version 3.7;\n#include \"sled.inc\"\n");
+    write_file(small.folder() / "sled.inc", "sphere { 0, 1 }");
+    write_file(rig, "scene = \"my.pov\"\n" + read_text_file(rig));
+    write_file(small.folder() / "nav.csv", "altitude_m\n2\n");
+    const auto digest = [&](const std::string& command) {
+        const fs::path file = small.write(
+            command, std::string("arguments = [\"--nav\", \"nav.csv\"]\n") + kThreeWaters);
+        return write_sweep(file, small.folder() / "out", kProgram).digests.front();
+    };
+    const std::string render = digest("render");
+    const std::string trace = digest("trace");
+    write_file(small.folder() / "sled.inc", "box { 0, 1 }");
+    EXPECT_NE(digest("render"), render);
+    EXPECT_EQ(digest("trace"), trace);  // takes no scene
+    write_file(small.folder() / "nav.csv", "altitude_m\n2.25\n");
+    EXPECT_NE(digest("trace"), trace);
+}
+
 TEST(Sweep, WritesNothingWhileARigIsWrong) {
     const SmallSweep small;
     const fs::path out = small.folder() / "out";
