@@ -29,7 +29,6 @@ struct Bench {
     const FitLight& light;
     FitEquations& equations;
     PathRange paths;
-
     bool learns_effects = false;  // their variances
 
     [[nodiscard]] PathLight path_light(const FitState& state, bool has_derivatives) const {
@@ -62,6 +61,19 @@ std::vector<Index> numbers_after(Index parts, Index count) {
     return all;
 }
 
+// H of the numbers, each over what is plausible, the shares eliminated; and of what is plausible.
+MatrixXd scaled_hessian(const FitEquations::Normal& normal,
+                        const VectorXd& shares,
+                        const FitProblem& problem) {
+    const VectorXd scale = problem.plausible();
+    MatrixXd S =
+        scale.asDiagonal() *
+        eliminated(normal.H, active_parts(shares), numbers_after(shares.size(), scale.size())) *
+        scale.asDiagonal();
+    S.diagonal().array() += 1.0;
+    return S;
+}
+
 // The objective for Ceres, in n + 1 residuals that have its value, gradient and Gauss-Newton
 // matrix: all that its trust region asks for. So a million blocks come as some twenty rows.
 class Reduced : public ceres::CostFunction {
@@ -87,14 +99,9 @@ class Reduced : public ceres::CostFunction {
         if (!has_slopes) return true;
         const FitEquations::Normal normal =
             bench_.equations.normal(state, light, solved.shares, problem_.numbers(), false);
-        const Index parts = solved.shares.size();
-        const VectorXd scale = problem_.plausible();
-        MatrixXd S =
-            scale.asDiagonal() *
-            eliminated(normal.H, active_parts(solved.shares), numbers_after(parts, count)) *
-            scale.asDiagonal();
-        S.diagonal().array() += 1.0;
-        const VectorXd gradient = off - scale.cwiseProduct(normal.gradient.tail(count));
+        const MatrixXd S = scaled_hessian(normal, solved.shares, problem_);
+        const VectorXd gradient =
+            off - problem_.plausible().cwiseProduct(normal.gradient.tail(count));
         // S = L L^T: J = L^T above a row of 0, r = (L^-1 gradient, the rest).
         if (!S.allFinite()) return false;
         const Eigen::LLT<MatrixXd> cholesky(S);
@@ -206,8 +213,7 @@ constexpr std::size_t kGroups = 12;  // of images, each left out once
 constexpr std::size_t kFewGroups = 10;
 
 // Shares, then numbers.
-VectorXd values_of(const Bench& bench, const FitProblem& problem) {
-    const VectorXd shares = shares_at(bench, problem.state);
+VectorXd values_of(const VectorXd& shares, const FitProblem& problem) {
     VectorXd all(shares.size() + static_cast<Index>(problem.free.size()));
     all << shares, problem.now().cwiseProduct(problem.plausible());
     return all;
@@ -221,13 +227,14 @@ VectorXd jackknife(const Bench& bench,
                    const RunWatch& watch) {
     std::vector<VectorXd> found;
     for (std::size_t group = 0; group < groups; ++group) {
-        watch.progress("its errors", static_cast<double>(group) / static_cast<double>(groups));
+        watch.progress("estimating errors",
+                       static_cast<double>(group) / static_cast<double>(groups));
         FitEquations equations = bench.equations;
         equations.leave_out(group, groups);
         FitProblem without = problem;
         const Bench own = bench.with(equations);
         search_in_rounds(own, without, kRoundsNearby, [](std::size_t) {});
-        found.push_back(values_of(own, without));
+        found.push_back(values_of(shares_at(own, without.state), without));
     }
     VectorXd mean = VectorXd::Zero(found.front().size());
     for (const VectorXd& one : found) mean += one / static_cast<double>(groups);
@@ -314,51 +321,44 @@ Rival search_again(const Bench& bench, FitProblem& problem, const RunWatch& watc
         std::swap(problem, again);
         std::swap(bench.equations, equations);
     }
-    return {.values = values_of(own, again), .excess = std::abs(excess)};
+    return {.values = values_of(shares_at(own, again.state), again), .excess = std::abs(excess)};
 }
 
-// What an answer says of itself: how surely.
-struct Equations {
+// An answer's light, shares and normal equations.
+struct Linearised {
     PathLight light;
-    Solved solved;
+    VectorXd shares;
     FitEquations::Normal normal;
 };
 
-Equations equations_at(const Bench& bench, const FitProblem& problem) {
+Linearised linearised_at(const Bench& bench, const FitProblem& problem) {
     PathLight light = bench.path_light(problem.state, true);
-    Solved solved = shares_of(bench.equations.parts(problem.state, light));
+    VectorXd shares = shares_of(bench.equations.parts(problem.state, light)).shares;
     FitEquations::Normal normal =
-        bench.equations.normal(problem.state, light, solved.shares, problem.numbers(), true);
-    return {std::move(light), std::move(solved), std::move(normal)};
+        bench.equations.normal(problem.state, light, shares, problem.numbers(), true);
+    return {std::move(light), std::move(shares), std::move(normal)};
 }
 
 // How much larger the variances of the numbers are than noise alone would have them.
-double dispersion_of(const MatrixXd& covariance, const Equations& at, const FitProblem& problem) {
-    const auto count = static_cast<Index>(problem.free.size());
-    const Index parts = at.solved.shares.size();
-    const VectorXd scale = problem.plausible();
-    MatrixXd S =
-        scale.asDiagonal() *
-        eliminated(at.normal.H, active_parts(at.solved.shares), numbers_after(parts, count)) *
-        scale.asDiagonal();
-    S.diagonal().array() += 1.0;
-    const VectorXd own = S.llt().solve(MatrixXd::Identity(count, count)).diagonal();
-    const VectorXd told = covariance.diagonal().tail(count).cwiseQuotient(scale.cwiseAbs2());
+double dispersion_of(const MatrixXd& covariance, const Linearised& at, const FitProblem& problem) {
+    const MatrixXd S = scaled_hessian(at.normal, at.shares, problem);
+    const VectorXd own = S.llt().solve(MatrixXd::Identity(S.rows(), S.cols())).diagonal();
+    const VectorXd told =
+        covariance.diagonal().tail(own.size()).cwiseQuotient(problem.plausible().cwiseAbs2());
     return std::max(1.0, told.cwiseQuotient(own).mean());
 }
 
-// A rival that is as good, by the noise that the errors tell, and elsewhere: errors become those of
-// both, each as likely, and a doubt names the number that it has most otherwise.
+// Where a rival is as good, by the noise that the errors tell, and elsewhere, a doubt names the
+// number in which it differs most, and the covariance is about this answer, with the truth near
+// either of the two at equal odds.
 void look_at_rival(const Rival& rival,
-                   const Equations& at,
+                   const Linearised& at,
                    const FitProblem& problem,
                    FitResult& result) {
     constexpr double kAsGood = 9.0;  // of its objective, in squares of standard errors
     constexpr double kElsewhere = 2.0;
     const double dispersion = dispersion_of(result.covariance, at, problem);
-    VectorXd values(rival.values.size());
-    values << result.shares, problem.now().cwiseProduct(problem.plausible());
-    const VectorXd off = rival.values - values;
+    const VectorXd off = rival.values - values_of(result.shares, problem);
     const VectorXd errors = result.covariance.diagonal().cwiseSqrt();
     const auto count = static_cast<Index>(problem.free.size());
     Index worst = 0;
@@ -368,7 +368,7 @@ void look_at_rival(const Rival& rival,
     result.covariance += 0.5 * off * off.transpose();
     const FreeNumber& number = problem.free[static_cast<std::size_t>(worst)];
     result.left.doubts.push_back(
-        {fmt::format("another rig explains the images as well, with {} of", number.key),
+        {fmt::format("another rig explains the images as well; its {}", number.key),
          number.per_unit * rival.values(result.shares.size() + worst)});
 }
 
@@ -377,10 +377,10 @@ FitResult result_of(const Bench& bench,
                     const FitSamples& samples,
                     const std::optional<Rival>& rival,
                     const RunWatch& watch) {
-    const Equations at = equations_at(bench, problem);
+    const Linearised at = linearised_at(bench, problem);
     FitResult result;
     result.state = problem.state;
-    result.shares = at.solved.shares;
+    result.shares = at.shares;
     result.covariance = covariance_of(at.normal, result.shares, problem.free);
     result.effects = bench.equations.effects();
     result.noise = bench.equations.noise();
@@ -490,9 +490,9 @@ FitResult fit(const RigText& text,
         equations.set_effects(effects);
         steps += search_in_rounds(
             bench, problem, kRounds, [&](std::size_t round) { progress(round + 1); });
-        const Equations at = equations_at(bench, problem);
+        const Linearised at = linearised_at(bench, problem);
         const std::vector<NotTold> untold =
-            not_told(equations, problem, at.light, at.normal.H, at.solved.shares, sleds);
+            not_told(equations, problem, at.light, at.normal.H, at.shares, sleds);
         if (untold.empty()) break;
         hold(untold, options, problem);
         held.insert(held.end(), untold.begin(), untold.end());

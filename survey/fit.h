@@ -20,14 +20,15 @@
 // not, are held; or where they were asked for, refused, with what they are confounded with and the
 // altitude at which further images would part them.
 //
-// Images, ten and more, are fitted twice, the second time from the rig again by the noise that is
-// known by then: on a rough floor two rigs may explain them all but alike, and steps that know no
-// noise may lead to either. The better stays. Where the other is as good, to three standard errors,
-// and over two elsewhere, a doubt says so, and errors are those of both, each as likely.
+// Ten images and more are fitted twice, the second time from the rig again with the noise that is
+// known by then: on a rough floor two rigs may explain them almost equally well, and a search that
+// knows no noise may lead to either. The better stays. Where the other is as good, to three
+// standard errors, and differs by over two in some number, a doubt says so, and the errors allow
+// for both.
 //
-// Errors are the sandwich of fit_equations.h; of images, where it is larger than chance would have
-// it, the jackknife: how far the fit, its weights found anew, moves as each group of images in turn
-// is left out,
+// Errors are the sandwich of fit_equations.h. Of ten images and more the jackknife takes its place
+// where it is larger by more than chance: how far the fit, its weights found anew, moves as each
+// group of images in turn is left out,
 //
 //   (n - 1)/n sum over groups (x_g - mean x_g)^2       n = min(kGroups, images)
 //

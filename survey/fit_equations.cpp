@@ -21,27 +21,23 @@ using Eigen::VectorXd;
 
 constexpr double kFirstNoise = 0.05;
 constexpr double kFirstFloor = 0.003;  // of the brightest
+
 // Of a block that is not left out: what no other sees has a solution all the same.
 constexpr double kLeastWeight = 1e-3;
 
-// a and b of each wave, by a + b: rings of like length.
-struct Wave {
-    int a;
-    int b;
-};
-
+// By place; by a + b, rings of waves of like length, then by a.
 FitLight::Rows waves_at(const FitPlaces& places) {
-    std::vector<Wave> all;
-    for (int ring = 1; ring <= kWaves; ++ring) {
-        for (int a = 0; a <= ring; ++a) all.push_back({a, ring - a});
-    }
-    FitLight::Rows waves(static_cast<Index>(places.size()), static_cast<Index>(all.size()));
+    FitLight::Rows waves(static_cast<Index>(places.size()),
+                         static_cast<Index>(kEffects - kWaveEffect));
     for (std::size_t place = 0; place < places.size(); ++place) {
         const double x = places.columns[place] / places.width_px * std::numbers::pi;
         const double y = places.rows[place] / places.height_px * std::numbers::pi;
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            waves(static_cast<Index>(place), static_cast<Index>(k)) =
-                std::cos(all[k].a * x) * std::cos(all[k].b * y);
+        Index column = 0;
+        for (int ring = 1; ring <= kWaves; ++ring) {
+            for (int a = 0; a <= ring; ++a) {
+                waves(static_cast<Index>(place), column++) =
+                    std::cos(a * x) * std::cos((ring - a) * y);
+            }
         }
     }
     return waves;

@@ -15,7 +15,7 @@
 // Poses go into the light as no straight line: each image's is moved to where its light tells it,
 // round by round, and what the navigation says becomes the mean of what is left of it in c.
 //
-// so that y has the covariance V = D + U Gamma U^T, D that of e, W^T W = D^-1 block by block, and
+// So y has the covariance V = D + U Gamma U^T, D that of e, W^T W = D^-1 block by block, and
 //
 //   A^T V^-1 A = (W A)^T (W A) - (W A)^T W U (Gamma^-1 + (W U)^T W U)^-1 (W U)^T W A
 //
@@ -31,13 +31,13 @@
 //
 //   C = H^-1 ( f^2 sum over tiles s s^T + sum over images Z Gamma Z^T ) H^-1,    H = A^T V^-1 A
 //
+// s is (D V^-1 A)^T D^-1 (y - A x - U c) over a tile, a part of an image within which noise may be
+// correlated as it likes, and Z is A^T V^-1 U. It holds whatever e is, though D be wrong
+// (P. J. Huber 1967; H. White, Econometrica 48, 1980, 817).
+//
 // f: mean weight over mean slope of the influence e w(e), by which weights that move with the fit
 // widen what noise does to it (P. J. Huber, Robust Statistics, 1981, 6.5); what all blocks of an
 // image share moves weights and slopes alike.
-//
-// with s = (D V^-1 A)^T D^-1 (y - A x - U c) over a tile, a part of an image within which noise may
-// be correlated as it likes, and Z = A^T V^-1 U. It holds though e is none that D says
-// (P. J. Huber 1967; H. White, Econometrica 48, 1980, 817).
 #pragma once
 
 #include "survey/fit_light.h"
