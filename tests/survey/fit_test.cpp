@@ -182,7 +182,12 @@ TEST(Fit, FindsTheFloorsBrightnessByTheVeil) {
 TEST(Fit, TellsTheWaterByTheColoursOfAGreyFloor) {
     constexpr double kTexture = 0.1;
     constexpr double kBetter = 0.5;
-    const Rig truth = fit_rig({}).rig();
+    FitRigNumbers numbers;
+    numbers.width_px = 16;
+    numbers.height_px = 12;
+    const Rig truth = fit_rig(numbers).rig();
+    numbers.multiple = 1.4;
+    const RigText start = fit_rig(numbers);
     const std::vector<Sled> sleds = flown({1.2, 1.5, 2.0, 2.5});
     FitSamples grey = fit_samples_of(truth, sleds, kNoise, 11);
     std::mt19937_64 dice(11);
@@ -194,8 +199,8 @@ TEST(Fit, TellsTheWaterByTheColoursOfAGreyFloor) {
                 image.signal[i + c] = static_cast<float>(image.signal[i + c] * texture);
         }
     }
-    const auto water_of = [](const FitSamples& samples) {
-        const FitResult result = fit(guess(), samples, exact_poses(), {});
+    const auto water_of = [&](const FitSamples& samples) {
+        const FitResult result = fit(start, samples, exact_poses(), {});
         expect_told(result, "water.multiple", 1.0);
         return std::ranges::find(result.numbers, "water.multiple", &FittedNumber::key)->error;
     };
