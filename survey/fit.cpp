@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/non_negative_fit.h"
+#include "survey/fit_jackknife.h"
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
@@ -14,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <span>
 
 namespace aphotic {
 namespace {
@@ -187,61 +187,27 @@ void learn(const Bench& bench, const FitProblem& problem, Robust robust) {
 // stones.
 constexpr std::array kRounds{
     Robust::Huber, Robust::Huber, Robust::Biweight, Robust::Biweight, Robust::Biweight};
-constexpr std::array kRoundsNearby{Robust::Huber, Robust::Biweight, Robust::Biweight};
 
 // The share of the work that is done after so many of kRounds and the search before them.
 double share_after(std::size_t searches) {
     return static_cast<double>(searches) / static_cast<double>(kRounds.size() + 1);
 }
 
-// What is learned and the search that follows, so many times. Steps that it took.
+// What is learned and the search that follows, kRounds. Steps that it took.
 int search_in_rounds(const Bench& bench,
                      FitProblem& problem,
-                     std::span<const Robust> rounds,
                      const std::function<void(std::size_t round)>& progress) {
     constexpr int kSteps = 12;
     int steps = 0;
-    for (std::size_t round = 0; round < rounds.size(); ++round) {
+    for (std::size_t round = 0; round < kRounds.size(); ++round) {
         progress(round);
-        learn(bench, problem, rounds[round]);
+        learn(bench, problem, kRounds[round]);
         steps += search(bench, problem, kSteps);
     }
     return steps;
 }
 
-constexpr std::size_t kGroups = 12;  // of images, each left out once
 constexpr std::size_t kFewGroups = 10;
-
-// Shares, then numbers.
-VectorXd values_of(const VectorXd& shares, const FitProblem& problem) {
-    VectorXd all(shares.size() + static_cast<Index>(problem.free.size()));
-    all << shares, problem.now().cwiseProduct(problem.plausible());
-    return all;
-}
-
-// Variances of shares and numbers by the jackknife: what they move by as each group of images is
-// left out in turn, and the fit finds its weights anew.
-VectorXd jackknife(const Bench& bench,
-                   const FitProblem& problem,
-                   std::size_t groups,
-                   const RunWatch& watch) {
-    std::vector<VectorXd> found;
-    for (std::size_t group = 0; group < groups; ++group) {
-        watch.progress("estimating errors",
-                       static_cast<double>(group) / static_cast<double>(groups));
-        FitEquations equations = bench.equations;
-        equations.leave_out(group, groups);
-        FitProblem without = problem;
-        const Bench own = bench.with(equations);
-        search_in_rounds(own, without, kRoundsNearby, [](std::size_t) {});
-        found.push_back(values_of(shares_at(own, without.state), without));
-    }
-    VectorXd mean = VectorXd::Zero(found.front().size());
-    for (const VectorXd& one : found) mean += one / static_cast<double>(groups);
-    VectorXd variances = VectorXd::Zero(mean.size());
-    for (const VectorXd& one : found) variances += (one - mean).cwiseAbs2();
-    return variances * static_cast<double>(groups - 1) / static_cast<double>(groups);
-}
 
 // Of a variance by kGroups: by chance it is so many times the true one or more in a twentieth of
 // all cases; and Student's t over the normal's, squared.
@@ -313,7 +279,7 @@ Rival search_again(const Bench& bench, FitProblem& problem, const RunWatch& watc
     learn(own, problem, Robust::Huber);
     again.state = problem.at(problem.start().data());
     steps += search(own, again, kFirstSteps);
-    steps += search_in_rounds(own, again, kRounds, [&](std::size_t round) {
+    steps += search_in_rounds(own, again, [&](std::size_t round) {
         watch.progress("fitting again", share_after(round + 1));
     });
     const double excess = 0.5 * (excess_of(again, bench, problem) - excess_of(problem, own, again));
@@ -388,8 +354,10 @@ FitResult result_of(const Bench& bench,
     result.tiles = at.normal.tiles;
     result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
     if (rival) {
+        watch.progress("estimating errors", 0.0);
         const std::size_t groups = std::min(kGroups, samples.images.size());
-        widen(jackknife(bench, problem, groups, watch), result.covariance);
+        const auto light_of = [&](const FitState& state) { return bench.path_light(state, true); };
+        widen(jackknife(bench.equations, problem, light_of, at.shares, groups), result.covariance);
         if (!problem.free.empty()) look_at_rival(*rival, at, problem, result);
     }
     const Index parts = result.shares.size();
@@ -488,8 +456,7 @@ FitResult fit(const RigText& text,
         equations.tie_parts(problem.state, shares_at(bench, problem.state));
         steps += search(bench, problem, kFirstSteps);
         equations.set_effects(effects);
-        steps += search_in_rounds(
-            bench, problem, kRounds, [&](std::size_t round) { progress(round + 1); });
+        steps += search_in_rounds(bench, problem, [&](std::size_t round) { progress(round + 1); });
         const Linearised at = linearised_at(bench, problem);
         const std::vector<NotTold> untold =
             not_told(equations, problem, at.light, at.normal.H, at.shares, sleds);

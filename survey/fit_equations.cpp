@@ -131,7 +131,6 @@ FitEquations::FitEquations(const FitLight& light, const FitSamples& samples, int
         image.moved = image.signal;
         images_.push_back(std::move(image));
     }
-    leave_out(0, 0);
     const FitPlaces& places = samples.places;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const auto part = [](double at, int size, std::size_t parts) {
@@ -141,12 +140,6 @@ FitEquations::FitEquations(const FitLight& light, const FitSamples& samples, int
         tile_of_place_.push_back(part(places.rows[i], places.height_px, kTilesDown) * kTilesAcross +
                                  part(places.columns[i], places.width_px, kTilesAcross));
     }
-}
-
-void FitEquations::leave_out(std::size_t group, std::size_t groups) {
-    used_.clear();
-    for (std::size_t i = 0; i < images_.size(); ++i)
-        if (groups == 0 || i % groups != group) used_.push_back(i);
 }
 
 void FitEquations::assume_noise() {
@@ -330,9 +323,8 @@ MatrixXd FitEquations::information(const Image& image, const Rows& white) {
 }
 
 FitEquations::Parts FitEquations::parts(const FitState& state, const PathLight& light) const {
-    std::vector<Parts> of(used_.size());
-    parallel_for(used_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
-        const Image& image = images_[used_[i]];
+    std::vector<Parts> of(images_.size());
+    for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
         Rows A;
         light_->parts_into(state, light, image.sled, A);
         const Rows white = image.white(std::move(A));
@@ -406,9 +398,8 @@ FitEquations::Normal FitEquations::normal(const FitState& state,
                                           const VectorXd& shares,
                                           const std::vector<FitNumber>& numbers,
                                           bool has_meat) const {
-    std::vector<Normal> of(used_.size());
-    parallel_for(used_.size(), static_cast<std::size_t>(threads_), [&](std::size_t i, std::size_t) {
-        const Image& image = images_[used_[i]];
+    std::vector<Normal> of(images_.size());
+    for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
         Rows A = columns_at(state, light, shares, numbers, image.sled);
         const VectorXd off = image.moved - A.leftCols(shares.size()) * shares;
         const VectorXd left = image.white_rest(off);
@@ -424,12 +415,15 @@ FitEquations::Normal FitEquations::normal(const FitState& state,
         sum.tiles += one.tiles;
         if (has_meat) sum.meat += one.meat;
     });
-    if (tie_.size() > 0) {
-        const Index parts = tie_.rows();
-        all.H.topLeftCorner(parts, parts) += tie_;
-        all.gradient.head(parts) -= tie_ * shares;
-    }
+    add_tie(shares, all);
     return all;
+}
+
+void FitEquations::add_tie(const VectorXd& shares, Normal& normal) const {
+    if (tie_.size() == 0) return;
+    const Index parts = tie_.rows();
+    normal.H.topLeftCorner(parts, parts) += tie_;
+    normal.gradient.head(parts) -= tie_ * shares;
 }
 
 void FitEquations::add_meat(const Image& image,
@@ -455,6 +449,37 @@ void FitEquations::add_meat(const Image& image,
     normal.meat = weights_factor_ * weights_factor_ * scores * scores.transpose() +
                   Z * variances.asDiagonal() * Z.transpose();
     normal.tiles = static_cast<std::size_t>((scores.colwise().squaredNorm().array() > 0.0).count());
+}
+
+FitEquations::Normal FitEquations::without(std::size_t group,
+                                           std::size_t groups,
+                                           const FitState& state,
+                                           const PathLight& light,
+                                           const VectorXd& shares,
+                                           const std::vector<FitNumber>& numbers,
+                                           Robust robust) const {
+    constexpr int kSweeps = 2;  // weights and effects each need the other
+    std::vector<Image> images;
+    for (std::size_t i = 0; i < images_.size(); ++i)
+        if (i % groups != group) images.push_back(images_[i]);
+    std::vector<Normal> of(images.size());
+    for_each_image(images, threads_, [&](Image& image, std::size_t i) {
+        const Rows A = columns_at(state, light, shares, numbers, image.sled);
+        const VectorXd signal = A.leftCols(shares.size()) * shares;
+        const VectorXd off = image.moved - signal;
+        for (int sweep = 0; sweep < kSweeps; ++sweep)
+            weigh(signal, off - image.effects * image.effects_in(off), robust, image);
+        const Rows white = image.white(A);
+        of[i] = {.H = information(image, white),
+                 .gradient = white.transpose() * image.white_rest(off),
+                 .meat = {}};
+    });
+    Normal all = added_up(of, [](Normal& sum, const Normal& one) {
+        sum.H += one.H;
+        sum.gradient += one.gradient;
+    });
+    add_tie(shares, all);
+    return all;
 }
 
 MatrixXd FitEquations::normal_of(const FitState& state,

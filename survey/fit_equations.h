@@ -78,9 +78,6 @@ class FitEquations {
                      const Eigen::VectorXd& shares,
                      Robust robust,
                      bool estimate_effects);
-    // From now on without every image whose number leaves this one over `groups`; 0 groups: with
-    // all.
-    void leave_out(std::size_t group, std::size_t groups);
     // From now on parts are tied; none before.
     void tie_parts(const FitState& state, const Eigen::VectorXd& shares);
     void set_effects(const EffectVariances& variances);
@@ -111,6 +108,15 @@ class FitEquations {
                                 const Eigen::VectorXd& shares,
                                 const std::vector<FitNumber>& numbers,
                                 bool has_meat) const;
+    // normal() without every image whose number leaves this one over `groups`, with weights about
+    // this solution.
+    [[nodiscard]] Normal without(std::size_t group,
+                                 std::size_t groups,
+                                 const FitState& state,
+                                 const PathLight& light,
+                                 const Eigen::VectorXd& shares,
+                                 const std::vector<FitNumber>& numbers,
+                                 Robust robust) const;
     // The H that one more image at this pose would add, with noise as the others'.
     [[nodiscard]] Eigen::MatrixXd normal_of(const FitState& state,
                                             const PathLight& light,
@@ -173,6 +179,7 @@ class FitEquations {
                                   const Eigen::VectorXd& shares,
                                   const std::vector<FitNumber>& numbers,
                                   const Sled& sled) const;
+    void add_tie(const Eigen::VectorXd& shares, Normal& normal) const;
     // A^T V^-1 A of an image's columns, as W A.
     [[nodiscard]] static Eigen::MatrixXd information(const Image& image, const Rows& white);
     // The sandwich's, where left is W of what is left.
@@ -184,17 +191,16 @@ class FitEquations {
         double weights = 0.0;
         double slopes = 0.0;
     };
-    [[nodiscard]] Influences weigh(const Eigen::VectorXd& signals,
-                                   const Eigen::VectorXd& residuals,
-                                   Robust robust,
-                                   Image& image) const;
+    Influences weigh(const Eigen::VectorXd& signals,
+                     const Eigen::VectorXd& residuals,
+                     Robust robust,
+                     Image& image) const;
     void learn_effects(const std::vector<Eigen::VectorXd>& off);
 
     const FitLight* light_;  // so that it can be assigned
     int threads_;
     Rows waves_;  // by place
     std::vector<Image> images_;
-    std::vector<std::size_t> used_;  // of these, by parts() and normal()
     std::vector<std::size_t> tile_of_place_;
     EffectVariances effects_{};
     Eigen::MatrixXd tie_;  // what it adds to the parts' G; of no size: nothing

@@ -261,6 +261,12 @@ Eigen::VectorXd FitProblem::plausible() const {
     return scale;
 }
 
+Eigen::VectorXd values_of(const Eigen::VectorXd& shares, const FitProblem& problem) {
+    Eigen::VectorXd all(shares.size() + static_cast<Eigen::Index>(problem.free.size()));
+    all << shares, problem.now().cwiseProduct(problem.plausible());
+    return all;
+}
+
 FitState FitProblem::at(const double* x) const {
     FitState moved = state;
     for (std::size_t k = 0; k < free.size(); ++k)

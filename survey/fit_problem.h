@@ -60,6 +60,9 @@ struct FitProblem {
     [[nodiscard]] Eigen::VectorXd plausible() const;
 };
 
+// Shares, then numbers.
+[[nodiscard]] Eigen::VectorXd values_of(const Eigen::VectorXd& shares, const FitProblem& problem);
+
 // widest_rad: of a beam's table. An InputError for a word that is none.
 [[nodiscard]] FitProblem fit_problem(const RigText& text,
                                      const FitOptions& options,
