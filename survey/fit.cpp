@@ -354,10 +354,10 @@ FitResult result_of(const Bench& bench,
     result.tiles = at.normal.tiles;
     result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
     if (rival) {
-        watch.progress("estimating errors", 0.0);
         const std::size_t groups = std::min(kGroups, samples.images.size());
         const auto light_of = [&](const FitState& state) { return bench.path_light(state, true); };
-        widen(jackknife(bench.equations, problem, light_of, at.shares, groups), result.covariance);
+        widen(jackknife(bench.equations, problem, light_of, at.shares, groups, watch),
+              result.covariance);
         if (!problem.free.empty()) look_at_rival(*rival, at, problem, result);
     }
     const Index parts = result.shares.size();

@@ -72,10 +72,12 @@ VectorXd jackknife(const FitEquations& equations,
                    const FitProblem& problem,
                    const LightOf& light_of,
                    const VectorXd& shares,
-                   std::size_t groups) {
+                   std::size_t groups,
+                   const RunWatch& watch) {
     const auto count = static_cast<double>(groups);
     std::vector<VectorXd> found;
     for (std::size_t group = 0; group < groups; ++group) {
+        watch.progress("estimating errors", static_cast<double>(group) / count);
         Answer answer{.shares = shares, .problem = problem};
         for (const Robust robust : kJackknifeRounds) {
             const FitState& state = answer.problem.state;

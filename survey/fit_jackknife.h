@@ -13,6 +13,7 @@
 
 #include "survey/fit_equations.h"
 #include "survey/fit_problem.h"
+#include "survey/run_watch.h"
 
 #include <Eigen/Core>
 
@@ -35,6 +36,7 @@ using LightOf = std::function<PathLight(const FitState&)>;
                                         const FitProblem& problem,
                                         const LightOf& light_of,
                                         const Eigen::VectorXd& shares,
-                                        std::size_t groups);
+                                        std::size_t groups,
+                                        const RunWatch& watch);
 
 }  // namespace aphotic

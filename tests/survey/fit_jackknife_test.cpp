@@ -50,7 +50,8 @@ double variance_by_jackknife(std::size_t groups) {
     };
     const auto parts = equations.parts(problem.state, light_of(problem.state));
     const Eigen::VectorXd shares = Eigen::VectorXd::Constant(1, parts.b(0) / parts.G(0, 0));
-    return jackknife(equations, problem, light_of, shares, groups)(0) / std::pow(shares(0), 2.0);
+    return jackknife(equations, problem, light_of, shares, groups, {})(0) /
+           std::pow(shares(0), 2.0);
 }
 
 double mean_of(const std::vector<double>& values) {
