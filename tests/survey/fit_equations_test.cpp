@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The normal equations of an image against the dense covariance that their header writes down, and
+// what a floor is brighter by, of which the veil knows nothing.
+#include "survey/fit_equations.h"
+
+#include "support/fit_rig.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include <cmath>
+
+namespace aphotic::fit_equations_test {
+namespace {
+
+// Two ways to invert a matrix whose condition is a thousand.
+constexpr double kRounding = 1e-9;
+// A prior of a level of 1, against some hundred blocks of 5 % of noise.
+constexpr double kPrior = 1e-4;
+
+FitRigNumbers small_and_green() {
+    FitRigNumbers numbers;
+    numbers.water = "chlorophyll_mg_m3 = {}";
+    numbers.multiple = 0.4;
+    numbers.width_px = 8;
+    numbers.height_px = 6;
+    return numbers;
+}
+
+struct Seen {
+    RigText text;
+    Rig rig = text.rig();
+    FitPlaces places = fit_places(8, 6, 8);
+    FitLight light{rig, places};
+    Sled sled{.altitude_m = 2.5};
+    FitState state{};
+
+    Seen() : text(fit_rig(small_and_green())) {
+        state.beams = {FitBeam::held(rig.strobes[0].beam)};
+        state.beam_of = {0, 0};
+        state.aim_rad = {{0.0, 0.0}, {0.0, 0.0}};
+        state.power = {1.0, 0.8};
+    }
+    [[nodiscard]] PathLight path() const {
+        return {text, state.water, state.floor, light.paths({sled}), true};
+    }
+    [[nodiscard]] FitLight::Rows columns(const FitState& of, const Eigen::VectorXd& shares) const {
+        FitLight::Rows all;
+        light.columns_into(of, path(), sled, shares, {}, all);
+        return all;
+    }
+    [[nodiscard]] FitSamples samples(const Eigen::VectorXd& signal) const {
+        FitSamples all;
+        all.places = places;
+        all.images = {{.name = "one", .sled = sled, .signal = {signal.begin(), signal.end()}}};
+        return all;
+    }
+};
+
+const Eigen::VectorXd kOne = Eigen::VectorXd::Ones(1);  // share, of a held beam
+
+EffectVariances of_level(double variance) {
+    EffectVariances effects{};
+    effects[0] = variance;
+    return effects;
+}
+
+// H = A^T V^-1 A, V = D + Gamma f f^T, f the floor's light.
+TEST(FitEquations, AreThoseOfTheDenseCovariance) {
+    constexpr double kVariance = 0.04;
+    Seen seen;
+    seen.state.beams = {FitBeam::table(5, seen.light.widest_rad({seen.sled}))};
+    const Eigen::VectorXd shares = Eigen::VectorXd::LinSpaced(5, 1.0, 0.2);
+    const FitLight::Rows columns = seen.columns(seen.state, shares);
+    const Eigen::VectorXd signal = columns.rightCols<1>();
+    FitEquations equations(seen.light, seen.samples(signal), 1);
+    equations.assume_noise();
+    equations.set_effects(of_level(kVariance));
+
+    const Eigen::VectorXd f = columns.rightCols<2>().col(0);
+    Eigen::MatrixXd V = kVariance * f * f.transpose();
+    for (Eigen::Index row = 0; row < signal.size(); ++row)
+        V(row, row) += equations.noise().at(signal(row));
+    const Eigen::MatrixXd A = columns.leftCols<5>();
+    const Eigen::MatrixXd wanted = A.transpose() * V.llt().solve(A);
+    const Eigen::MatrixXd H = equations.normal_of(seen.state, seen.path(), shares, {}, seen.sled);
+    EXPECT_LT((H - wanted).cwiseAbs().maxCoeff(), kRounding * wanted.cwiseAbs().maxCoeff());
+}
+
+TEST(FitEquations, WhatAFloorIsBrighterByLeavesTheVeilAlone) {
+    const Seen seen;
+    FitState bright = seen.state;
+    bright.floor_brightness = 1.3;
+    const Eigen::VectorXd signal = seen.columns(bright, kOne).rightCols<1>();
+    FitEquations equations(seen.light, seen.samples(signal), 1);
+    equations.assume_noise();
+    equations.set_effects(of_level(1.0));
+    const auto left = equations.residual_of(0, seen.state, seen.path(), kOne);
+    const double veil =
+        1.0 - seen.columns(seen.state, kOne).rightCols<2>().col(0).sum() / left.signal.sum();
+    EXPECT_GT(veil, 0.04);
+    EXPECT_NEAR(left.effects[0], 0.3, 0.3 * kPrior);
+    EXPECT_LT(left.residual.cwiseAbs().maxCoeff(), kPrior * signal.maxCoeff());
+}
+
+}  // namespace
+}  // namespace aphotic::fit_equations_test
