@@ -60,6 +60,8 @@ Taken taken_by(const CLI::App& app, const CLI::Option& option) {
         taken.words = command_names(*app.get_parent());
     } else if (option.get_items_expected_max() == 0) {
         taken.kind = Taken::Kind::Nothing;
+    } else if (type == "SWEEP" || type == "IMAGE" || type == "NAME" || type.ends_with("|FILE")) {
+        taken.kind = Taken::Kind::File;  // or a word that the rig or the built-in tables have
     } else if (open != std::string::npos) {
         taken.kind = Taken::Kind::Words;
         taken.words = split(type.substr(open + 1, type.find('}') - open - 1), ',');

@@ -55,6 +55,16 @@ const toml::node* find(const toml::table& root, std::string_view key) {
     return node;
 }
 
+std::string names_in(const toml::array& array) {
+    std::string names;
+    for (const toml::node& item : array) {
+        const toml::table* table = item.as_table();
+        const auto name = table == nullptr ? std::nullopt : (*table)["name"].value<std::string>();
+        if (name) names += *name + ", ";
+    }
+    return fmt::format("{}0 to {}", names, array.size() - 1);
+}
+
 // A whole number gets a decimal point, for some keys take no integers.
 std::string toml_of(double value) {
     std::string text = fmt::format("{}", value == 0.0 ? 0.0 : value);
@@ -259,8 +269,9 @@ void RigText::put(std::string_view key, const std::string& value) {
         text_.replace(range.first, range.last - range.first, value);
         return;
     }
-    if (nodes.back()->is_array())
-        throw InputError("{}: found no '{}'; allowed: the rig's own", key, steps[nodes.size() - 1]);
+    if (const toml::array* array = nodes.back()->as_array())
+        throw InputError(
+            "{}: found no '{}'; allowed: {}", key, steps[nodes.size() - 1], names_in(*array));
     if (!nodes.back()->is_table()) throw InputError("{}: found no table to hold it", key);
     // a.b.c = 1 makes tables that have neither header nor braces: their keys go where it stands.
     const auto is_dotted = [&](const toml::table& table) {

@@ -15,6 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <initializer_list>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,8 +64,11 @@ class Section {
 
     template <std::size_t n>
     [[nodiscard]] std::array<double, n> numbers(std::string_view key, Bounds bounds) {
-        const std::string allowed =
-            fmt::format("an array of {} numbers, each from {} to {}", n, bounds.least, bounds.most);
+        const bool is_any = bounds.most == std::numeric_limits<double>::max();
+        const std::string allowed = fmt::format(
+            "an array of {} numbers{}",
+            n,
+            is_any ? "" : fmt::format(", each from {} to {}", bounds.least, bounds.most));
         const toml::array* array = required(key, allowed).as_array();
         if (array == nullptr || array->size() != n) found_but(key, allowed);
         std::array<double, n> values{};

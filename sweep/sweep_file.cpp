@@ -25,12 +25,16 @@ namespace {
 constexpr Bounds kAnyNumber{-std::numeric_limits<double>::max(),
                             std::numeric_limits<double>::max()};
 
-int whole_number(Section& section, std::string_view key, int least, int most) {
-    const Bounds bounds{static_cast<double>(least), static_cast<double>(most)};
-    const double number = section.number(key, bounds);
+double whole_number(Section& section, std::string_view key, double least, double most) {
+    const double number = section.number(key, {least, most});
     if (number != std::floor(number))
         section.found_but(key, fmt::format("a whole number from {} to {}", least, most));
-    return static_cast<int>(number);
+    return number;
+}
+
+int whole_number(Section& section, std::string_view key, int least, int most) {
+    return static_cast<int>(
+        whole_number(section, key, static_cast<double>(least), static_cast<double>(most)));
 }
 
 std::optional<double> number_in(const toml::node& node) {
@@ -77,9 +81,10 @@ std::vector<SweepValue> range_of(Section& section) {
     constexpr double kWhole = 1e-6;  // of a step: what decimal fractions leave
     const double steps = (last - first) / step;
     const double whole = std::round(steps);
-    if (!(steps >= 0.0 && whole < static_cast<double>(kMostTasks)) ||
-        std::abs(steps - whole) > kWhole)
-        section.found_but("range", allowed);
+    const bool is_counted = steps >= 0.0 && std::isfinite(steps);
+    if (!is_counted || std::abs(steps - whole) > kWhole) section.found_but("range", allowed);
+    if (whole >= static_cast<double>(kMostTasks))
+        section.found_but("range", fmt::format("up to {} values", kMostTasks));
     std::vector<SweepValue> values;
     for (int i = 0; i <= static_cast<int>(whole); ++i)
         values.emplace_back(tidy(first + i * step, std::abs(step)));
@@ -97,8 +102,11 @@ SweptKey read_key(Section section) {
     const bool has_list = section.has("values");
     const bool has_range = section.has("range");
     const bool has_ends = section.has("between");
-    if (has_list + has_range + has_ends != 1)
-        section.fail_at("key", "allowed: one of values, range and between");
+    if (const int found = has_list + has_range + has_ends; found != 1) {
+        section.fail_at("key",
+                        fmt::format("found {} of values, range and between; allowed: one",
+                                    found == 0 ? "none" : std::to_string(found)));
+    }
     if (has_list) swept.values = list_of(section);
     if (has_range) swept.values = range_of(section);
     if (has_ends) swept.between = ends_of(section);
@@ -122,11 +130,14 @@ bool is_of_hypercube(const SweptKey& key) {
     return !key.between.empty();
 }
 
-SweepFile read_sweep(Section top) {
+SweepFile read_sweep(Section top, const std::string& name) {
     constexpr int kMostCores = 1024;
     constexpr auto kMost = static_cast<int>(kMostTasks);
     constexpr double kMostSeed = 0x1p53;
     SweepFile sweep;
+    const auto refuse = [&](const char* key, const char* where) {
+        if (top.has(key)) top.fail_at(key, fmt::format("allowed only {}", where));
+    };
     sweep.command =
         top.word("command", {"render", "trace", "lightmap", "validate", "correct", "fit"});
     sweep.rig = top.text("rig", "a rig's file");
@@ -134,16 +145,27 @@ SweepFile read_sweep(Section top) {
     if (takes_images) {
         sweep.images = top.texts("images", "a list of images and folders of them");
         if (sweep.images.empty()) top.found_but("images", "one or more");
+    } else {
+        refuse("images", "for correct and fit");
     }
     if (top.has("arguments")) sweep.arguments = top.texts("arguments", "a list of texts");
     if (top.has("cores")) sweep.cores = whole_number(top, "cores", 1, kMostCores);
-    if (sweep.command == "correct" && top.has("shares"))
-        sweep.shares = whole_number(top, "shares", 1, kMost);
+    if (sweep.command != "correct") refuse("shares", "for correct");
+    if (top.has("shares")) sweep.shares = whole_number(top, "shares", 1, kMost);
     sweep.vary = read_keys(top);
     if (std::ranges::any_of(sweep.vary, is_of_hypercube)) {
+        if (!top.has("samples"))
+            throw InputError(
+                "{}: samples: found none; allowed: how many points the hypercube of "
+                "`between` has, 1 to {}",
+                name,
+                kMost);
         sweep.samples = whole_number(top, "samples", 1, kMost);
         if (top.has("seed"))
-            sweep.seed = static_cast<std::uint64_t>(top.number("seed", {0.0, kMostSeed}));
+            sweep.seed = static_cast<std::uint64_t>(whole_number(top, "seed", 0.0, kMostSeed));
+    } else {
+        refuse("samples", "where a key has `between`");
+        refuse("seed", "where a key has `between`");
     }
     top.refuse_unknown_keys();
     return sweep;
@@ -178,7 +200,7 @@ SweepFile parse_sweep_file(std::string_view toml, const std::string& name) {
     } catch (const toml::parse_error& error) {
         fail_at_line(name, error.source().begin.line, printable(error.description()));
     }
-    SweepFile sweep = read_sweep(Section(table, "", name));
+    SweepFile sweep = read_sweep(Section(table, "", name), name);
     std::size_t count = static_cast<std::size_t>(sweep.shares);
     if (sweep.samples > 0) count *= static_cast<std::size_t>(sweep.samples);
     for (const SweptKey& key : sweep.vary) {

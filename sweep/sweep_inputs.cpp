@@ -17,20 +17,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string stamp_of(const fs::path& file) {
+// By its place from home: a survey that was moved with its sweep is the same.
+std::string stamp_of(const fs::path& file, const fs::path& home) {
     std::error_code none;
     if (!fs::is_regular_file(file, none)) return "";
     return fmt::format("{} {} {}\n",
-                       file.string(),
+                       fs::absolute(file).lexically_normal().lexically_relative(home).string(),
                        fs::file_size(file, none),
                        fs::last_write_time(file, none).time_since_epoch().count());
 }
 
-std::string stamps_of_images(const std::string& argument, const fs::path& folder) {
+std::string stamps_of_images(const std::string& argument, const SweepInputs& inputs) {
     std::string stamps;
     try {
-        for (const ImageFile& image : image_files({argument}, folder))
-            stamps += stamp_of(image.source);
+        for (const ImageFile& image :
+             image_files({(inputs.home / argument).string()}, inputs.folder))
+            stamps += stamp_of(image.source, inputs.home);
     } catch (const InputError&) {
         return "";
     }
@@ -57,9 +59,9 @@ void add_scene(const fs::path& folder,
 
 std::string state_of(const SweepInputs& inputs) {
     std::string state;
-    for (const std::string& argument : inputs.images)
-        state += stamps_of_images((inputs.home / argument).string(), inputs.folder);
-    for (const std::string& argument : inputs.arguments) state += stamp_of(inputs.home / argument);
+    for (const std::string& argument : inputs.images) state += stamps_of_images(argument, inputs);
+    for (const std::string& argument : inputs.arguments)
+        state += stamp_of(inputs.home / argument, inputs.home);
     std::set<fs::path> seen;
     add_scene(inputs.scene.parent_path(), inputs.scene.filename(), seen, state);
     return state;

@@ -22,10 +22,13 @@ void replace_all(std::string& text, std::string_view name, std::string_view valu
 
 void write_wrappers(const WrappedSweep& sweep) {
     const std::string folder = sweep.folder.string();
+    std::string slurm_folder = folder;
+    replace_all(slurm_folder, "%", "%%");
     for (const char* logs : {"slurm", "condor"}) make_folder(sweep.folder / logs);
     for (const WrapperText& wrapper : wrapper_texts()) {
         std::string text{wrapper.text};
         replace_all(text, "@PLAIN_FOLDER@", folder);
+        replace_all(text, "@SLURM_FOLDER@", slurm_folder);
         replace_all(text, "@FOLDER@", shell_word(folder));
         replace_all(text, "@TASKS@", std::to_string(sweep.tasks));
         replace_all(text, "@CORES@", std::to_string(sweep.cores));

@@ -168,6 +168,10 @@ TEST_F(SweepEngines, Snakemake) {
     run_and_stop_midway(snakemake);
     EXPECT_EQ(run(snakemake), 0) << log();
     expect_whole();
+    // Its own marks are no reason to leave out what has lost its result.
+    fs::remove(out("task-0001/result.json"));
+    EXPECT_EQ(run(snakemake), 0) << log();
+    EXPECT_TRUE(fs::exists(out("task-0001/result.json")));
 }
 
 // Of one node, gone with its object.

@@ -240,6 +240,8 @@ TEST_F(CommandSweep, RunTaskTakesItsNumberFromTheEngine) {
     EXPECT_EQ(run({}, {{"PBS_ARRAY_INDEX", "1"}, {"OFFSET", "2"}}), 0);
     EXPECT_TRUE(is_done(3));
     EXPECT_EQ(run({}, {{"SGE_TASK_ID", "undefined"}}), 2);  // of a job that is no array
+    EXPECT_EQ(run({"0"}, {}), 2);
+    EXPECT_EQ(run({"08"}, {}), 2);  // no octal number
     EXPECT_EQ(run({"4"}, {}), 2);
     EXPECT_TRUE(contains(read_text_file(small_.folder() / "log"), "allowed: 1 to 3"));
 }

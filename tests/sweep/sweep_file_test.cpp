@@ -128,22 +128,30 @@ TEST(SweepFile, TheSeedDecidesTheHypercube) {
 
 TEST(SweepFile, SaysWhatIsWrongAndWhatIsAllowed) {
     const std::map<std::string, std::string> wrong{
-        {"[[vary]]\nkey = \"a\"\n", "allowed: one of values, range and between"},
-        {"[[vary]]\nkey = \"a\"\nvalues = [1]\nrange = [1, 2, 1]\n", "allowed: one of values"},
+        {"[[vary]]\nkey = \"a\"\n", "found none of values, range and between; allowed: one"},
+        {"[[vary]]\nkey = \"a\"\nvalues = [1]\nrange = [1, 2, 1]\n",
+         "found 2 of values, range and between; allowed: one"},
         {"[[vary]]\nkey = \"a\"\nvalues = []\n", "found []; allowed: a list of numbers"},
         {"[[vary]]\nkey = \"a\"\nvalues = [true]\n", "found [true]; allowed: a list of numbers"},
         {"[[vary]]\nkey = \"a\"\nvalues = [nan]\n", "allowed: a list of numbers"},
         {"[[vary]]\nkey = \"a\"\nrange = [1, 2, 0.3]\n", "whose steps end at last"},
         {"[[vary]]\nkey = \"a\"\nrange = [1, 2, 0]\n", "whose steps end at last"},
         {"[[vary]]\nkey = \"a\"\nrange = [1, 2, -1]\n", "whose steps end at last"},
+        {"[[vary]]\nkey = \"a\"\nrange = [1, 2]\n", "allowed: an array of 3 numbers"},
+        {"[[vary]]\nkey = \"a\"\nrange = [1, 100000, 1]\n", "allowed: up to 20000 values"},
         {"samples = 2\n[[vary]]\nkey = \"a\"\nbetween = [2, 1]\n", "the smaller one first"},
-        {"[[vary]]\nkey = \"a\"\nbetween = [1, 2]\n", "samples: is missing"},
+        {"[[vary]]\nkey = \"a\"\nbetween = [1, 2]\n",
+         "samples: found none; allowed: how many points"},
+        {"samples = 2\nseed = 1.5\n[[vary]]\nkey = \"a\"\nbetween = [1, 2]\n",
+         "a whole number from 0"},
+        {"samples = 2\n", "samples: allowed only where a key has `between`"},
+        {"seed = 2\n", "seed: allowed only where a key has `between`"},
         {"samples = 2.5\n[[vary]]\nkey = \"a\"\nbetween = [1, 2]\n", "a whole number from 1"},
         {"[[vary]]\nkey = \"a\"\nvalues = [1]\n[[vary]]\nkey = \"a\"\nvalues = [1]\n",
          "found a twice"},
         {"[[vary]]\nkey = \"a\"\nvalues = [1]\nstep = 2\n", "step"},
-        {"shares = 2\n", "shares"},  // of trace
-        {"images = [\"x\"]\n", "images"},
+        {"shares = 2\n", "shares: allowed only for correct"},  // of trace
+        {"images = [\"x\"]\n", "images: allowed only for correct and fit"},
         {"cores = 0\n", "a number from 1 to 1024"},
         {"[[vary]]\nkey = \"a\"\nrange = [1, 200, 1]\n[[vary]]\nkey = \"b\"\nrange = [1, 200, "
          "1]\n",

@@ -66,6 +66,24 @@ TEST_F(SweepInputsTest, AreTheSameUntilOneOfThemChanges) {
     expect_changed("what an include includes");
 }
 
+TEST_F(SweepInputsTest, AreTheSameWhereASurveyMovesWithItsSweep) {
+    const auto state_in = [](const fs::path& cruise) {
+        return state_of({.home = cruise,
+                         .images = {"dive"},
+                         .arguments = {"--nav", "nav.csv"},
+                         .scene = {},
+                         .folder = cruise / "out"});
+    };
+    fs::create_directories(home() / "cruise");
+    fs::rename(home() / "dive", home() / "cruise/dive");
+    fs::rename(home() / "nav.csv", home() / "cruise/nav.csv");
+    const std::string before = state_in(home() / "cruise");
+    fs::rename(home() / "cruise", home() / "elsewhere");
+    EXPECT_EQ(state_in(home() / "elsewhere"), before);
+    make_older(home() / "elsewhere/dive/1.tif");
+    EXPECT_NE(state_in(home() / "elsewhere"), before);
+}
+
 TEST_F(SweepInputsTest, AreNoneOfTheOtherFilesNorTheTimesOfScenes) {
     const std::string before = state();
     write_file(home() / "dive/notes.txt", "other notes");
