@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 namespace aphotic::cli {
@@ -48,6 +50,10 @@ std::vector<std::string> command_names(const CLI::App& app) {
     return names;
 }
 
+bool contains(std::initializer_list<std::string_view> words, std::string_view word) {
+    return std::ranges::find(words, word) != words.end();
+}
+
 // By the type's name: TEXT:{a,b} or a|b are words, FILE.svg and RIG are files.
 Taken taken_by(const CLI::App& app, const CLI::Option& option) {
     Taken taken{.is_many = option.get_items_expected_max() > 1};
@@ -55,17 +61,16 @@ Taken taken_by(const CLI::App& app, const CLI::Option& option) {
                                  ? option.get_name(true)
                                  : option.get_type_name();
     const std::size_t open = type.find('{');
+    const bool is_word_or_file = type.ends_with("|FILE");  // the rig's own words are not known here
     if (type == "COMMAND") {
         taken.kind = Taken::Kind::Words;
         taken.words = command_names(*app.get_parent());
     } else if (option.get_items_expected_max() == 0) {
         taken.kind = Taken::Kind::Nothing;
-    } else if (type == "SWEEP" || type == "IMAGE" || type == "NAME" || type.ends_with("|FILE")) {
-        taken.kind = Taken::Kind::File;  // or a word that the rig or the built-in tables have
     } else if (open != std::string::npos) {
         taken.kind = Taken::Kind::Words;
         taken.words = split(type.substr(open + 1, type.find('}') - open - 1), ',');
-    } else if (type.find('|') != std::string::npos) {
+    } else if (type.find('|') != std::string::npos && !is_word_or_file) {
         taken.kind = Taken::Kind::Words;
         taken.words = split(type, '|');
     } else if (type == "DIR" || type == "ATLAS") {
@@ -76,8 +81,8 @@ Taken taken_by(const CLI::App& app, const CLI::Option& option) {
     } else if (type.starts_with("FILE.") || type.starts_with("MAP.")) {
         taken.kind = Taken::Kind::File;
         taken.extension = type.substr(type.find('.') + 1);
-    } else if (type == "FILE" || type == "IMAGES" || type == "PROGRAM" || type == "A" ||
-               type == "B") {
+    } else if (is_word_or_file ||
+               contains({"FILE", "IMAGE", "IMAGES", "PROGRAM", "SWEEP", "NAME", "A", "B"}, type)) {
         taken.kind = Taken::Kind::File;
     }
     return taken;
