@@ -183,25 +183,20 @@ void learn(const Bench& bench, const FitProblem& problem, Robust robust) {
     bench.equations.learn_noise(problem.state, light, solved.shares, robust, bench.learns_effects);
 }
 
-// How blocks count, round by round: far from the rig Tukey's weights would take what is right for
-// stones.
-constexpr std::array kRounds{
-    Robust::Huber, Robust::Huber, Robust::Biweight, Robust::Biweight, Robust::Biweight};
-
-// The share of the work that is done after so many of kRounds and the search before them.
+// The share of the work that is done after so many of kRobustRounds and the search before them.
 double share_after(std::size_t searches) {
-    return static_cast<double>(searches) / static_cast<double>(kRounds.size() + 1);
+    return static_cast<double>(searches) / static_cast<double>(kRobustRounds.size() + 1);
 }
 
-// What is learned and the search that follows, kRounds. Steps that it took.
+// What is learned and the search that follows, kRobustRounds. Steps that it took.
 int search_in_rounds(const Bench& bench,
                      FitProblem& problem,
                      const std::function<void(std::size_t round)>& progress) {
     constexpr int kSteps = 12;
     int steps = 0;
-    for (std::size_t round = 0; round < kRounds.size(); ++round) {
+    for (std::size_t round = 0; round < kRobustRounds.size(); ++round) {
         progress(round);
-        learn(bench, problem, kRounds[round]);
+        learn(bench, problem, kRobustRounds[round]);
         steps += search(bench, problem, kSteps);
     }
     return steps;
@@ -209,8 +204,8 @@ int search_in_rounds(const Bench& bench,
 
 constexpr std::size_t kFewGroups = 10;
 
-// Of a variance by kGroups: by chance it is so many times the true one or more in a twentieth of
-// all cases; and Student's t over the normal's, squared.
+// Of a variance by kJackknifeGroups: by chance it is so many times the true one or more in a
+// twentieth of all cases; and Student's t over the normal's, squared.
 constexpr double kBeyondChance = 1.8;
 constexpr double kFew = 1.25;
 
@@ -354,7 +349,7 @@ FitResult result_of(const Bench& bench,
     result.tiles = at.normal.tiles;
     result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
     if (rival) {
-        const std::size_t groups = std::min(kGroups, samples.images.size());
+        const std::size_t groups = std::min(kJackknifeGroups, samples.images.size());
         const auto light_of = [&](const FitState& state) { return bench.path_light(state, true); };
         widen(jackknife(bench.equations, problem, light_of, at.shares, groups, watch),
               result.covariance);
@@ -470,7 +465,7 @@ FitResult fit(const RigText& text,
     FitResult result = result_of(bench, problem, samples, rival, watch);
     watch.progress("fitting", 1.0);
     result.held = std::move(held);
-    result.rounds = static_cast<int>(kRounds.size()) + 1;
+    result.rounds = static_cast<int>(kRobustRounds.size()) + 1;
     result.steps = steps;
     return result;
 }

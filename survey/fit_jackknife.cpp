@@ -79,7 +79,7 @@ VectorXd jackknife(const FitEquations& equations,
     for (std::size_t group = 0; group < groups; ++group) {
         watch.progress("estimating errors", static_cast<double>(group) / count);
         Answer answer{.shares = shares, .problem = problem};
-        for (const Robust robust : kJackknifeRounds) {
+        for (const Robust robust : kRobustRounds) {
             const FitState& state = answer.problem.state;
             step(equations.without(group,
                                    groups,

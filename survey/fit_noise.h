@@ -37,6 +37,10 @@ inline constexpr double kNormal =
     1.4826;  // standard deviation of a normal over its median deviation
 
 enum class Robust { Huber, Biweight };
+// Round by round, as weights are found anew: far from the answer the biweight would take what is
+// right for stones.
+inline constexpr std::array kRobustRounds{
+    Robust::Huber, Robust::Huber, Robust::Biweight, Robust::Biweight, Robust::Biweight};
 
 struct Influence {
     double weight = 1.0;
