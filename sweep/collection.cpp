@@ -43,8 +43,11 @@ void add_columns(const nlohmann::json& json, const std::string& name, Columns& c
         for (const auto& [key, value] : json.items())
             add_columns(value, name.empty() ? key : name + "." + key, columns);
     } else if (json.is_array() && !json.empty() && json[0].contains("key")) {
-        for (const auto& item : json)  // a fit's numbers
-            add_columns(item, name + "." + item.at("key").get<std::string>(), columns);
+        for (nlohmann::json item : json) {  // a fit's numbers
+            const auto key = item.at("key").get<std::string>();
+            item.erase("key");
+            add_columns(item, name + "." + key, columns);
+        }
     } else if (json.is_array()) {
         const bool is_short = json.size() <= kMostOfAList &&
                               std::ranges::all_of(json, [](auto& x) { return x.is_number(); });

@@ -130,7 +130,7 @@ bool is_of_hypercube(const SweptKey& key) {
     return !key.between.empty();
 }
 
-SweepFile read_sweep(Section top, const std::string& name) {
+SweepFile read_sweep(Section top) {
     constexpr int kMostCores = 1024;
     constexpr auto kMost = static_cast<int>(kMostTasks);
     constexpr double kMostSeed = 0x1p53;
@@ -155,11 +155,7 @@ SweepFile read_sweep(Section top, const std::string& name) {
     sweep.vary = read_keys(top);
     if (std::ranges::any_of(sweep.vary, is_of_hypercube)) {
         if (!top.has("samples"))
-            throw InputError(
-                "{}: samples: found none; allowed: how many points the hypercube of "
-                "`between` has, 1 to {}",
-                name,
-                kMost);
+            top.fail_at("vary", "found `between` without samples, the hypercube's points");
         sweep.samples = whole_number(top, "samples", 1, kMost);
         if (top.has("seed"))
             sweep.seed = static_cast<std::uint64_t>(whole_number(top, "seed", 0.0, kMostSeed));
@@ -200,7 +196,7 @@ SweepFile parse_sweep_file(std::string_view toml, const std::string& name) {
     } catch (const toml::parse_error& error) {
         fail_at_line(name, error.source().begin.line, printable(error.description()));
     }
-    SweepFile sweep = read_sweep(Section(table, "", name), name);
+    SweepFile sweep = read_sweep(Section(table, "", name));
     std::size_t count = static_cast<std::size_t>(sweep.shares);
     if (sweep.samples > 0) count *= static_cast<std::size_t>(sweep.samples);
     for (const SweptKey& key : sweep.vary) {
