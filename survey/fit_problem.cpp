@@ -69,8 +69,10 @@ void add_water(const RigText& text,
                const FitOptions& options,
                FitState& state,
                std::vector<FreeNumber>& free) {
+    std::vector<std::string> known;
     const auto add = [&](const WaterBounds& bounds, bool is_free) {
         const std::string key = fmt::format("water.{}", bounds.key);
+        known.push_back(key);
         const double value = text.number(key).value_or(bounds.absent);
         if (is_free) {
             free.push_back({.number = {FitPart::Water, state.water.size(), 0},
@@ -98,6 +100,11 @@ void add_water(const RigText& text,
         add(kWaterNumbers[0], is_all || by_itself("multiple"));
     }
     add(kWaterNumbers[1], by_itself("uniform_loss_per_m"));
+    for (const std::string& word : options.free.value_or(std::vector<std::string>{})) {
+        if (!word.starts_with("water.") || std::ranges::find(known, word) != known.end()) continue;
+        throw InputError(
+            "--free: found '{}'; allowed of this water: {}", word, fmt::join(known, ", "));
+    }
 }
 
 // Strobes of like beams share one, unless each is to have its own.

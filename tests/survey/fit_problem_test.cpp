@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The numbers of the water that may be asked for are those that this water has.
+#include "survey/fit_problem.h"
+
+#include "base/error.h"
+#include "support/fit_rig.h"
+
+#include <gtest/gtest.h>
+
+namespace aphotic::fit_problem_test {
+namespace {
+
+std::vector<std::string> keys_of(const std::string& word) {
+    FitOptions options;
+    options.free = {{word}};
+    std::vector<std::string> keys;
+    for (const FreeNumber& one : fit_problem(fit_rig({}), options, 1.0).free)
+        if (one.group == "water") keys.push_back(one.key);
+    return keys;
+}
+
+TEST(FitProblem, TakesTheNumbersThatTheWaterHas) {
+    EXPECT_EQ(keys_of("water.multiple"), std::vector<std::string>{"water.multiple"});
+    EXPECT_EQ(keys_of("water.uniform_loss_per_m"),
+              std::vector<std::string>{"water.uniform_loss_per_m"});
+}
+
+TEST(FitProblem, RefusesANumberThatTheWaterHasNot) {
+    for (const char* word : {"water.nonsense", "water.chlorophyll_mg_m3"}) {
+        try {
+            static_cast<void>(keys_of(word));
+            ADD_FAILURE() << "accepted: " << word;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.what(),
+                      std::string("--free: found '") + word +
+                          "'; allowed of this water: water.multiple, water.uniform_loss_per_m");
+        }
+    }
+}
+
+}  // namespace
+}  // namespace aphotic::fit_problem_test
