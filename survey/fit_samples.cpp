@@ -104,6 +104,21 @@ double number_of(const ExrReader& reader, const std::string& name, const std::st
     return value;
 }
 
+// A mosaic's map has its red at a quarter of the pixels alone.
+void require_every_channel(const FitImage& image, const std::string& map) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        bool is_told = false;
+        for (std::size_t k = c; k < image.signal.size(); k += kChannels)
+            is_told = is_told || std::isfinite(image.signal[k]);
+        if (is_told) continue;
+        throw InputError(
+            "{}: found {} at too few pixels of every block; allowed: at half of one's or more, as "
+            "`aphotic observe --demosaic` writes",
+            map,
+            kChannelNames[c]);
+    }
+}
+
 FitImage image_of_map(const std::string& map, const Camera& camera, int block_px) {
     ExrReader reader(map);
     const std::vector<std::string> names{kChannelNames.begin(), kChannelNames.end()};
@@ -125,6 +140,7 @@ FitImage image_of_map(const std::string& map, const Camera& camera, int block_px
     if (!reader.attribute("aphotic:images").empty())
         image.images = std::max(1.0, number_of(reader, "aphotic:images", map));
     average(raw, std::numeric_limits<float>::infinity(), block_px, image);
+    require_every_channel(image, map);
     const bool is_mono = camera.sensor.is_mono();
     // Of a mono camera all three are one, and count once.
     for (std::size_t k = 0; k < image.signal.size() && is_mono; ++k)

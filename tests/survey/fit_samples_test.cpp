@@ -80,13 +80,15 @@ TEST_F(FitSamplesOfAnImage, ASaturatedBlockIsLeftOutInItsChannel) {
 
 class FitSamplesOfAMap : public testing::Test {
   protected:
-    void write(const ExrAttributes& attributes) const {
+    void write(const ExrAttributes& attributes, std::vector<float> planes = kEven) const {
         ExrWriter exr(map(), 40, 30, {"R", "G", "B"}, attributes);
-        exr.write_rows(30, std::vector<float>(std::size_t{3} * 40 * 30, 2.0F));
+        exr.write_rows(30, planes);
         exr.finish();
     }
     [[nodiscard]] std::string map() const { return (folder_.path() / "m.exr").string(); }
 
+    static inline const std::vector<float> kEven =
+        std::vector<float>(std::size_t{3} * 40 * 30, 2.0F);
     TempFolder folder_;
     Camera camera_ = fit_rig({}).rig().camera;
 };
@@ -115,6 +117,22 @@ TEST_F(FitSamplesOfAMap, WhatIsMissingIsNamed) {
     }
     camera_.width_px = 41;
     EXPECT_THROW(static_cast<void>(samples_of_maps({map()}, camera_, 40)), InputError);
+}
+
+// Fitted without red and blue, water would be told by green alone, and nobody be told.
+TEST_F(FitSamplesOfAMap, ThatHasAColourAtItsSitesAloneIsRefused) {
+    std::vector<float> planes = kEven;
+    for (std::size_t i = 0; i < std::size_t{40} * 30; ++i)
+        if (i % 2 == 1 || i / 40 % 2 == 1) planes[i] = std::nanf("");
+    write({{"aphotic:altitude_m", "1.9"}, {"aphotic:pitch_deg", "0"}, {"aphotic:roll_deg", "0"}},
+          planes);
+    try {
+        static_cast<void>(samples_of_maps({map()}, camera_, 10));
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const InputError& error) {
+        EXPECT_TRUE(std::string(error.what()).starts_with(map() + ": found R at too few pixels"))
+            << error.what();
+    }
 }
 
 // Its three channels are one, and count once.
