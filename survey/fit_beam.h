@@ -15,7 +15,8 @@
 //
 // Shapes are what the parts depend on besides: found by the search that finds aim and water.
 // Derivatives of Table and Cosine are exact; those of the others are central differences of a
-// closed form, right to kSteps^2. Where a cone has an edge there is none (fit_samples.h masks it).
+// closed form, right to kSteps^2. Across a cone's edge there is none, and nothing masks it:
+// aims of hard cones are found poorly.
 //
 // De Boor's splines in their form for even knots: H. Prautzsch, W. Boehm and M. Paluszny, Bezier
 // and B-Spline Techniques (2002), 8.7.
