@@ -78,6 +78,28 @@ std::string toml_of(const std::string& value) {
     return text.str();
 }
 
+template <typename F>
+void for_tables(toml::node& node, const F& f) {
+    if (toml::table* table = node.as_table(); table != nullptr) {
+        f(*table);
+        for (auto&& [key, value] : *table) for_tables(value, f);
+    } else if (toml::array* array = node.as_array(); array != nullptr) {
+        for (toml::node& item : *array) for_tables(item, f);
+    }
+}
+
+// On a line of its own, as a value: tables in braces.
+std::string toml_of(const toml::node& node) {
+    toml::table pair{{"key", node}};
+    pair.is_inline(true);
+    for_tables(*pair.get("key"), [](toml::table& table) { table.is_inline(true); });
+    std::ostringstream text;
+    text << pair;
+    constexpr std::string_view kBefore = "{ key = ";
+    constexpr std::string_view kAfter = " }";
+    return text.str().substr(kBefore.size(), text.str().size() - kBefore.size() - kAfter.size());
+}
+
 std::string toml_key(const std::string& step) {
     const bool is_bare = !step.empty() && std::ranges::all_of(step, [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -326,6 +348,16 @@ void RigText::erase(std::string_view key) {
         const TextRange all = with_its_surroundings(text_, range);
         text_.erase(all.first, all.last - all.first);
     }
+}
+
+void RigText::copy(const RigText& rig, std::string_view table, std::string_view place) {
+    const toml::table root = toml::parse(rig.text_);
+    const toml::node* node = find(root, table);
+    if (node == nullptr || !node->is_table())
+        throw InputError("{}: found no table; allowed: one in the rig", table);
+    if (has(place)) erase(place);
+    for (auto&& [key, value] : *node->as_table())
+        put(fmt::format("{}.{}", place, std::string_view(key)), toml_of(value));
 }
 
 void RigText::copy_files(const std::filesystem::path& folder) const {

@@ -37,6 +37,8 @@ class RigText {
     void set(std::string_view key, const std::vector<double>& values);
     // With its line, where nothing else stands there. A table goes with all that it holds.
     void erase(std::string_view key);
+    // A table of a rig's, whose place is another here; what stood in that place goes.
+    void copy(const RigText& rig, std::string_view table, std::string_view place);
 
     // Files that the text names are found here.
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }

@@ -207,7 +207,7 @@ constexpr std::size_t kFewGroups = 10;
 // Of a variance by kJackknifeGroups: by chance it is so many times the true one or more in a
 // twentieth of all cases; and Student's t over the normal's, squared.
 constexpr double kBeyondChance = 1.8;
-constexpr double kFew = 1.25;
+constexpr double kStudent2 = 1.25;
 
 // The covariance, with the jackknife's variances where these are larger by more than chance.
 void widen(const VectorXd& jackknife, MatrixXd& covariance) {
@@ -215,7 +215,7 @@ void widen(const VectorXd& jackknife, MatrixXd& covariance) {
     for (Index k = 0; k < jackknife.size(); ++k) {
         const double own = covariance(k, k);
         if (own > 0.0 && jackknife(k) > kBeyondChance * own)
-            factor(k) = std::sqrt(kFew * jackknife(k) / own);
+            factor(k) = std::sqrt(kStudent2 * jackknife(k) / own);
     }
     covariance = factor.asDiagonal() * covariance * factor.asDiagonal();
 }
@@ -328,9 +328,11 @@ void look_at_rival(const Rival& rival,
     if (rival.excess > kAsGood * dispersion || most < kElsewhere) return;
     result.covariance += 0.5 * off * off.transpose();
     const FreeNumber& number = problem.free[static_cast<std::size_t>(worst)];
-    result.left.doubts.push_back(
-        {fmt::format("another rig explains the images as well; its {}", number.key),
-         number.per_unit * rival.values(result.shares.size() + worst)});
+    result.left.looks_wrong.push_back(
+        {"rival",
+         fmt::format("another rig explains the images as well; its {} is {:.4g}",
+                     number.key,
+                     number.per_unit * rival.values(result.shares.size() + worst))});
 }
 
 FitResult result_of(const Bench& bench,
@@ -348,6 +350,8 @@ FitResult result_of(const Bench& bench,
     result.blocks = bench.equations.blocks();
     result.tiles = at.normal.tiles;
     result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
+    result.left.looks_wrong.insert(
+        result.left.looks_wrong.begin(), samples.looks_wrong.begin(), samples.looks_wrong.end());
     if (rival) {
         const std::size_t groups = std::min(kJackknifeGroups, samples.images.size());
         const auto light_of = [&](const FitState& state) { return bench.path_light(state, true); };

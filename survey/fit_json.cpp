@@ -59,16 +59,13 @@ FitJson to_json(const FitResult& result) {
     for (const Confounded& pair : result.confounded)
         confounded.push_back(
             {{"one", pair.one}, {"other", pair.other}, {"correlation", pair.correlation}});
-    FitJson doubts = FitJson::array();
-    for (const FitDoubt& doubt : result.left.doubts)
-        doubts.push_back({{"what", doubt.what}, {"size", doubt.size}});
     FitJson beams = FitJson::array();
     for (const auto& curve : result.beam_curves) beams.push_back(curve_json(curve));
     const auto deviation = [&](std::size_t k) { return std::sqrt(result.effects[k]); };
     return {{"numbers", std::move(numbers)},
             {"held", std::move(held)},
             {"confounded", std::move(confounded)},
-            {"doubts", std::move(doubts)},
+            {"looks_wrong", to_json(result.left.looks_wrong)},
             {"beams", std::move(beams)},
             {"shares", std::vector<double>(result.shares.begin(), result.shares.end())},
             {"covariance", matrix_json(result.covariance)},

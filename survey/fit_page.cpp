@@ -33,9 +33,10 @@ std::string verdict(const FitSamples& samples, const FitResult& result) {
                     counted(result.numbers.size(), "number"),
                     counted(samples.images.size(), samples.are_maps ? "map" : "image"));
     if (!result.held.empty()) words += ", " + counted(result.held.size(), "number") + " held";
-    if (!result.left.doubts.empty()) words += ", " + counted(result.left.doubts.size(), "warning");
+    if (!result.left.looks_wrong.empty())
+        words += ", " + counted(result.left.looks_wrong.size(), "warning");
     return html_verdict(
-        result.left.doubts.empty(),
+        result.left.looks_wrong.empty(),
         words,
         html_paragraph(fmt::format(
             "Of {} it leaves {} (rms, relative), of which {} stays in place from image to image: "
@@ -45,11 +46,10 @@ std::string verdict(const FitSamples& samples, const FitResult& result) {
             number_text(result.left.pattern))));
 }
 
-std::string doubts(const FitResult& result) {
+std::string warnings(const FitResult& result) {
     std::string content;
-    for (const FitDoubt& doubt : result.left.doubts)
-        content +=
-            html_paragraph(fmt::format("{}: {}", escaped(doubt.what), number_text(doubt.size)));
+    for (const Suspicion& one : result.left.looks_wrong)
+        content += html_paragraph(fmt::format("{}: {}", escaped(one.about), escaped(one.what)));
     return content.empty() ? "" : html_section("warnings", "Warnings", content);
 }
 
@@ -233,7 +233,7 @@ void write_fit_page(const std::filesystem::path& file,
                     const FitResult& result) {
     const std::string title = text.rig().title.empty() ? "Untitled rig" : text.rig().title;
     const std::string content =
-        html_header("fit", user_text(title), verdict(samples, result)) + doubts(result) +
+        html_header("fit", user_text(title), verdict(samples, result)) + warnings(result) +
         numbers(result) + views(samples, result) + beams(result) + over_altitude(result) +
         deviations(result) +
         html_section("rig", "The rig that it began with", html_source(text.text()));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/fit_residuals.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,7 +17,7 @@ using Eigen::VectorXd;
 // The residuals of all images at one place and channel.
 using InPlace = std::vector<float>;
 
-float median_of(InPlace& values) {
+float middle_of(InPlace& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
@@ -29,9 +31,9 @@ double pattern_of(std::vector<InPlace>& places) {
     double counted = 0.0;
     for (InPlace& at : places) {
         if (at.size() < kFew) continue;
-        const float median = median_of(at);
+        const float median = middle_of(at);
         for (float& off : at) off = std::abs(off - median);
-        const double deviation = kNormal * median_of(at);
+        const double deviation = kNormal * middle_of(at);
         const double chance =
             0.5 * std::numbers::pi * deviation * deviation / static_cast<double>(at.size() - 1);
         pattern += double{median} * median - chance;
@@ -64,20 +66,22 @@ Trend trend_with_altitude(const std::vector<ImageOutcome>& images) {
             .rms = std::abs(correlation) * level.norm() / std::sqrt(static_cast<double>(count))};
 }
 
-void look_for_doubts(const FitSamples& samples, FitResiduals& result) {
+void look_for_misfit(const FitSamples& samples, FitResiduals& result) {
     constexpr double kPattern = 0.02;
     if (result.pattern > kPattern) {
-        result.doubts.push_back(
-            {"residuals stay in place from image to image: another beam, lens or "
-             "water than the fit allows, or a wrong black level; rms",
-             result.pattern});
+        result.looks_wrong.push_back(
+            {"pattern",
+             fmt::format("residuals stay in place from image to image, {:.2g} rms: another beam, "
+                         "lens or water than the fit allows, or a wrong black level",
+                         result.pattern)});
     }
     constexpr double kSaturated = 0.02;
     double saturated = 0.0;
     for (const FitImage& image : samples.images)
         saturated += image.saturated_share / static_cast<double>(samples.images.size());
     if (saturated > kSaturated)
-        result.doubts.push_back({"saturated samples, left out; share", saturated});
+        result.looks_wrong.push_back(
+            {"saturation", fmt::format("{:.2g} of all samples, left out", saturated)});
     constexpr std::size_t kFew = 10;
     constexpr double kSigmas = 4.0;  // of the correlation of as many images by chance
     // Of a rough floor more is resolved from nearby, and less of it is shade.
@@ -86,18 +90,21 @@ void look_for_doubts(const FitSamples& samples, FitResiduals& result) {
     if (result.images.size() >= kFew && trend.rms > kTrend &&
         std::abs(trend.correlation) >
             kSigmas / std::sqrt(static_cast<double>(result.images.size()))) {
-        result.doubts.push_back(
-            {"what is left of the images' brightness goes with their altitude; rms", trend.rms});
+        result.looks_wrong.push_back(
+            {"altitude",
+             fmt::format("what is left of the images' brightness goes with it, {:.2g} rms",
+                         trend.rms)});
     }
     constexpr double kMostLevel = 0.25;
     double squares = 0.0;
     for (const ImageOutcome& image : result.images) squares += image.level * image.level;
     const double level = std::sqrt(squares / static_cast<double>(result.images.size()));
     if (level > kMostLevel) {
-        result.doubts.push_back(
-            {"images are brighter or darker than their poses explain: poses of "
-             "other images, or other exposures; rms",
-             level});
+        result.looks_wrong.push_back(
+            {"exposure",
+             fmt::format("images are brighter or darker than their poses explain, {:.2g} rms: "
+                         "poses of other images, or other exposures",
+                         level)});
     }
 }
 
@@ -168,7 +175,7 @@ FitResiduals fit_residuals(const FitEquations& equations,
     }
     result.residual = std::sqrt(squares / std::max(1.0, blocks));
     result.pattern = pattern_of(places);
-    look_for_doubts(samples, result);
+    look_for_misfit(samples, result);
     return result;
 }
 

@@ -6,9 +6,9 @@
 
 #include "survey/fit_equations.h"
 #include "survey/fit_samples.h"
+#include "survey/survey_check.h"
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 namespace aphotic {
@@ -29,18 +29,12 @@ struct FitView {
 };
 inline constexpr std::size_t kFitViews = 5;
 
-// A sign that the model does not fit.
-struct FitDoubt {
-    std::string what;
-    double size = 0.0;
-};
-
 struct FitResiduals {
     double residual = 0.0;  // rms of blocks, relative to the signal, levels taken out
     double pattern = 0.0;   // of that, what stays in place from image to image
     std::vector<ImageOutcome> images;
-    std::vector<FitView> views;  // kFitViews of them, from the lowest to the highest
-    std::vector<FitDoubt> doubts;
+    std::vector<FitView> views;          // kFitViews of them, from the lowest to the highest
+    std::vector<Suspicion> looks_wrong;  // signs that the model does not fit
 };
 
 [[nodiscard]] FitResiduals fit_residuals(const FitEquations& equations,

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/in_order.h"
 #include "image/exr.h"
+#include "survey/first_look.h"
 #include "survey/survey_image.h"
 
 #include <algorithm>
@@ -171,6 +172,7 @@ FitSamples samples_of_images(const Survey& survey,
                              const RunWatch& watch) {
     FitSamples samples;
     samples.places = fit_places(size.width_px, size.height_px, blocks_across);
+    samples.looks_wrong = suspicions_of(survey.files, survey.camera, jobs, watch);
     const auto skip = [&](std::size_t i, const std::string& why) {
         samples.skipped.push_back({.image = survey.files[i].source.string(), .why = why});
         watch.skipped(samples.skipped.back());

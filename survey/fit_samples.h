@@ -34,13 +34,14 @@ struct FitSamples {
     std::vector<FitImage> images{};
     bool are_maps = false;
     std::vector<Skipped> skipped{};
+    std::vector<Suspicion> looks_wrong{};  // of images; the watch was told
 };
 
 // Blocks of a width that gives about so many across.
 [[nodiscard]] FitPlaces fit_places(int width_px, int height_px, int blocks_across);
 
-// The survey has a navigation. Images are read `jobs` at a time and kept as their blocks alone. An
-// InputError when none can be used.
+// The survey has a navigation. Images are read `jobs` at a time and kept as their blocks alone.
+// What survey_check.h doubts is told to the watch before. An InputError when none can be used.
 [[nodiscard]] FitSamples samples_of_images(const Survey& survey,
                                            PlaneSize size,
                                            int blocks_across,

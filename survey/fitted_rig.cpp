@@ -17,37 +17,55 @@ namespace fs = std::filesystem;
 
 constexpr double kMillimetres = 1e3;
 
-void set_beam(const FitBeam& fit,
+// A beam of its own, for the rig's may be another strobe's too.
+void add_beam(const FitBeam& fit,
               const FitBeam::Fitted& fitted,
               const std::string& name,
-              const Beam& was,
+              const RigText& rig,
+              const std::string& was,
               const fs::path& folder,
               RigText& text) {
     const std::string key = "beam." + name;
-    const auto* table = std::get_if<BeamTable>(&fitted.beam.pattern);
     if (fit.kind() == FitBeamKind::Table) {
+        if (text.has(key)) text.erase(key);
         const std::string file = fmt::format("{}-beam.csv", name);
         PhotometricFile photometry;
-        photometry.table = *table;
+        photometry.table = std::get<BeamTable>(fitted.beam.pattern);
         photometry.labels = {{"source", "aphotic fit"}};
         write_text_file(folder / file, beam_csv_text(photometry, file));
         text.set(key + ".table", file);
-    } else if (fit.kind() == FitBeamKind::Cosine) {
+        return;
+    }
+    if (fit.kind() == FitBeamKind::Cosine) {
+        if (text.has(key)) text.erase(key);
         const double half = std::acos(std::pow(0.5, 1.0 / fit.shapes().front()));
         text.set(key + ".fwhm_deg", 2.0 * half * kDegreesPerRadian);
-    } else if (fit.kind() == FitBeamKind::Cones) {
+        return;
+    }
+    text.copy(rig, "beam." + was, key);
+    if (const auto* optics = std::get_if<BeamOptics>(&fitted.beam.pattern)) {
+        text.set(key + ".focal_length_mm", kMillimetres * optics->focal_length_m);
+        text.set(key + ".distance_mm", kMillimetres * optics->distance_m);
+    } else if (text.has(key + ".cones")) {
+        if (text.has(key + ".weights")) text.erase(key + ".weights");  // shares of the flux now
         for (std::size_t k = 0; k < fitted.beam.cones.size(); ++k)
-            text.set(fmt::format("beam.{}.cones.{}.weight", was.name, k),
-                     fitted.beam.cones[k].weight);
-    } else if (fit.kind() == FitBeamKind::Optics) {
-        const auto& optics = std::get<BeamOptics>(fitted.beam.pattern);
-        text.set(fmt::format("beam.{}.focal_length_mm", was.name),
-                 kMillimetres * optics.focal_length_m);
-        text.set(fmt::format("beam.{}.distance_mm", was.name), kMillimetres * optics.distance_m);
+            text.set(fmt::format("{}.cones.{}.weight", key, k), fitted.beam.cones[k].weight);
     }
 }
 
-void set_strobes(const Rig& rig, const FitResult& result, const fs::path& folder, RigText& text) {
+// Or the lamps' own figures stay.
+bool is_light_fitted(const FitResult& result) {
+    const auto is_free = [](const FitBeam& beam) { return beam.kind() != FitBeamKind::Held; };
+    const auto is_power = [](const FittedNumber& one) { return one.number.part == FitPart::Power; };
+    return std::ranges::any_of(result.state.beams, is_free) ||
+           std::ranges::any_of(result.numbers, is_power);
+}
+
+void set_strobes(const RigText& rig_text,
+                 const Rig& rig,
+                 const FitResult& result,
+                 const fs::path& folder,
+                 RigText& text) {
     const FitState& state = result.state;
     std::vector<FitBeam::Fitted> beams;
     Eigen::Index first = 0;
@@ -67,15 +85,18 @@ void set_strobes(const Rig& rig, const FitResult& result, const fs::path& folder
         const Strobe& strobe = rig.strobes[s];
         const std::string key = "strobe." + strobe.name;
         const std::size_t b = state.beam_of[s];
-        const FitBeamKind kind = state.beams[b].kind();
-        const std::string name = beams.size() == 1 ? "fitted" : fmt::format("fitted-{}", b + 1);
-        if (!is_written[b]) set_beam(state.beams[b], beams[b], name, strobe.beam, folder, text);
-        is_written[b] = true;
-        if (kind == FitBeamKind::Table || kind == FitBeamKind::Cosine)
+        if (state.beams[b].kind() != FitBeamKind::Held) {
+            const std::string name = beams.size() == 1 ? "fitted" : fmt::format("fitted-{}", b + 1);
+            if (!is_written[b])
+                add_beam(state.beams[b], beams[b], name, rig_text, strobe.beam.name, folder, text);
+            is_written[b] = true;
             text.set(key + ".beam", name);
-        for (const char* flux : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
-            text.erase(key + flux);
-        text.set(key + ".power", state.power[s] * beams[b].flux * was / all);
+        }
+        if (is_light_fitted(result)) {
+            for (const char* flux : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
+                text.erase(key + flux);
+            text.set(key + ".power", state.power[s] * beams[b].flux * was / all);
+        }
         if (state.aim_rad[s][0] == 0.0 && state.aim_rad[s][1] == 0.0) continue;
         const Eigen::Vector3d axis = aimed_axis(rig, state, s);
         text.erase(key + ".aim");
@@ -100,7 +121,7 @@ void write_fitted_rig(const RigText& rig_text, const FitResult& result, const fs
     const Rig rig = rig_text.rig();
     RigText text = rig_text;
     rig_text.copy_files(folder);
-    set_strobes(rig, result, folder, text);
+    set_strobes(rig_text, rig, result, folder, text);
     const FitState& state = result.state;
     set_floor(rig.seafloor.reflectance, state.floor_brightness, folder, text);
     for (const WaterNumber& number : state.water) text.set(number.key, number.value);

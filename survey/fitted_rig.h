@@ -3,10 +3,11 @@
 // A fit as a rig: the file that it began with, its keys as they were fitted, and what the file
 // names beside it. A rig as any other, for `correct` and all the rest.
 //
-//   beam         [beam.fitted], a table fitted-beam.csv, or cones or optics; of several fitted-1
-//   ... aim          direction of each strobe power        of each strobe, times the flux that its
-//   beam has by the fit; together as much as
-//                before
+//   beam         [beam.fitted], or of several [beam.fitted-1] and so on: a table beside it, or the
+//                rig's with other shares or optics
+//   aim          `direction` of each strobe
+//   power        of each strobe, times the flux that its beam has by the fit; together as much as
+//                before. Where neither beams nor powers were fitted, the strobes' figures stay.
 //   water        the keys of [water]
 //   vignetting   { radial = [...] }
 //   floor        the rig's reflectance times the brightness that the veil tells, fitted-floor.csv

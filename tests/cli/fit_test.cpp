@@ -69,6 +69,49 @@ TEST(CommandFit, LearnsARigFromASurvey) {
               std::string::npos);
 }
 
+// Exposed so that the floor's middle fills twice what a pixel holds.
+TEST(CommandFit, FindsOutASaturatedSurvey) {
+    const TempFolder folder;
+    write_text_file(folder.path() / "rig.toml", fit_rig({}).text());
+    const CommandResult survey =
+        run_aphotic(folder.path(),
+                    {"survey", "rig.toml", "--images", "12", "--floor-share", "2", "-o", "survey"});
+    ASSERT_EQ(survey.status, 0) << survey.err;
+    const auto fit = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"fit",
+                                           "rig.toml",
+                                           "--images",
+                                           "survey/raw",
+                                           "--nav",
+                                           "survey/navigation.txt",
+                                           "--bayer",
+                                           "RGGB",
+                                           "--black-level",
+                                           "64",
+                                           "--free",
+                                           "aim",
+                                           "--blocks",
+                                           "8",
+                                           "-o",
+                                           "fitted"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_aphotic(folder.path(), arguments);
+    };
+    CommandResult run = fit({});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_NE(run.err.find("looks wrong: white-level:"), std::string::npos) << run.err;
+    EXPECT_NE(run.out.find("looks wrong: white-level:"), std::string::npos) << run.out;
+    std::filesystem::remove_all(folder.path() / "fitted");
+    run = fit({"--strict"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "fitted"));
+    // Told, saturated blocks are left out, which is said once the fit is done.
+    run = fit({"--white-level", "4095", "--strict"});
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_NE(run.out.find("looks wrong: saturation:"), std::string::npos) << run.out;
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "fitted/fit.json"));
+}
+
 TEST(CommandFit, SaysWhatItNeeds) {
     const TempFolder folder;
     write_text_file(folder.path() / "rig.toml", fit_rig({}).text());

@@ -42,6 +42,20 @@ TEST(RigText, MakesTablesOnTheWay) {
     text.erase("beam.none.at.all");
 }
 
+TEST(RigText, CopiesATable) {
+    const RigText rig = fit_rig({});
+    RigText text = rig;
+    text.copy(rig, "beam.smooth", "beam.other");
+    text.set("beam.smooth.cones.0.exponent", 3.0);
+    text.set("strobe.fore.beam", std::string("other"));
+    const double exponent = rig.rig().strobes[0].beam.cones[0].exponent;
+    EXPECT_EQ(text.rig().strobes[0].beam.cones[0].exponent, exponent);
+    EXPECT_EQ(text.rig().strobes[1].beam.cones[0].exponent, 3.0);
+    text.copy(text, "beam.smooth", "beam.other");
+    EXPECT_EQ(text.rig().strobes[0].beam.cones[0].exponent, 3.0);
+    EXPECT_THROW(text.copy(rig, "beam.none", "beam.other"), InputError);
+}
+
 TEST(RigText, NamesWhatIsNotThere) {
     RigText text = fit_rig({});
     EXPECT_EQ(text.number("water.chlorophyll_mg_m3"), std::nullopt);

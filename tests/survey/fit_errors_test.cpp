@@ -137,10 +137,8 @@ Outcome outcome_of(const Flight& flight) {
         // What a rough floor hides is held.
         if (flight.texture == 0.0) options.free = {{"beam", "aim", "power", "water", "vignetting"}};
         const FitResult result = fit(drawn.text, drawn.samples, options, {});
-        rivals +=
-            static_cast<int>(std::ranges::count_if(result.left.doubts, [](const FitDoubt& doubt) {
-                return doubt.what.starts_with("another rig");
-            }));
+        rivals += static_cast<int>(std::ranges::count_if(
+            result.left.looks_wrong, [](const Suspicion& one) { return one.about == "rival"; }));
         FitState truth = drawn.truth;
         const auto add = [&](const std::string& key, double off, double error) {
             const bool is_within = std::abs(off) <= 2.0 * error;

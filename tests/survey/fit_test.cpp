@@ -88,7 +88,7 @@ TEST(Fit, FindsTheRigThatMadeTheMaps) {
     const FitSamples samples = fit_samples_of(truth, flown({1.2, 1.5, 2.0, 2.5}), kNoise, 1);
     const FitResult result = fit(guess(), samples, exact_poses(), {});
     EXPECT_TRUE(result.held.empty());
-    EXPECT_TRUE(result.left.doubts.empty());
+    EXPECT_TRUE(result.left.looks_wrong.empty());
     expect_told(result, "water.multiple", 1.0);
     expect_told(result, "strobe.fore.aim_along_deg", 4.0 * std::cos(std::atan2(0.1, 0.5)));
     expect_told(result, "strobe.aft.aim_along_deg", 0.0);
@@ -309,22 +309,21 @@ FitResult fitted_to(const FitSamples& samples) {
     return fit(fit_rig(numbers), samples, options, {});
 }
 
-std::string doubts_of(const FitResult& result) {
+std::string warnings_of(const FitResult& result) {
     std::string all;
-    for (const FitDoubt& doubt : result.left.doubts) all += doubt.what + "\n";
+    for (const Suspicion& one : result.left.looks_wrong) all += one.about + "\n";
     return all;
 }
 
 TEST(Fit, FindsOutASurveyWhosePosesAreThoseOfOtherImages) {
     FitSamples samples = thirty_maps(6);
     samples.are_maps = false;
-    EXPECT_TRUE(fitted_to(samples).left.doubts.empty());
+    EXPECT_TRUE(fitted_to(samples).left.looks_wrong.empty());
     // Each image has its neighbour's altitude, a metre off at most.
     samples.are_maps = true;
     for (std::size_t i = 0; i + 1 < samples.images.size(); ++i)
         std::swap(samples.images[i].sled, samples.images[i + 1].sled);
-    EXPECT_NE(doubts_of(fitted_to(samples)).find("darker than their poses explain"),
-              std::string::npos);
+    EXPECT_NE(warnings_of(fitted_to(samples)).find("exposure\n"), std::string::npos);
 }
 
 // A black level of a fifth of the brightest that nobody took off.
@@ -336,7 +335,7 @@ TEST(Fit, FindsOutABlackLevel) {
     for (FitImage& image : samples.images) {
         for (float& signal : image.signal) signal += 0.2F * most;
     }
-    EXPECT_NE(doubts_of(fitted_to(samples)).find("goes with their altitude"), std::string::npos);
+    EXPECT_NE(warnings_of(fitted_to(samples)).find("altitude\n"), std::string::npos);
 }
 
 // Every other block a tenth darker in all images, which no beam or lens can be.
@@ -346,13 +345,13 @@ TEST(Fit, FindsOutAPatternThatStaysInPlace) {
         for (std::size_t i = 0; i < image.signal.size(); ++i)
             if (i / kChannels % 2 == 0) image.signal[i] *= 0.9F;
     }
-    EXPECT_NE(doubts_of(fitted_to(samples)).find("stay in place"), std::string::npos);
+    EXPECT_NE(warnings_of(fitted_to(samples)).find("pattern\n"), std::string::npos);
 }
 
 TEST(Fit, FindsOutSaturatedImages) {
     FitSamples samples = thirty_maps(9);
     for (FitImage& image : samples.images) image.saturated_share = 0.05;
-    EXPECT_EQ(doubts_of(fitted_to(samples)), "saturated samples, left out; share\n");
+    EXPECT_EQ(warnings_of(fitted_to(samples)), "saturation\n");
 }
 
 }  // namespace
