@@ -84,13 +84,6 @@ double axial_intensity(const Cone& cone, ConeWeights weights) {
     return weights == ConeWeights::Literal ? cone.weight : cone.weight / lobe_flux(cone);
 }
 
-// A direction as the pattern has it: in the lamp's frame, turned, and in air if it was measured
-// there.
-struct PatternView {
-    Vector3d direction;
-    double factor = 1.0;  // of what the pattern has there
-};
-
 Vector3d turned(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
     const double x = frame.along.dot(towards);
     const double y = frame.across.dot(towards);
@@ -334,7 +327,18 @@ BeamFrame frame_about(const Vector3d& axis) {
 }
 
 double intensity_towards(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
-    return continued_intensity(beam, frame, towards, towards);
+    const auto view = pattern_view(beam, frame, towards);
+    return view ? view->factor * of_pattern(beam, view->direction, view->direction) : 0.0;
+}
+
+std::optional<PatternView> pattern_view(const Beam& beam,
+                                        const BeamFrame& frame,
+                                        const Vector3d& towards) {
+    const Vector3d direction = turned(beam, frame, towards);
+    if (!beam.window) return PatternView{.direction = direction};
+    const auto found = in_air(*beam.window, direction);
+    if (!found) return std::nullopt;
+    return PatternView{.direction = found->direction, .factor = found->factor};
 }
 
 double continued_intensity(const Beam& beam,

@@ -91,8 +91,18 @@ inline constexpr double kForeAndAftSine = 1e-6;
                                        const BeamFrame& frame,
                                        const Eigen::Vector3d& towards);
 
-// The same as though what lights the direction `from` had no edge: where a small turn crosses
-// none, it is I itself.
+// A direction as the pattern has it: in the lamp's frame, turned, and in air if it was measured
+// there. None where the window lets nothing out.
+struct PatternView {
+    Eigen::Vector3d direction;
+    double factor = 1.0;  // of what the pattern has there
+};
+[[nodiscard]] std::optional<PatternView> pattern_view(const Beam& beam,
+                                                      const BeamFrame& frame,
+                                                      const Eigen::Vector3d& towards);
+
+// intensity_towards() as though what lights the direction `from` had no edge: where a small turn
+// crosses none, it is I itself.
 [[nodiscard]] double continued_intensity(const Beam& beam,
                                          const BeamFrame& frame,
                                          const Eigen::Vector3d& towards,

@@ -42,6 +42,16 @@ BeamTable table_of(std::vector<double> theta_rad, std::vector<double> intensity)
             .intensity = std::move(intensity)};
 }
 
+// By central differences.
+template <typename F>
+Vector3d gradient_along_sphere(const Vector3d& w, const F& f) {
+    const Vector3d one_way = w.unitOrthogonal();
+    Vector3d gradient = Vector3d::Zero();
+    for (const Vector3d& way : {one_way, Vector3d(w.cross(one_way))})
+        gradient += (f(w + kSteps * way) - f(w - kSteps * way)) / (2.0 * kSteps) * way;
+    return gradient;
+}
+
 }  // namespace
 
 FitBeam FitBeam::table(std::size_t parts, double widest_rad) {
@@ -60,7 +70,11 @@ FitBeam FitBeam::cones(const Beam& beam) {
     fit.widest_rad_ = 0.5 * pi;
     fit.beam_ = beam;
     fit.beam_.weights = ConeWeights::Flux;
-    for (Cone& cone : fit.beam_.cones) cone.weight = 1.0;
+    for (Cone& cone : fit.beam_.cones) {
+        cone.weight = 1.0;
+        fit.part_beams_.push_back(fit.beam_);
+        fit.part_beams_.back().cones = {cone};
+    }
     return fit;
 }
 
@@ -79,6 +93,7 @@ FitBeam FitBeam::held(const Beam& beam) {
     fit.parts_ = 1;
     fit.widest_rad_ = 0.5 * pi;
     fit.beam_ = beam;
+    fit.part_beams_ = {beam};
     return fit;
 }
 
@@ -136,49 +151,58 @@ void FitBeam::cosine_at(const Vector3d& w, std::vector<BeamPartValue>& values) c
                       .by_shape = {value * (1.0 / (n + 1.0) + std::log(w.z())), 0.0}});
 }
 
-Beam FitBeam::part_with(std::size_t part, const std::vector<double>& shapes) const {
-    Beam beam = beam_;
-    if (kind_ == FitBeamKind::Held) return beam;
-    if (kind_ == FitBeamKind::Cones) {
-        beam.cones = {beam_.cones[part]};
-        return beam;
-    }
-    auto& optics = std::get<BeamOptics>(beam.pattern);
+BeamOptics FitBeam::optics_with(const Shapes& shapes) const {
+    BeamOptics optics = std::get<BeamOptics>(beam_.pattern);
     optics.focal_length_m = shapes[0];
     optics.distance_m = shapes[1];
-    return scaled_to_flux(std::move(beam));
+    return optics;
 }
 
-void FitBeam::at(const Vector3d& w, std::vector<BeamPartValue>& values) const {
-    values.clear();
-    if (kind_ == FitBeamKind::Table) return splines_at(w, values);
-    if (kind_ == FitBeamKind::Cosine) return cosine_at(w, values);
-    for (std::size_t part = 0; part < parts_; ++part) {
-        const Beam beam = part_with(part, shapes_);
-        const auto of = [&](const Beam& b, const Vector3d& v) {
-            return intensity_towards(b, kLampFrame, v);
-        };
-        BeamPartValue value{.part = part, .value = of(beam, w)};
-        for (Eigen::Index i = 0; i < 3; ++i) {
-            const Vector3d step = kSteps * Vector3d::Unit(i);
-            value.gradient(i) = (of(beam, w + step) - of(beam, w - step)) / (2.0 * kSteps);
-        }
-        for (std::size_t k = 0; k < shapes_.size(); ++k) {
-            std::vector<double> more = shapes_;
-            std::vector<double> less = shapes_;
-            const double step = kSteps * shapes_[k];
+void FitBeam::optics_at(const Vector3d& w,
+                        bool has_slopes,
+                        std::vector<BeamPartValue>& values) const {
+    const Shapes shapes{shapes_[0], shapes_[1]};
+    const BeamOptics optics = optics_with(shapes);
+    const auto of = [&](const BeamOptics& lens, const std::optional<PatternView>& view) {
+        // By the rig's flux: one of each lens would take long, and the share makes up for it.
+        return view ? beam_.per_flux * view->factor * optics_intensity(lens, view->direction) : 0.0;
+    };
+    const auto view = pattern_view(beam_, kLampFrame, w);
+    BeamPartValue value{.value = of(optics, view)};
+    if (has_slopes) {
+        value.gradient = gradient_along_sphere(
+            w, [&](const Vector3d& v) { return of(optics, pattern_view(beam_, kLampFrame, v)); });
+        for (std::size_t k = 0; k < shapes.size(); ++k) {
+            Shapes more = shapes;
+            Shapes less = shapes;
+            const double step = kSteps * shapes[k];
             more[k] += step;
             less[k] -= step;
             value.by_shape[k] =
-                (of(part_with(part, more), w) - of(part_with(part, less), w)) / (2.0 * step);
+                (of(optics_with(more), view) - of(optics_with(less), view)) / (2.0 * step);
         }
+    }
+    values.push_back(value);
+}
+
+void FitBeam::at(const Vector3d& w, bool has_slopes, std::vector<BeamPartValue>& values) const {
+    values.clear();
+    if (kind_ == FitBeamKind::Table) return splines_at(w, values);
+    if (kind_ == FitBeamKind::Cosine) return cosine_at(w, values);
+    if (kind_ == FitBeamKind::Optics) return optics_at(w, has_slopes, values);
+    for (std::size_t part = 0; part < parts_; ++part) {
+        const auto of = [&](const Vector3d& v) {
+            return intensity_towards(part_beams_[part], kLampFrame, v);
+        };
+        BeamPartValue value{.part = part, .value = of(w)};
+        if (has_slopes) value.gradient = gradient_along_sphere(w, of);
         values.push_back(value);
     }
 }
 
 Eigen::VectorXd FitBeam::parts_at(double theta_rad) const {
     std::vector<BeamPartValue> values;
-    at({std::sin(theta_rad), 0.0, std::cos(theta_rad)}, values);
+    at({std::sin(theta_rad), 0.0, std::cos(theta_rad)}, false, values);
     Eigen::VectorXd parts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parts_));
     for (const BeamPartValue& value : values)
         parts(static_cast<Eigen::Index>(value.part)) = value.value;
@@ -200,8 +224,13 @@ FitBeam::Fitted FitBeam::beam_of(const Eigen::VectorXd& shares) const {
         return {.beam = beam, .flux = 1.0 / beam.per_flux};
     }
     const double flux = shares.sum();
-    if (kind_ == FitBeamKind::Optics || kind_ == FitBeamKind::Held)
-        return {.beam = part_with(0, shapes_), .flux = flux};
+    if (kind_ == FitBeamKind::Held) return {.beam = beam_, .flux = flux};
+    if (kind_ == FitBeamKind::Optics) {
+        Beam beam = beam_;
+        beam.pattern = optics_with({shapes_[0], shapes_[1]});
+        beam = scaled_to_flux(std::move(beam));
+        return {.beam = beam, .flux = flux * beam_.per_flux / beam.per_flux};
+    }
     if (kind_ == FitBeamKind::Cosine) {
         Beam beam;
         beam.cones = {{.part = "cosine",

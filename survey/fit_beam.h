@@ -39,7 +39,7 @@ enum class FitBeamKind { Table, Cones, Cosine, Optics, Held };
 struct BeamPartValue {
     std::size_t part = 0;
     double value = 0.0;
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // over w
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // over w, along the sphere
     std::array<double, 2> by_shape{};
 };
 
@@ -62,8 +62,8 @@ class FitBeam {
     [[nodiscard]] double& shape(std::size_t which) { return shapes_[which]; }
     [[nodiscard]] double widest_rad() const { return widest_rad_; }
 
-    // Those that are not 0 there.
-    void at(const Eigen::Vector3d& w, std::vector<BeamPartValue>& values) const;
+    // Those that are not 0 there; of differences, the slopes only where they are asked for.
+    void at(const Eigen::Vector3d& w, bool has_slopes, std::vector<BeamPartValue>& values) const;
 
     // I with these shares off the axis, of a table.
     [[nodiscard]] Eigen::VectorXd parts_at(double theta_rad) const;
@@ -78,13 +78,18 @@ class FitBeam {
     FitBeam() = default;
     void splines_at(const Eigen::Vector3d& w, std::vector<BeamPartValue>& values) const;
     void cosine_at(const Eigen::Vector3d& w, std::vector<BeamPartValue>& values) const;
-    [[nodiscard]] Beam part_with(std::size_t part, const std::vector<double>& shapes) const;
+    void optics_at(const Eigen::Vector3d& w,
+                   bool has_slopes,
+                   std::vector<BeamPartValue>& values) const;
+    using Shapes = std::array<double, 2>;
+    [[nodiscard]] BeamOptics optics_with(const Shapes& shapes) const;
 
     FitBeamKind kind_ = FitBeamKind::Table;
     std::size_t parts_ = 0;
     double widest_rad_ = 0.0;
     std::vector<double> shapes_;
-    Beam beam_;  // the rig's, of cones and optics
+    Beam beam_;                     // the rig's, of cones and optics
+    std::vector<Beam> part_beams_;  // of cones, and of one that is held
 };
 
 // Of the angles that a fitted table is written at.

@@ -494,7 +494,7 @@ void FitLight::parts_into(const FitState& state,
     const auto add_to = [&](Rows& lit_rows) {
         return [&](const Lit& lit) {
             const std::size_t b = state.beam_of[lit.strobe];
-            state.beams[b].at(lit.w, values);
+            state.beams[b].at(lit.w, false, values);
             for (const BeamPartValue& value : values) {
                 const Index column = first_part[b] + static_cast<Index>(value.part);
                 for (std::size_t c = lit.first_channel; c < lit.last_channel; ++c)
@@ -564,7 +564,7 @@ void FitLight::columns_into(const FitState& state,
     const auto add_to = [&](Rows& lit_rows) {
         return [&](const Lit& lit) {
             const std::size_t b = state.beam_of[lit.strobe];
-            state.beams[b].at(lit.w, values);
+            state.beams[b].at(lit.w, true, values);
             double I = 0.0;
             Vector3d gradient = Vector3d::Zero();
             std::array<double, 2> by_shape{};
