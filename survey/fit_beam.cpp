@@ -42,6 +42,16 @@ BeamTable table_of(std::vector<double> theta_rad, std::vector<double> intensity)
             .intensity = std::move(intensity)};
 }
 
+// At 90 degrees there is no edge.
+Cone softened(Cone cone, double edge_rad) {
+    constexpr double kNone_rad = 1.5;
+    if (cone.edge_rad >= edge_rad || cone.half_angle_rad > kNone_rad) return cone;
+    cone.half_angle_rad =
+        std::min(0.5 * pi, cone.half_angle_rad + 0.5 * (edge_rad - cone.edge_rad));
+    cone.edge_rad = std::min(edge_rad, cone.half_angle_rad);
+    return cone;
+}
+
 // By central differences.
 template <typename F>
 Vector3d gradient_along_sphere(const Vector3d& w, const F& f) {
@@ -61,7 +71,7 @@ FitBeam FitBeam::table(std::size_t parts, double widest_rad) {
     return beam;
 }
 
-FitBeam FitBeam::cones(const Beam& beam) {
+FitBeam FitBeam::cones(const Beam& beam, double block_rad) {
     if (beam.cones.empty())
         throw InputError("beam '{}': found one that is no sum of cones; allowed: cones", beam.name);
     FitBeam fit;
@@ -72,8 +82,13 @@ FitBeam FitBeam::cones(const Beam& beam) {
     fit.beam_.weights = ConeWeights::Flux;
     for (Cone& cone : fit.beam_.cones) {
         cone.weight = 1.0;
-        fit.part_beams_.push_back(fit.beam_);
-        fit.part_beams_.back().cones = {cone};
+        Beam part = fit.beam_;
+        part.cones = {cone};
+        const double axial = intensity_towards(part, kLampFrame, Vector3d::UnitZ());
+        part.weights = ConeWeights::Literal;
+        part.cones = {softened(cone, kSoftEdge * block_rad)};
+        part.cones.front().weight = axial;
+        fit.part_beams_.push_back(part);
     }
     return fit;
 }

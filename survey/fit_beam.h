@@ -8,15 +8,15 @@
 //
 //   Table    f_m: cubic B-splines of the angle theta off the axis, knots even from 0 to the widest
 //            angle, mirrored at 0, so that I is smooth on the axis; 0 beyond the widest
-//   Cones    f_m: each of the rig's cones, as it is
+//   Cones    f_m: each of the rig's cones, edges under kSoftEdge blocks softened to that, about
+//            where they are: a block's mean of a step is a slope, by which its place is found
 //   Cosine   one part, cos^n theta, whose exponent n is a shape
 //   Optics   one part, the rig's optics, whose focal length and distance are shapes
 //   Held     one part, the rig's beam as it is
 //
 // Shapes are what the parts depend on besides: found by the search that finds aim and water.
 // Derivatives of Table and Cosine are exact; those of the others are central differences of a
-// closed form, right to kSteps^2. Across a cone's edge there is none, and nothing masks it:
-// aims of hard cones are found poorly.
+// closed form, right to kSteps^2.
 //
 // De Boor's splines in their form for even knots: H. Prautzsch, W. Boehm and M. Paluszny, Bezier
 // and B-Spline Techniques (2002), 8.7.
@@ -33,6 +33,9 @@
 
 namespace aphotic {
 
+// A cubic step as wide has the variance of the even one over a block: sqrt((1/12) / (1/20)).
+inline constexpr double kSoftEdge = 1.29;
+
 enum class FitBeamKind { Table, Cones, Cosine, Optics, Held };
 
 // A part's share at a direction.
@@ -47,8 +50,8 @@ class FitBeam {
   public:
     // Of a table: parts, four or more, over angles up to widest_rad.
     [[nodiscard]] static FitBeam table(std::size_t parts, double widest_rad);
-    // Throws InputError where the beam is no sum of cones.
-    [[nodiscard]] static FitBeam cones(const Beam& beam);
+    // Throws InputError where the beam is no sum of cones. block_rad: what a block spans.
+    [[nodiscard]] static FitBeam cones(const Beam& beam, double block_rad);
     [[nodiscard]] static FitBeam cosine(double exponent);
     // One part, the beam itself.
     [[nodiscard]] static FitBeam held(const Beam& beam);

@@ -670,6 +670,15 @@ PathRange FitLight::paths(const std::vector<Sled>& sleds) const {
     return range;
 }
 
+double FitLight::block_rad() const {
+    const double column = 0.5 * places_.width_px;
+    const double row = 0.5 * places_.height_px;
+    const double nm = 0.5 * (rig_.camera.range.first_nm + rig_.camera.range.last_nm);
+    const Vector3d one = pixel_ray(rig_, column, row, nm).direction;
+    const Vector3d other = pixel_ray(rig_, column + 0.5 * places_.block_px, row, nm).direction;
+    return 2.0 * std::acos(std::min(1.0, one.dot(other)));
+}
+
 double FitLight::widest_rad(const std::vector<Sled>& sleds) const {
     double widest_rad = 0.0;
     for (const Sled& sled : sleds) {

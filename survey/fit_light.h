@@ -121,6 +121,8 @@ class FitLight {
     // The widest angle off any strobe's axis of the floor that the places see, kAimRoom_rad and,
     // where the water scatters, kVeilRoom_rad more; up to a right angle.
     [[nodiscard]] double widest_rad(const std::vector<Sled>& sleds) const;
+    // What a block at the image's middle spans.
+    [[nodiscard]] double block_rad() const;
 
     [[nodiscard]] std::size_t rows() const { return kChannels * places_.size(); }
     [[nodiscard]] const FitPlaces& places() const { return places_; }

@@ -110,7 +110,7 @@ void add_water(const RigText& text,
 // Strobes of like beams share one, unless each is to have its own.
 void add_beams(const Rig& rig,
                const FitOptions& options,
-               double widest_rad,
+               const FitAngles& angles,
                FitState& state,
                std::vector<FreeNumber>& free) {
     std::vector<std::string> signatures;
@@ -126,9 +126,9 @@ void add_beams(const Rig& rig,
         if (!is_asked(options, "beam")) {
             state.beams.push_back(FitBeam::held(beam));
         } else if (options.beam == FitBeamKind::Table) {
-            state.beams.push_back(FitBeam::table(options.parts, widest_rad));
+            state.beams.push_back(FitBeam::table(options.parts, angles.widest_rad));
         } else if (options.beam == FitBeamKind::Cones) {
-            state.beams.push_back(FitBeam::cones(beam));
+            state.beams.push_back(FitBeam::cones(beam, angles.block_rad));
         } else if (options.beam == FitBeamKind::Cosine) {
             state.beams.push_back(
                 FitBeam::cosine(beam.cones.empty() ? 1.0 : beam.cones.front().exponent));
@@ -281,7 +281,7 @@ FitState FitProblem::at(const double* x) const {
     return moved;
 }
 
-FitProblem fit_problem(const RigText& text, const FitOptions& options, double widest_rad) {
+FitProblem fit_problem(const RigText& text, const FitOptions& options, const FitAngles& angles) {
     const Rig rig = text.rig();
     require_known(options, rig);
     FitProblem problem;
@@ -291,7 +291,7 @@ FitProblem fit_problem(const RigText& text, const FitOptions& options, double wi
         state.aim_rad.push_back({0.0, 0.0});
     }
     add_water(text, rig, options, state, problem.free);
-    add_beams(rig, options, widest_rad, state, problem.free);
+    add_beams(rig, options, angles, state, problem.free);
     add_strobes(rig, options, state, problem.free);
     add_camera(rig, options, state, problem.free);
     for (FreeNumber& one : problem.free) one.start = number_in(state, one.number);

@@ -63,9 +63,14 @@ struct FitProblem {
 // Shares, then numbers.
 [[nodiscard]] Eigen::VectorXd values_of(const Eigen::VectorXd& shares, const FitProblem& problem);
 
-// widest_rad: of a beam's table. An InputError for a word that is none.
+// How far off the axis a beam's table goes, and what a block spans, by which cones are softened.
+struct FitAngles {
+    double widest_rad = 0.0;
+    double block_rad = 0.0;
+};
+// An InputError for a word that is none.
 [[nodiscard]] FitProblem fit_problem(const RigText& text,
                                      const FitOptions& options,
-                                     double widest_rad);
+                                     const FitAngles& angles);
 
 }  // namespace aphotic

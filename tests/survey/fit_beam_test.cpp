@@ -136,7 +136,7 @@ TEST(FitBeam, ItsLensShinesAlike) {
 
 TEST(FitBeam, RefusesWhatTheRigHasNot) {
     EXPECT_THROW(static_cast<void>(FitBeam::optics(Beam{})), InputError);
-    EXPECT_THROW(static_cast<void>(FitBeam::cones(Beam{})), InputError);
+    EXPECT_THROW(static_cast<void>(FitBeam::cones(Beam{}, 0.02)), InputError);
 }
 
 }  // namespace

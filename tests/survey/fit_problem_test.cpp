@@ -15,7 +15,7 @@ std::vector<std::string> keys_of(const std::string& word) {
     FitOptions options;
     options.free = {{word}};
     std::vector<std::string> keys;
-    for (const FreeNumber& one : fit_problem(fit_rig({}), options, 1.0).free)
+    for (const FreeNumber& one : fit_problem(fit_rig({}), options, {.widest_rad = 1.0}).free)
         if (one.group == "water") keys.push_back(one.key);
     return keys;
 }

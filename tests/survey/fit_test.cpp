@@ -23,6 +23,10 @@ constexpr double kNoise = 0.01;
 constexpr double kSigmas = 4.0;
 // What the issue asks of a map at an altitude that the fit has not seen: 1 % rms.
 constexpr double kPredicted = 0.01;
+// Hard cones in blocks of 1.5 degrees are softened, which moves aims by less than a tenth of one,
+// and takes little from a cone's flux.
+constexpr double kSoftenedAim_deg = 0.1;
+constexpr double kSoftenedShare = 0.01;
 
 std::vector<Sled> flown(std::initializer_list<double> altitudes_m) {
     std::vector<Sled> sleds;
@@ -313,6 +317,79 @@ std::string warnings_of(const FitResult& result) {
     std::string all;
     for (const Suspicion& one : result.left.looks_wrong) all += one.about + "\n";
     return all;
+}
+
+TEST(Fit, SaysWhereErrorsMayNotHold) {
+    const Rig truth = fit_rig({}).rig();
+    const auto low = fit_samples_of(truth, flown({1.5, 1.6, 1.55}), kNoise, 3);
+    EXPECT_EQ(warnings_of(fit(guess(), low, exact_poses(), {})), "altitudes\n");
+    const auto rough = fit_samples_of(truth, flown({1.2, 1.5, 2.0, 2.5}), 3.0 * kNoise, 3);
+    EXPECT_EQ(warnings_of(fit(guess(), rough, exact_poses(), {})), "maps\n");
+}
+
+// A lamp four times as bright as the rig has it.
+TEST(Fit, FindsOutANumberFarFromTheRigs) {
+    const auto samples = fit_samples_of(fit_rig({}).rig(), flown({1.2, 1.5, 2.0, 2.5}), kNoise, 3);
+    FitRigNumbers dim;
+    dim.aft_power = 0.2;
+    const FitResult result = fit(fit_rig(dim), samples, exact_poses(), {});
+    EXPECT_EQ(warnings_of(result), "range\n");
+    expect_told(result, "strobe.aft.power", 0.8);
+}
+
+// Two cones, each with its share of the flux.
+RigText cones_rig(double fore_tilt_deg, double narrow_share) {
+    FitRigNumbers numbers;
+    numbers.width_px = 160;
+    numbers.height_px = 120;
+    numbers.fore_tilt_deg = fore_tilt_deg;
+    std::string text = fit_rig(numbers).text();
+    const std::size_t at = text.find("cones = [");
+    text.replace(at,
+                 text.find('\n', at) - at,
+                 fmt::format(R"(cones = [{{ part = "narrow", half_angle_deg = 14.0, weight = {} }},
+                                {{ part = "wide", half_angle_deg = 34.0, weight = {} }}])",
+                             narrow_share,
+                             1.0 - narrow_share));
+    return {text, "cones.toml", {}};
+}
+
+// An edge has no slope, but the mean of a block that it crosses has.
+TEST(Fit, FindsTheAimsOfHardCones) {
+    constexpr int kBlock_px = 4;
+    const Rig truth = cones_rig(20.0, 0.3).rig();
+    FitSamples samples = fit_samples_of(truth, flown({1.2, 1.5, 1.8, 2.1, 2.4}), 0.0, 1);
+    std::mt19937_64 dice(5);
+    std::normal_distribution<double> normal;
+    const FitPlaces fine = samples.places;
+    samples.places = fit_places(fine.width_px, fine.height_px, fine.width_px / kBlock_px);
+    for (FitImage& image : samples.images) {
+        std::vector<float> means(kChannels * samples.places.size(), 0.0F);
+        for (std::size_t i = 0; i < image.signal.size(); ++i) {
+            const std::size_t pixel = i / kChannels;
+            const std::size_t width = static_cast<std::size_t>(fine.width_px);
+            const std::size_t block =
+                pixel / width / kBlock_px * (width / kBlock_px) + pixel % width / kBlock_px;
+            means[kChannels * block + i % kChannels] +=
+                image.signal[i] / static_cast<float>(kBlock_px * kBlock_px);
+        }
+        for (float& mean : means) mean *= static_cast<float>(1.0 + kNoise * normal(dice));
+        image.signal = means;
+    }
+    FitOptions options = exact_poses();
+    options.beam = FitBeamKind::Cones;
+    options.free = {{"beam", "aim", "power"}};
+    const FitResult result = fit(cones_rig(23.0, 0.6), samples, options, {});
+    const auto value = [&](const std::string& key) {
+        return std::ranges::find(result.numbers, key, &FittedNumber::key)->value;
+    };
+    EXPECT_NEAR(
+        value("strobe.fore.aim_along_deg"), 3.0 * std::cos(std::atan2(0.1, 0.5)), kSoftenedAim_deg);
+    EXPECT_NEAR(value("strobe.aft.aim_along_deg"), 0.0, kSoftenedAim_deg);
+    EXPECT_NEAR(value("strobe.aft.aim_across_deg"), 0.0, kSoftenedAim_deg);
+    EXPECT_NEAR(value("strobe.aft.power"), 0.8, kSoftenedShare);
+    const FitBeam::Fitted fitted = result.state.beams[0].beam_of(result.shares);
+    EXPECT_NEAR(fitted.beam.cones[0].weight, 0.3, kSoftenedShare);
 }
 
 TEST(Fit, FindsOutASurveyWhosePosesAreThoseOfOtherImages) {

@@ -27,7 +27,7 @@ RigText scene(const std::string& name) {
 
 FitResult start_of(const RigText& rig, const FitOptions& options) {
     FitResult result;
-    result.state = fit_problem(rig, options, 1.0).state;
+    result.state = fit_problem(rig, options, {.widest_rad = 1.0, .block_rad = 0.02}).state;
     Eigen::Index parts = 0;
     for (const FitBeam& beam : result.state.beams) parts += static_cast<Eigen::Index>(beam.parts());
     result.shares = Eigen::VectorXd::Constant(parts, 1.0);
