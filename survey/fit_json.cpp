@@ -3,9 +3,12 @@
 
 #include "base/degrees.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 namespace aphotic {
 namespace {
@@ -24,14 +27,25 @@ FitJson curve_json(const std::vector<BeamPoint>& curve) {
     return json;
 }
 
-FitJson matrix_json(const Eigen::MatrixXd& matrix) {
-    FitJson rows = FitJson::array();
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-        FitJson row = FitJson::array();
-        for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
-        rows.push_back(std::move(row));
+// Of the shares, by beam and part, then of the numbers, in their units.
+FitJson covariance_json(const FitResult& result) {
+    FitJson of = FitJson::array();
+    std::vector<double> units;
+    for (std::size_t b = 0; b < result.state.beams.size(); ++b) {
+        for (std::size_t part = 0; part < result.state.beams[b].parts(); ++part)
+            of.push_back(fmt::format("beam.{}.share.{}", b + 1, part + 1));
     }
-    return rows;
+    units.assign(of.size(), 1.0);
+    for (const FittedNumber& one : result.numbers) {
+        of.push_back(one.key);
+        units.push_back(one.per_unit);
+    }
+    const auto scale = Eigen::VectorXd::Map(units.data(), std::ssize(units)).asDiagonal();
+    const Eigen::MatrixXd covariance = scale * result.covariance * scale;
+    FitJson rows = FitJson::array();
+    for (const auto row : covariance.rowwise())
+        rows.push_back(std::vector<double>(row.begin(), row.end()));
+    return {{"of", std::move(of)}, {"rows", std::move(rows)}};
 }
 
 }  // namespace
@@ -68,7 +82,7 @@ FitJson to_json(const FitResult& result) {
             {"looks_wrong", to_json(result.left.looks_wrong)},
             {"beams", std::move(beams)},
             {"shares", std::vector<double>(result.shares.begin(), result.shares.end())},
-            {"covariance", matrix_json(result.covariance)},
+            {"covariance", covariance_json(result)},
             {"residual", result.left.residual},
             {"pattern", result.left.pattern},
             {"blocks", result.blocks},

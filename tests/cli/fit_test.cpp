@@ -53,6 +53,15 @@ TEST(CommandFit, LearnsARigFromASurvey) {
                                            "--json"});
     ASSERT_EQ(fit.status, 0) << fit.err;
     const auto json = nlohmann::json::parse(fit.out);
+    const auto& covariance = json.at("covariance");
+    for (std::size_t i = 0; i < json.at("numbers").size(); ++i) {
+        const auto& one = json.at("numbers").at(i);
+        const std::size_t row = covariance.at("of").size() - json.at("numbers").size() + i;
+        EXPECT_EQ(covariance.at("of").at(row), one.at("key"));
+        EXPECT_NEAR(std::sqrt(covariance.at("rows").at(row).at(row).get<double>()),
+                    one.at("error").get<double>(),
+                    1e-9 * one.at("error").get<double>());
+    }
     bool is_found = false;
     for (const auto& one : json.at("numbers")) {
         if (one.at("key") != "strobe.fore.aim_along_deg") continue;

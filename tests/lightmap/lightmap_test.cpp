@@ -35,9 +35,9 @@ constexpr double kWithoutPort = kAsked + kSpectralError + 12.0 * 0x1p-24;
 
 Rig scene(const std::string& name, int width_px, int height_px) {
     Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + name + ".toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
-    rig.camera.width_px = width_px;
-    rig.camera.height_px = height_px;
+    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / pixels(width_px);
+    rig.camera.width_px = pixels(width_px);
+    rig.camera.height_px = pixels(height_px);
     return rig;
 }
 
