@@ -143,9 +143,8 @@ void fly(const SurveyCommandOptions& options, SimulatedSurvey& survey) {
         survey.corners = corners_of(options.ranges);
         return;
     }
-    survey.legs = naming(options.flight, [&] {
-        return flight_of(read_navigation({.source = options.flight}, {}, &survey.rig));
-    });
+    const Navigation navigation = read_navigation({.source = options.flight}, {}, &survey.rig);
+    survey.legs = naming(options.flight, [&] { return flight_of(navigation); });
     std::vector<Sled> sleds;
     for (const Leg& leg : survey.legs) sleds.push_back(leg.sled);
     survey.corners = corners_of(sleds);

@@ -31,9 +31,10 @@ constexpr double kRoomToJudge = 1.003;
 constexpr std::size_t kMostOnFront = 9;
 
 // Shares of the evaluations.
-constexpr double kGlobalShare = 0.2;
+constexpr double kGlobalShare = 0.1;
+constexpr int kPopulations = 4;  // one alone now and then dies out on a lesser hill
 constexpr double kFromStartShare = 0.15;
-constexpr double kRestartShare = 0.1;
+constexpr double kRestartShare = 0.05;
 constexpr int kRestarts = 4;
 constexpr double kFrontShare = 0.25;
 
@@ -183,7 +184,8 @@ class DesignSearch {
     void run() {
         const LightFigures least = times(least_of(request_, start_), kRoomToJudge);
         const auto goal = [&](const LightFigures& f) { return value(request_.goal, f, least); };
-        search(SearchWay::Global, space_.start(), kGlobalShare, goal);
+        for (int population = 0; population < kPopulations; ++population)
+            search(SearchWay::Global, space_.start(), kGlobalShare, goal);
         search(SearchWay::Local, space_.start(), kFromStartShare, goal);
         // Again from the best: a simplex that has shrunk in a crease is given its size anew.
         for (int again = 0; again < kRestarts; ++again)
@@ -226,7 +228,7 @@ class DesignSearch {
             archive_.take(point, figures);
             return value(figures);
         };
-        maximise(way, from, {.evaluations = evaluations, .seed = request_.seed}, ask);
+        maximise(way, from, {.evaluations = evaluations, .seed = request_.seed + searches_++}, ask);
     }
 
     // A copy: the archive grows.
@@ -257,6 +259,7 @@ class DesignSearch {
     LightFigures start_;
     Archive archive_;
     int evaluations_ = 0;
+    std::uint64_t searches_ = 0;
 };
 
 // What a user gets.
