@@ -3,11 +3,9 @@
 
 #include "base/error.h"
 #include "support/design_rig.h"
-#include "support/small_scene.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -49,25 +47,6 @@ TEST(Design, TwoAlikeEndAsMirrors) {
     ASSERT_TRUE(result.is_better);
     EXPECT_NEAR(
         result.best.places[0].position_m.x(), -result.best.places[1].position_m.x(), kNear_m);
-}
-
-// The tilts of HabCam's nested cones have several hills, of which one population now and then finds
-// a lesser one: of seeds 1 to 6 two did, 1.5 and 1.9 times lower.
-TEST(Design, EverySeedFindsTheHighestHill) {
-    constexpr double kAlike = 0.02;
-    const std::string scenes = std::string(APHOTIC_SOURCE_DIR) + "/scenes/";
-    const RigText rig(small_scene(scenes + "habcam.toml"), "small.toml", scenes);
-    double least = 1.0;
-    double most = 0.0;
-    for (const std::uint64_t seed : {1U, 2U, 6U}) {
-        DesignRequest request = request_for(rig.rig(), {"strobe.*.aim.tilt_deg"}, 10000);
-        request.envelope.altitude_m = {1.5, 2.5};
-        request.seed = seed;
-        const double evenness = design(rig, request).best.figures.evenness;
-        least = std::min(least, evenness);
-        most = std::max(most, evenness);
-    }
-    EXPECT_GT(least, (1.0 - kAlike) * most);
 }
 
 TEST(Design, TheSameSeedGivesTheSameBytesWhateverTheThreads) {

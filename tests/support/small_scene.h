@@ -41,23 +41,22 @@ inline std::vector<std::filesystem::path> all_scenes() {
     return scenes;
 }
 
-// A rig file's text, forty times coarser each way.
-inline std::string small_scene(const std::filesystem::path& file) {
-    constexpr int kCoarser = 40;
+// A rig file's text, so many times coarser each way.
+inline std::string small_scene(const std::filesystem::path& file, int coarser = 40) {
     std::string text = read_text_file(file);
     std::smatch found;
     const std::regex resolution(R"(\nresolution\s*=\s*\[(\d+), (\d+)\])");
     const std::regex pitch(R"(\npixel_pitch_um\s*=\s*([0-9.]+))");
     if (!std::regex_search(text, found, resolution))
         throw std::runtime_error("no resolution in " + file.string());
-    const int width = std::stoi(found[1]) / kCoarser;
-    const int height = std::stoi(found[2]) / kCoarser;
+    const int width = std::stoi(found[1]) / coarser;
+    const int height = std::stoi(found[2]) / coarser;
     const std::string size = fmt::format("\nresolution = [{}, {}]", width, height);
     text = std::regex_replace(text, resolution, size);
     if (!std::regex_search(text, found, pitch))
         throw std::runtime_error("no pixel pitch in " + file.string());
     return std::regex_replace(
-        text, pitch, fmt::format("\npixel_pitch_um = {}", std::stod(found[1]) * kCoarser));
+        text, pitch, fmt::format("\npixel_pitch_um = {}", std::stod(found[1]) * coarser));
 }
 
 // Puts a scene so made into the folder as rig.toml, with the tables and meshes that lie beside it.
