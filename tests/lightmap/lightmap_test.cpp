@@ -35,9 +35,9 @@ constexpr double kWithoutPort = kAsked + kSpectralError + 12.0 * 0x1p-24;
 
 Rig scene(const std::string& name, int width_px, int height_px) {
     Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + name + ".toml");
-    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / pixels(width_px);
-    rig.camera.width_px = pixels(width_px);
-    rig.camera.height_px = pixels(height_px);
+    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
+    rig.camera.width_px = width_px;
+    rig.camera.height_px = height_px;
     return rig;
 }
 
@@ -138,7 +138,7 @@ TEST(Lightmap, IsThatOfTheTracerForRandomRigs) {
 }
 
 TEST(Lightmap, IsThatOfTheTracerForHabCam) {
-    expect_equal(scene("habcam", 272, 205), kWithoutPort, "habcam");
+    expect_equal(scene("habcam", pixels(272), pixels(205)), kWithoutPort, "habcam");
 }
 
 // An error may be asked for that floats cannot hold: the promise counts their rounding.
@@ -153,7 +153,7 @@ TEST(Lightmap, PromisesNoLessThanFloatsRound) {
 }
 
 TEST(Lightmap, IsThatOfTheTracerBehindAPort) {
-    expect_equal(scene("port", 136, 102), kPromise, "port");
+    expect_equal(scene("port", pixels(136), pixels(102)), kPromise, "port");
 }
 
 TEST(Lightmap, IsThatOfTheTracerForRandomRigsBehindPorts) {
@@ -287,6 +287,8 @@ TEST(Lightmap, IsThatOfTheTracerThroughEveryKindOfPort) {
         Dice dice(7400);
         for (int i = 0; i < cases(3); ++i) {
             Rig rig = random_rig(engine);
+            rig.camera.width_px = pixels(rig.camera.width_px);
+            rig.camera.height_px = pixels(rig.camera.height_px);
             give_port(kind, dice, rig.camera);
             if (i % 2 == 1) give_lens(LensKind::RadialTangential, dice, rig.camera);
             expect_equal(rig, kPromise, fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
