@@ -355,7 +355,7 @@ void RigText::copy(const RigText& rig, std::string_view table, std::string_view 
     const toml::node* node = find(root, table);
     if (node == nullptr || !node->is_table())
         throw InputError("{}: found no table; allowed: one in the rig", table);
-    if (has(place)) erase(place);
+    erase(place);
     for (auto&& [key, value] : *node->as_table())
         put(fmt::format("{}.{}", place, std::string_view(key)), toml_of(value));
 }

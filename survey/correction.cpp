@@ -2,6 +2,7 @@
 #include "survey/correction.h"
 
 #include "base/error.h"
+#include "base/upper_median.h"
 #include "image/image_size.h"
 #include "lightmap/cone_edge.h"
 
@@ -182,11 +183,7 @@ PerChannel middle_quotient(const RawImage& raw,
     });
     PerChannel medians{};
     for (std::size_t c = 0; c < kChannels; ++c) {
-        medians[c] = std::numeric_limits<double>::quiet_NaN();
-        if (quotients[c].empty()) continue;
-        const auto middle = quotients[c].begin() + std::ssize(quotients[c]) / 2;
-        std::ranges::nth_element(quotients[c], middle);
-        medians[c] = *middle;
+        medians[c] = upper_median(quotients[c]);
     }
     if (raw.mosaic == Mosaic::Mono) medians.fill(medians[0]);
     return medians;

@@ -3,6 +3,7 @@
 // The page is well-formed XML too.
 #include "survey/correction_page.h"
 
+#include "base/upper_median.h"
 #include "report/html.h"
 #include "report/picture.h"
 #include "report/svg.h"
@@ -109,10 +110,9 @@ LightSeen light_seen(std::span<const ImageLook> looks) {
     for (std::size_t c = 0; c < kChannels; ++c) {
         std::vector<double> quotients;
         for (const ImageLook* look : seen) quotients.push_back(look->quotient[c]);
-        const auto middle = quotients.begin() + std::ssize(quotients) / 2;
-        std::ranges::nth_element(quotients, middle);
+        const double middle = upper_median(quotients);
         for (const ImageLook* look : seen) {
-            light.map[c].push_back(*middle * look->map_mean[c]);
+            light.map[c].push_back(middle * look->map_mean[c]);
             light.image[c].push_back(look->quotient[c] * look->map_mean[c]);
         }
     }

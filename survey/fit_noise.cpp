@@ -2,6 +2,7 @@
 #include "survey/fit_noise.h"
 
 #include "base/non_negative_fit.h"
+#include "base/upper_median.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -21,9 +22,7 @@ using Eigen::VectorXd;
 double deviation_of(std::vector<double>& values) {
     if (values.empty()) return 0.0;
     for (double& value : values) value = std::abs(value);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return kNormal * *middle;
+    return kNormal * upper_median(values);
 }
 
 struct Sample {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/fit_residuals.h"
 
+#include "base/upper_median.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,12 +19,6 @@ using Eigen::VectorXd;
 // The residuals of all images at one place and channel.
 using InPlace = std::vector<float>;
 
-float middle_of(InPlace& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 // How much of the residuals stays in place from image to image: rms of the medians, for shade is no
 // pattern, less what chance makes of them.
 double pattern_of(std::vector<InPlace>& places) {
@@ -31,9 +27,9 @@ double pattern_of(std::vector<InPlace>& places) {
     double counted = 0.0;
     for (InPlace& at : places) {
         if (at.size() < kFew) continue;
-        const float median = middle_of(at);
+        const float median = upper_median(at);
         for (float& off : at) off = std::abs(off - median);
-        const double deviation = kNormal * middle_of(at);
+        const double deviation = kNormal * upper_median(at);
         const double chance =
             0.5 * std::numbers::pi * deviation * deviation / static_cast<double>(at.size() - 1);
         pattern += double{median} * median - chance;

@@ -26,8 +26,8 @@ void add_beam(const FitBeam& fit,
               const fs::path& folder,
               RigText& text) {
     const std::string key = "beam." + name;
+    text.erase(key);
     if (fit.kind() == FitBeamKind::Table) {
-        if (text.has(key)) text.erase(key);
         const std::string file = fmt::format("{}-beam.csv", name);
         PhotometricFile photometry;
         photometry.table = std::get<BeamTable>(fitted.beam.pattern);
@@ -37,7 +37,6 @@ void add_beam(const FitBeam& fit,
         return;
     }
     if (fit.kind() == FitBeamKind::Cosine) {
-        if (text.has(key)) text.erase(key);
         const double half = std::acos(std::pow(0.5, 1.0 / fit.shapes().front()));
         text.set(key + ".fwhm_deg", 2.0 * half * kDegreesPerRadian);
         return;
@@ -47,7 +46,7 @@ void add_beam(const FitBeam& fit,
         text.set(key + ".focal_length_mm", kMillimetres * optics->focal_length_m);
         text.set(key + ".distance_mm", kMillimetres * optics->distance_m);
     } else if (text.has(key + ".cones")) {
-        if (text.has(key + ".weights")) text.erase(key + ".weights");  // shares of the flux now
+        text.erase(key + ".weights");  // shares of the flux now
         for (std::size_t k = 0; k < fitted.beam.cones.size(); ++k)
             text.set(fmt::format("{}.cones.{}.weight", key, k), fitted.beam.cones[k].weight);
     }
@@ -80,6 +79,7 @@ void set_strobes(const RigText& rig_text,
         all += state.power[s] * beams[state.beam_of[s]].flux;
         was += rig.strobes[s].power;
     }
+    const bool is_fitted = is_light_fitted(result);
     std::vector<bool> is_written(beams.size(), false);
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         const Strobe& strobe = rig.strobes[s];
@@ -92,7 +92,7 @@ void set_strobes(const RigText& rig_text,
             is_written[b] = true;
             text.set(key + ".beam", name);
         }
-        if (is_light_fitted(result)) {
+        if (is_fitted) {
             for (const char* flux : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
                 text.erase(key + flux);
             text.set(key + ".power", state.power[s] * beams[b].flux * was / all);

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/parallel.h"
+#include "base/upper_median.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,12 +16,6 @@
 
 namespace aphotic {
 namespace {
-
-double median(std::vector<double> numbers) {
-    const auto middle = numbers.begin() + std::ssize(numbers) / 2;
-    std::ranges::nth_element(numbers, middle);
-    return *middle;
-}
 
 bool is_number(double number) {
     return std::isfinite(number) && number > 0.0;
@@ -111,7 +106,7 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
             look.first_why);
     }
     for (std::size_t c = 0; c < kChannels; ++c)
-        gain.gain[c] = gain.middle[c] / median(quotients[c]);
+        gain.gain[c] = gain.middle[c] / upper_median(quotients[c]);
     return gain;
 }
 
@@ -190,7 +185,7 @@ PerChannel grey_balance(const Survey& survey, double grey, std::size_t jobs) {
     for (std::size_t c = 0; c < kChannels && !middles.empty(); ++c) {
         std::vector<double> of_channel;
         for (const PerChannel& middle : middles) of_channel.push_back(middle[c]);
-        balance[c] = grey / median(of_channel);
+        balance[c] = grey / upper_median(of_channel);
     }
     return balance;
 }

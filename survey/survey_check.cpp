@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/survey_check.h"
 
+#include "base/upper_median.h"
 #include "image/image_size.h"
 
 #include <fmt/format.h>
@@ -42,13 +43,6 @@ constexpr double kTurned = 1.0;  // a slope of 1 - kTurned has turned round
 constexpr double kStandardErrors = 5.0;
 constexpr double kGains = 100.0;
 constexpr double kLikeness = 0.5;
-
-double median_of(std::vector<float>& numbers) {
-    if (numbers.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const auto middle = numbers.begin() + std::ssize(numbers) / 2;
-    std::ranges::nth_element(numbers, middle);
-    return *middle;
-}
 
 struct Line {
     double slope = 0.0;
@@ -160,8 +154,8 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
         others.push_back(static_cast<float>(is_green_beside ? across : beside));
     }
     if (greens.empty()) return;
-    const double green = median_of(greens) - 1.0;
-    const double other = median_of(others) - 1.0;
+    const double green = double{upper_median(greens)} - 1.0;
+    const double other = double{upper_median(others)} - 1.0;
     if (green < kGreen || other > kOtherSites * green) return;
     found.push_back({.about = "bayer",
                      .what = fmt::format("the two sites that {} makes green differ by {:.0f} %, "
@@ -242,7 +236,7 @@ void check_gains(std::span<const ImageLook> looks, std::vector<Suspicion>& found
         for (const ImageLook& look : looks) {
             quotients.push_back(static_cast<float>(std::log(look.quotient[c])));
         }
-        gain[c] = std::exp(-median_of(quotients));
+        gain[c] = std::exp(-double{upper_median(quotients)});
     }
     const auto [least, most] = std::ranges::minmax(gain);
     if (most <= kGains * least) return;
@@ -314,7 +308,7 @@ std::array<double, 4> site_medians(const RawImage& raw, float black) {
                     raw.samples[size_of(row) * size_of(raw.width_px) + size_of(column)]);
             }
         }
-        medians[size_of(site)] = median_of(samples) - static_cast<double>(black);
+        medians[size_of(site)] = double{upper_median(samples)} - static_cast<double>(black);
     }
     return medians;
 }
