@@ -88,7 +88,7 @@ void print_result(const std::string& title,
     for (const NotTold& one : result.held) fmt::print("held: {}\n", words_of(one));
     for (const Confounded& pair : result.confounded)
         fmt::print("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
-    for (const Suspicion& one : result.left.looks_wrong)
+    for (const Suspicion& one : result.looks_wrong)
         fmt::print("looks wrong: {}: {}\n", one.about, one.what);
     fmt::print(
         "{} are off by {:.2g} of the signal, rms, of which {:.2g} stays in place from image to "
@@ -121,7 +121,7 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     } else {
         print_result(rig.title, samples, result, options.folder);
     }
-    if (options.strict && !result.left.looks_wrong.empty()) return kAnswerIsNo;
+    if (options.strict && !result.looks_wrong.empty()) return kAnswerIsNo;
     return status_of_skips(samples.skipped.size(),
                            samples.skipped.size() + samples.images.size(),
                            options.allowed_skips);

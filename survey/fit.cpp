@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/non_negative_fit.h"
+#include "survey/fit_check.h"
 #include "survey/fit_jackknife.h"
 
 #include <ceres/ceres.h>
@@ -328,64 +329,11 @@ void look_at_rival(const Rival& rival,
     if (rival.excess > kAsGood * dispersion || most < kElsewhere) return;
     result.covariance += 0.5 * off * off.transpose();
     const FreeNumber& number = problem.free[static_cast<std::size_t>(worst)];
-    result.left.looks_wrong.push_back(
+    result.looks_wrong.push_back(
         {"rival",
          fmt::format("another rig explains the images as well; its {} is {:.4g}",
                      number.key,
                      number.per_unit * rival.values(result.shares.size() + worst))});
-}
-
-// Numbers farther from the rig's than kFar times what is plausible, or at the end of their range.
-void look_for_far_numbers(const FitProblem& problem, FitResult& result) {
-    constexpr double kFar = 3.0;
-    for (std::size_t k = 0; k < problem.free.size(); ++k) {
-        const FreeNumber& free = problem.free[k];
-        const FittedNumber& found = result.numbers[k];
-        const double plausible = free.plausible * free.per_unit;
-        if (!found.is_at_bound && std::abs(found.value - found.start) <= kFar * plausible) continue;
-        result.left.looks_wrong.push_back(
-            {"range",
-             fmt::format("{} went from {:.3g} to {:.3g}, where {:.2g} is plausible: another beam, "
-                         "lens or water than the fit allows, or other poses",
-                         found.key,
-                         found.start,
-                         found.value,
-                         plausible)});
-    }
-}
-
-// What errors of noise do not show: images of one altitude, and texture that maps have kept.
-void look_for_scant_data(const FitSamples& samples, FitResult& result) {
-    constexpr double kOneAltitude = 1.2;  // the highest over the lowest
-    constexpr double kTexture = 0.015;
-    const auto by_altitude = [](const FitImage& image) { return image.sled.altitude_m; };
-    const auto [low, high] = std::ranges::minmax(samples.images, {}, by_altitude);
-    const auto is_of = [&](FitPart part) {
-        return std::ranges::any_of(
-            result.numbers, [&](const FittedNumber& one) { return one.number.part == part; });
-    };
-    const bool is_beam_free = std::ranges::any_of(
-        result.state.beams, [](const FitBeam& beam) { return beam.kind() != FitBeamKind::Held; });
-    const double lowest_m = low.sled.altitude_m;
-    const double highest_m = high.sled.altitude_m;
-    if (is_beam_free && (is_of(FitPart::Water) || is_of(FitPart::LensFactor)) &&
-        highest_m < kOneAltitude * lowest_m) {
-        result.left.looks_wrong.push_back(
-            {"altitudes",
-             fmt::format("{:.3g} to {:.3g} m alone: beam, water and lens nearly make up for each "
-                         "other, and what a model lacks may exceed the errors: fly {:.2g} m, too",
-                         lowest_m,
-                         highest_m,
-                         2.0 * lowest_m)});
-    }
-    if (samples.are_maps && result.left.residual > kTexture) {
-        result.left.looks_wrong.push_back(
-            {"maps",
-             fmt::format(
-                 "off by {:.2g} rms: they have kept texture, which is alike over wide parts "
-                 "of them, and errors may be too small: fit to images, or to maps of more",
-                 result.left.residual)});
-    }
 }
 
 FitResult result_of(const Bench& bench,
@@ -403,8 +351,7 @@ FitResult result_of(const Bench& bench,
     result.blocks = bench.equations.blocks();
     result.tiles = at.normal.tiles;
     result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
-    result.left.looks_wrong.insert(
-        result.left.looks_wrong.begin(), samples.looks_wrong.begin(), samples.looks_wrong.end());
+    result.looks_wrong = samples.looks_wrong;
     if (rival) {
         const std::size_t groups = std::min(kJackknifeGroups, samples.images.size());
         const auto light_of = [&](const FitState& state) { return bench.path_light(state, true); };
@@ -423,11 +370,11 @@ FitResult result_of(const Bench& bench,
              .start = one.start * one.per_unit,
              .value = value * one.per_unit,
              .error = one.per_unit * std::sqrt(result.covariance(at_number, at_number)),
+             .plausible = one.per_unit * one.plausible,
              .per_unit = one.per_unit,
              .is_at_bound = value <= one.least || value >= one.most});
     }
-    look_for_far_numbers(problem, result);
-    look_for_scant_data(samples, result);
+    for (const Suspicion& one : suspicions(samples, result)) result.looks_wrong.push_back(one);
     result.confounded = confounded_in(result.covariance, parts, problem.free);
     Index first = 0;
     for (const FitBeam& beam : result.state.beams) {

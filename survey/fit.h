@@ -47,6 +47,7 @@
 #include "survey/fit_samples.h"
 #include "survey/fit_told.h"
 #include "survey/run_watch.h"
+#include "survey/survey_check.h"
 
 #include <Eigen/Core>
 
@@ -64,7 +65,8 @@ struct FittedNumber {
     double start = 0.0;
     double value = 0.0;
     double error = 0.0;
-    double per_unit = 1.0;  // times the state's number
+    double plausible = 0.0;  // how far from the start it may well be
+    double per_unit = 1.0;   // times the state's number
     bool is_at_bound = false;
 };
 
@@ -83,6 +85,7 @@ struct FitResult {
     std::vector<Confounded> confounded;               // |correlation| over 0.9, the largest first
     std::vector<std::vector<BeamPoint>> beam_curves;  // of tables and cosines, by beam
     FitResiduals left;
+    std::vector<Suspicion> looks_wrong;
     EffectVariances effects{};
     BlockNoise noise;
     std::size_t blocks = 0;

@@ -79,7 +79,7 @@ FitJson to_json(const FitResult& result) {
     return {{"numbers", std::move(numbers)},
             {"held", std::move(held)},
             {"confounded", std::move(confounded)},
-            {"looks_wrong", to_json(result.left.looks_wrong)},
+            {"looks_wrong", to_json(result.looks_wrong)},
             {"beams", std::move(beams)},
             {"shares", std::vector<double>(result.shares.begin(), result.shares.end())},
             {"covariance", covariance_json(result)},

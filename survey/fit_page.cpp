@@ -33,10 +33,9 @@ std::string verdict(const FitSamples& samples, const FitResult& result) {
                     counted(result.numbers.size(), "number"),
                     counted(samples.images.size(), samples.are_maps ? "map" : "image"));
     if (!result.held.empty()) words += ", " + counted(result.held.size(), "number") + " held";
-    if (!result.left.looks_wrong.empty())
-        words += ", " + counted(result.left.looks_wrong.size(), "warning");
+    if (!result.looks_wrong.empty()) words += ", " + counted(result.looks_wrong.size(), "warning");
     return html_verdict(
-        result.left.looks_wrong.empty(),
+        result.looks_wrong.empty(),
         words,
         html_paragraph(fmt::format(
             "Of {} it leaves {} (rms, relative), of which {} stays in place from image to image: "
@@ -48,7 +47,7 @@ std::string verdict(const FitSamples& samples, const FitResult& result) {
 
 std::string warnings(const FitResult& result) {
     std::string content;
-    for (const Suspicion& one : result.left.looks_wrong)
+    for (const Suspicion& one : result.looks_wrong)
         content += html_paragraph(fmt::format("{}: {}", escaped(one.about), escaped(one.what)));
     return content.empty() ? "" : html_section("warnings", "Warnings", content);
 }

@@ -3,8 +3,6 @@
 
 #include "base/upper_median.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -36,72 +34,6 @@ double pattern_of(std::vector<InPlace>& places) {
         counted += 1.0;
     }
     return std::sqrt(std::max(0.0, pattern) / std::max(1.0, counted));
-}
-
-// Of what is left of the images' brightness.
-struct Trend {
-    double correlation = 0.0;
-    double rms = 0.0;  // of the part that goes with the altitude
-};
-
-Trend trend_with_altitude(const std::vector<ImageOutcome>& images) {
-    const auto count = static_cast<Index>(images.size());
-    VectorXd altitude(count);
-    VectorXd level(count);
-    for (Index i = 0; i < count; ++i) {
-        const ImageOutcome& image = images[static_cast<std::size_t>(i)];
-        altitude(i) = image.sled.altitude_m;
-        level(i) = image.level;
-    }
-    altitude.array() -= altitude.mean();
-    level.array() -= level.mean();
-    const double size = altitude.norm() * level.norm();
-    if (!(size > 0.0)) return {};
-    const double correlation = altitude.dot(level) / size;
-    return {.correlation = correlation,
-            .rms = std::abs(correlation) * level.norm() / std::sqrt(static_cast<double>(count))};
-}
-
-void look_for_misfit(const FitSamples& samples, FitResiduals& result) {
-    constexpr double kPattern = 0.02;
-    if (result.pattern > kPattern) {
-        result.looks_wrong.push_back(
-            {"pattern",
-             fmt::format("residuals stay in place from image to image, {:.2g} rms: another beam, "
-                         "lens or water than the fit allows, or a wrong black level",
-                         result.pattern)});
-    }
-    constexpr double kSaturated = 0.02;
-    double saturated = 0.0;
-    for (const FitImage& image : samples.images)
-        saturated += image.saturated_share / static_cast<double>(samples.images.size());
-    if (saturated > kSaturated)
-        result.looks_wrong.push_back(
-            {"saturation", fmt::format("{:.2g} of all samples, left out", saturated)});
-    constexpr std::size_t kFew = 10;
-    constexpr double kSigmas = 4.0;  // of the correlation of as many images by chance
-    // Of a rough floor more is resolved from nearby, and less of it is shade.
-    constexpr double kTrend = 0.02;
-    const Trend trend = trend_with_altitude(result.images);
-    if (result.images.size() >= kFew && trend.rms > kTrend &&
-        std::abs(trend.correlation) >
-            kSigmas / std::sqrt(static_cast<double>(result.images.size()))) {
-        result.looks_wrong.push_back(
-            {"altitude",
-             fmt::format("what is left of the images' brightness goes with it, {:.2g} rms",
-                         trend.rms)});
-    }
-    constexpr double kMostLevel = 0.25;
-    double squares = 0.0;
-    for (const ImageOutcome& image : result.images) squares += image.level * image.level;
-    const double level = std::sqrt(squares / static_cast<double>(result.images.size()));
-    if (level > kMostLevel) {
-        result.looks_wrong.push_back(
-            {"exposure",
-             fmt::format("images are brighter or darker than their poses explain, {:.2g} rms: "
-                         "poses of other images, or other exposures",
-                         level)});
-    }
 }
 
 FitView view_of(std::size_t image, const FitSamples& samples, const FitEquations::Residual& found) {
@@ -171,7 +103,6 @@ FitResiduals fit_residuals(const FitEquations& equations,
     }
     result.residual = std::sqrt(squares / std::max(1.0, blocks));
     result.pattern = pattern_of(places);
-    look_for_misfit(samples, result);
     return result;
 }
 

@@ -6,7 +6,6 @@
 
 #include "survey/fit_equations.h"
 #include "survey/fit_samples.h"
-#include "survey/survey_check.h"
 
 #include <cstddef>
 #include <vector>
@@ -33,8 +32,7 @@ struct FitResiduals {
     double residual = 0.0;  // rms of blocks, relative to the signal, levels taken out
     double pattern = 0.0;   // of that, what stays in place from image to image
     std::vector<ImageOutcome> images;
-    std::vector<FitView> views;          // kFitViews of them, from the lowest to the highest
-    std::vector<Suspicion> looks_wrong;  // signs that the model does not fit
+    std::vector<FitView> views;  // kFitViews of them, from the lowest to the highest
 };
 
 [[nodiscard]] FitResiduals fit_residuals(const FitEquations& equations,

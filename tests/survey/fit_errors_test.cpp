@@ -138,7 +138,7 @@ Outcome outcome_of(const Flight& flight) {
         if (flight.texture == 0.0) options.free = {{"beam", "aim", "power", "water", "vignetting"}};
         const FitResult result = fit(drawn.text, drawn.samples, options, {});
         rivals += static_cast<int>(std::ranges::count_if(
-            result.left.looks_wrong, [](const Suspicion& one) { return one.about == "rival"; }));
+            result.looks_wrong, [](const Suspicion& one) { return one.about == "rival"; }));
         FitState truth = drawn.truth;
         const auto add = [&](const std::string& key, double off, double error) {
             const bool is_within = std::abs(off) <= 2.0 * error;

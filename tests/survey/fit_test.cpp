@@ -92,7 +92,7 @@ TEST(Fit, FindsTheRigThatMadeTheMaps) {
     const FitSamples samples = fit_samples_of(truth, flown({1.2, 1.5, 2.0, 2.5}), kNoise, 1);
     const FitResult result = fit(guess(), samples, exact_poses(), {});
     EXPECT_TRUE(result.held.empty());
-    EXPECT_TRUE(result.left.looks_wrong.empty());
+    EXPECT_TRUE(result.looks_wrong.empty());
     expect_told(result, "water.multiple", 1.0);
     expect_told(result, "strobe.fore.aim_along_deg", 4.0 * std::cos(std::atan2(0.1, 0.5)));
     expect_told(result, "strobe.aft.aim_along_deg", 0.0);
@@ -315,7 +315,7 @@ FitResult fitted_to(const FitSamples& samples) {
 
 std::string warnings_of(const FitResult& result) {
     std::string all;
-    for (const Suspicion& one : result.left.looks_wrong) all += one.about + "\n";
+    for (const Suspicion& one : result.looks_wrong) all += one.about + "\n";
     return all;
 }
 
@@ -395,7 +395,7 @@ TEST(Fit, FindsTheAimsOfHardCones) {
 TEST(Fit, FindsOutASurveyWhosePosesAreThoseOfOtherImages) {
     FitSamples samples = thirty_maps(6);
     samples.are_maps = false;
-    EXPECT_TRUE(fitted_to(samples).left.looks_wrong.empty());
+    EXPECT_TRUE(fitted_to(samples).looks_wrong.empty());
     // Each image has its neighbour's altitude, a metre off at most.
     samples.are_maps = true;
     for (std::size_t i = 0; i + 1 < samples.images.size(); ++i)
@@ -423,12 +423,6 @@ TEST(Fit, FindsOutAPatternThatStaysInPlace) {
             if (i / kChannels % 2 == 0) image.signal[i] *= 0.9F;
     }
     EXPECT_NE(warnings_of(fitted_to(samples)).find("pattern\n"), std::string::npos);
-}
-
-TEST(Fit, FindsOutSaturatedImages) {
-    FitSamples samples = thirty_maps(9);
-    for (FitImage& image : samples.images) image.saturated_share = 0.05;
-    EXPECT_EQ(warnings_of(fitted_to(samples)), "saturation\n");
 }
 
 }  // namespace

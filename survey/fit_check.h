@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Signs that a fit's model is not the images', or that its errors may not hold:
+//
+//   pattern     residuals that stay in place from image to image, over kMostPattern rms
+//   altitude    brightness left of kFewestImages or more that goes with the altitude, over
+//               kMostTrend rms, its correlation over kTrendSigmas of what chance makes of as many
+//   exposure    brightness left of the images over kMostLevel rms: other poses, other exposures
+//   range       a number farther from the rig's than kFarthest times what is plausible, or at the
+//               end of its range
+//   altitudes   the highest within kOneAltitude times the lowest, beam and water or lens free:
+//   these
+//               nearly make up for each other, and what the model lacks goes where it costs least
+//   maps        residuals of maps over kMostTexture rms: texture that was not averaged out is alike
+//               over wide parts of a map, where errors take it for noise of each block
+//   saturation  more than kMostSaturation of all samples, which the fit leaves out
+#pragma once
+
+#include "survey/fit.h"
+#include "survey/fit_samples.h"
+#include "survey/survey_check.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr double kMostPattern = 0.02;
+inline constexpr std::size_t kFewestImages = 10;
+inline constexpr double kMostTrend = 0.02;  // of a rough floor more is resolved from nearby
+inline constexpr double kTrendSigmas = 4.0;
+inline constexpr double kMostLevel = 0.25;
+inline constexpr double kFarthest = 3.0;
+inline constexpr double kOneAltitude = 1.2;
+inline constexpr double kMostTexture = 0.015;
+inline constexpr double kMostSaturation = 0.02;
+
+[[nodiscard]] std::vector<Suspicion> suspicions(const FitSamples& samples, const FitResult& result);
+
+}  // namespace aphotic
