@@ -22,6 +22,7 @@ function(aphotic_library name)
         FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})
     target_compile_features(${target} PUBLIC cxx_std_20)
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:aphotic_warnings>)
+    aphotic_precompile(${target} libraries)
     set_target_properties(${target} PROPERTIES
         EXPORT_NAME ${name}
         INSTALL_RPATH $ORIGIN

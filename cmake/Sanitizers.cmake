@@ -8,6 +8,10 @@ if(APHOTIC_SANITIZE)
     add_compile_options(-fsanitize=${APHOTIC_SANITIZE} -fno-sanitize-recover=all
                         -fno-omit-frame-pointer)
     add_link_options(-fsanitize=${APHOTIC_SANITIZE})
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+        add_compile_options(
+            -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/ignored_by_sanitizers.txt)
+    endif()
 
     if(APHOTIC_SANITIZE STREQUAL "thread")
         add_library(aphotic_known_findings OBJECT cmake/uninstrumented.cpp)

@@ -61,6 +61,7 @@ function(aphotic_tests label)
         target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}
                                                      ${PROJECT_SOURCE_DIR}/tests)
         target_compile_options(${target} PRIVATE ${optimisation})
+        aphotic_precompile(${target} tests_${optimisation})
         target_compile_definitions(${target} PRIVATE
             APHOTIC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
             APHOTIC_COMMAND="$<TARGET_FILE:aphotic>")

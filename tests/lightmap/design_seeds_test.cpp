@@ -17,7 +17,7 @@ namespace {
 // a lesser one, 0.44 even in place of 0.54.
 TEST(DesignSeeds, EachFindsTheHighestHill) {
     constexpr double kAlike = 0.02;
-    const std::string scenes = std::string(APHOTIC_SOURCE_DIR) + "/scenes/";
+    const std::string scenes = APHOTIC_SOURCE_DIR "/scenes/";
     const RigText rig(small_scene(scenes + "habcam.toml", 16), "small.toml", scenes);
     double least = 1.0;
     double most = 0.0;
