@@ -123,8 +123,8 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (chosen && error.get_exit_code() == 0) return run(chosen);
+        if (chosen && error.get_exit_code() == 0) return run(Action(chosen));
         return app.exit(error) == 0 ? kDone : kBadInput;
     }
-    return run(chosen);
+    return run(Action(chosen));  // its own: a sweep parses its tasks' command, which chooses that
 }

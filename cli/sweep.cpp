@@ -11,15 +11,18 @@
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
+#include "cli/unknown_word.h"
 #include "sweep/collection.h"
 #include "sweep/task_run.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic::cli {
@@ -141,12 +144,29 @@ ExitStatus tell_status(const SweepCommandOptions& options) {
     return status.is_whole() ? kDone : kAnswerIsNo;
 }
 
-ExitStatus sweep_rigs(const SweepCommandOptions& options) {
+// By the parser of the task's own command, which else would refuse them task by task.
+void require_taken(CLI::App& aphotic, const fs::path& sweep, std::vector<std::string> arguments) {
+    std::ranges::reverse(arguments);  // as it takes them
+    try {
+        aphotic.parse(std::move(arguments));
+    } catch (const CLI::ParseError& error) {
+        std::string unknown = unknown_words(aphotic);
+        if (unknown.ends_with('\n')) unknown.pop_back();
+        throw InputError(
+            "{}: arguments: {}", sweep.string(), unknown.empty() ? error.what() : unknown);
+    }
+}
+
+ExitStatus sweep_rigs(CLI::App& aphotic, const SweepCommandOptions& options) {
     if (options.task > 0) return run_one(options);
     if (options.status || options.collect) return tell_status(options);
     if (options.folder.empty())
         throw InputError("found none of -o, --task, --status and --collect; allowed: one of them");
-    show(WrittenSweep{write_sweep(options.source, options.folder, this_program())}, options.json);
+    const auto require = [&](const std::vector<std::string>& arguments) {
+        require_taken(aphotic, options.source, arguments);
+    };
+    show(WrittenSweep{write_sweep(options.source, options.folder, this_program(), require)},
+         options.json);
     return kDone;
 }
 
@@ -174,7 +194,7 @@ Action configure_sweep(CLI::App& app) {
         "With -o, writes a task for each rig: tasks.txt, a command a line, and what hands them to "
         "GNU parallel, Slurm, Snakemake and HTCondor. Exit status 1 when --status or --collect "
         "finds a task that is not done.");
-    return [options] { return sweep_rigs(*options); };
+    return [options, &app] { return sweep_rigs(*app.get_parent(), *options); };
 }
 
 }  // namespace

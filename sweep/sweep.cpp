@@ -155,7 +155,11 @@ std::vector<std::string> joining_arguments(const Sweep& sweep, std::size_t numbe
     return command_line(sweep, number, sweep.file.arguments);
 }
 
-Sweep write_sweep(const fs::path& file, const fs::path& folder, const fs::path& program) {
+Sweep write_sweep(
+    const fs::path& file,
+    const fs::path& folder,
+    const fs::path& program,
+    const std::function<void(const std::vector<std::string>& arguments)>& require_taken) {
     const std::string text = read_text_file(file);
     Sweep sweep{.file = parse_sweep_file(text, file.string()),
                 .home = fs::absolute(file).lexically_normal().parent_path(),
@@ -178,6 +182,7 @@ Sweep write_sweep(const fs::path& file, const fs::path& folder, const fs::path& 
         for (int share = 0; share < sweep.file.shares; ++share)
             sweep.digests.push_back(digest_of(sweep, {.share = share}, rigs.back().digest, inputs));
     }
+    require_taken(arguments_of(sweep, 1));
 
     make_folder(sweep.folder);
     const FolderLock lock(sweep.folder, FolderUse::Write);

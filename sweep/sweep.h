@@ -22,6 +22,7 @@
 #include "sweep/sweep_file.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -55,11 +56,15 @@ struct SweepTask {
 // Of the command that joins the shares of the task's point.
 [[nodiscard]] std::vector<std::string> joining_arguments(const Sweep& sweep, std::size_t number);
 
-// Every rig is read before anything is written. Tasks of an earlier sweep in the folder keep their
-// results where these depend on nothing else. program: what the lines of tasks.txt start.
-Sweep write_sweep(const std::filesystem::path& file,
-                  const std::filesystem::path& folder,
-                  const std::filesystem::path& program);
+// Every rig is read, and require_taken called with a task's arguments, which those of the others
+// are like, before anything is written. Tasks of an earlier sweep in the folder keep their results
+// where these depend on nothing else. program: what the lines of tasks.txt start.
+Sweep write_sweep(
+    const std::filesystem::path& file,
+    const std::filesystem::path& folder,
+    const std::filesystem::path& program,
+    const std::function<void(const std::vector<std::string>& arguments)>& require_taken =
+        [](const auto&) {});
 
 // Throws InputError where the folder holds no sweep, or one that was edited by hand.
 [[nodiscard]] Sweep read_sweep(const std::filesystem::path& folder);

@@ -217,6 +217,20 @@ TEST_F(CommandSweep, SaysWhatIsWrong) {
     EXPECT_FALSE(fs::exists(small_.folder() / "other"));
 }
 
+TEST_F(CommandSweep, ArgumentsThatItsCommandDoesNotTakeAreFoundBeforeAnyTask) {
+    const std::vector<std::pair<std::string, std::string>> wrong{
+        {R"("--prevew", "x.png")", "found --prevew; no such option: did you mean --preview?"},
+        {R"("--model-tolerance", "much")", "much"}};
+    for (const auto& [arguments, found] : wrong) {
+        small_.write("lightmap", "arguments = [" + arguments + "]\n" + kThreeWaters);
+        const CommandResult run = sweep({"sweep.toml", "-o", "out"});
+        EXPECT_EQ(run.status, 2);
+        EXPECT_EQ(run.err.find("aphotic: sweep.toml: arguments: "), 0U) << run.err;
+        EXPECT_NE(run.err.find(found), std::string::npos) << run.err;
+        EXPECT_FALSE(fs::exists(out("")));
+    }
+}
+
 // run-task takes its number from the argument or from the engine.
 TEST_F(CommandSweep, RunTaskTakesItsNumberFromTheEngine) {
     make("lightmap", kThreeWaters);
