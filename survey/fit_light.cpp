@@ -460,14 +460,16 @@ void FitLight::add_between_nodes(const Rows& of_nodes, Rows& rows) const {
     // A place's three rows as one, and a node's.
     const Index columns = kChannels * rows.cols();
     const Eigen::Map<const Rows> from(of_nodes.data(), from_nodes_.cols(), columns);
-    Eigen::Map<Rows>(rows.data(), from_nodes_.rows(), columns) += from_nodes_ * from;
+    Eigen::Map<Rows>(rows.data(), from_nodes_.rows(), columns).noalias() += from_nodes_ * from;
 }
 
 void FitLight::average_over_blocks(Rows& rows) const {
     if (means_.size() == 0) return;
     const Index columns = kChannels * rows.cols();
-    const Rows middles = Eigen::Map<const Rows>(rows.data(), means_.cols(), columns);
-    Eigen::Map<Rows>(rows.data(), means_.rows(), columns) = means_ * middles;
+    Rows means(rows.rows(), rows.cols());
+    Eigen::Map<Rows>(means.data(), means_.rows(), columns).noalias() =
+        means_ * Eigen::Map<const Rows>(rows.data(), means_.cols(), columns);
+    rows.swap(means);
 }
 
 void FitLight::multiply_by_vignetting(const FitState& state, Rows& rows) const {
