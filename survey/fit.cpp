@@ -439,12 +439,14 @@ FitResult fit(const RigText& text,
     FitEquations equations(light, samples, options.threads);
     FitProblem problem = fit_problem(
         text, options, {.widest_rad = light.widest_rad(sleds), .block_rad = light.block_rad()});
-    constexpr std::size_t kManyImages = 30;  // that tell the variances of what they share
+    // That tell the variances of what they share: held at first_effects', these leave to the finest
+    // detail all that an even floor tells.
+    constexpr std::size_t kFewestToLearn = 5;
     const Bench bench{.rig = text,
                       .light = light,
                       .equations = equations,
                       .paths = paths,
-                      .learns_effects = samples.images.size() >= kManyImages};
+                      .learns_effects = samples.images.size() >= kFewestToLearn};
     const EffectVariances effects = first_effects(options, samples.are_maps);
     std::vector<NotTold> held;
     int steps = 0;

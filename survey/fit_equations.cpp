@@ -238,10 +238,17 @@ void FitEquations::move_pose(const VectorXd& effects, Image& image) {
 }
 
 void FitEquations::learn_effects(const std::vector<VectorXd>& off) {
+    // Of the images' levels and hues the beam's scale takes up one degree of freedom, the water
+    // one.
+    constexpr double kTaken = 2.0;
+    const auto count = static_cast<double>(images_.size());
+    VectorXd factor = VectorXd::Ones(kEffects);
+    factor.head(kPoseEffect).fill(count / (count - kTaken));
     std::vector<VectorXd> squares(images_.size());
     for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
-        squares[i] = image.effects_in(off[i]).cwiseAbs2() + image.effect_covariance.diagonal();
-        squares[i] /= image.noise_scale * static_cast<double>(images_.size());
+        squares[i] = factor.cwiseProduct(image.effects_in(off[i]).cwiseAbs2()) +
+                     image.effect_covariance.diagonal();
+        squares[i] /= image.noise_scale * count;
     });
     const VectorXd all = added_up(squares, [](VectorXd& sum, const VectorXd& one) { sum += one; });
     EffectVariances found{};
