@@ -9,7 +9,7 @@
 //       image, for its texture has waves as long as an image: cos(a pi x) cos(b pi y), a + b from 1
 //       to kWaves, x and y from 0 to 1, all of the floor's light and not of the veil before it; and
 //       errors of the image's own altitude, pitch and roll. c is random, with a variance each: of
-//       the pose as the instruments have it, of the floor found where images are many, one for all
+//       the pose as the instruments have it, of the floor found from five images on, one for all
 //       waves of the same a + b (Dempster, Laird and Rubin's EM)
 //
 // Poses go into the light as no straight line: each image's is moved to where its light tells it,
