@@ -142,35 +142,15 @@ FitEquations::FitEquations(const FitLight& light, const FitSamples& samples, int
     }
 }
 
-// Of each row the mean of its tile: by its own signal, rows that noise made dark would count most.
-VectorXd FitEquations::tile_means(const Image& image) const {
-    constexpr std::size_t kTiles = kTilesAcross * kTilesDown;
-    VectorXd sum = VectorXd::Zero(kChannels * kTiles);
-    VectorXd count = VectorXd::Constant(kChannels * kTiles, 1e-300);
-    const auto tile_of = [&](Index row) {
-        const std::size_t tile = tile_of_place_[static_cast<std::size_t>(row) / kChannels];
-        return static_cast<Index>(kChannels * tile) + row % kChannels;
-    };
-    for (Index row = 0; row < image.signal.size(); ++row) {
-        if (!image.has(row)) continue;
-        sum(tile_of(row)) += image.signal(row);
-        count(tile_of(row)) += 1.0;
-    }
-    VectorXd means(image.signal.size());
-    for (Index row = 0; row < means.size(); ++row)
-        means(row) = sum(tile_of(row)) / count(tile_of(row));
-    return means;
-}
-
 void FitEquations::assume_noise() {
     double most = 0.0;
     for (const Image& image : images_) most = std::max(most, image.signal.maxCoeff());
     noise_ = {.variance = {std::pow(kFirstFloor * most, 2.0), 0.0, std::pow(kFirstNoise, 2.0)}};
     effects_.fill(0.0);
     for_each_image(images_, threads_, [&](Image& image, std::size_t) {
-        const VectorXd level = tile_means(image);
         for (std::size_t place = 0; place < image.whitening.size(); ++place) {
-            image.whitening[place] = noise_.whitening(image.block(level, place), image.noise_scale);
+            image.whitening[place] =
+                noise_.whitening(image.block(image.signal, place), image.noise_scale);
         }
         settle(image);
     });

@@ -70,7 +70,7 @@ class FitEquations {
 
     FitEquations(const FitLight& light, const FitSamples& samples, int threads);
 
-    // The first noise: kFirstNoise of the tile's mean signal and of the brightest, no effects.
+    // The first noise: kFirstNoise of the signal, kFirstFloor of the brightest, no effects.
     void assume_noise();
     // What the residuals of this solution tell. estimate_effects: let EM move the variances.
     void learn_noise(const FitState& state,
@@ -166,7 +166,6 @@ class FitEquations {
                                   const Eigen::VectorXd& shares,
                                   const Sled& sled,
                                   Eigen::VectorXd& signal) const;
-    [[nodiscard]] Eigen::VectorXd tile_means(const Image& image) const;
     void settle(Image& image) const;
     void look_from(const FitState& state,
                    const PathLight& light,

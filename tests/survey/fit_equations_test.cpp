@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The normal equations of an image against the dense covariance that their header writes down, and
-// what a floor is brighter by, of which the veil knows nothing.
+// The normal equations of an image against the dense covariance that their header writes down, what
+// a floor is brighter by, of which the veil knows nothing, and by how much floors differ.
 #include "survey/fit_equations.h"
 
+#include "base/non_negative_fit.h"
 #include "support/fit_rig.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <random>
 
 namespace aphotic::fit_equations_test {
 namespace {
@@ -103,6 +107,39 @@ TEST(FitEquations, WhatAFloorIsBrighterByLeavesTheVeilAlone) {
     EXPECT_GT(veil, 0.04);
     EXPECT_NEAR(left.effects[0], 0.3, 0.3 * kPrior);
     EXPECT_LT(left.residual.cwiseAbs().maxCoeff(), kPrior * signal.maxCoeff());
+}
+
+// The variance of five levels about their mean, over 5 - 2: the beam's scale takes up one degree of
+// freedom, the water may take up another.
+TEST(FitEquations, LearnByHowMuchFloorsDiffer) {
+    constexpr std::array<double, 5> kLevels{0.93, 1.02, 1.06, 0.97, 1.02};  // mean 1
+    constexpr double kNoise = 0.01;
+    // Over 144 values an image, a level is off by kNoise / 12, some 2 % of what levels differ by.
+    constexpr double kLevelNoise = 0.1;
+    const Seen seen;
+    const PathLight path = seen.path();
+    FitSamples samples = seen.samples({});
+    samples.images.clear();
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> noise(1.0, kNoise);
+    double wanted = 0.0;
+    for (const double level : kLevels) {
+        FitState bright = seen.state;
+        bright.floor_brightness = level;
+        Eigen::VectorXd signal = seen.columns(bright, kOne).rightCols<1>();
+        for (double& value : signal) value *= noise(random);
+        samples.images.push_back(seen.samples(signal).images.front());
+        wanted += std::pow(level - 1.0, 2.0) / 3.0;
+    }
+    FitEquations equations(seen.light, samples, 1);
+    equations.assume_noise();
+    equations.set_effects(of_level(wanted));
+    for (int round = 0; round < 8; ++round) {
+        const auto parts = equations.parts(seen.state, path);
+        const Eigen::VectorXd shares = non_negative_fit(parts.G, parts.b);
+        equations.learn_noise(seen.state, path, shares, Robust::Huber, true);
+    }
+    EXPECT_NEAR(equations.effects()[0], wanted, kLevelNoise * wanted);
 }
 
 }  // namespace
