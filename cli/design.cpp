@@ -94,6 +94,9 @@ ExitStatus design_rig(const DesignCommandOptions& options) {
     const RigText text{fs::path(options.rig)};
     const Rig rig = text.rig();
     DesignRequest request = request_of(options, rig);
+    naming(options.rig, [&] {  // refused before there is a folder
+        return DesignSpace(text, request.freedom, corner_poses(request.envelope));
+    });
     const FolderLock lock = claim_folder(options.folder);
     const DesignResult result = [&] {
         ProgressLine line;

@@ -126,5 +126,5 @@ int main(int argc, char** argv) {
         if (chosen && error.get_exit_code() == 0) return run(Action(chosen));
         return app.exit(error) == 0 ? kDone : kBadInput;
     }
-    return run(Action(chosen));  // its own: a sweep parses its tasks' command, which chooses that
+    return run(Action(chosen));  // a copy: a sweep's action parses again, which replaces `chosen`
 }

@@ -149,6 +149,11 @@ void require_taken(CLI::App& aphotic, const fs::path& sweep, std::vector<std::st
     std::ranges::reverse(arguments);  // as it takes them
     try {
         aphotic.parse(std::move(arguments));
+    } catch (const CLI::Success&) {
+        throw InputError(
+            "{}: arguments: found --help or --version; allowed: options by which tasks "
+            "have results",
+            sweep.string());
     } catch (const CLI::ParseError& error) {
         std::string unknown = unknown_words(aphotic);
         if (unknown.ends_with('\n')) unknown.pop_back();

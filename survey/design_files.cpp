@@ -61,7 +61,7 @@ DesignJson design_json(const Rig& rig, const DesignRequest& request, const Desig
                     {"vary", request.freedom.keys},
                     {"within_m", request.freedom.within_m},
                     {"boxes", request.freedom.boxes},
-                    {"turn_deg", request.freedom.turn_rad * kDegreesPerRadian},
+                    {"turn_deg", request.freedom.turn_rad / kRadiansPerDegree},
                     {"altitude_m", request.envelope.altitude_m},
                     {"pitch_deg", degrees(request.envelope.pitch_rad)},
                     {"roll_deg", degrees(request.envelope.roll_rad)},

@@ -220,7 +220,8 @@ TEST_F(CommandSweep, SaysWhatIsWrong) {
 TEST_F(CommandSweep, ArgumentsThatItsCommandDoesNotTakeAreFoundBeforeAnyTask) {
     const std::vector<std::pair<std::string, std::string>> wrong{
         {R"("--prevew", "x.png")", "found --prevew; no such option: did you mean --preview?"},
-        {R"("--model-tolerance", "much")", "much"}};
+        {R"("--model-tolerance", "much")", "much"},
+        {R"("--help")", "found --help or --version; allowed: "}};
     for (const auto& [arguments, found] : wrong) {
         small_.write("lightmap", "arguments = [" + arguments + "]\n" + kThreeWaters);
         const CommandResult run = sweep({"sweep.toml", "-o", "out"});
