@@ -117,6 +117,10 @@ std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
     constexpr std::size_t kImages = 8;
     const SurveyLook look =
         look_at({.files = files, .camera = camera}, {.most_images = kImages, .jobs = jobs}, watch);
+    if (look.images.empty() && look.count > 0) {
+        throw InputError(
+            "none of the {} images looked at can be read; {}", look.count, look.first_why);
+    }
     std::vector<Suspicion> found = suspicions(look.images, mosaic_of(look.images));
     watch.looks_wrong(found);
     return found;

@@ -33,7 +33,8 @@ struct SurveyLook {
                                  const LookRequest& request,
                                  const RunWatch& watch);
 
-// What looks wrong about images whose light nobody knows: says it to the watch, too.
+// What looks wrong about images whose light nobody knows: says it to the watch, too. Refused, once
+// for all, where none of them can be read.
 [[nodiscard]] std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
                                                    const CameraNumbers& camera,
                                                    std::size_t jobs,

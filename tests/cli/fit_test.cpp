@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace aphotic::cli_fit_test {
@@ -119,6 +120,30 @@ TEST(CommandFit, FindsOutASaturatedSurvey) {
     EXPECT_EQ(run.status, 1) << run.err;
     EXPECT_NE(run.out.find("looks wrong: saturation:"), std::string::npos) << run.out;
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "fitted/fit.json"));
+}
+
+TEST(CommandFit, SaysOfAllImagesAtOnceThatNoneCanBeRead) {
+    const TempFolder folder;
+    write_text_file(folder.path() / "rig.toml", fit_rig({}).text());
+    const CommandResult survey =
+        run_aphotic(folder.path(), {"survey", "rig.toml", "--images", "3", "-o", "survey"});
+    ASSERT_EQ(survey.status, 0) << survey.err;
+    const CommandResult run = run_aphotic(folder.path(),
+                                          {"fit",
+                                           "rig.toml",
+                                           "--images",
+                                           "survey/raw",
+                                           "--nav",
+                                           "survey/navigation.txt",
+                                           "-o",
+                                           "fitted"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.err.find("aphotic: none of the 3 images looked at can be read; 000001: found one "
+                           "channel and no --bayer; allowed: "),
+              0U)
+        << run.err;
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "fitted"));
 }
 
 TEST(CommandFit, SaysWhatItNeeds) {
