@@ -86,6 +86,8 @@ void print_result(const std::string& title,
                    one.is_at_bound ? "  at the end of its range" : "");
     }
     for (const NotTold& one : result.held) fmt::print("held: {}\n", words_of(one));
+    if (!result.fixed.empty())
+        fmt::print("not fitted, as the rig has them: {}\n", fmt::join(result.fixed, ", "));
     for (const Confounded& pair : result.confounded)
         fmt::print("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
     for (const Suspicion& one : result.looks_wrong)

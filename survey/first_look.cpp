@@ -114,9 +114,7 @@ std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
                                      const CameraNumbers& camera,
                                      std::size_t jobs,
                                      const RunWatch& watch) {
-    constexpr std::size_t kImages = 8;
-    const SurveyLook look =
-        look_at({.files = files, .camera = camera}, {.most_images = kImages, .jobs = jobs}, watch);
+    const SurveyLook look = look_at({.files = files, .camera = camera}, {.jobs = jobs}, watch);
     if (look.images.empty() && look.count > 0) {
         throw InputError(
             "none of the {} images looked at can be read; {}", look.count, look.first_why);

@@ -88,6 +88,7 @@ class Reduced : public ceres::CostFunction {
     bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
         const bool has_slopes = jacobians != nullptr && jacobians[0] != nullptr;
         const FitState state = problem_.at(x[0]);
+        if (!bench_.light.is_bright(state)) return false;
         const auto count = static_cast<Index>(problem_.free.size());
         const PathLight light = bench_.path_light(state, has_slopes);
         const Solved& solved = solved_at(VectorXd::Map(x[0], count), state, light);
@@ -184,6 +185,12 @@ void learn(const Bench& bench, const FitProblem& problem, Robust robust) {
     bench.equations.learn_noise(problem.state, light, solved.shares, robust, bench.learns_effects);
 }
 
+void start_effects(const Bench& bench, const FitProblem& problem, const EffectVariances& most) {
+    const PathLight light = bench.path_light(problem.state, false);
+    const Solved solved = shares_of(bench.equations.parts(problem.state, light));
+    bench.equations.start_effects(problem.state, light, solved.shares, most);
+}
+
 // The share of the work that is done after so many of kRobustRounds and the search before them.
 double share_after(std::size_t searches) {
     return static_cast<double>(searches) / static_cast<double>(kRobustRounds.size() + 1);
@@ -234,7 +241,7 @@ std::vector<BeamPoint> curve_of(const FitBeam& beam,
     const double flux = beam.beam_of(shares).flux;
     std::vector<BeamPoint> points;
     for (int i = 0; i < kPoints; ++i) {
-        const double theta_rad = beam.widest_rad() * i / (kPoints - 1);
+        const double theta_rad = std::min(beam.widest_rad(), beam.widest_rad() * i / (kPoints - 1));
         const VectorXd f = beam.parts_at(theta_rad);
         points.push_back({.theta_rad = theta_rad,
                           .intensity = f.dot(shares) / flux,
@@ -448,6 +455,7 @@ FitResult fit(const RigText& text,
                       .paths = paths,
                       .learns_effects = samples.images.size() >= kFewestToLearn};
     const EffectVariances effects = first_effects(options, samples.are_maps);
+    std::vector<std::string> fixed = words_fixed_in(problem);
     std::vector<NotTold> held;
     int steps = 0;
     for (bool is_first = true;; is_first = false) {
@@ -459,7 +467,7 @@ FitResult fit(const RigText& text,
         if (is_first) start_gains(bench, problem);
         equations.tie_parts(problem.state, shares_at(bench, problem.state));
         steps += search(bench, problem, kFirstSteps);
-        equations.set_effects(effects);
+        start_effects(bench, problem, effects);
         steps += search_in_rounds(bench, problem, [&](std::size_t round) { progress(round + 1); });
         const Linearised at = linearised_at(bench, problem);
         const std::vector<NotTold> untold =
@@ -474,6 +482,7 @@ FitResult fit(const RigText& text,
     FitResult result = result_of(bench, problem, samples, rival, watch);
     watch.progress("fitting", 1.0);
     result.held = std::move(held);
+    result.fixed = std::move(fixed);
     result.rounds = static_cast<int>(kRobustRounds.size()) + 1;
     result.steps = steps;
     return result;

@@ -82,6 +82,7 @@ struct FitResult {
     Eigen::MatrixXd covariance;  // of the shares, then the numbers, in the state's units
     std::vector<FittedNumber> numbers;
     std::vector<NotTold> held;
+    std::vector<std::string> fixed;                   // words of --free: as the rig has them
     std::vector<Confounded> confounded;               // |correlation| over 0.9, the largest first
     std::vector<std::vector<BeamPoint>> beam_curves;  // of tables and cosines, by beam
     FitResiduals left;

@@ -69,7 +69,8 @@ void look_for_misfit(const FitResiduals& left, std::vector<Suspicion>& found) {
 void look_for_far_numbers(const FitResult& result, std::vector<Suspicion>& found) {
     for (const FittedNumber& one : result.numbers) {
         const double off = std::abs(one.value - one.start);
-        if (!one.is_at_bound && off <= kFarthest * one.plausible) continue;
+        const bool is_none = one.value == 0.0;  // there may well be no more loss than the rig's
+        if ((!one.is_at_bound || is_none) && off <= kFarthest * one.plausible) continue;
         found.push_back(
             {"range",
              fmt::format("{} went from {:.3g} to {:.3g}, where {:.2g} is plausible: another beam, "
@@ -109,12 +110,13 @@ void look_for_one_altitude(const FitSamples& samples,
 void look_for_texture(const FitSamples& samples,
                       const FitResiduals& left,
                       std::vector<Suspicion>& found) {
-    if (!samples.are_maps || left.residual <= kMostTexture) return;
+    if (!samples.are_maps || left.smooth <= kMostTexture) return;
     found.push_back(
         {"maps",
-         fmt::format("off by {:.2g} rms: they have kept texture, which is alike over wide parts "
-                     "of them, and errors may be too small: fit to images, or to maps of more",
-                     left.residual)});
+         fmt::format("neighbouring blocks are off alike, by {:.2g} rms: texture that has not "
+                     "averaged out, or light that the fit does not allow, and errors are too "
+                     "small: fit to images, or to maps of more",
+                     left.smooth)});
 }
 
 void look_for_saturation(const FitSamples& samples, std::vector<Suspicion>& found) {

@@ -8,11 +8,12 @@
 //   exposure    brightness left of the images over kMostLevel rms: other poses, other exposures
 //   range       a number farther from the rig's than kFarthest times what is plausible, or at the
 //               end of its range
-//   altitudes   the highest within kOneAltitude times the lowest, beam and water or lens free:
-//   these
+//   altitudes   the highest within kOneAltitude times the lowest, beam and water or lens free: they
 //               nearly make up for each other, and what the model lacks goes where it costs least
-//   maps        residuals of maps over kMostTexture rms: texture that was not averaged out is alike
-//               over wide parts of a map, where errors take it for noise of each block
+//   maps        residuals of maps that neighbouring blocks share, over kMostTexture rms: texture
+//   that
+//               was not averaged out, or light that the model lacks, is alike over wide parts of a
+//               map, where errors take it for noise of each block
 //   saturation  more than kMostSaturation of all samples, which the fit leaves out
 #pragma once
 
@@ -31,8 +32,8 @@ inline constexpr double kMostTrend = 0.02;  // of a rough floor more is resolved
 inline constexpr double kTrendSigmas = 4.0;
 inline constexpr double kMostLevel = 0.25;
 inline constexpr double kFarthest = 3.0;
-inline constexpr double kOneAltitude = 1.2;
-inline constexpr double kMostTexture = 0.015;
+inline constexpr double kOneAltitude = 1.25;
+inline constexpr double kMostTexture = 0.003;
 inline constexpr double kMostSaturation = 0.02;
 
 [[nodiscard]] std::vector<Suspicion> suspicions(const FitSamples& samples, const FitResult& result);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <type_traits>
@@ -161,6 +162,29 @@ void FitEquations::set_effects(const EffectVariances& variances) {
     for_each_image(images_, threads_, [&](Image& image, std::size_t) { settle(image); });
 }
 
+void FitEquations::start_effects(const FitState& state,
+                                 const PathLight& light,
+                                 const VectorXd& shares,
+                                 const EffectVariances& most) {
+    constexpr double kRoom = 4.0;  // the search without effects has made up for some of them
+    if (std::ranges::count(most, 0.0) == std::ssize(most)) return;  // as they are
+    learn_noise(state, light, shares, Robust::Huber, false);
+    set_effects(most);
+    std::vector<VectorXd> off(images_.size());
+    for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
+        VectorXd signal;
+        Image seen = image;
+        look_from(state, light, shares, seen, signal);
+        off[i] = seen.moved - signal;
+    });
+    learn_effects(off);
+    EffectVariances found = effects_;
+    for (std::size_t k = 0; k < kEffects; ++k) found[k] = std::min(most[k], kRoom * found[k]);
+    for (std::size_t q = 0; q < FitLight::kPoseColumns; ++q)
+        found[kPoseEffect + q] = most[kPoseEffect + q];
+    set_effects(found);
+}
+
 FitEquations::Rows FitEquations::effects_at(const FitState& state,
                                             const PathLight& light,
                                             const VectorXd& shares,
@@ -207,11 +231,14 @@ void FitEquations::look_from(const FitState& state,
     settle(image);
 }
 
-void FitEquations::move_pose(const VectorXd& effects, Image& image) {
+void FitEquations::move_pose(const VectorXd& effects, Image& image) const {
     const std::array<double*, FitLight::kPoseColumns> pose{
         &image.sled.altitude_m, &image.sled.pitch_rad, &image.sled.roll_rad};
     for (std::size_t q = 0; q < pose.size(); ++q) {
-        const double move = image.back[q] + effects(static_cast<Index>(kPoseEffect + q));
+        const double most = kMostMove * std::sqrt(effects_[kPoseEffect + q] * image.noise_scale);
+        const double from_navigation =
+            std::clamp(effects(static_cast<Index>(kPoseEffect + q)), -most, most);
+        const double move = image.back[q] + from_navigation;
         *pose[q] += move;
         image.back[q] -= move;
     }
@@ -223,7 +250,7 @@ void FitEquations::learn_effects(const std::vector<VectorXd>& off) {
     constexpr double kTaken = 2.0;
     const auto count = static_cast<double>(images_.size());
     VectorXd factor = VectorXd::Ones(kEffects);
-    factor.head(kPoseEffect).fill(count / (count - kTaken));
+    factor.head(kPoseEffect).fill(count / std::max(1.0, count - kTaken));
     std::vector<VectorXd> squares(images_.size());
     for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
         squares[i] = factor.cwiseProduct(image.effects_in(off[i]).cwiseAbs2()) +
@@ -236,7 +263,7 @@ void FitEquations::learn_effects(const std::vector<VectorXd>& off) {
     pool_waves(found);
     for (std::size_t k = 0; k < kEffects; ++k) {
         const bool is_of_pose = k >= kPoseEffect && k < kWaveEffect;
-        if (!is_of_pose) effects_[k] = found[k];
+        if (!is_of_pose) effects_[k] = std::min(found[k], kMostEffect * kMostEffect);
     }
 }
 

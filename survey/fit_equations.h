@@ -10,10 +10,12 @@
 //       to kWaves, x and y from 0 to 1, all of the floor's light and not of the veil before it; and
 //       errors of the image's own altitude, pitch and roll. c is random, with a variance each: of
 //       the pose as the instruments have it, of the floor found from five images on, one for all
-//       waves of the same a + b (Dempster, Laird and Rubin's EM)
+//       waves of the same a + b (Dempster, Laird and Rubin's EM), up to kMostEffect squared: no
+//       floors differ by more, and without a bound a wrong beam ends where nothing is told
 //
 // Poses go into the light as no straight line: each image's is moved to where its light tells it,
-// round by round, and what the navigation says becomes the mean of what is left of it in c.
+// round by round, and what the navigation says becomes the mean of what is left of it in c. Not
+// farther than kMostMove standard deviations: far from the answer a straight line leads anywhere.
 //
 // So y has the covariance V = D + U Gamma U^T, D that of e, W^T W = D^-1 block by block, and
 //
@@ -54,6 +56,8 @@ namespace aphotic {
 
 inline constexpr double kTie = 0.3;
 inline constexpr double kBend = 0.1;
+inline constexpr double kMostMove = 3.0;
+inline constexpr double kMostEffect = 0.5;
 inline constexpr std::size_t kTilesAcross = 8;
 inline constexpr std::size_t kTilesDown = 6;
 
@@ -81,6 +85,12 @@ class FitEquations {
     // From now on parts are tied; none before.
     void tie_parts(const FitState& state, const Eigen::VectorXd& shares);
     void set_effects(const EffectVariances& variances);
+    // As large as the residuals of a solution without effects, with some room, and no larger than
+    // `most`: few images, from which none are learned, may be of a grey card.
+    void start_effects(const FitState& state,
+                       const PathLight& light,
+                       const Eigen::VectorXd& shares,
+                       const EffectVariances& most);
     [[nodiscard]] const EffectVariances& effects() const { return effects_; }
     [[nodiscard]] const BlockNoise& noise() const { return noise_; }
 
@@ -172,7 +182,7 @@ class FitEquations {
                    const Eigen::VectorXd& shares,
                    Image& image,
                    Eigen::VectorXd& signal) const;
-    static void move_pose(const Eigen::VectorXd& effects, Image& image);
+    void move_pose(const Eigen::VectorXd& effects, Image& image) const;
     // Columns of parts, then of numbers.
     [[nodiscard]] Rows columns_at(const FitState& state,
                                   const PathLight& light,

@@ -78,6 +78,7 @@ FitJson to_json(const FitResult& result) {
     const auto deviation = [&](std::size_t k) { return std::sqrt(result.effects[k]); };
     return {{"numbers", std::move(numbers)},
             {"held", std::move(held)},
+            {"as_the_rig_has", result.fixed},
             {"confounded", std::move(confounded)},
             {"looks_wrong", to_json(result.looks_wrong)},
             {"beams", std::move(beams)},

@@ -472,12 +472,32 @@ void FitLight::average_over_blocks(Rows& rows) const {
     rows.swap(means);
 }
 
+namespace {
+
+double vignetting_of(const std::vector<double>& a, double q) {
+    return 1.0 + q * (a[0] + q * (a[1] + q * a[2]));
+}
+
+}  // namespace
+
+bool FitLight::is_bright(const FitState& state) const {
+    constexpr int kSteps = 64;
+    const Camera& camera = rig_.camera;
+    double farthest2 = 0.0;
+    for (const int column : {0, camera.width_px})
+        for (const int row : {0, camera.height_px})
+            farthest2 = std::max(farthest2, radial_square(camera, column, row));
+    for (int i = 0; i <= kSteps && !state.vignetting.empty(); ++i) {
+        if (vignetting_of(state.vignetting, farthest2 * i / kSteps) <= 0.0) return false;
+    }
+    return true;
+}
+
 void FitLight::multiply_by_vignetting(const FitState& state, Rows& rows) const {
     for (std::size_t place = 0; place < sights_.size(); ++place) {
         const double q = sights_[place].from_middle2;
-        const std::vector<double>& a = state.vignetting;
-        const double V =
-            a.empty() ? sights_[place].vignetting : 1.0 + q * (a[0] + q * (a[1] + q * a[2]));
+        const double V = state.vignetting.empty() ? sights_[place].vignetting
+                                                  : vignetting_of(state.vignetting, q);
         rows.middleRows(static_cast<Index>(kChannels * place), kChannels) *= V;
     }
 }

@@ -121,6 +121,8 @@ class FitLight {
     // The widest angle off any strobe's axis of the floor that the places see, kAimRoom_rad and,
     // where the water scatters, kVeilRoom_rad more; up to a right angle.
     [[nodiscard]] double widest_rad(const std::vector<Sled>& sleds) const;
+    // Whether the state's vignetting is over 0 all over the image.
+    [[nodiscard]] bool is_bright(const FitState& state) const;
     // What a block at the image's middle spans.
     [[nodiscard]] double block_rad() const;
 

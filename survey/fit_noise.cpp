@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/fit_noise.h"
 
+#include "base/error.h"
 #include "base/non_negative_fit.h"
 #include "base/upper_median.h"
 
@@ -37,6 +38,10 @@ std::array<double, 3> variance_of(std::vector<Sample> samples) {
     std::ranges::sort(samples, {}, &Sample::signal);
     const std::size_t bins = std::clamp<std::size_t>(samples.size() / kLeastOfBin, 1, kMostBins);
     MatrixXd A(static_cast<Index>(bins), 3);
+    if (samples.empty())
+        throw InputError(
+            "no rig fits: the search ended where there is no light; allowed: another --beam, or a "
+            "rig nearer to the images");
     const double most = std::max(samples.back().signal, std::numeric_limits<double>::min());
     for (std::size_t bin = 0; bin < bins; ++bin) {
         const std::size_t from = bin * samples.size() / bins;
@@ -54,10 +59,13 @@ std::array<double, 3> variance_of(std::vector<Sample> samples) {
     }
     const VectorXd ones = VectorXd::Ones(A.rows());
     const VectorXd v = non_negative_fit(A.transpose() * A, A.transpose() * ones);
-    // Never none: what the fit makes dark has a weight, too.
-    constexpr double kLeast = 1e-6;
-    const double least = kLeast * kLeast * most * most;
-    return {std::max(v(0), least), v(1) / most, v(2) / (most * most)};
+    // Never none: what the fit makes dark has a weight, too, and a map by the same model as the
+    // fit's is no truer than what both of them leave out.
+    constexpr double kLeastDark = 1e-6;
+    const double least = kLeastDark * kLeastDark * most * most;
+    return {std::max(v(0), least),
+            v(1) / most,
+            std::max(v(2) / (most * most), kLeastNoise * kLeastNoise)};
 }
 
 // With no eigenvalue under the least, and ones in its diagonal.

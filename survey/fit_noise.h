@@ -32,6 +32,7 @@ namespace aphotic {
 inline constexpr std::array<double, kChannels> kBiweight{3.44, 3.82, 4.14};
 inline constexpr std::array<double, kChannels> kHuber{2.50, 2.96, 3.30};
 inline constexpr double kLeastEigenvalue = 0.02;
+inline constexpr double kLeastNoise = 1e-4;  // of the signal
 
 inline constexpr double kNormal =
     1.4826;  // standard deviation of a normal over its median deviation

@@ -65,6 +65,9 @@ std::string numbers(const FitResult& result) {
     std::string content = html_table("numbers", "number;began at;fitted;standard error;", rows);
     for (const NotTold& one : result.held)
         content += html_paragraph("Held: " + escaped(words_of(one)) + ".");
+    if (!result.fixed.empty())
+        content += html_paragraph(
+            fmt::format("Not fitted, as the rig has them: {}.", fmt::join(result.fixed, ", ")));
     for (const Confounded& pair : result.confounded) {
         content += html_paragraph(fmt::format("Confounded: {} and {}, correlation {:+.2f}.",
                                               user_text(pair.one),

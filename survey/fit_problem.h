@@ -73,4 +73,7 @@ struct FitAngles {
                                      const FitOptions& options,
                                      const FitAngles& angles);
 
+// Words of FitOptions::free of which the problem has nothing free.
+[[nodiscard]] std::vector<std::string> words_fixed_in(const FitProblem& problem);
+
 }  // namespace aphotic

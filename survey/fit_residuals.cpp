@@ -78,8 +78,13 @@ FitResiduals fit_residuals(const FitEquations& equations,
     std::vector<InPlace> places(samples.places.size() * kChannels);
     const std::vector<std::size_t> shown = images_to_show(samples);
     result.views.resize(shown.size());
+    const auto are_side_by_side = [&](std::size_t place) {
+        return samples.places.rows[place] == samples.places.rows[place + 1];
+    };
     double squares = 0.0;
     double blocks = 0.0;
+    double products = 0.0;
+    double pairs = 0.0;
     for (std::size_t i = 0; i < samples.images.size(); ++i) {
         const FitEquations::Residual found = equations.residual_of(i, state, light, shares);
         const double most = found.signal.maxCoeff();
@@ -91,6 +96,12 @@ FitResiduals fit_residuals(const FitEquations& equations,
             places[static_cast<std::size_t>(row)].push_back(static_cast<float>(off));
             of_image += off * off;
             count += 1.0;
+            const Index next = row + kChannels;
+            if (next >= found.residual.size() || !std::isfinite(found.residual(next)) ||
+                !are_side_by_side(static_cast<std::size_t>(row) / kChannels))
+                continue;
+            products += off * found.residual(next) / found.signal(next);
+            pairs += 1.0;
         }
         squares += of_image;
         blocks += count;
@@ -103,6 +114,7 @@ FitResiduals fit_residuals(const FitEquations& equations,
     }
     result.residual = std::sqrt(squares / std::max(1.0, blocks));
     result.pattern = pattern_of(places);
+    result.smooth = std::sqrt(std::max(0.0, products) / std::max(1.0, pairs));
     return result;
 }
 

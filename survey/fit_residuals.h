@@ -31,6 +31,7 @@ inline constexpr std::size_t kFitViews = 5;
 struct FitResiduals {
     double residual = 0.0;  // rms of blocks, relative to the signal, levels taken out
     double pattern = 0.0;   // of that, what stays in place from image to image
+    double smooth = 0.0;    // and what a block has in common with the next
     std::vector<ImageOutcome> images;
     std::vector<FitView> views;  // kFitViews of them, from the lowest to the highest
 };

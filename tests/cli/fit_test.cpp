@@ -122,6 +122,52 @@ TEST(CommandFit, FindsOutASaturatedSurvey) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "fitted/fit.json"));
 }
 
+// Maps by observe of few images keep their floors' texture, which errors take for noise; those by
+// lightmap have none.
+TEST(CommandFit, SaysOfMapsWhatTheyHaveKept) {
+    const TempFolder folder;
+    FitRigNumbers numbers;
+    numbers.width_px = 96;
+    numbers.height_px = 72;
+    write_text_file(folder.path() / "rig.toml", fit_rig(numbers).text());
+    const auto run = [&](const std::vector<std::string>& arguments) {
+        CommandResult result = run_aphotic(folder.path(), arguments);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return result;
+    };
+    run({"survey", "rig.toml", "--images", "24", "--texture", "0.1", "-o", "survey"});
+    std::vector<std::string> observed{"fit", "rig.toml", "--free", "aim", "-o", "a", "--maps"};
+    std::vector<std::string> modelled{"fit", "rig.toml", "--free", "aim", "-o", "b", "--maps"};
+    for (const std::string altitude : {"1.5", "2", "2.5"}) {
+        const std::string map = "observed" + altitude + ".exr";
+        run({"observe",
+             "survey/raw",
+             "--nav",
+             "survey/navigation.txt",
+             "--altitude",
+             altitude,
+             "--within",
+             "0.3",
+             "--bayer",
+             "RGGB",
+             "--black-level",
+             "64",
+             "--demosaic",
+             "-o",
+             map});
+        observed.push_back(map);
+        modelled.push_back("modelled" + altitude + ".exr");
+        run({"lightmap", "rig.toml", "--altitude", altitude, "-o", modelled.back()});
+    }
+    EXPECT_NE(run(observed).out.find("looks wrong: maps: neighbouring blocks"), std::string::npos);
+    const std::string well = run(modelled).out;
+    EXPECT_EQ(well.find("looks wrong"), std::string::npos) << well;
+    EXPECT_NE(well.find("not fitted, as the rig has them: beam, power, water, vignetting, floor, "
+                        "altitude, attitude, gain\n"),
+              std::string::npos)
+        << well;
+}
+
 TEST(CommandFit, SaysOfAllImagesAtOnceThatNoneCanBeRead) {
     const TempFolder folder;
     write_text_file(folder.path() / "rig.toml", fit_rig({}).text());

@@ -100,6 +100,10 @@ TEST(FitCheck, NumbersThatAreFarFromTheRigs) {
     multiple.value = 1.0;
     multiple.is_at_bound = true;
     EXPECT_EQ(fitted.signs(), "range\n");
+    // Nothing of something is a value as any other.
+    multiple.start = 0.0;
+    multiple.value = 0.0;
+    EXPECT_EQ(fitted.signs(), "");
 }
 
 TEST(FitCheck, OneAltitude) {
@@ -121,11 +125,11 @@ TEST(FitCheck, OneAltitude) {
 
 TEST(FitCheck, TextureThatMapsHaveKept) {
     Fitted fitted;
-    fitted.result.left.residual = kMore * kMostTexture;
+    fitted.result.left.smooth = kMore * kMostTexture;
     EXPECT_EQ(fitted.signs(), "");
     fitted.samples.are_maps = true;
     EXPECT_EQ(fitted.signs(), "maps\n");
-    fitted.result.left.residual = kLess * kMostTexture;
+    fitted.result.left.smooth = kLess * kMostTexture;
     EXPECT_EQ(fitted.signs(), "");
 }
 

@@ -39,5 +39,17 @@ TEST(FitProblem, RefusesANumberThatTheWaterHasNot) {
     }
 }
 
+TEST(FitProblem, NamesWhatIsAsTheRigHasIt) {
+    FitOptions options;
+    options.free = {{"aim", "water.multiple", "altitude"}};
+    const FitAngles angles{.widest_rad = 1.0};
+    EXPECT_EQ(
+        words_fixed_in(fit_problem(fit_rig({}), options, angles)),
+        (std::vector<std::string>{"beam", "power", "vignetting", "floor", "attitude", "gain"}));
+    options.free.reset();
+    EXPECT_EQ(words_fixed_in(fit_problem(fit_rig({}), options, angles)),
+              (std::vector<std::string>{"floor", "altitude", "attitude", "gain"}));
+}
+
 }  // namespace
 }  // namespace aphotic::fit_problem_test
