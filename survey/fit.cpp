@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 namespace aphotic {
 namespace {
@@ -343,8 +344,23 @@ void look_at_rival(const Rival& rival,
                      number.per_unit * rival.values(result.shares.size() + worst))});
 }
 
+// Those that are held may be off as far as is plausible, and all others with them.
+MatrixXd covariance_with(const std::vector<FreeNumber>& held,
+                         const Bench& bench,
+                         const FitProblem& problem,
+                         const Linearised& at) {
+    if (held.empty()) return covariance_of(at.normal, at.shares, problem.free);
+    FitProblem all = problem;
+    all.free.insert(all.free.end(), held.begin(), held.end());
+    const FitEquations::Normal normal =
+        bench.equations.normal(problem.state, at.light, at.shares, all.numbers(), true);
+    const Index told = at.shares.size() + std::ssize(problem.free);
+    return covariance_of(normal, at.shares, all.free).topLeftCorner(told, told);
+}
+
 FitResult result_of(const Bench& bench,
                     const FitProblem& problem,
+                    const std::vector<FreeNumber>& held,
                     const FitSamples& samples,
                     const std::optional<Rival>& rival,
                     const RunWatch& watch) {
@@ -352,7 +368,7 @@ FitResult result_of(const Bench& bench,
     FitResult result;
     result.state = problem.state;
     result.shares = at.shares;
-    result.covariance = covariance_of(at.normal, result.shares, problem.free);
+    result.covariance = covariance_with(held, bench, problem, at);
     result.effects = bench.equations.effects();
     result.noise = bench.equations.noise();
     result.blocks = bench.equations.blocks();
@@ -413,7 +429,10 @@ EffectVariances first_effects(const FitOptions& options, bool are_maps) {
 }
 
 // Held at the rig's, or where they were asked for, refused.
-void hold(const std::vector<NotTold>& untold, const FitOptions& options, FitProblem& problem) {
+void hold(const std::vector<NotTold>& untold,
+          const FitOptions& options,
+          FitProblem& problem,
+          std::vector<FreeNumber>& held) {
     if (options.free) {
         std::vector<std::string> words;
         for (const NotTold& one : untold) words.push_back(words_of(one));
@@ -422,6 +441,7 @@ void hold(const std::vector<NotTold>& untold, const FitOptions& options, FitProb
     for (const NotTold& one : untold) {
         const auto at = std::ranges::find(problem.free, one.key, &FreeNumber::key);
         number_in(problem.state, at->number) = at->start;
+        held.push_back(*at);
         problem.free.erase(at);
     }
 }
@@ -456,7 +476,8 @@ FitResult fit(const RigText& text,
                       .learns_effects = samples.images.size() >= kFewestToLearn};
     const EffectVariances effects = first_effects(options, samples.are_maps);
     std::vector<std::string> fixed = words_fixed_in(problem);
-    std::vector<NotTold> held;
+    std::vector<NotTold> all_untold;
+    std::vector<FreeNumber> held;
     int steps = 0;
     for (bool is_first = true;; is_first = false) {
         const auto progress = [&](std::size_t round) {
@@ -473,15 +494,15 @@ FitResult fit(const RigText& text,
         const std::vector<NotTold> untold =
             not_told(equations, problem, at.light, at.normal.H, at.shares, sleds);
         if (untold.empty()) break;
-        hold(untold, options, problem);
-        held.insert(held.end(), untold.begin(), untold.end());
+        hold(untold, options, problem, held);
+        all_untold.insert(all_untold.end(), untold.begin(), untold.end());
     }
     std::optional<Rival> rival;
     const bool has_many_images = !samples.are_maps && samples.images.size() >= kFewGroups;
     if (has_many_images) rival = search_again(bench, problem, watch, steps);
-    FitResult result = result_of(bench, problem, samples, rival, watch);
+    FitResult result = result_of(bench, problem, held, samples, rival, watch);
     watch.progress("fitting", 1.0);
-    result.held = std::move(held);
+    result.held = std::move(all_untold);
     result.fixed = std::move(fixed);
     result.rounds = static_cast<int>(kRobustRounds.size()) + 1;
     result.steps = steps;

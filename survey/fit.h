@@ -18,7 +18,8 @@
 //
 // A number is told when the images alone give it to kTold of its plausible range. Those that are
 // not, are held; or where they were asked for, refused, with what they are confounded with and the
-// altitude at which further images would part them.
+// altitude at which further images would part them. The errors of the others allow for those held
+// to be off by as much as is plausible.
 //
 // Ten images and more are fitted twice, the second time from the rig again with the noise that is
 // known by then: on a rough floor two rigs may explain them almost equally well, and a search that

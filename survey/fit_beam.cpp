@@ -127,7 +127,7 @@ FitBeam FitBeam::optics(const Beam& beam) {
 
 std::vector<std::string> FitBeam::shape_names() const {
     if (kind_ == FitBeamKind::Cosine) return {"exponent"};
-    if (kind_ == FitBeamKind::Optics) return {"focal_length_m", "distance_m"};
+    if (kind_ == FitBeamKind::Optics) return {"focal_length_mm", "distance_mm"};
     return {};
 }
 

@@ -35,6 +35,7 @@ namespace aphotic {
 
 // A cubic step as wide has the variance of the even one over a block: sqrt((1/12) / (1/20)).
 inline constexpr double kSoftEdge = 1.29;
+inline constexpr double kMillimetres = 1e3;  // of a metre; in which rigs tell a lens
 
 enum class FitBeamKind { Table, Cones, Cosine, Optics, Held };
 

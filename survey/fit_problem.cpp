@@ -143,6 +143,7 @@ void add_beams(const Rig& rig,
                             .plausible = std::max(0.3 * shape, 1e-3),
                             .least = 0.05 * shape,
                             .most = 50.0 * std::max(shape, 1e-3),
+                            .per_unit = made.kind() == FitBeamKind::Optics ? kMillimetres : 1.0,
                             .group = "beam"});
         }
     }

@@ -15,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMillimetres = 1e3;
-
 // A beam of its own, for the rig's may be another strobe's too.
 void add_beam(const FitBeam& fit,
               const FitBeam::Fitted& fitted,

@@ -8,6 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
 namespace aphotic::fit_problem_test {
 namespace {
 
@@ -37,6 +42,19 @@ TEST(FitProblem, RefusesANumberThatTheWaterHasNot) {
                           "'; allowed of this water: water.multiple, water.uniform_loss_per_m");
         }
     }
+}
+
+TEST(FitProblem, TellsALensInTheRigsUnits) {
+    const RigText rig{std::filesystem::path(APHOTIC_SOURCE_DIR "/scenes/habcam-optics.toml")};
+    const Strobe first = rig.rig().strobes[0];
+    FitOptions options;
+    options.beam = FitBeamKind::Optics;
+    options.free = {{"beam"}};
+    const FitProblem problem = fit_problem(rig, options, {.widest_rad = 1.0});
+    const FreeNumber& focal_length = problem.free.front();
+    EXPECT_EQ(focal_length.key, "strobe." + first.name + ".beam.focal_length_mm");
+    EXPECT_DOUBLE_EQ(focal_length.per_unit * focal_length.start,
+                     1e3 * std::get<BeamOptics>(first.beam.pattern).focal_length_m);
 }
 
 TEST(FitProblem, NamesWhatIsAsTheRigHasIt) {

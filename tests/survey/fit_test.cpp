@@ -361,6 +361,25 @@ TEST(Fit, SaysWhatCannotBeTold) {
     }
 }
 
+// Held at 1.8 times its truth, the water gives its colour to the floor, whose error allows for
+// that.
+TEST(Fit, ErrorsAllowForWhatIsHeld) {
+    FitRigNumbers numbers;
+    numbers.width_px = 8;
+    numbers.height_px = 6;
+    const FitSamples samples = fit_samples_of(fit_rig(numbers).rig(), flown({2.0}), 0.1, 5);
+    numbers.multiple = 1.8;
+    FitOptions options = exact_poses();
+    options.beam = FitBeamKind::Cosine;
+    const FitResult result = fit(fit_rig(numbers), samples, options, {});
+    ASSERT_NE(std::ranges::find(result.held, "water.multiple", &NotTold::key), result.held.end());
+    for (const char* key : {"floor.redness", "floor.bend"}) {
+        const auto colour = std::ranges::find(result.numbers, key, &FittedNumber::key);
+        ASSERT_NE(colour, result.numbers.end());
+        EXPECT_NEAR(colour->value, 0.0, 2.0 * colour->error) << key;
+    }
+}
+
 // Of a single dark image by a camera of one channel no number is told: all are held, and the beam
 // alone is fitted.
 TEST(Fit, HoldsEveryNumberWhereNoneIsTold) {
@@ -373,7 +392,7 @@ TEST(Fit, HoldsEveryNumberWhereNoneIsTold) {
     const std::string colours = "\"nikon-d5100\"";
     toml.replace(toml.find(colours), colours.size(), R"({ quantum_efficiency = "flat.csv" })");
     const RigText mono(toml, "mono.toml", folder.path());
-    FitSamples samples = fit_samples_of(mono.rig(), flown({2.0}), 3.0, 10);
+    FitSamples samples = fit_samples_of(mono.rig(), flown({2.0}), 3.0, 12);
     for (std::size_t i = 0; i < samples.images[0].signal.size(); ++i)
         if (i % kChannels > 0) samples.images[0].signal[i] = std::nanf("");
     const FitResult result = fit(mono, samples, exact_poses(), {});
