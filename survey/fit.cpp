@@ -17,6 +17,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -178,18 +179,34 @@ void start_gains(const Bench& bench, FitProblem& problem) {
     }
 }
 
+// An answer's light, and what of it each part has.
+struct Lit {
+    PathLight light;
+    VectorXd shares;
+};
+
+Lit lit_by(const Bench& bench, const FitProblem& problem) {
+    PathLight light = bench.path_light(problem.state, false);
+    VectorXd shares = shares_of(bench.equations.parts(problem.state, light)).shares;
+    if (!(shares.maxCoeff() > 0.0)) {
+        throw InputError(
+            "no rig fits: no light at all explains the images best; allowed: another --beam, or a "
+            "rig "
+            "nearer to the images");
+    }
+    return {std::move(light), std::move(shares)};
+}
+
 // Ties, noise and poses as this answer leaves them.
 void learn(const Bench& bench, const FitProblem& problem, Robust robust) {
-    const PathLight light = bench.path_light(problem.state, false);
-    const Solved solved = shares_of(bench.equations.parts(problem.state, light));
-    bench.equations.tie_parts(problem.state, solved.shares);
-    bench.equations.learn_noise(problem.state, light, solved.shares, robust, bench.learns_effects);
+    const auto [light, shares] = lit_by(bench, problem);
+    bench.equations.tie_parts(problem.state, shares);
+    bench.equations.learn_noise(problem.state, light, shares, robust, bench.learns_effects);
 }
 
 void start_effects(const Bench& bench, const FitProblem& problem, const EffectVariances& most) {
-    const PathLight light = bench.path_light(problem.state, false);
-    const Solved solved = shares_of(bench.equations.parts(problem.state, light));
-    bench.equations.start_effects(problem.state, light, solved.shares, most);
+    const auto [light, shares] = lit_by(bench, problem);
+    bench.equations.start_effects(problem.state, light, shares, most);
 }
 
 // The share of the work that is done after so many of kRobustRounds and the search before them.
@@ -486,7 +503,7 @@ FitResult fit(const RigText& text,
         progress(0);
         equations.assume_noise();
         if (is_first) start_gains(bench, problem);
-        equations.tie_parts(problem.state, shares_at(bench, problem.state));
+        equations.tie_parts(problem.state, lit_by(bench, problem).shares);
         steps += search(bench, problem, kFirstSteps);
         start_effects(bench, problem, effects);
         steps += search_in_rounds(bench, problem, [&](std::size_t round) { progress(round + 1); });

@@ -69,8 +69,8 @@ void look_for_misfit(const FitResiduals& left, std::vector<Suspicion>& found) {
 void look_for_far_numbers(const FitResult& result, std::vector<Suspicion>& found) {
     for (const FittedNumber& one : result.numbers) {
         const double off = std::abs(one.value - one.start);
-        const bool is_none = one.value == 0.0;  // there may well be no more loss than the rig's
-        if ((!one.is_at_bound || is_none) && off <= kFarthest * one.plausible) continue;
+        const bool has_none = one.start == 0.0 && one.value == 0.0;  // and the rig told of none
+        if ((!one.is_at_bound || has_none) && off <= kFarthest * one.plausible) continue;
         found.push_back(
             {"range",
              fmt::format("{} went from {:.3g} to {:.3g}, where {:.2g} is plausible: another beam, "

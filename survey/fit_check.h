@@ -10,10 +10,9 @@
 //               end of its range
 //   altitudes   the highest within kOneAltitude times the lowest, beam and water or lens free: they
 //               nearly make up for each other, and what the model lacks goes where it costs least
-//   maps        residuals of maps that neighbouring blocks share, over kMostTexture rms: texture
-//   that
-//               was not averaged out, or light that the model lacks, is alike over wide parts of a
-//               map, where errors take it for noise of each block
+//   maps        what residuals of neighbouring blocks of maps share, over kMostTexture rms: texture
+//               that was not averaged out, or light that the model lacks, is alike over wide parts
+//               of a map, where errors take it for noise of each block
 //   saturation  more than kMostSaturation of all samples, which the fit leaves out
 #pragma once
 

@@ -171,17 +171,14 @@ void FitEquations::start_effects(const FitState& state,
     learn_noise(state, light, shares, Robust::Huber, false);
     set_effects(most);
     std::vector<VectorXd> off(images_.size());
-    for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
+    for_each_image(images_, threads_, [&](Image& image, std::size_t i) {
         VectorXd signal;
-        Image seen = image;
-        look_from(state, light, shares, seen, signal);
-        off[i] = seen.moved - signal;
+        look_from(state, light, shares, image, signal);
+        off[i] = image.moved - signal;
     });
-    learn_effects(off);
+    learn_effects(off);  // but for the pose's, which stay
     EffectVariances found = effects_;
     for (std::size_t k = 0; k < kEffects; ++k) found[k] = std::min(most[k], kRoom * found[k]);
-    for (std::size_t q = 0; q < FitLight::kPoseColumns; ++q)
-        found[kPoseEffect + q] = most[kPoseEffect + q];
     set_effects(found);
 }
 
@@ -250,7 +247,7 @@ void FitEquations::learn_effects(const std::vector<VectorXd>& off) {
     constexpr double kTaken = 2.0;
     const auto count = static_cast<double>(images_.size());
     VectorXd factor = VectorXd::Ones(kEffects);
-    factor.head(kPoseEffect).fill(count / std::max(1.0, count - kTaken));
+    factor.head(kPoseEffect).fill(count / std::max(1.0, count - kTaken));  // at least one is left
     std::vector<VectorXd> squares(images_.size());
     for_each_image(images_, threads_, [&](const Image& image, std::size_t i) {
         squares[i] = factor.cwiseProduct(image.effects_in(off[i]).cwiseAbs2()) +

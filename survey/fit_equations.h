@@ -10,8 +10,8 @@
 //       to kWaves, x and y from 0 to 1, all of the floor's light and not of the veil before it; and
 //       errors of the image's own altitude, pitch and roll. c is random, with a variance each: of
 //       the pose as the instruments have it, of the floor found from five images on, one for all
-//       waves of the same a + b (Dempster, Laird and Rubin's EM), up to kMostEffect squared: no
-//       floors differ by more, and without a bound a wrong beam ends where nothing is told
+//       waves of the same a + b (Dempster, Laird and Rubin's EM), up to kMostEffect squared: floors
+//       hardly differ by more, and without a bound a wrong beam ends where nothing is told
 //
 // Poses go into the light as no straight line: each image's is moved to where its light tells it,
 // round by round, and what the navigation says becomes the mean of what is left of it in c. Not

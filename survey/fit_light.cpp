@@ -300,6 +300,10 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> means_over_blocks(const FitPlaces& 
     return means;
 }
 
+double vignetting_of(const std::vector<double>& a, double q) {
+    return 1.0 + q * (a[0] + q * (a[1] + q * a[2]));
+}
+
 }  // namespace
 
 FitLight::FitLight(const Rig& rig, const FitPlaces& places)
@@ -471,14 +475,6 @@ void FitLight::average_over_blocks(Rows& rows) const {
         means_ * Eigen::Map<const Rows>(rows.data(), means_.cols(), columns);
     rows.swap(means);
 }
-
-namespace {
-
-double vignetting_of(const std::vector<double>& a, double q) {
-    return 1.0 + q * (a[0] + q * (a[1] + q * a[2]));
-}
-
-}  // namespace
 
 bool FitLight::is_bright(const FitState& state) const {
     constexpr int kSteps = 64;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/fit_noise.h"
 
-#include "base/error.h"
 #include "base/non_negative_fit.h"
 #include "base/upper_median.h"
 
@@ -38,10 +37,6 @@ std::array<double, 3> variance_of(std::vector<Sample> samples) {
     std::ranges::sort(samples, {}, &Sample::signal);
     const std::size_t bins = std::clamp<std::size_t>(samples.size() / kLeastOfBin, 1, kMostBins);
     MatrixXd A(static_cast<Index>(bins), 3);
-    if (samples.empty())
-        throw InputError(
-            "no rig fits: the search ended where there is no light; allowed: another --beam, or a "
-            "rig nearer to the images");
     const double most = std::max(samples.back().signal, std::numeric_limits<double>::min());
     for (std::size_t bin = 0; bin < bins; ++bin) {
         const std::size_t from = bin * samples.size() / bins;

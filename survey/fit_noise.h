@@ -5,7 +5,7 @@
 //   D_ij = s_i R_ij s_j        s_i^2 = v_0 + v_1 S_i + v_2 S_i^2
 //
 //   S   the block's signal in a channel
-//   v   read noise, shot noise and texture, of all channels alike
+//   v   read noise, shot noise and texture, of all channels alike; v_2 at least kLeastNoise squared
 //   R   correlation: texture darkens all channels at once, so that their ratios, by which water and
 //       veil are told, are far surer than their brightness
 //

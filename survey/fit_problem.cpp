@@ -300,15 +300,13 @@ FitProblem fit_problem(const RigText& text, const FitOptions& options, const Fit
 }
 
 std::vector<std::string> words_fixed_in(const FitProblem& problem) {
+    std::set<std::string> free;
+    for (const FreeNumber& one : problem.free) free.insert(one.group);
+    for (const FitBeam& beam : problem.state.beams)
+        if (beam.kind() != FitBeamKind::Held) free.insert("beam");
     std::vector<std::string> fixed;
-    for (const std::string word : kWords) {
-        const bool is_beam_free = std::ranges::any_of(problem.state.beams, [](const FitBeam& beam) {
-            return beam.kind() != FitBeamKind::Held;
-        });
-        const bool is_free = std::ranges::any_of(
-            problem.free, [&](const FreeNumber& one) { return one.group == word; });
-        if (!is_free && !(word == "beam" && is_beam_free)) fixed.push_back(word);
-    }
+    for (const char* word : kWords)
+        if (!free.contains(word)) fixed.emplace_back(word);
     return fixed;
 }
 

@@ -19,11 +19,16 @@ namespace {
 // Of one number, its error being what it says.
 constexpr double kSigmas = 4.0;
 
-TEST(CommandFit, LearnsARigFromASurvey) {
-    const TempFolder folder;
+FitRigNumbers of_few_pixels() {
     FitRigNumbers numbers;
     numbers.width_px = 96;
     numbers.height_px = 72;
+    return numbers;
+}
+
+TEST(CommandFit, LearnsARigFromASurvey) {
+    const TempFolder folder;
+    FitRigNumbers numbers = of_few_pixels();
     write_text_file(folder.path() / "truth.toml", fit_rig(numbers).text());
     numbers.fore_tilt_deg = 23.0;
     numbers.multiple = 1.3;
@@ -126,10 +131,7 @@ TEST(CommandFit, FindsOutASaturatedSurvey) {
 // lightmap have none.
 TEST(CommandFit, SaysOfMapsWhatTheyHaveKept) {
     const TempFolder folder;
-    FitRigNumbers numbers;
-    numbers.width_px = 96;
-    numbers.height_px = 72;
-    write_text_file(folder.path() / "rig.toml", fit_rig(numbers).text());
+    write_text_file(folder.path() / "rig.toml", fit_rig(of_few_pixels()).text());
     const auto run = [&](const std::vector<std::string>& arguments) {
         CommandResult result = run_aphotic(folder.path(), arguments);
         EXPECT_EQ(result.status, 0) << result.err;

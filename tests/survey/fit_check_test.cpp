@@ -100,9 +100,11 @@ TEST(FitCheck, NumbersThatAreFarFromTheRigs) {
     multiple.value = 1.0;
     multiple.is_at_bound = true;
     EXPECT_EQ(fitted.signs(), "range\n");
-    // Nothing of something is a value as any other.
-    multiple.start = 0.0;
+    // Nothing of what the rig has some of; and of what it has none of.
+    multiple.start = 0.1;
     multiple.value = 0.0;
+    EXPECT_EQ(fitted.signs(), "range\n");
+    multiple.start = 0.0;
     EXPECT_EQ(fitted.signs(), "");
 }
 

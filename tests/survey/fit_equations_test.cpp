@@ -11,10 +11,10 @@
 
 #include <Eigen/Cholesky>
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace aphotic::fit_equations_test {
 namespace {
@@ -59,6 +59,23 @@ struct Seen {
         FitSamples all;
         all.places = places;
         all.images = {{.name = "one", .sled = sled, .signal = {signal.begin(), signal.end()}}};
+        return all;
+    }
+    // An image for each level of the floor, with relative noise.
+    [[nodiscard]] FitSamples samples_of(const std::vector<double>& levels, double noise) const {
+        std::mt19937_64 random(11);
+        std::normal_distribution<double> normal;
+        FitSamples all;
+        all.places = places;
+        for (const double level : levels) {
+            FitState bright = state;
+            bright.floor_brightness = level;
+            const Eigen::VectorXd signal = columns(bright, Eigen::VectorXd::Ones(1)).rightCols<1>();
+            FitImage image{.name = "one", .sled = sled, .signal = {}};
+            for (const double value : signal)
+                image.signal.push_back(static_cast<float>(value * (1.0 + noise * normal(random))));
+            all.images.push_back(std::move(image));
+        }
         return all;
     }
 };
@@ -112,26 +129,15 @@ TEST(FitEquations, WhatAFloorIsBrighterByLeavesTheVeilAlone) {
 // The variance of five levels about their mean, over 5 - 2: the beam's scale takes up one degree of
 // freedom, the water may take up another.
 TEST(FitEquations, LearnByHowMuchFloorsDiffer) {
-    constexpr std::array<double, 5> kLevels{0.93, 1.02, 1.06, 0.97, 1.02};  // mean 1
+    const std::vector<double> levels{0.93, 1.02, 1.06, 0.97, 1.02};  // mean 1
     constexpr double kNoise = 0.01;
     // Over 144 values an image, a level is off by kNoise / 12, some 2 % of what levels differ by.
     constexpr double kLevelNoise = 0.1;
     const Seen seen;
     const PathLight path = seen.path();
-    FitSamples samples = seen.samples({});
-    samples.images.clear();
-    std::mt19937_64 random(11);
-    std::normal_distribution<double> noise(1.0, kNoise);
     double wanted = 0.0;
-    for (const double level : kLevels) {
-        FitState bright = seen.state;
-        bright.floor_brightness = level;
-        Eigen::VectorXd signal = seen.columns(bright, kOne).rightCols<1>();
-        for (double& value : signal) value *= noise(random);
-        samples.images.push_back(seen.samples(signal).images.front());
-        wanted += std::pow(level - 1.0, 2.0) / 3.0;
-    }
-    FitEquations equations(seen.light, samples, 1);
+    for (const double level : levels) wanted += std::pow(level - 1.0, 2.0) / 3.0;
+    FitEquations equations(seen.light, seen.samples_of(levels, kNoise), 1);
     equations.assume_noise();
     equations.set_effects(of_level(wanted));
     for (int round = 0; round < 8; ++round) {
@@ -140,6 +146,55 @@ TEST(FitEquations, LearnByHowMuchFloorsDiffer) {
         equations.learn_noise(seen.state, path, shares, Robust::Huber, true);
     }
     EXPECT_NEAR(equations.effects()[0], wanted, kLevelNoise * wanted);
+}
+
+// Six times as bright as the darkest: no floors, but a wrong beam.
+TEST(FitEquations, FloorsDifferByNoMoreThanFloorsDo) {
+    const Seen seen;
+    const PathLight path = seen.path();
+    FitEquations equations(seen.light, seen.samples_of({0.3, 0.5, 1.0, 1.4, 1.8}, 0.0), 1);
+    equations.assume_noise();
+    equations.set_effects(of_level(0.01));
+    for (int round = 0; round < 8; ++round)
+        equations.learn_noise(seen.state, path, kOne, Robust::Huber, true);
+    EXPECT_EQ(equations.effects()[0], kMostEffect * kMostEffect);
+}
+
+// The navigation is 0.4 m too high, and said to be right to 2 cm.
+TEST(FitEquations, PosesMoveNoFartherThanTheNavigationMayBeOff) {
+    constexpr double kAltitude_m = 0.02;
+    Seen seen;
+    const Eigen::VectorXd signal = seen.columns(seen.state, kOne).rightCols<1>();
+    seen.sled.altitude_m += 0.4;
+    const PathLight path = seen.path();
+    FitEquations equations(seen.light, seen.samples(signal), 1);
+    equations.assume_noise();
+    EffectVariances effects{};
+    effects[kPoseEffect] = kAltitude_m * kAltitude_m;
+    equations.set_effects(effects);
+    equations.learn_noise(seen.state, path, kOne, Robust::Huber, false);
+    const auto moved = equations.residual_of(0, seen.state, path, kOne).signal;
+    seen.sled.altitude_m -= kMostMove * kAltitude_m;
+    FitLight::Rows columns;
+    seen.light.columns_into(seen.state, path, seen.sled, kOne, {}, columns);
+    const Eigen::VectorXd farthest = columns.rightCols<1>();
+    EXPECT_LT((moved - farthest).cwiseAbs().maxCoeff(), kRounding * farthest.maxCoeff());
+}
+
+// Of a grey card as small as the noise, and of floors as large as they may be at first.
+TEST(FitEquations, EffectsBeginAsTheResidualsShowThem) {
+    constexpr double kFirst = 0.05;
+    constexpr double kNoise = 1e-3;
+    const Seen seen;
+    const PathLight path = seen.path();
+    const auto begun = [&](const std::vector<double>& levels) {
+        FitEquations equations(seen.light, seen.samples_of(levels, kNoise), 1);
+        equations.assume_noise();
+        equations.start_effects(seen.state, path, kOne, of_level(kFirst * kFirst));
+        return std::sqrt(equations.effects()[0]);
+    };
+    EXPECT_LT(begun({1.0, 1.0, 1.0}), kNoise);
+    EXPECT_EQ(begun({0.9, 1.0, 1.1}), kFirst);
 }
 
 }  // namespace

@@ -203,5 +203,19 @@ TEST(FitLight, SlopesOfTheVeil) {
     expect_slopes(numbers, FitBeam::table(12, 1.5), kVeilDifference);
 }
 
+// p is 1 in the corners of an image whose middle is the lens'.
+TEST(FitLight, IsBrightWhereTheCornersAre) {
+    Known known({});
+    const FitLight light(known.rig, known.places);
+    known.state.vignetting = {-0.5, -0.49, 0.0};
+    EXPECT_TRUE(light.is_bright(known.state));
+    known.state.vignetting = {-0.5, -0.51, 0.0};
+    EXPECT_FALSE(light.is_bright(known.state));
+    known.state.vignetting = {-4.0, 3.9, 0.0};  // dark half-way
+    EXPECT_FALSE(light.is_bright(known.state));
+    known.state.vignetting.clear();  // the rig's own
+    EXPECT_TRUE(light.is_bright(known.state));
+}
+
 }  // namespace
 }  // namespace aphotic::fit_light_test

@@ -54,6 +54,14 @@ TEST(FitNoise, IsFoundThoughATwentiethLiesInTheShade) {
     }
 }
 
+// Rounding of maps that the fit's own model made would be all the noise there is.
+TEST(FitNoise, IsNeverNone) {
+    std::vector<BlockResidual> exact = textured(1000, 0.0);
+    for (BlockResidual& block : exact) block.residual *= 1e-9;
+    for (const double signal : {0.3, 0.9})
+        EXPECT_NEAR(std::sqrt(noise_of(exact).at(signal)), kLeastNoise * signal, 1e-6);
+}
+
 TEST(FitNoise, WhitensWhatChannelsABlockHas) {
     BlockNoise noise{.variance = {0.01, 0.02, 0.03}};
     noise.correlation << 1.0, 0.9, 0.7, 0.9, 1.0, 0.8, 0.7, 0.8, 1.0;

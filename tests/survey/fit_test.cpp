@@ -400,6 +400,20 @@ TEST(Fit, HoldsEveryNumberWhereNoneIsTold) {
     EXPECT_FALSE(result.held.empty());
 }
 
+// Blocks that are darker than black: no beam that is not negative explains them.
+TEST(Fit, SaysThatNoLightFits) {
+    FitSamples samples = fit_samples_of(fit_rig({}).rig(), flown({1.2, 2.0}), 0.0, 1);
+    for (FitImage& image : samples.images)
+        for (float& signal : image.signal) signal = -signal;
+    try {
+        static_cast<void>(fit(guess(), samples, exact_poses(), {}));
+        ADD_FAILURE() << "fitted";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("no light at all"), std::string::npos)
+            << error.what();
+    }
+}
+
 // As maps, whose errors no jackknife finds: it is most of the work, and doubts know nothing of it.
 FitSamples thirty_maps(std::uint64_t seed) {
     std::vector<Sled> sleds;
