@@ -5,6 +5,7 @@
 #include "base/non_negative_fit.h"
 #include "survey/fit_check.h"
 #include "survey/fit_jackknife.h"
+#include "survey/random_draw.h"
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include <functional>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 namespace aphotic {
 namespace {
@@ -268,12 +270,6 @@ std::vector<BeamPoint> curve_of(const FitBeam& beam,
     return points;
 }
 
-// Another answer to the same images.
-struct Rival {
-    VectorXd values;      // shares, then numbers
-    double excess = 0.0;  // of its objective over the answer's
-};
-
 double objective(const Bench& bench, const FitProblem& problem) {
     const auto parts = bench.equations.parts(problem.state, bench.path_light(problem.state, false));
     return shares_of(parts).squares + (problem.now() - problem.start()).squaredNorm();
@@ -292,8 +288,8 @@ double excess_of(const FitProblem& one, const Bench& bench, const FitProblem& ot
 
 // The search once more from the rig, by the noise that is known now: the first steps of the first
 // knew none, and on a rough floor two answers may explain the images all but alike. The better by
-// the noise of both stays; the other is returned.
-Rival search_again(const Bench& bench, FitProblem& problem, const RunWatch& watch, int& steps) {
+// the noise of both stays.
+void search_again(const Bench& bench, FitProblem& problem, const RunWatch& watch, int& steps) {
     FitEquations equations = bench.equations;
     const Bench own = bench.with(equations);
     FitProblem again = problem;
@@ -308,7 +304,6 @@ Rival search_again(const Bench& bench, FitProblem& problem, const RunWatch& watc
         std::swap(problem, again);
         std::swap(bench.equations, equations);
     }
-    return {.values = values_of(shares_at(own, again.state), again), .excess = std::abs(excess)};
 }
 
 // An answer's light, shares and normal equations.
@@ -335,30 +330,115 @@ double dispersion_of(const MatrixXd& covariance, const Linearised& at, const Fit
     return std::max(1.0, told.cwiseQuotient(own).mean());
 }
 
-// Where a rival is as good, by the noise that the errors tell, and elsewhere, a doubt names the
-// number in which it differs most, and the covariance is about this answer, with the truth near
-// either of the two at equal odds.
-void look_at_rival(const Rival& rival,
-                   const Linearised& at,
-                   const FitProblem& problem,
-                   FitResult& result) {
-    constexpr double kAsGood = 9.0;  // of its objective, in squares of standard errors
+// Another answer to the same images, by coarse blocks.
+struct Rival {
+    VectorXd values;      // shares, then numbers
+    double excess = 0.0;  // of its objective over the answer's, in squares of standard errors
+};
+
+// Of its objective over the answer's: it is as good to three standard errors.
+constexpr double kAsGood = 9.0;
+
+// Where a search may begin as well: at the rig, then off it by half of what is plausible, at
+// random.
+std::vector<VectorXd> starts_of(const FitProblem& problem) {
+    constexpr std::size_t kStarts = 8;
+    constexpr double kOff = 0.5;
+    RandomSource random = random_of(1, 0);
+    std::vector<VectorXd> starts(kStarts, problem.start());
+    for (std::size_t i = 1; i < kStarts; ++i) {
+        for (Index k = 0; k < starts[i].size(); ++k) {
+            const FreeNumber& one = problem.free[static_cast<std::size_t>(k)];
+            if (one.number.part == FitPart::Gain) continue;  // as start_gains has them
+            starts[i](k) = std::clamp(starts[i](k) + kOff * normal(random),
+                                      one.least / one.plausible,
+                                      one.most / one.plausible);
+        }
+    }
+    return starts;
+}
+
+// What searches from elsewhere find, the answer's own first. By coarse blocks, unless beams have
+// edges, and by the noise that the answer leaves, with Huber's weights: Tukey's take what speaks
+// against the answer that they come from for stones.
+std::vector<Rival> rivals_of(const Bench& answer,
+                             const FitProblem& problem,
+                             const FitSamples& samples,
+                             int threads,
+                             const RunWatch& watch) {
+    constexpr int kBlocksAcross = 20;
+    const bool has_edges =
+        std::ranges::count(problem.state.beams, FitBeamKind::Cones, &FitBeam::kind) > 0;
+    const FitSamples coarse = has_edges ? samples : in_blocks(samples, kBlocksAcross);
+    const FitLight light(answer.rig.rig(), coarse.places);
+    FitEquations equations(light, coarse, threads);
+    const Bench bench{.rig = answer.rig,
+                      .light = light,
+                      .equations = equations,
+                      .paths = light.paths(sleds_of(coarse)),
+                      .learns_effects = answer.learns_effects};
+    equations.assume_noise();
+    equations.set_effects(answer.equations.effects());
+    for (const Robust robust : kRobustRounds) learn(bench, problem, robust);
+    learn(bench, problem, Robust::Huber);
+    const Linearised at = linearised_at(bench, problem);
+    const double dispersion =
+        dispersion_of(covariance_of(at.normal, at.shares, problem.free), at, problem);
+
+    std::vector<Rival> rivals;
+    const auto search_from = [&](const FitState& start) {
+        FitProblem found = problem;
+        found.state = start;
+        search(bench, found, kFirstSteps);
+        rivals.push_back({.values = values_of(shares_at(bench, found.state), found),
+                          .excess = objective(bench, found) / dispersion});
+    };
+    search_from(problem.state);
+    const std::vector<VectorXd> starts = starts_of(problem);
+    for (const VectorXd& start : starts) {
+        watch.progress("fitting from elsewhere",
+                       static_cast<double>(rivals.size()) / static_cast<double>(starts.size() + 1));
+        search_from(problem.at(start.data()));
+    }
+    const double least = rivals.front().excess;
+    for (Rival& rival : rivals) rival.excess -= least;
+    return rivals;
+}
+
+// Rivals as good as the answer are as likely, and the errors allow for that. Where one is
+// elsewhere, a doubt names the number in which it differs most.
+void look_at_rivals(const std::vector<Rival>& rivals,
+                    const FitProblem& problem,
+                    FitResult& result) {
     constexpr double kElsewhere = 2.0;
-    const double dispersion = dispersion_of(result.covariance, at, problem);
-    const VectorXd off = rival.values - values_of(result.shares, problem);
     const VectorXd errors = result.covariance.diagonal().cwiseSqrt();
     const auto count = static_cast<Index>(problem.free.size());
-    Index worst = 0;
-    const double most =
-        off.tail(count).cwiseAbs().cwiseQuotient(errors.tail(count)).maxCoeff(&worst);
-    if (rival.excess > kAsGood * dispersion || most < kElsewhere) return;
-    result.covariance += 0.5 * off * off.transpose();
-    const FreeNumber& number = problem.free[static_cast<std::size_t>(worst)];
-    result.looks_wrong.push_back(
-        {"rival",
-         fmt::format("another rig explains the images as well; its {} is {:.4g}",
-                     number.key,
-                     number.per_unit * rival.values(result.shares.size() + worst))});
+    VectorXd squares = VectorXd::Zero(errors.size());
+    double all = 0.0;
+    double most = kElsewhere;
+    std::optional<Suspicion> doubt;
+    for (const Rival& rival : rivals) {
+        if (rival.excess > kAsGood) continue;
+        const VectorXd off = rival.values - rivals.front().values;
+        squares += off.cwiseAbs2();
+        all += 1.0;
+        Index worst = 0;
+        const double in_errors =
+            off.tail(count).cwiseAbs().cwiseQuotient(errors.tail(count)).maxCoeff(&worst);
+        if (in_errors <= most) continue;
+        most = in_errors;
+        const FreeNumber& number = problem.free[static_cast<std::size_t>(worst)];
+        doubt = {"rival",
+                 fmt::format("another rig explains the images {}; its {} is {:.4g}",
+                             rival.excess < -kAsGood ? "better" : "as well",
+                             number.key,
+                             number.per_unit * rival.values(errors.size() - count + worst))};
+    }
+    if (doubt) result.looks_wrong.push_back(*doubt);
+    VectorXd wider = VectorXd::Ones(errors.size());
+    for (Index k = 0; k < errors.size(); ++k)
+        if (errors(k) > 0.0) wider(k) = std::hypot(1.0, std::sqrt(squares(k) / all) / errors(k));
+    result.covariance = wider.asDiagonal() * result.covariance * wider.asDiagonal();
 }
 
 // Those that are held may be off as far as is plausible, and all others with them.
@@ -379,7 +459,7 @@ FitResult result_of(const Bench& bench,
                     const FitProblem& problem,
                     const std::vector<FreeNumber>& held,
                     const FitSamples& samples,
-                    const std::optional<Rival>& rival,
+                    const std::vector<Rival>& rivals,
                     const RunWatch& watch) {
     const Linearised at = linearised_at(bench, problem);
     FitResult result;
@@ -392,13 +472,13 @@ FitResult result_of(const Bench& bench,
     result.tiles = at.normal.tiles;
     result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
     result.looks_wrong = samples.looks_wrong;
-    if (rival) {
+    if (!samples.are_maps && samples.images.size() >= kFewGroups) {
         const std::size_t groups = std::min(kJackknifeGroups, samples.images.size());
         const auto light_of = [&](const FitState& state) { return bench.path_light(state, true); };
         widen(jackknife(bench.equations, problem, light_of, at.shares, groups, watch),
               result.covariance);
-        if (!problem.free.empty()) look_at_rival(*rival, at, problem, result);
     }
+    if (!rivals.empty()) look_at_rivals(rivals, problem, result);
     const Index parts = result.shares.size();
     for (std::size_t k = 0; k < problem.free.size(); ++k) {
         const FreeNumber& one = problem.free[k];
@@ -514,10 +594,13 @@ FitResult fit(const RigText& text,
         hold(untold, options, problem, held);
         all_untold.insert(all_untold.end(), untold.begin(), untold.end());
     }
-    std::optional<Rival> rival;
-    const bool has_many_images = !samples.are_maps && samples.images.size() >= kFewGroups;
-    if (has_many_images) rival = search_again(bench, problem, watch, steps);
-    FitResult result = result_of(bench, problem, held, samples, rival, watch);
+    std::vector<Rival> rivals;
+    if (!samples.are_maps && samples.images.size() >= kFewGroups) {
+        search_again(bench, problem, watch, steps);
+        if (!problem.free.empty())
+            rivals = rivals_of(bench, problem, samples, options.threads, watch);
+    }
+    FitResult result = result_of(bench, problem, held, samples, rivals, watch);
     watch.progress("fitting", 1.0);
     result.held = std::move(all_untold);
     result.fixed = std::move(fixed);

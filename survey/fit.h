@@ -23,9 +23,7 @@
 //
 // Ten images and more are fitted twice, the second time from the rig again with the noise that is
 // known by then: on a rough floor two rigs may explain them almost equally well, and a search that
-// knows no noise may lead to either. The better stays. Where the other is as good, to three
-// standard errors, and differs by over two in some number, a doubt says so, and the errors allow
-// for both.
+// knows no noise may lead to either. The better stays.
 //
 // Errors are the sandwich of fit_equations.h. Of ten images and more the jackknife takes its place
 // where it is larger by more than chance: how far the fit, its weights found anew, moves as each
@@ -35,6 +33,15 @@
 //
 // which knows no model of the noise, nor that the light is anything like a straight line in the
 // numbers (R. G. Miller, Biometrika 61, 1974, 1).
+//
+// On a rough floor many answers may lie scattered over a wide valley, each by itself sharp. So
+// eight more searches begin at the rig and off it by half of what is plausible, at random, on
+// coarse blocks and by the noise of the answer. Those whose objective is as good as the answer's x,
+// to three standard errors, are as likely as it, and
+//
+//   variance = the above + mean over these and the answer of (x_s - x)^2
+//
+// Where one differs by over two errors in some number, a doubt says so.
 //
 // The scale of all light is no part of a rig: powers are relative to the first strobe's of each
 // beam, gains to green's.

@@ -454,6 +454,7 @@ void FitEquations::add_tie(const VectorXd& shares, Normal& normal) const {
     if (tie_.size() == 0) return;
     const Index parts = tie_.rows();
     normal.H.topLeftCorner(parts, parts) += tie_;
+    if (normal.meat.size() > 0) normal.meat.topLeftCorner(parts, parts) += tie_;
     normal.gradient.head(parts) -= tie_ * shares;
 }
 

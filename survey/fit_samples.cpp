@@ -151,10 +151,9 @@ FitImage image_of_map(const std::string& map, const Camera& camera, int block_px
 
 }  // namespace
 
-FitPlaces fit_places(int width_px, int height_px, int blocks_across) {
-    // Even, so that a block of a mosaic holds as many sites of each kind everywhere.
-    int block_px = std::max(1, width_px / std::max(1, blocks_across));
-    if (block_px > 1) block_px -= block_px % 2;
+namespace {
+
+FitPlaces places_of(int width_px, int height_px, int block_px) {
     FitPlaces places{.width_px = width_px, .height_px = height_px, .block_px = block_px};
     for (std::size_t j = 0; j < blocks_along(height_px, block_px); ++j) {
         for (std::size_t i = 0; i < blocks_along(width_px, block_px); ++i) {
@@ -163,6 +162,15 @@ FitPlaces fit_places(int width_px, int height_px, int blocks_across) {
         }
     }
     return places;
+}
+
+}  // namespace
+
+FitPlaces fit_places(int width_px, int height_px, int blocks_across) {
+    // Even, so that a block of a mosaic holds as many sites of each kind everywhere.
+    int block_px = std::max(1, width_px / std::max(1, blocks_across));
+    if (block_px > 1) block_px -= block_px % 2;
+    return places_of(width_px, height_px, block_px);
 }
 
 FitSamples samples_of_images(const Survey& survey,
@@ -200,6 +208,35 @@ FitSamples samples_of_images(const Survey& survey,
                          samples.skipped.empty() ? "none" : samples.skipped.front().why);
     }
     return samples;
+}
+
+FitSamples in_blocks(const FitSamples& samples, int blocks_across) {
+    const FitPlaces& fine = samples.places;
+    // Of whole blocks.
+    const int merge = fine.width_px / blocks_across / fine.block_px;
+    if (merge <= 1) return samples;
+    const FitPlaces places = places_of(fine.width_px, fine.height_px, merge * fine.block_px);
+    const std::size_t across = blocks_along(fine.width_px, places.block_px);
+    const std::size_t down = blocks_along(fine.height_px, places.block_px);
+    FitSamples merged = samples;
+    merged.places = places;
+    for (FitImage& image : merged.images) {
+        std::vector<Mean> means(across * down * kChannels);
+        for (std::size_t k = 0; k < image.signal.size(); ++k) {
+            const std::size_t place = k / kChannels;
+            const auto i = static_cast<std::size_t>(fine.columns[place] / places.block_px);
+            const auto j = static_cast<std::size_t>(fine.rows[place] / places.block_px);
+            if (i >= across || j >= down) continue;
+            Mean& mean = means[(j * across + i) * kChannels + k % kChannels];
+            ++mean.sites;
+            if (!std::isfinite(image.signal[k])) continue;
+            mean.sum += image.signal[k];
+            ++mean.count;
+        }
+        image.signal.clear();
+        for (const Mean& mean : means) image.signal.push_back(mean.signal());
+    }
+    return merged;
 }
 
 FitSamples samples_of_maps(const std::vector<std::string>& maps,

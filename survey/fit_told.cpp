@@ -220,9 +220,14 @@ MatrixXd covariance_of(const FitEquations::Normal& normal,
     std::vector<Index> seen = seen_parts(normal.H, parts);
     for (const Index k : range_of(parts, static_cast<Index>(free.size()))) seen.push_back(k);
     MatrixXd H = normal.H(seen, seen);
+    // What is plausible, and ties, are random as well.
+    MatrixXd meat = MatrixXd::Zero(H.rows(), H.cols());
+    if (normal.meat.size() > 0) meat = normal.meat(seen, seen);
     for (Index k = 0; k < static_cast<Index>(free.size()); ++k) {
         const Index at = H.rows() - static_cast<Index>(free.size()) + k;
-        H(at, at) += std::pow(free[static_cast<std::size_t>(k)].plausible, -2.0);
+        const double plausible = std::pow(free[static_cast<std::size_t>(k)].plausible, -2.0);
+        H(at, at) += plausible;
+        meat(at, at) += plausible;
     }
     const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
     MatrixXd scaled = scale.asDiagonal() * H * scale.asDiagonal();
@@ -234,8 +239,7 @@ MatrixXd covariance_of(const FitEquations::Normal& normal,
     // The sandwich wants several tiles for each number.
     constexpr std::size_t kTilesOfEach = 5;
     if (normal.tiles > kTilesOfEach * seen.size()) {
-        const MatrixXd meat =
-            scale.asDiagonal() * MatrixXd(normal.meat(seen, seen)) * scale.asDiagonal();
+        meat = (scale.asDiagonal() * meat * scale.asDiagonal()).eval();
         const double few =
             static_cast<double>(normal.tiles) / static_cast<double>(normal.tiles - seen.size());
         C = few * inverse * meat * inverse;
