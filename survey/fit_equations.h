@@ -31,11 +31,13 @@
 // take what is right for stones, so the first rounds weigh by Huber's, which forgets nothing. The
 // covariance of what is fitted is the sandwich
 //
-//   C = H^-1 ( f^2 sum over tiles s s^T + sum over images Z Gamma Z^T ) H^-1,    H = A^T V^-1 A
+//   C = H^-1 ( f^2 sum over tiles s s^T + sum over images Z Gamma Z^T + T ) H^-1
+//   H = A^T V^-1 A + T
 //
-// s is (D V^-1 A)^T D^-1 (y - A x - U c) over a tile, a part of an image within which noise may be
-// correlated as it likes, and Z is A^T V^-1 U. It holds whatever e is, though D be wrong
-// (P. J. Huber 1967; H. White, Econometrica 48, 1980, 817).
+// T is that of the ties and of what is plausible, for these are random, too. s is (D V^-1 A)^T D^-1
+// (y - A x - U c) over a tile, a part of an image within which noise may be correlated as it likes,
+// and Z is A^T V^-1 U. It holds whatever e is, though D be wrong (P. J. Huber 1967; H. White,
+// Econometrica 48, 1980, 817).
 //
 // f: mean weight over mean slope of the influence e w(e), by which weights that move with the fit
 // widen what noise does to it (P. J. Huber, Robust Statistics, 1981, 6.5); what all blocks of an

@@ -149,10 +149,6 @@ FitImage image_of_map(const std::string& map, const Camera& camera, int block_px
     return image;
 }
 
-}  // namespace
-
-namespace {
-
 FitPlaces places_of(int width_px, int height_px, int block_px) {
     FitPlaces places{.width_px = width_px, .height_px = height_px, .block_px = block_px};
     for (std::size_t j = 0; j < blocks_along(height_px, block_px); ++j) {
