@@ -36,13 +36,10 @@ struct Veil::View {
     // Distance from a panel to the singularities next to it.
     [[nodiscard]] double room(double start, double width) const {
         double room = std::min(kPoleRad - start - width, start + kPoleRad);
-        for (const double turn : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
-            if (off_pole_rad >= kNoPole) break;
-            const double at = pole_rad + turn * std::numbers::pi;
-            const double aside = std::max({0.0, start - at, at - start - width});
-            room = std::min(room, std::hypot(aside, off_pole_rad));
-        }
-        return room;
+        if (off_pole_rad >= room) return room;
+        const double middle = start + 0.5 * width;
+        const double to_pole = std::abs(std::remainder(middle - pole_rad, std::numbers::pi));
+        return std::min(room, std::hypot(std::max(0.0, to_pole - 0.5 * width), off_pole_rad));
     }
 };
 
@@ -85,6 +82,21 @@ std::optional<Vector3d> pole_of(const Beam& beam, const BeamFrame& frame) {
     const double s = std::sin(beam.turn_rad);
     if (table->angles == TableAngles::TypeA) return c * frame.along + s * frame.across;
     return c * frame.across - s * frame.along;
+}
+
+bool is_round_table(const Beam& beam) {
+    const auto* table = std::get_if<BeamTable>(&beam.pattern);
+    return table != nullptr && table->angles == TableAngles::TypeC &&
+           table->horizontal_rad.size() == 1 && !beam.window;
+}
+
+// The same beam with kinks where pieces meet.
+Beam with_rows_of(Beam beam, const std::vector<TablePiece>& pieces) {
+    auto& table = std::get<BeamTable>(beam.pattern);
+    table.vertical_rad = {pieces.front().first_rad};
+    for (const TablePiece& piece : pieces) table.vertical_rad.push_back(piece.last_rad);
+    table.intensity.assign(table.vertical_rad.size(), 0.0);
+    return beam;
 }
 
 struct CosSin {
@@ -131,7 +143,8 @@ void VeilNodes::clear() {
     for (std::vector<double>& of_scatterer : weight) of_scatterer.clear();
 }
 
-Veil::Veil(const Rig& rig, unsigned points) : rig_(std::make_shared<const Rig>(rig)) {
+Veil::Veil(const Rig& rig, unsigned points)
+    : rig_(std::make_shared<const Rig>(rig)), points_(points) {
     for (unsigned n = 0; n <= points; ++n) {
         Rule rule;
         if (n > 0) {
@@ -206,12 +219,20 @@ Veil::Light Veil::light_of(const Strobe& strobe, const Beam& beam, unsigned emit
                 .frame = frame,
                 .creases = creases_of(beam, frame),
                 .cones = {},
+                .pieces = {},
                 .lamps = {},
                 .widest_panel_rad =
                     std::min(kVeilPanelRad, 4.0 * kVeilPanelRad / std::sqrt(steepest_cone(beam))),
                 .ends_in_a_power = beam.window.has_value(),
                 .is_of_optics = std::holds_alternative<BeamOptics>(beam.pattern),
                 .pole = pole_of(beam, frame)};
+    if (is_round_table(beam)) {
+        const auto& table = std::get<BeamTable>(beam.pattern);
+        light.pieces = pieces_of(table, points_ <= kVeilMapPoints ? kVeilBeamOff : 0.0);
+        light.creases = creases_of(with_rows_of(beam, light.pieces), frame);
+        for (TablePiece& piece : light.pieces)
+            for (double& c : piece.c) c *= beam.per_flux;
+    }
     const bool is_of_cones = std::holds_alternative<std::monostate>(beam.pattern) && !beam.window;
     for (const Beam& part : is_of_cones ? parts_of(beam) : std::vector<Beam>{}) {
         const Cone& cone = part.cones.front();
@@ -339,16 +360,31 @@ class Veil::Shine {
           seen_(towards(std::cos(middle_rad), std::sin(middle_rad))),
           cos_seen_(light.frame.axis.dot(seen_)),
           is_of_cones_(!light.cones.empty() && light.cones.size() <= kMostCones) {
+        if (!light.pieces.empty()) {
+            const double theta_rad = std::acos(std::clamp(cos_seen_, -1.0, 1.0));
+            const auto after =
+                std::ranges::upper_bound(light.pieces, theta_rad, {}, [](const TablePiece& piece) {
+                    return piece.first_rad;
+                });
+            if (after != light.pieces.begin() && theta_rad < (after - 1)->last_rad)
+                piece_ = &*(after - 1);
+        }
         for (std::size_t i = 0; is_of_cones_ && i < light.cones.size(); ++i) {
             if (cos_seen_ > light.cones[i].edge_cosine) lit_ |= std::uint32_t{1} << i;
         }
     }
 
     [[nodiscard]] bool is_dark() const {
-        return is_of_cones_ ? lit_ == 0 : intensity_towards(light.beam, light.frame, seen_) == 0.0;
+        if (is_of_cones_) return lit_ == 0;
+        if (!light.pieces.empty()) return piece_ == nullptr || piece_->c == kNothing;
+        return intensity_towards(light.beam, light.frame, seen_) == 0.0;
     }
 
     [[nodiscard]] double intensity(double cosine, double sine) const {
+        if (piece_ != nullptr) {
+            const double cos_theta = std::clamp(cosine * k_e_ + sine * k_u_, -1.0, 1.0);
+            return std::max(0.0, piece_->at(std::acos(cos_theta)));
+        }
         if (!is_of_cones_)
             return continued_intensity(light.beam, light.frame, towards(cosine, sine), seen_);
         const double cos_theta = std::max(0.0, cosine * k_e_ + sine * k_u_);
@@ -378,6 +414,7 @@ class Veil::Shine {
 
   private:
     static constexpr std::size_t kMostCones = 32;
+    static constexpr std::array<double, 4> kNothing{};
     [[nodiscard]] Vector3d towards(double cosine, double sine) const {
         return cosine * view.towards + sine * view.along;
     }
@@ -387,6 +424,7 @@ class Veil::Shine {
     double cos_seen_;
     bool is_of_cones_;
     std::uint32_t lit_ = 0;  // which cones shine here, a bit each
+    const TablePiece* piece_ = nullptr;
 };
 
 void Veil::add_piece(const Light& light,

@@ -40,6 +40,7 @@
 #include "rig/beam_crease.h"
 #include "rig/geometry.h"
 #include "rig/rig.h"
+#include "rig/table_pieces.h"
 
 #include <Eigen/Core>
 
@@ -53,8 +54,10 @@ namespace aphotic {
 inline constexpr double kVeilPanelRad = 0.35;
 inline constexpr unsigned kVeilPoints = 8;  // of a panel
 // Enough for images and maps: off by 2e-6, but where light is lost within a panel, as in water like
-// milk.
+// milk. With as few or fewer, a round table is taken as cubics that are off by kVeilBeamOff of its
+// brightest at most (rig/table_pieces.h), so that its panels do not end at each of its rows.
 inline constexpr unsigned kVeilMapPoints = 3;
+inline constexpr double kVeilBeamOff = 1e-4;
 // Light that the water leaves less than e^-kVeilDepth of is left out.
 inline constexpr double kVeilDepth = 40.0;
 
@@ -104,7 +107,8 @@ class Veil {
         Beam beam;
         BeamFrame frame;
         std::vector<Crease> creases;
-        std::vector<ConeLight> cones;  // of a beam that has nothing else
+        std::vector<ConeLight> cones;    // of a beam that has nothing else
+        std::vector<TablePiece> pieces;  // of a round table without a window, of a flux of 1
         std::vector<Lamp> lamps;
         double widest_panel_rad;
         bool ends_in_a_power;  // at 90 degrees: a cosine's, not a whole one, or a window's
@@ -160,6 +164,7 @@ class Veil {
     [[nodiscard]] const Rule& rule_for(double width, double room) const;
 
     std::shared_ptr<const Rig> rig_;
+    unsigned points_;
     std::vector<Light> lights_;  // by strobe
     std::vector<Light> parts_;
     std::vector<std::size_t> strobes_;  // by part

@@ -287,6 +287,32 @@ TEST(Veil, OfASteepBeamBetweenKinks) {
     }
 }
 
+// A round table in half degrees, with so few points that it is taken as a few cubics; and where it
+// has steps, too.
+TEST(Veil, OfATableForMapsIsThatOfTheTable) {
+    constexpr double kOfBeam = 0.2 * kVeilBeamOff;  // which it is off by here and there, both ways
+    BeamTable table{.horizontal_rad = {0.0}};
+    for (int i = 0; i <= 120; ++i) {
+        table.vertical_rad.push_back(0.5 * i * kDegree_rad);
+        table.intensity.push_back(std::pow(std::cos(table.vertical_rad.back()), 8.0) +
+                                  (i < 30 ? 0.5 : 0.2));
+    }
+    Beam beam = half_isotropic();
+    beam.cones.clear();
+    beam.pattern = table;
+    for (const double tilt : {-0.3, 0.0, 0.2, 0.6}) {
+        Rig rig = one_lamp({0.5, 0.1, 0.0}, {-1.0 + tilt, 0.2, 1.5}, beam, fournier_forand(0.0183));
+        const double expected = by_definition(rig, kDown, 2.0);
+        EXPECT_NEAR(Veil(rig, kVeilMapPoints).radiance(kDown, 2.0, kNm) / expected, 1.0, kOfBeam)
+            << tilt;
+        VeilNodes few;
+        VeilNodes all;
+        Veil(rig, kVeilMapPoints).nodes(0, kDown, 2.0, few);
+        Veil(rig).nodes(0, kDown, 2.0, all);
+        EXPECT_LT(8 * few.path_m.size(), all.path_m.size());
+    }
+}
+
 TEST(Veil, StatesItsError) {
     Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
     EXPECT_EQ(veil_error(rig), 0.0);
