@@ -21,9 +21,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace aphotic::cli {
 namespace {
@@ -59,15 +63,66 @@ FitSamples samples_for(const FitCommandOptions& options, const Rig& rig, const R
         survey, size, options.blocks, static_cast<std::size_t>(options.fit.threads), watch);
 }
 
+bool is_given(const CLI::App& app, const std::string& option) {
+    return app.count(option) > 0;
+}
+
+// Options of images, which say nothing of maps; all that --nav needs are found out with it.
+constexpr std::array kOfImages{"--nav",
+                               "--bayer",
+                               "--crop",
+                               "--half",
+                               "--black-level",
+                               "--white-level",
+                               "--exposure",
+                               "--allow-skipped"};
+constexpr std::array kOfBeams{"--beam", "--beam-each", "--parts"};
+
+void require_use(const CLI::App& app, const FitCommandOptions& options) {
+    for (const char* option : kOfImages) {
+        if (is_given(app, "--maps") && is_given(app, option))
+            throw InputError("{}: found with --maps; allowed: with --images", option);
+    }
+    const bool is_beam_free = !is_given(app, "--free") || std::ranges::count(options.free, "beam");
+    for (const char* option : kOfBeams) {
+        if (!is_beam_free && is_given(app, option)) {
+            throw InputError(
+                "{}: found with a beam that is not fitted; allowed: with beam in --free", option);
+        }
+    }
+    if (is_given(app, "--parts") && options.fit.beam != FitBeamKind::Table)
+        throw InputError("--parts: found with another beam; allowed: with --beam table");
+}
+
+// The rig to begin with is kept.
+void require_other_rig(const FitCommandOptions& options) {
+    std::error_code error;
+    if (!std::filesystem::equivalent(options.rig, options.folder / kFittedRig, error)) return;
+    throw InputError("--output: found the folder of {}, which would be replaced; allowed: another",
+                     options.rig);
+}
+
 void require_one_source(const CLI::App& app) {
-    const bool has_maps = app.count("--maps") > 0;
-    const bool has_images = app.count("--images") > 0;
+    const bool has_maps = is_given(app, "--maps");
+    const bool has_images = is_given(app, "--images");
     if (has_maps == has_images) {
         throw InputError("found {}; allowed: either --maps or --images",
                          has_maps ? "--maps and --images" : "neither --maps nor --images");
     }
-    if (has_images && app.count("--nav") == 0)
+    if (has_images && !is_given(app, "--nav"))
         throw InputError("--images: found no navigation; allowed: with --nav FILE");
+}
+
+// The strongest: all are in fit.json.
+void print_confounded(const std::vector<Confounded>& pairs) {
+    constexpr std::size_t kShown = 6;
+    const std::size_t shown = pairs.size() <= kShown + 1 ? pairs.size() : kShown;
+    for (std::size_t i = 0; i < shown; ++i) {
+        const Confounded& pair = pairs[i];
+        fmt::print("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
+    }
+    if (shown < pairs.size())
+        fmt::print("confounded: {} pairs more, in {}\n", pairs.size() - shown, kFitNumbers);
 }
 
 void print_result(const std::string& title,
@@ -88,8 +143,7 @@ void print_result(const std::string& title,
     for (const NotTold& one : result.held) fmt::print("held: {}\n", words_of(one));
     if (!result.fixed.empty())
         fmt::print("not fitted, as the rig has them: {}\n", fmt::join(result.fixed, ", "));
-    for (const Confounded& pair : result.confounded)
-        fmt::print("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
+    print_confounded(result.confounded);
     for (const Suspicion& one : result.looks_wrong)
         fmt::print("looks wrong: {}: {}\n", one.about, one.what);
     fmt::print(
@@ -105,13 +159,15 @@ void print_result(const std::string& title,
 
 ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     require_one_source(app);
+    require_use(app, options);
+    require_other_rig(options);
     const RigText text(std::filesystem::path(options.rig));
     const Rig rig = text.rig();
     const RunWatch watch = terminal_watch(options.strict);
     const FitSamples samples = samples_for(options, rig, watch);
     FitOptions fit_options = options.fit;
     fit_options.attitude_error_rad = options.attitude_error_deg * kRadiansPerDegree;
-    if (app.count("--free") > 0) fit_options.free = options.free;
+    if (is_given(app, "--free")) fit_options.free = options.free;
     const FitResult result = fit(text, samples, fit_options, watch);
     make_folder(options.folder);
     write_fitted_rig(text, result, options.folder);

@@ -155,6 +155,9 @@ struct ExrReader::File {
 };
 
 ExrReader::ExrReader(const fs::path& file) : path_(file) {
+    std::error_code ignored;
+    if (!fs::exists(file, ignored))
+        throw InputError("{}: cannot be read: No such file or directory", file.string());
     try {
         file_ = std::make_unique<File>(file);
     } catch (const std::exception& error) {

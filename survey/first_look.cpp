@@ -110,14 +110,20 @@ SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWa
     return result;
 }
 
+std::string SurveyLook::none_can_be(std::string_view done) const {
+    return count == 1
+               ? fmt::format("the only image looked at cannot be {}; {}", done, first_why)
+               : fmt::format(
+                     "none of the {} images looked at can be {}; {}", count, done, first_why);
+}
+
 std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
                                      const CameraNumbers& camera,
                                      std::size_t jobs,
                                      const RunWatch& watch) {
     const SurveyLook look = look_at({.files = files, .camera = camera}, {.jobs = jobs}, watch);
     if (look.images.empty() && look.count > 0) {
-        throw InputError(
-            "none of the {} images looked at can be read; {}", look.count, look.first_why);
+        throw InputError("{}", look.none_can_be("read"));
     }
     std::vector<Suspicion> found = suspicions(look.images, mosaic_of(look.images));
     watch.looks_wrong(found);

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
@@ -27,6 +28,9 @@ struct SurveyLook {
     std::vector<ImageLook> images{};  // those that can be used
     std::size_t count = 0;            // that were looked at
     std::string first_why{};          // why the first of the others cannot, and which; or empty
+
+    // Where there are none: what cannot be done to them, "read", and why.
+    [[nodiscard]] std::string none_can_be(std::string_view done) const;
 };
 
 [[nodiscard]] SurveyLook look_at(const Survey& survey,

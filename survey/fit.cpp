@@ -211,6 +211,18 @@ void start_effects(const Bench& bench, const FitProblem& problem, const EffectVa
     bench.equations.start_effects(problem.state, light, shares, most);
 }
 
+// What looks wrong by the light of the rig, before minutes go into it.
+std::vector<Suspicion> look_before(const Bench& bench,
+                                   const FitProblem& problem,
+                                   const FitSamples& samples,
+                                   const RunWatch& watch) {
+    const auto [light, shares] = lit_by(bench, problem);
+    const auto swapped = swapped_channels(samples, bench.light, problem.state, light, shares);
+    if (!swapped) return {};
+    watch.looks_wrong({*swapped});
+    return {*swapped};
+}
+
 // The share of the work that is done after so many of kRobustRounds and the search before them.
 double share_after(std::size_t searches) {
     return static_cast<double>(searches) / static_cast<double>(kRobustRounds.size() + 1);
@@ -330,15 +342,6 @@ double dispersion_of(const MatrixXd& covariance, const Linearised& at, const Fit
     return std::max(1.0, told.cwiseQuotient(own).mean());
 }
 
-// Another answer to the same images, by coarse blocks.
-struct Rival {
-    VectorXd values;      // shares, then numbers
-    double excess = 0.0;  // of its objective over the answer's, in squares of standard errors
-};
-
-// Of its objective over the answer's: it is as good to three standard errors.
-constexpr double kAsGood = 9.0;
-
 // Where a search may begin as well: at the rig, then off it by half of what is plausible, at
 // random.
 std::vector<VectorXd> starts_of(const FitProblem& problem) {
@@ -422,9 +425,11 @@ void look_at_rivals(const std::vector<Rival>& rivals,
         const VectorXd off = rival.values - rivals.front().values;
         squares += off.cwiseAbs2();
         all += 1.0;
+
         Index worst = 0;
         const double in_errors =
             off.tail(count).cwiseAbs().cwiseQuotient(errors.tail(count)).maxCoeff(&worst);
+        if (in_errors > kElsewhere) result.rivals.push_back(rival);
         if (in_errors <= most) continue;
         most = in_errors;
         const FreeNumber& number = problem.free[static_cast<std::size_t>(worst)];
@@ -472,6 +477,8 @@ FitResult result_of(const Bench& bench,
     result.tiles = at.normal.tiles;
     result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
     result.looks_wrong = samples.looks_wrong;
+    result.are_maps = samples.are_maps;
+    result.block_px = samples.places.block_px;
     if (!samples.are_maps && samples.images.size() >= kFewGroups) {
         const std::size_t groups = std::min(kJackknifeGroups, samples.images.size());
         const auto light_of = [&](const FitState& state) { return bench.path_light(state, true); };
@@ -573,6 +580,7 @@ FitResult fit(const RigText& text,
                       .learns_effects = samples.images.size() >= kFewestToLearn};
     const EffectVariances effects = first_effects(options, samples.are_maps);
     std::vector<std::string> fixed = words_fixed_in(problem);
+    std::vector<Suspicion> doubts;
     std::vector<NotTold> all_untold;
     std::vector<FreeNumber> held;
     int steps = 0;
@@ -582,7 +590,10 @@ FitResult fit(const RigText& text,
         };
         progress(0);
         equations.assume_noise();
-        if (is_first) start_gains(bench, problem);
+        if (is_first) {
+            start_gains(bench, problem);
+            doubts = look_before(bench, problem, samples, watch);
+        }
         equations.tie_parts(problem.state, lit_by(bench, problem).shares);
         steps += search(bench, problem, kFirstSteps);
         start_effects(bench, problem, effects);
@@ -602,6 +613,7 @@ FitResult fit(const RigText& text,
     }
     FitResult result = result_of(bench, problem, held, samples, rivals, watch);
     watch.progress("fitting", 1.0);
+    result.looks_wrong.insert(result.looks_wrong.begin(), doubts.begin(), doubts.end());
     result.held = std::move(all_untold);
     result.fixed = std::move(fixed);
     result.rounds = static_cast<int>(kRobustRounds.size()) + 1;

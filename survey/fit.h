@@ -84,6 +84,14 @@ struct BeamPoint {
     double error = 0.0;
 };
 
+// Another answer to the same images, by coarse blocks.
+struct Rival {
+    Eigen::VectorXd values;  // shares, then numbers, in the state's units
+    double excess = 0.0;     // of its objective over the answer's, in squares of standard errors
+};
+// Of the objective: such a rival is as good to three standard errors.
+inline constexpr double kAsGood = 9.0;
+
 struct FitResult {
     FitState state;
     Eigen::VectorXd shares;
@@ -94,7 +102,10 @@ struct FitResult {
     std::vector<Confounded> confounded;               // |correlation| over 0.9, the largest first
     std::vector<std::vector<BeamPoint>> beam_curves;  // of tables and cosines, by beam
     FitResiduals left;
+    std::vector<Rival> rivals;  // as good as the answer, and over two errors from it
     std::vector<Suspicion> looks_wrong;
+    bool are_maps = false;
+    int block_px = 1;
     EffectVariances effects{};
     BlockNoise noise;
     std::size_t blocks = 0;

@@ -127,7 +127,36 @@ void look_for_saturation(const FitSamples& samples, std::vector<Suspicion>& foun
     found.push_back({"saturation", fmt::format("{:.2g} of all samples, left out", saturated)});
 }
 
+// An image's blocks and what a rig makes of them, as survey_check.h looks at whole images.
+ImageLook look_at(const FitImage& image, const VectorXd& signal) {
+    PerChannel observed{};
+    ImageLook look;
+    look.altitude_m = image.sled.altitude_m;
+    for (Index row = 0; row < signal.size(); ++row) {
+        const auto at = static_cast<std::size_t>(row);
+        if (!std::isfinite(image.signal[at])) continue;
+        observed.at(at % kChannels) += static_cast<double>(image.signal[at]);
+        look.map_mean.at(at % kChannels) += signal(row);
+    }
+    for (std::size_t c = 0; c < kChannels; ++c) look.quotient[c] = observed[c] / look.map_mean[c];
+    return look;
+}
+
 }  // namespace
+
+std::optional<Suspicion> swapped_channels(const FitSamples& samples,
+                                          const FitLight& fit_light,
+                                          const FitState& state,
+                                          const PathLight& light,
+                                          const VectorXd& shares) {
+    std::vector<ImageLook> looks;
+    FitLight::Rows parts;
+    for (const FitImage& image : samples.images) {
+        fit_light.parts_into(state, light, image.sled, parts);
+        looks.push_back(look_at(image, parts * shares));
+    }
+    return red_for_blue(looks, samples.mosaic);
+}
 
 std::vector<Suspicion> suspicions(const FitSamples& samples, const FitResult& result) {
     std::vector<Suspicion> found;

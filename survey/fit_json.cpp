@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 #include <vector>
 
 namespace aphotic {
@@ -48,6 +50,43 @@ FitJson covariance_json(const FitResult& result) {
     return {{"of", std::move(of)}, {"rows", std::move(rows)}};
 }
 
+std::string_view word_of(FitBeamKind kind) {
+    switch (kind) {
+        case FitBeamKind::Table:
+            return "table";
+        case FitBeamKind::Cones:
+            return "cones";
+        case FitBeamKind::Cosine:
+            return "cosine";
+        case FitBeamKind::Optics:
+            return "optics";
+        case FitBeamKind::Held:
+            break;
+    }
+    return "held";
+}
+
+FitJson source_json(const FitResult& result) {
+    const auto by_altitude = [](const ImageOutcome& image) { return image.sled.altitude_m; };
+    const auto [lowest, highest] = std::ranges::minmax(result.left.images, {}, by_altitude);
+    return {{result.are_maps ? "maps" : "images", result.left.images.size()},
+            {"altitude_m", {lowest.sled.altitude_m, highest.sled.altitude_m}},
+            {"block_px", result.block_px},
+            {"beam", word_of(result.state.beams.front().kind())}};
+}
+
+FitJson rivals_json(const FitResult& result) {
+    FitJson rivals = FitJson::array();
+    for (const Rival& rival : result.rivals) {
+        FitJson values;
+        Eigen::Index at = result.shares.size();
+        for (const FittedNumber& one : result.numbers)
+            values[one.key] = one.per_unit * rival.values(at++);
+        rivals.push_back({{"excess", rival.excess}, {"values", std::move(values)}});
+    }
+    return rivals;
+}
+
 }  // namespace
 
 FitJson to_json(const FitResult& result) {
@@ -76,10 +115,12 @@ FitJson to_json(const FitResult& result) {
     FitJson beams = FitJson::array();
     for (const auto& curve : result.beam_curves) beams.push_back(curve_json(curve));
     const auto deviation = [&](std::size_t k) { return std::sqrt(result.effects[k]); };
-    return {{"numbers", std::move(numbers)},
+    return {{"fitted_to", source_json(result)},
+            {"numbers", std::move(numbers)},
             {"held", std::move(held)},
             {"as_the_rig_has", result.fixed},
             {"confounded", std::move(confounded)},
+            {"rivals", rivals_json(result)},
             {"looks_wrong", to_json(result.looks_wrong)},
             {"beams", std::move(beams)},
             {"shares", std::vector<double>(result.shares.begin(), result.shares.end())},

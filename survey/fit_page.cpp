@@ -27,6 +27,12 @@ std::string number_text(double value) {
     return scientific(value);
 }
 
+std::string altitudes_of(const FitSamples& samples) {
+    const auto by_altitude = [](const FitImage& image) { return image.sled.altitude_m; };
+    const auto [lowest, highest] = std::ranges::minmax(samples.images, {}, by_altitude);
+    return fmt::format("{:.3g} to {:.3g}", lowest.sled.altitude_m, highest.sled.altitude_m);
+}
+
 std::string verdict(const FitSamples& samples, const FitResult& result) {
     std::string words =
         fmt::format("{} fitted to {}",
@@ -38,9 +44,10 @@ std::string verdict(const FitSamples& samples, const FitResult& result) {
         result.looks_wrong.empty(),
         words,
         html_paragraph(fmt::format(
-            "Of {} it leaves {} (rms, relative), of which {} stays in place from image to image: "
-            "what the model lacks.",
+            "Of {} at {} m it leaves {} (rms, relative), of which {} stays in place from image to "
+            "image: what the model lacks.",
             counted(result.blocks, "block"),
+            altitudes_of(samples),
             number_text(result.left.residual),
             number_text(result.left.pattern))));
 }
@@ -68,13 +75,22 @@ std::string numbers(const FitResult& result) {
     if (!result.fixed.empty())
         content += html_paragraph(
             fmt::format("Not fitted, as the rig has them: {}.", fmt::join(result.fixed, ", ")));
-    for (const Confounded& pair : result.confounded) {
-        content += html_paragraph(fmt::format("Confounded: {} and {}, correlation {:+.2f}.",
-                                              user_text(pair.one),
-                                              user_text(pair.other),
-                                              pair.correlation));
-    }
     return html_section("numbers-section", "What was found", content);
+}
+
+std::string confounded(const FitResult& result) {
+    if (result.confounded.empty()) return "";
+    std::vector<HtmlRow> rows;
+    for (const Confounded& pair : result.confounded) {
+        rows.push_back({.style = "",
+                        .cells = {user_text(pair.one),
+                                  user_text(pair.other),
+                                  fmt::format("{:+.2f}", pair.correlation)}});
+    }
+    return html_section("confounded",
+                        "Confounded",
+                        html_paragraph("Pairs that nearly make up for each other.") +
+                            html_table("pairs", "number;with;correlation", rows));
 }
 
 // Blue where the image is darker than the fit, red where it is brighter.
@@ -237,7 +253,7 @@ void write_fit_page(const std::filesystem::path& file,
     const std::string content =
         html_header("fit", user_text(title), verdict(samples, result)) + warnings(result) +
         numbers(result) + views(samples, result) + beams(result) + over_altitude(result) +
-        deviations(result) +
+        deviations(result) + confounded(result) +
         html_section("rig", "The rig that it began with", html_source(text.text()));
     write_text_file(file, html_page("Fit: " + title, content));
 }

@@ -33,6 +33,7 @@ struct FitSamples {
     FitPlaces places{};
     std::vector<FitImage> images{};
     bool are_maps = false;
+    Mosaic mosaic = Mosaic::None;  // of the files, as far as the survey says
     std::vector<Skipped> skipped{};
     std::vector<Suspicion> looks_wrong{};  // of images; the watch was told
 };

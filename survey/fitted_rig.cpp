@@ -9,11 +9,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace aphotic {
 namespace {
 
 namespace fs = std::filesystem;
+
+// To as many digits as any fit tells, and not 120.00000000000001.
+double rounded(double value) {
+    return std::stod(fmt::format("{:.12g}", value));
+}
 
 // A beam of its own, for the rig's may be another strobe's too.
 void add_beam(const FitBeam& fit,
@@ -36,13 +42,13 @@ void add_beam(const FitBeam& fit,
     }
     if (fit.kind() == FitBeamKind::Cosine) {
         const double half = std::acos(std::pow(0.5, 1.0 / fit.shapes().front()));
-        text.set(key + ".fwhm_deg", 2.0 * half * kDegreesPerRadian);
+        text.set(key + ".fwhm_deg", rounded(2.0 * half * kDegreesPerRadian));
         return;
     }
     text.copy(rig, "beam." + was, key);
     if (const auto* optics = std::get_if<BeamOptics>(&fitted.beam.pattern)) {
-        text.set(key + ".focal_length_mm", kMillimetres * optics->focal_length_m);
-        text.set(key + ".distance_mm", kMillimetres * optics->distance_m);
+        text.set(key + ".focal_length_mm", rounded(kMillimetres * optics->focal_length_m));
+        text.set(key + ".distance_mm", rounded(kMillimetres * optics->distance_m));
     } else if (text.has(key + ".cones")) {
         text.erase(key + ".weights");  // shares of the flux now
         for (std::size_t k = 0; k < fitted.beam.cones.size(); ++k)
@@ -93,7 +99,7 @@ void set_strobes(const RigText& rig_text,
         if (is_fitted) {
             for (const char* flux : {".luminous_flux_lm", ".radiant_flux_w", ".energy_j"})
                 text.erase(key + flux);
-            text.set(key + ".power", state.power[s] * beams[b].flux * was / all);
+            text.set(key + ".power", rounded(state.power[s] * beams[b].flux * was / all));
         }
         if (state.aim_rad[s][0] == 0.0 && state.aim_rad[s][1] == 0.0) continue;
         const Eigen::Vector3d axis = aimed_axis(rig, state, s);
@@ -136,9 +142,9 @@ void write_fitted_rig(const RigText& rig_text, const FitResult& result, const fs
             rig.mounting.roll_pitch_yaw_rad +
             Eigen::Vector3d(state.offset.roll_rad, state.offset.pitch_rad, 0.0);
         text.set("camera.orientation_deg",
-                 std::vector<double>{turn.x() * kDegreesPerRadian,
-                                     turn.y() * kDegreesPerRadian,
-                                     turn.z() * kDegreesPerRadian});
+                 std::vector<double>{rounded(turn.x() * kDegreesPerRadian),
+                                     rounded(turn.y() * kDegreesPerRadian),
+                                     rounded(turn.z() * kDegreesPerRadian)});
     }
     const std::string toml = text.text();
     // What is written can be read.

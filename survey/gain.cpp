@@ -85,8 +85,7 @@ void compare_levels(const nlohmann::json& settings,
 
 SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     if (look.images.empty()) {
-        throw InputError(
-            "none of the {} images looked at can be corrected; {}", look.count, look.first_why);
+        throw InputError("{}", look.none_can_be("corrected"));
     }
     SurveyGain gain{.middle = middle};
     std::array<std::vector<double>, kChannels> quotients;

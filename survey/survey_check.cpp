@@ -183,27 +183,6 @@ Mosaic with_red_for_blue(Mosaic mosaic) {
     return mosaic;
 }
 
-void check_colour(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<Suspicion>& found) {
-    std::vector<double> maps;
-    std::vector<double> images;
-    for (const ImageLook& look : looks) {
-        maps.push_back(std::log(look.map_mean[kRed] / look.map_mean[kBlue]));
-        images.push_back(maps.back() + std::log(look.quotient[kRed] / look.quotient[kBlue]));
-    }
-    const Line line = line_through(maps, images);
-    if (1.0 - line.slope < std::max(kTurned, kStandardErrors * line.error)) return;
-    found.push_back(
-        {.about = "bayer",
-         .what = fmt::format(
-             "red over blue varies {:.3g}-fold over the images' altitudes where the maps' varies "
-             "{:.3g}-fold the other way: red and blue are swapped{}",
-             fold_of(images),
-             fold_of(maps),
-             is_bayer(mosaic) ? fmt::format("; --bayer {} puts them right",
-                                            mosaic_name(with_red_for_blue(mosaic)))
-                              : "")});
-}
-
 std::string range_of(std::span<const ImageLook> looks) {
     const auto [lowest, highest] = std::ranges::minmax(looks, {}, &ImageLook::altitude_m);
     return fmt::format("{:g} to {:g} m", *lowest.altitude_m, *highest.altitude_m);
@@ -364,6 +343,27 @@ Likeness likeness(const RawImage& raw,
     return {.xx = sums.xx, .xy = sums.xy};
 }
 
+std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks, Mosaic mosaic) {
+    std::vector<double> light;
+    std::vector<double> images;
+    for (const ImageLook& look : lit(looks)) {
+        light.push_back(std::log(look.map_mean[kRed] / look.map_mean[kBlue]));
+        images.push_back(light.back() + std::log(look.quotient[kRed] / look.quotient[kBlue]));
+    }
+    const Line line = line_through(light, images);
+    if (1.0 - line.slope < std::max(kTurned, kStandardErrors * line.error)) return std::nullopt;
+    return Suspicion{
+        .about = "bayer",
+        .what = fmt::format(
+            "red over blue varies {:.3g}-fold over the images' altitudes where the rig's light "
+            "varies {:.3g}-fold the other way: red and blue are swapped{}",
+            fold_of(images),
+            fold_of(light),
+            is_bayer(mosaic) ? fmt::format("; --bayer {} puts them right",
+                                           mosaic_name(with_red_for_blue(mosaic)))
+                             : "")};
+}
+
 std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic) {
     std::vector<Suspicion> found;
     check_white(looks, found);
@@ -374,7 +374,9 @@ std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosai
     if (has_line) check_altitude(lit_looks, found);
     check_gains(lit_looks, found);
     // At other altitudes colours change otherwise, too.
-    if (has_line && found.size() == before) check_colour(lit_looks, mosaic, found);
+    if (has_line && found.size() == before) {
+        if (const auto swapped = red_for_blue(lit_looks, mosaic)) found.push_back(*swapped);
+    }
     check_attitude(looks, found);
     return found;
 }

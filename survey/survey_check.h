@@ -10,7 +10,7 @@
 // bayer        Both green sites see one light, so their medians agree. Where those that the pattern
 //              makes green differ by over kGreen, and the other two by under a fourth of that, the
 //              pattern is another. Red and blue that are swapped: log(red / blue) of the images
-//              falls over altitude where that of the maps rises.
+//              falls over altitude where that of the light rises.
 // altitude     Over the images, log(image) = s log(map) + const with s = 1 whatever the floor's
 //              mean, in the green channel. Told where s is off by over kSlope and by five of its
 //              standard errors, of kEnoughImages and more at altitudes that differ.
@@ -95,6 +95,10 @@ struct Suspicion {
 };
 [[nodiscard]] std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Suspicion>& suspicions);
+
+// Of images at altitudes that differ: red and blue that are swapped.
+[[nodiscard]] std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks,
+                                                    Mosaic mosaic);
 
 // What no line through images with altitudes can tell of these, and why; or empty.
 [[nodiscard]] std::string not_checked(std::span<const ImageLook> looks);

@@ -1117,7 +1117,7 @@ TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     refused(with({"dark", "-o", "out", "--bayer", "GRBG", "--black-level", "60"}),
             "no gain can be taken from these images");
     refused(with({"raw", "-o", "out"}),
-            "none of the 1 images looked at can be corrected; a: found one channel and no --bayer; "
+            "the only image looked at cannot be corrected; a: found one channel and no --bayer; "
             "allowed: R, G, B, a mosaic whose pattern --bayer names, or --bayer mono");
     fs::create_directories(path("empty"));
     refused(with({"empty", "-o", "out"}), "empty: the folder holds no image");

@@ -9,7 +9,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
+#include <numeric>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -63,6 +69,100 @@ TEST_F(CommandDesign, TheSameCommandGivesTheSameDesign) {
         ASSERT_EQ(run.status, 0) << run.err;
     }
     EXPECT_EQ(read_text_file(at("one/designed.toml")), read_text_file(at("other/designed.toml")));
+}
+
+// Each of the options that bound a search, by what it does to the strobes.
+TEST_F(CommandDesign, StaysWhereItIsToldTo) {
+    constexpr double kRounding = 1e-9;
+    const auto strobe = [&](const std::string& folder, const std::string& of, std::size_t which) {
+        return numbers(folder).at(of).at("strobes").at(which);
+    };
+    const auto place = [](const nlohmann::json& one) {
+        return one.at("position_m").get<std::array<double, 3>>();
+    };
+    ASSERT_EQ(
+        design("rig.toml", {"--vary", "strobe.*.position_m", "--within", "0.02", "-o", "near"})
+            .status,
+        0);
+    double farthest = 0.0;
+    for (std::size_t s = 0; s < 4; ++s) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double off = std::abs(place(strobe("near", "design", s))[axis] -
+                                        place(strobe("near", "start", s))[axis]);
+            EXPECT_LE(off, 0.02 + kRounding);
+            farthest = std::max(farthest, off);
+        }
+    }
+    EXPECT_GT(farthest, 0.01);  // where there is room, it is used
+
+    const std::string bounds = "fore=0.45:0.55,0,-0.3:0.3";
+    const CommandResult box =
+        design("rig.toml", {"--vary", "strobe.*.position_m", "--box", bounds, "-o", "box"});
+    ASSERT_EQ(box.status, 0) << box.err;
+    const auto [x, y, z] = place(strobe("box", "design", 0));
+    EXPECT_GE(x, 0.45 - kRounding);
+    EXPECT_LE(x, 0.55 + kRounding);
+    EXPECT_EQ(y, 0.0);
+    EXPECT_LE(std::abs(z), 0.3 + kRounding);
+    EXPECT_NE(place(strobe("box", "design", 0)), place(strobe("box", "start", 0)));
+
+    std::vector<std::string> turned = tilts_into("turned");
+    turned.insert(turned.end(), {"--turn", "2"});
+    ASSERT_EQ(design("rig.toml", turned).status, 0);
+    for (std::size_t s = 0; s < 4; ++s) {
+        const auto before = strobe("turned", "start", s).at("direction").get<std::vector<double>>();
+        const auto after = strobe("turned", "design", s).at("direction").get<std::vector<double>>();
+        const double cosine = std::inner_product(before.begin(), before.end(), after.begin(), 0.0);
+        constexpr double kDegree_rad = std::numbers::pi / 180.0;
+        EXPECT_LE(std::acos(std::min(1.0, cosine)), 2.0 * kDegree_rad + 1e-6);
+    }
+}
+
+TEST_F(CommandDesign, SearchesForWhatItIsAskedFor) {
+    const auto worst = [&](const std::string& folder, const std::vector<std::string>& more) {
+        std::vector<std::string> all = tilts_into(folder);
+        all.insert(all.end(), more.begin(), more.end());
+        const CommandResult run = design("rig.toml", all);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return numbers(folder).at("design").at("worst");
+    };
+    const nlohmann::json even = worst("even", {"--keep", "0.7"});
+    const nlohmann::json bright = worst("bright", {"--keep", "0.7", "--for", "signal"});
+    const nlohmann::json broad = worst("broad", {"--keep", "0.7", "--for", "coverage"});
+    EXPECT_GT(bright["signal_to_noise"], even["signal_to_noise"]);
+    EXPECT_GT(even["evenness"], bright["evenness"]);
+    EXPECT_GT(broad["coverage"], bright["coverage"]);
+    const nlohmann::json start = numbers("even").at("start").at("worst");
+    for (const nlohmann::json& one : {even, bright, broad}) {
+        for (const char* figure : {"evenness", "signal_to_noise", "coverage"})
+            EXPECT_GE(one[figure].get<double>(), 0.7 * start[figure].get<double>()) << figure;
+    }
+    // More is a fifth as bright as the brightest than is half as bright.
+    worst("level", {"--level", "0.2"});
+    EXPECT_GT(numbers("level")["start"]["worst"]["coverage"], start["coverage"]);
+    EXPECT_EQ(numbers("level")["coverage_level"], 0.2);
+}
+
+TEST_F(CommandDesign, JudgesEveryPoseOfItsEnvelope) {
+    std::vector<std::string> all = tilts_into("out");
+    all.insert(all.end(), {"--pitch", "0,10", "--roll=-5,5", "--seed", "2"});
+    const CommandResult run = design("rig.toml", all);
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json found = numbers("out");
+    EXPECT_EQ(found["seed"], 2);
+    const nlohmann::json& poses = found.at("design").at("poses");
+    EXPECT_EQ(poses.size(), 27U);  // ends and middles of three ranges
+    double least = 1.0;
+    std::set<std::array<double, 3>> seen;
+    for (const nlohmann::json& pose : poses) {
+        least = std::min(least, pose.at("evenness").get<double>());
+        seen.insert({pose.at("altitude_m").get<double>(),
+                     pose.at("pitch_deg").get<double>(),
+                     pose.at("roll_deg").get<double>()});
+    }
+    EXPECT_EQ(seen.size(), 27U);
+    EXPECT_TRUE(seen.contains({2.5, 10.0, -5.0}));
+    EXPECT_EQ(found.at("design").at("worst").at("evenness"), least);
 }
 
 TEST_F(CommandDesign, NamesWhatMayVary) {

@@ -12,6 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
 
 namespace aphotic::cli_fit_test {
 namespace {
@@ -80,8 +84,28 @@ TEST(CommandFit, LearnsARigFromASurvey) {
     EXPECT_TRUE(is_found);
     EXPECT_EQ(read_text_file(folder.path() / "fitted/fit.json"), fit.out);
     EXPECT_EQ(read_rig(folder.path() / "fitted/fitted.toml").strobes[0].beam.name, "fitted");
-    EXPECT_NE(read_text_file(folder.path() / "fitted/report.html").find("Observed and fitted"),
-              std::string::npos);
+    EXPECT_EQ(json.at("fitted_to").at("images"), 30);
+    EXPECT_EQ(json.at("fitted_to").at("block_px"), 8);
+    EXPECT_EQ(json.at("fitted_to").at("beam"), "table");
+    const std::string page = read_text_file(folder.path() / "fitted/report.html");
+    for (const char* part : {"30 images",
+                             "Observed and fitted",
+                             "strobe.fore.aim_along_deg",
+                             "within twice its standard error",
+                             "id=\"beam-0\"",
+                             "id=\"residuals\"",
+                             "Not fitted, as the rig has them: ",
+                             "From image to image"})
+        EXPECT_NE(page.find(part), std::string::npos) << part;
+    // What fit.json holds and warns of, the page does, too.
+    const auto times = [&](std::string_view words) {
+        std::size_t count = 0;
+        for (std::size_t at = 0; (at = page.find(words, at)) != std::string::npos; ++at) ++count;
+        return count;
+    };
+    EXPECT_EQ(times("Held: "), json.at("held").size());
+    EXPECT_EQ(times(">Warnings<"), json.at("looks_wrong").empty() ? 0U : 1U);
+    EXPECT_EQ(times(">Confounded<"), json.at("confounded").empty() ? 0U : 1U);
 }
 
 // Exposed so that the floor's middle fills twice what a pixel holds.
@@ -194,6 +218,114 @@ TEST(CommandFit, SaysOfAllImagesAtOnceThatNoneCanBeRead) {
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "fitted"));
 }
 
+// Red over blue falls as water's red does: in images whose mosaic is read as its mirror image it
+// rises. That is found out before the minutes that the fit takes.
+TEST(CommandFit, FindsOutRedForBlue) {
+    const TempFolder folder;
+    write_text_file(folder.path() / "rig.toml", fit_rig(of_few_pixels()).text());
+    const CommandResult survey =
+        run_aphotic(folder.path(),
+                    {"survey", "rig.toml", "--images", "16", "--texture", "0.1", "-o", "survey"});
+    ASSERT_EQ(survey.status, 0) << survey.err;
+    const auto fit = [&](const std::string& pattern) {
+        return run_aphotic(folder.path(),
+                           {"fit",
+                            "rig.toml",
+                            "--images",
+                            "survey/raw",
+                            "--nav",
+                            "survey/navigation-measured.txt",
+                            "--bayer",
+                            pattern,
+                            "--black-level",
+                            "64",
+                            "--white-level",
+                            "4095",
+                            "--free",
+                            "aim",
+                            "--blocks",
+                            "8",
+                            "--strict",
+                            "-o",
+                            pattern});
+    };
+    const CommandResult right = fit("RGGB");
+    EXPECT_EQ(right.status, 0) << right.out << right.err;
+    const CommandResult wrong = fit("BGGR");
+    EXPECT_EQ(wrong.status, 2) << wrong.out;
+    EXPECT_NE(wrong.err.find("bayer: red over blue varies"), std::string::npos) << wrong.err;
+    EXPECT_NE(wrong.err.find("--bayer RGGB puts them right"), std::string::npos) << wrong.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "BGGR"));
+}
+
+// Two lamps that differ: by one beam for both neither is right.
+TEST(CommandFit, GivesEachStrobeABeamOfItsOwn) {
+    const TempFolder folder;
+    std::string toml = fit_rig(of_few_pixels()).text();
+    write_text_file(folder.path() / "rig.toml", toml);
+    toml.replace(toml.rfind("beam = \"smooth\""), 15, "beam = \"broad\"");
+    toml += "[beam.broad]\ncones = [{ part = \"all\", half_angle_deg = 90.0, weight = 1.0 }]\n";
+    write_text_file(folder.path() / "truth.toml", toml);
+    std::vector<std::string> fit{"fit",
+                                 "rig.toml",
+                                 "--free",
+                                 "beam,power",
+                                 "--beam-each",
+                                 "--beam",
+                                 "cosine",
+                                 "--blocks",
+                                 "16",
+                                 "-o",
+                                 "fitted",
+                                 "--maps"};
+    for (const std::string altitude : {"1.5", "2", "2.5"}) {
+        fit.push_back(altitude + ".exr");
+        const CommandResult map = run_aphotic(
+            folder.path(), {"lightmap", "truth.toml", "--altitude", altitude, "-o", fit.back()});
+        ASSERT_EQ(map.status, 0) << map.err;
+    }
+    const CommandResult run = run_aphotic(folder.path(), fit);
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Rig fitted = read_rig(folder.path() / "fitted/fitted.toml");
+    EXPECT_EQ(fitted.strobes[0].beam.name, "fitted-1");
+    EXPECT_EQ(fitted.strobes[1].beam.name, "fitted-2");
+    constexpr double kOff = 0.02;  // of exponents, by maps without noise
+    EXPECT_NEAR(fitted.strobes[0].beam.cones.at(0).exponent, 6.0, 6.0 * kOff);
+    EXPECT_NEAR(fitted.strobes[1].beam.cones.at(0).exponent, 1.0, kOff);
+}
+
+// A plate of LEDs in a lens' focus but for its focal length, which is told wrong.
+TEST(CommandFit, FindsALensByItsOptics) {
+    const TempFolder folder;
+    const auto with_lens = [&](const std::string& name, double focal_length_mm) {
+        std::string toml = fit_rig(of_few_pixels()).text();
+        const std::size_t cones = toml.find("cones = ");
+        toml.replace(cones,
+                     toml.find('\n', cones) - cones,
+                     fmt::format("diffuser_mm = [30.0, 60.0]\naperture_mm = 60.0\n"
+                                 "focal_length_mm = {}\ndistance_mm = 40.0",
+                                 focal_length_mm));
+        write_text_file(folder.path() / name, toml);
+    };
+    with_lens("truth.toml", 50.0);
+    with_lens("rig.toml", 47.0);
+    std::vector<std::string> fit{
+        "fit", "rig.toml", "--free", "beam", "--beam", "optics", "-o", "fitted", "--maps"};
+    for (const std::string altitude : {"1.5", "2", "2.5"}) {
+        fit.push_back(altitude + ".exr");
+        const CommandResult map = run_aphotic(
+            folder.path(), {"lightmap", "truth.toml", "--altitude", altitude, "-o", fit.back()});
+        ASSERT_EQ(map.status, 0) << map.err;
+    }
+    const CommandResult run = run_aphotic(folder.path(), fit);
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Rig fitted = read_rig(folder.path() / "fitted/fitted.toml");
+    const auto& optics = std::get<BeamOptics>(fitted.strobes[0].beam.pattern);
+    constexpr double kOff = 0.01;
+    EXPECT_NEAR(optics.focal_length_m / 0.050, 1.0, kOff);
+    EXPECT_NEAR(optics.distance_m / 0.040, 1.0, kOff);
+}
+
 TEST(CommandFit, SaysWhatItNeeds) {
     const TempFolder folder;
     write_text_file(folder.path() / "rig.toml", fit_rig({}).text());
@@ -204,7 +336,34 @@ TEST(CommandFit, SaysWhatItNeeds) {
     run = run_aphotic(folder.path(), {"fit", "rig.toml", "--images", ".", "-o", "fitted"});
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(run.err, "aphotic: --images: found no navigation; allowed: with --nav FILE\n");
+    const auto refused = [&](const std::vector<std::string>& more, const std::string& why) {
+        std::vector<std::string> all{"fit", "rig.toml", "--maps", "a.exr", "-o", "fitted"};
+        all.insert(all.end(), more.begin(), more.end());
+        run = run_aphotic(folder.path(), all);
+        EXPECT_EQ(run.status, 2);
+        EXPECT_EQ(run.err, "aphotic: " + why + "\n");
+    };
+    refused({"--nav", "a.txt"}, "--nav: found with --maps; allowed: with --images");
+    refused({"--bayer", "RGGB"}, "--bayer: found with --maps; allowed: with --images");
+    for (const std::vector<std::string>& of_beams :
+         {std::vector<std::string>{"--beam", "cosine"}, {"--beam-each"}, {"--parts", "20"}}) {
+        std::vector<std::string> held = of_beams;
+        held.insert(held.end(), {"--free", "aim,water"});
+        refused(
+            held,
+            of_beams[0] + ": found with a beam that is not fitted; allowed: with beam in --free");
+    }
+    refused({"--parts", "20", "--beam", "cosine"},
+            "--parts: found with another beam; allowed: with --beam table");
+    refused({}, "a.exr: cannot be read: No such file or directory");
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "fitted"));
+
+    std::filesystem::rename(folder.path() / "rig.toml", folder.path() / "fitted.toml");
+    run = run_aphotic(folder.path(), {"fit", "fitted.toml", "--maps", "a.exr", "-o", "."});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.err,
+              "aphotic: --output: found the folder of fitted.toml, which would be replaced; "
+              "allowed: another\n");
 }
 
 }  // namespace

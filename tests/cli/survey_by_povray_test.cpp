@@ -46,6 +46,27 @@ TEST(SurveyByPovray, IsWhatTheReferenceSeesOfTheBareCard) {
     }
 }
 
+// By lightmaps or by POV-Ray: a bare floor without texture is the same.
+TEST(SurveyByPovray, OfABareFloorIsThatOfLightmaps) {
+    const TempFolder folder;
+    put_small_scene(fs::path(APHOTIC_SOURCE_DIR) / "scenes/survey/smooth.toml", folder.path());
+    const auto make = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> all{
+            "survey", "rig.toml", "--images", "2", "--texture", "0", "-o", name};
+        all.insert(all.end(), more.begin(), more.end());
+        const CommandResult made = run_aphotic(folder.path(), all);
+        EXPECT_EQ(made.status, 0) << made.err;
+    };
+    make("maps", {});
+    make("rendered", {"--by-povray"});
+    for (const char* image : {"000001.exr", "000002.exr"}) {
+        EXPECT_EQ(off_reference(folder.path() / "rendered/truth" / image,
+                                folder.path() / "maps/truth" / image),
+                  0U)
+            << image;
+    }
+}
+
 TEST(SurveyByPovray, GoesOnWhereItStoppedAndRefusesAnotherSurvey) {
     const SmallSurvey survey;
     const CommandResult made = survey.make({"--images", "1"});

@@ -2,14 +2,18 @@
 //
 // `aphotic survey` of a flat floor, and what `aphotic correct` makes of it.
 #include "base/atomic_file.h"
+#include "base/degrees.h"
 #include "image/exr.h"
 #include "image/output_images.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
+#include "survey/flight.h"
+#include "survey/navigation_file.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -139,6 +143,127 @@ TEST_F(SurveyCommand, TakesItsCameraFromTheRig) {
 }
 
 // A stop down is half the light, as the file's Exif tells, by which `correct` brings it back.
+// EMVA 1288's numbers, and how many electrons a signal of 1 gives: raw is black + gain times these.
+TEST_F(SurveyCommand, TakesItsCameraFromTheOptions) {
+    const auto make = [&](const std::string& folder, const std::vector<std::string>& more) {
+        std::vector<std::string> all{"survey",
+                                     "rig.toml",
+                                     "--images",
+                                     "1",
+                                     "--no-noise",
+                                     "--json",
+                                     "--texture",
+                                     "0",
+                                     "--white-level",
+                                     "65535",
+                                     "-o",
+                                     folder};
+        all.insert(all.end(), more.begin(), more.end());
+        const CommandResult made = run(all);
+        EXPECT_EQ(made.status, 0) << made.err;
+        return Json::parse(made.out).at("camera");
+    };
+    // What the camera counted over black, by the command that averages it.
+    const auto numbers = [&](const std::string& folder) {
+        const CommandResult observed = run({"observe",
+                                            folder + "/raw",
+                                            "--nav",
+                                            folder + "/navigation.txt",
+                                            "--altitude",
+                                            "2",
+                                            "--within",
+                                            "9",
+                                            "--bayer",
+                                            "RGGB",
+                                            "--black-level",
+                                            "64",
+                                            "-o",
+                                            folder + ".exr"});
+        EXPECT_EQ(observed.status, 0) << observed.err;
+        return ExrReader(path(folder + ".exr")).planes(std::array<std::string, 1>{"G"});
+    };
+    const Json camera = make("one", {"--saturation-e", "8000", "--gain-dn-per-e", "0.5"});
+    EXPECT_EQ(camera.at("saturation_e"), 8000.0);
+    EXPECT_EQ(camera.at("gain_dn_per_e"), 0.5);
+    const double electrons = camera.at("electrons_per_signal");
+    make("half",
+         {"--gain-dn-per-e", "0.5", "--electrons-per-signal", std::to_string(electrons / 2)});
+    make("less", {"--gain-dn-per-e", "0.25", "--electrons-per-signal", std::to_string(electrons)});
+    const std::vector<float> one = numbers("one");
+    constexpr double kRounding = 0.05;  // of the darkest, some tens
+    std::size_t told = 0;
+    for (const char* folder : {"half", "less"}) {
+        const std::vector<float> other = numbers(folder);
+        ASSERT_EQ(other.size(), one.size());
+        for (std::size_t i = 0; i < one.size(); ++i) {
+            if (!std::isfinite(one[i])) continue;
+            EXPECT_NEAR(other[i] / one[i], 0.5, 0.5 * kRounding) << folder;
+            ++told;
+        }
+    }
+    EXPECT_GE(told, one.size() / 2);  // every second site is green, of two images
+}
+
+TEST_F(SurveyCommand, ItsNavigationIsOffAsToldTo) {
+    constexpr double kSixDigits = 2e-6;
+    const auto poses = [&](const std::string& name) {
+        std::vector<Sled> sleds;
+        for (const Leg& leg : flight_of(read_navigation({.source = path(name)}, {}, nullptr)))
+            sleds.push_back(leg.sled);
+        return sleds;
+    };
+    std::vector<std::string> command{"survey",
+                                     "rig.toml",
+                                     "--images",
+                                     "60",
+                                     "--no-noise",
+                                     "--altitude-bias",
+                                     "0.2",
+                                     "--pitch-bias",
+                                     "1.5",
+                                     "--roll-bias",
+                                     "-2.5",
+                                     "--altitude-error",
+                                     "0",
+                                     "--attitude-error",
+                                     "0",
+                                     "-o",
+                                     "biased"};
+    ASSERT_EQ(run(command).status, 0);
+    const std::vector<Sled> flown = poses("biased/navigation.txt");
+    const std::vector<Sled> told = poses("biased/navigation-measured.txt");
+    ASSERT_EQ(told.size(), flown.size());
+    for (std::size_t i = 0; i < flown.size(); ++i) {
+        EXPECT_NEAR(told[i].altitude_m - flown[i].altitude_m, 0.2, kSixDigits);
+        EXPECT_NEAR(told[i].pitch_rad - flown[i].pitch_rad, 1.5 * kRadiansPerDegree, kSixDigits);
+        EXPECT_NEAR(told[i].roll_rad - flown[i].roll_rad, -2.5 * kRadiansPerDegree, kSixDigits);
+    }
+
+    command = {"survey",
+               "rig.toml",
+               "--images",
+               "60",
+               "--no-noise",
+               "--altitude-error",
+               "0.05",
+               "--attitude-error",
+               "2",
+               "-o",
+               "random"};
+    ASSERT_EQ(run(command).status, 0);
+    const std::vector<Sled> scattered = poses("random/navigation-measured.txt");
+    double altitude = 0.0;
+    double pitch = 0.0;
+    for (std::size_t i = 0; i < flown.size(); ++i) {
+        altitude += std::pow(scattered[i].altitude_m - flown[i].altitude_m, 2.0) / 60.0;
+        pitch +=
+            std::pow((scattered[i].pitch_rad - flown[i].pitch_rad) / kRadiansPerDegree, 2.0) / 60.0;
+    }
+    constexpr double kOfSixty = 0.3;  // three standard errors of a deviation by sixty
+    EXPECT_NEAR(std::sqrt(altitude) / 0.05, 1.0, kOfSixty);
+    EXPECT_NEAR(std::sqrt(pitch) / 2.0, 1.0, kOfSixty);
+}
+
 TEST_F(SurveyCommand, TellsItsExposure) {
     std::string toml = text("rig.toml");
     toml.insert(toml.find("resolution"), "exposure_ms = 2.5\niso = 400\nf_number = 4\n");

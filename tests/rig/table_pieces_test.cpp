@@ -17,7 +17,8 @@ constexpr double kRounding = 1e-12;
 // A value each half degree, from the axis to 80 degrees.
 template <typename F>
 BeamTable in_half_degrees(const F& intensity) {
-    BeamTable table{.horizontal_rad = {0.0}};
+    BeamTable table;
+    table.horizontal_rad = {0.0};
     for (int i = 0; i <= 160; ++i) {
         table.vertical_rad.push_back(0.5 * i * kDegree_rad);
         table.intensity.push_back(intensity(table.vertical_rad.back()));

@@ -291,7 +291,8 @@ TEST(Veil, OfASteepBeamBetweenKinks) {
 // has steps, too.
 TEST(Veil, OfATableForMapsIsThatOfTheTable) {
     constexpr double kOfBeam = 0.2 * kVeilBeamOff;  // which it is off by here and there, both ways
-    BeamTable table{.horizontal_rad = {0.0}};
+    BeamTable table;
+    table.horizontal_rad = {0.0};
     for (int i = 0; i <= 120; ++i) {
         table.vertical_rad.push_back(0.5 * i * kDegree_rad);
         table.intensity.push_back(std::pow(std::cos(table.vertical_rad.back()), 8.0) +
