@@ -306,7 +306,8 @@ TEST_F(CommandObserve, WritesNoMapOfNoImage) {
     write_file(path("raw/a.tif"), tiff_of({1, 2, 3, 4}, 2, 2, ""));
     const CommandResult mosaic = observe({});
     EXPECT_EQ(mosaic.status, 2);
-    EXPECT_NE(mosaic.err.find("images looked at can be read; a: found one channel and no --bayer"),
+    EXPECT_NE(mosaic.err.find(
+                  "the only image looked at cannot be read; a: found one channel and no --bayer"),
               std::string::npos)
         << mosaic.err;
 }

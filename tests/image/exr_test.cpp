@@ -201,13 +201,22 @@ TEST(Exr, LeavesNothingBehindUnlessFinished) {
 TEST(Exr, ThatCannotBeReadIsARunErrorThatNamesIt) {
     const TempFolder folder;
     const fs::path file = folder.path() / "image.exr";
-    EXPECT_TRUE(run_error([&] {
-                    const ExrReader in(file);
-                }).starts_with(file.string() + ": is no readable OpenEXR image: "));
     write_file(file, "PNG");
     EXPECT_TRUE(run_error([&] {
                     const ExrReader in(file);
                 }).starts_with(file.string() + ": is no readable OpenEXR image: "));
+}
+
+// Whoever names it has mistyped it.
+TEST(Exr, ThatIsNotThereIsAnInputErrorThatNamesIt) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    try {
+        const ExrReader in(file);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.what(), file.string() + ": cannot be read: No such file or directory");
+    }
 }
 
 TEST(Exr, ThatIsCutShortIsARunErrorThatNamesIt) {

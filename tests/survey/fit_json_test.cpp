@@ -29,7 +29,7 @@ FitResult of_two_numbers() {
 TEST(FitJson, TellsWhatItWasFittedTo) {
     FitResult result = of_two_numbers();
     EXPECT_EQ(to_json(result).at("fitted_to"),
-              nlohmann::json::parse(
+              nlohmann::ordered_json::parse(
                   R"({"images": 3, "altitude_m": [1.0, 3.0], "block_px": 8, "beam": "cosine"})"));
     result.are_maps = true;
     EXPECT_EQ(to_json(result).at("fitted_to").at("maps"), 3);

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of what is written and read back by its decimal digits.
-constexpr double kRounding = 1e-12;
+constexpr double kRounding = 1e-11;  // rigs are written in twelve digits
 
 RigText scene(const std::string& name) {
     return RigText(fs::path(APHOTIC_SOURCE_DIR) / "scenes" / name);
