@@ -12,6 +12,7 @@
 #include "cli/command.h"
 #include "cli/navigation_options.h"
 #include "cli/options.h"
+#include "cli/output_folder.h"
 #include "cli/survey_command.h"
 #include "survey/fit_json.h"
 #include "survey/fit_page.h"
@@ -163,13 +164,14 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     require_other_rig(options);
     const RigText text(std::filesystem::path(options.rig));
     const Rig rig = text.rig();
+    naming(options.rig, [&] { require_bare_floor(rig); });
+    const OutputPlace place(options.folder);
     const RunWatch watch = terminal_watch(options.strict);
     const FitSamples samples = samples_for(options, rig, watch);
     FitOptions fit_options = options.fit;
     fit_options.attitude_error_rad = options.attitude_error_deg * kRadiansPerDegree;
     if (is_given(app, "--free")) fit_options.free = options.free;
     const FitResult result = fit(text, samples, fit_options, watch);
-    make_folder(options.folder);
     write_fitted_rig(text, result, options.folder);
     const nlohmann::ordered_json json = to_json(result);
     write_text_file(options.folder / kFitNumbers, json_text(json));
@@ -206,7 +208,7 @@ Action configure_fit(CLI::App& app) {
     app.add_option("--free",
                    options->free,
                    "Fit these alone: beam, aim, power, water, vignetting, floor, altitude, "
-                   "attitude, gain, or a key of [water]")
+                   "attitude, gain, or numbers by their keys, such as water.multiple")
         ->delimiter(',')
         ->type_name("WHAT,...");
     app.add_option("--altitude-error",

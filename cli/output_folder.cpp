@@ -119,6 +119,14 @@ FolderLock claim_folder(const fs::path& folder) {
     return lock;
 }
 
+OutputPlace::OutputPlace(const fs::path& folder)
+    : folder_(folder), is_new_(!fs::exists(folder)), lock_(claim_folder(folder)) {}
+
+OutputPlace::~OutputPlace() {
+    std::error_code ignored;  // as where it is not empty
+    if (is_new_) fs::remove(folder_, ignored);
+}
+
 FolderLock claim_tree(const fs::path& folder) {
     FolderLock lock = claim_folder(folder);
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {

@@ -19,6 +19,21 @@ namespace aphotic::cli {
 // Until the lock goes no other command takes the folder.
 [[nodiscard]] FolderLock claim_folder(const std::filesystem::path& folder);
 
+// The same for a command that has nothing to write until much later: a folder that cannot be made
+// is found out before. It goes again where nothing came of it.
+class OutputPlace {
+  public:
+    explicit OutputPlace(const std::filesystem::path& folder);
+    ~OutputPlace();
+    OutputPlace(const OutputPlace&) = delete;
+    OutputPlace& operator=(const OutputPlace&) = delete;
+
+  private:
+    std::filesystem::path folder_;
+    bool is_new_;
+    FolderLock lock_;
+};
+
 // The same with all folders below, where a command makes them as it goes.
 [[nodiscard]] FolderLock claim_tree(const std::filesystem::path& folder);
 

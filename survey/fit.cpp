@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/non_negative_fit.h"
+#include "base/words.h"
 #include "survey/fit_check.h"
 #include "survey/fit_jackknife.h"
 #include "survey/random_draw.h"
@@ -164,8 +165,11 @@ int search(const Bench& bench, FitProblem& problem, int most_steps) {
     options.minimizer_progress_to_stdout = false;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &minimised, &summary);
-    if (summary.termination_type == ceres::FAILURE)
-        throw InputError("no rig fits: {}", summary.message);
+    if (summary.termination_type == ceres::FAILURE) {
+        throw InputError(
+            "no rig fits: the search came to one that makes no light; allowed: poses that are the "
+            "images', or a rig nearer to them");
+    }
     problem.state = problem.at(x.data());
     return static_cast<int>(summary.iterations.size()) - 1;
 }
@@ -212,15 +216,16 @@ void start_effects(const Bench& bench, const FitProblem& problem, const EffectVa
 }
 
 // What looks wrong by the light of the rig, before minutes go into it.
-std::vector<Suspicion> look_before(const Bench& bench,
-                                   const FitProblem& problem,
-                                   const FitSamples& samples,
-                                   const RunWatch& watch) {
+void look_before(const Bench& bench,
+                 const FitProblem& problem,
+                 const FitSamples& samples,
+                 const RunWatch& watch,
+                 std::vector<Suspicion>& found) {
     const auto [light, shares] = lit_by(bench, problem);
-    const auto swapped = swapped_channels(samples, bench.light, problem.state, light, shares);
-    if (!swapped) return {};
-    watch.looks_wrong({*swapped});
-    return {*swapped};
+    const auto mistake = mistaken_input(samples, bench.light, problem.state, light, shares);
+    if (!mistake) return;
+    watch.looks_wrong({*mistake});
+    found.push_back(*mistake);
 }
 
 // The share of the work that is done after so many of kRobustRounds and the search before them.
@@ -266,20 +271,53 @@ std::vector<Sled> sleds_of(const FitSamples& samples) {
     return sleds;
 }
 
+// Fluxes of the parts, each with a share of 1.
+VectorXd fluxes_of(const FitBeam& beam) {
+    const auto parts = static_cast<Index>(beam.parts());
+    VectorXd fluxes(parts);
+    for (Index k = 0; k < parts; ++k) fluxes(k) = beam.beam_of(VectorXd::Unit(parts, k)).flux;
+    return fluxes;
+}
+
+// The beam for a flux of 1, i = f beta / (F beta), round about its axis; its error from that of
+// the shares, di/dbeta = (f - i F) / (F beta), and of the exponent.
 std::vector<BeamPoint> curve_of(const FitBeam& beam,
                                 const VectorXd& shares,
                                 const MatrixXd& covariance) {
     constexpr int kPoints = 91;
-    const double flux = beam.beam_of(shares).flux;
+    const VectorXd fluxes = fluxes_of(beam);
+    const double flux = fluxes.dot(shares);
     std::vector<BeamPoint> points;
     for (int i = 0; i < kPoints; ++i) {
         const double theta_rad = std::min(beam.widest_rad(), beam.widest_rad() * i / (kPoints - 1));
         const VectorXd f = beam.parts_at(theta_rad);
+        const double intensity = f.dot(shares) / flux;
+        VectorXd slopes(covariance.rows());
+        slopes.head(shares.size()) = (f - intensity * fluxes) / flux;
+        for (std::size_t k = 0; k < beam.shapes().size(); ++k)
+            slopes(shares.size() + static_cast<Index>(k)) =
+                beam.slopes_at(theta_rad).at(k) * shares(0) / flux;
         points.push_back({.theta_rad = theta_rad,
-                          .intensity = f.dot(shares) / flux,
-                          .error = std::sqrt(std::max(0.0, f.dot(covariance * f))) / flux});
+                          .intensity = intensity,
+                          .error = std::sqrt(std::max(0.0, slopes.dot(covariance * slopes)))});
     }
     return points;
+}
+
+// Where the beam's shares and shapes stand in the covariance.
+std::vector<Index> rows_of_beam(const FitResult& result, std::size_t beam) {
+    Index first = 0;
+    for (std::size_t b = 0; b < beam; ++b)
+        first += static_cast<Index>(result.state.beams[b].parts());
+    std::vector<Index> rows;
+    for (std::size_t k = 0; k < result.state.beams[beam].parts(); ++k)
+        rows.push_back(first + static_cast<Index>(k));
+    for (std::size_t k = 0; k < result.numbers.size(); ++k) {
+        const FitNumber& number = result.numbers[k].number;
+        if (number.part == FitPart::BeamShape && number.of == beam)
+            rows.push_back(result.shares.size() + static_cast<Index>(k));
+    }
+    return rows;
 }
 
 double objective(const Bench& bench, const FitProblem& problem) {
@@ -420,6 +458,13 @@ void look_at_rivals(const std::vector<Rival>& rivals,
     double all = 0.0;
     double most = kElsewhere;
     std::optional<Suspicion> doubt;
+    // To an error of each number.
+    const auto is_new = [&](const Rival& rival) {
+        return std::ranges::none_of(result.rivals, [&](const Rival& other) {
+            const VectorXd apart = (rival.values - other.values).tail(count).cwiseAbs();
+            return (apart.array() < errors.tail(count).array()).all();
+        });
+    };
     for (const Rival& rival : rivals) {
         if (rival.excess > kAsGood) continue;
         const VectorXd off = rival.values - rivals.front().values;
@@ -429,7 +474,7 @@ void look_at_rivals(const std::vector<Rival>& rivals,
         Index worst = 0;
         const double in_errors =
             off.tail(count).cwiseAbs().cwiseQuotient(errors.tail(count)).maxCoeff(&worst);
-        if (in_errors > kElsewhere) result.rivals.push_back(rival);
+        if (in_errors > kElsewhere && is_new(rival)) result.rivals.push_back(rival);
         if (in_errors <= most) continue;
         most = in_errors;
         const FreeNumber& number = problem.free[static_cast<std::size_t>(worst)];
@@ -476,7 +521,6 @@ FitResult result_of(const Bench& bench,
     result.blocks = bench.equations.blocks();
     result.tiles = at.normal.tiles;
     result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
-    result.looks_wrong = samples.looks_wrong;
     result.are_maps = samples.are_maps;
     result.block_px = samples.places.block_px;
     if (!samples.are_maps && samples.images.size() >= kFewGroups) {
@@ -501,18 +545,14 @@ FitResult result_of(const Bench& bench,
              .per_unit = one.per_unit,
              .is_at_bound = value <= one.least || value >= one.most});
     }
-    for (const Suspicion& one : suspicions(samples, result)) result.looks_wrong.push_back(one);
     result.confounded = confounded_in(result.covariance, parts, problem.free);
-    Index first = 0;
-    for (const FitBeam& beam : result.state.beams) {
+    for (std::size_t b = 0; b < result.state.beams.size(); ++b) {
+        const FitBeam& beam = result.state.beams[b];
+        if (!beam.is_round()) continue;
+        const std::vector<Index> rows = rows_of_beam(result, b);
         const auto count = static_cast<Index>(beam.parts());
-        if (beam.kind() == FitBeamKind::Table || beam.kind() == FitBeamKind::Cosine) {
-            result.beam_curves.push_back(
-                curve_of(beam,
-                         result.shares.segment(first, count),
-                         result.covariance.block(first, first, count, count)));
-        }
-        first += count;
+        result.beam_curves.push_back(curve_of(
+            beam, result.shares.segment(rows.front(), count), result.covariance(rows, rows)));
     }
     return result;
 }
@@ -540,7 +580,7 @@ void hold(const std::vector<NotTold>& untold,
     if (options.free) {
         std::vector<std::string> words;
         for (const NotTold& one : untold) words.push_back(words_of(one));
-        throw InputError("{}", fmt::join(words, "; "));
+        throw InputError("--free: {}", fmt::join(words, "; "));
     }
     for (const NotTold& one : untold) {
         const auto at = std::ranges::find(problem.free, one.key, &FreeNumber::key);
@@ -552,17 +592,26 @@ void hold(const std::vector<NotTold>& untold,
 
 }  // namespace
 
+void require_bare_floor(const Rig& rig) {
+    if (!rig.objects.empty()) {
+        throw InputError("found {}; allowed: none, for a survey shows the bare floor on average",
+                         counted(rig.objects.size(), "object"));
+    }
+    if (!rig.scene.empty())
+        throw InputError(
+            "scene: found {}; allowed: none, for a survey shows the bare floor on average",
+            rig.scene.string());
+    if (rig.seafloor.phong > 0.0)
+        throw InputError("seafloor.phong: found {}; allowed: 0, for a fit's floor is matt",
+                         rig.seafloor.phong);
+}
+
 FitResult fit(const RigText& text,
               const FitSamples& samples,
               const FitOptions& options,
               const RunWatch& watch) {
     const Rig rig = text.rig();
-    if (!rig.objects.empty() || !rig.scene.empty())
-        throw InputError(
-            "found objects or a scene; allowed: the bare floor, which a survey shows on average");
-    if (rig.seafloor.phong > 0.0)
-        throw InputError("seafloor.phong: found {}; allowed: 0, for a fit's floor is matt",
-                         rig.seafloor.phong);
+    require_bare_floor(rig);
     const FitLight light(rig, samples.places);
     const std::vector<Sled> sleds = sleds_of(samples);
     const PathRange paths = light.paths(sleds);
@@ -580,7 +629,7 @@ FitResult fit(const RigText& text,
                       .learns_effects = samples.images.size() >= kFewestToLearn};
     const EffectVariances effects = first_effects(options, samples.are_maps);
     std::vector<std::string> fixed = words_fixed_in(problem);
-    std::vector<Suspicion> doubts;
+    std::vector<Suspicion> doubts = samples.looks_wrong;
     std::vector<NotTold> all_untold;
     std::vector<FreeNumber> held;
     int steps = 0;
@@ -592,7 +641,7 @@ FitResult fit(const RigText& text,
         equations.assume_noise();
         if (is_first) {
             start_gains(bench, problem);
-            doubts = look_before(bench, problem, samples, watch);
+            look_before(bench, problem, samples, watch, doubts);
         }
         equations.tie_parts(problem.state, lit_by(bench, problem).shares);
         steps += search(bench, problem, kFirstSteps);
@@ -613,8 +662,9 @@ FitResult fit(const RigText& text,
     }
     FitResult result = result_of(bench, problem, held, samples, rivals, watch);
     watch.progress("fitting", 1.0);
-    result.looks_wrong.insert(result.looks_wrong.begin(), doubts.begin(), doubts.end());
     result.held = std::move(all_untold);
+    for (const Suspicion& one : suspicions(samples, result)) doubts.push_back(one);
+    result.looks_wrong.insert(result.looks_wrong.begin(), doubts.begin(), doubts.end());
     result.fixed = std::move(fixed);
     result.rounds = static_cast<int>(kRobustRounds.size()) + 1;
     result.steps = steps;

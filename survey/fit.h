@@ -100,7 +100,7 @@ struct FitResult {
     std::vector<NotTold> held;
     std::vector<std::string> fixed;                   // words of --free: as the rig has them
     std::vector<Confounded> confounded;               // |correlation| over 0.9, the largest first
-    std::vector<std::vector<BeamPoint>> beam_curves;  // of tables and cosines, by beam
+    std::vector<std::vector<BeamPoint>> beam_curves;  // of fitted ones that are round
     FitResiduals left;
     std::vector<Rival> rivals;  // as good as the answer, and over two errors from it
     std::vector<Suspicion> looks_wrong;
@@ -113,6 +113,9 @@ struct FitResult {
     int rounds = 0;
     int steps = 0;
 };
+
+// An InputError for a rig whose floor a fit does not know: with objects, a scene, or a gloss.
+void require_bare_floor(const Rig& rig);
 
 [[nodiscard]] FitResult fit(const RigText& rig,
                             const FitSamples& samples,

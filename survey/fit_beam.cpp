@@ -224,6 +224,12 @@ Eigen::VectorXd FitBeam::parts_at(double theta_rad) const {
     return parts;
 }
 
+std::array<double, 2> FitBeam::slopes_at(double theta_rad) const {
+    std::vector<BeamPartValue> values;
+    at({std::sin(theta_rad), 0.0, std::cos(theta_rad)}, true, values);
+    return values.empty() ? std::array<double, 2>{} : values.front().by_shape;
+}
+
 FitBeam::Fitted FitBeam::beam_of(const Eigen::VectorXd& shares) const {
     if (kind_ == FitBeamKind::Table) {
         const double step_rad = kFittedStep_deg * pi / 180.0;

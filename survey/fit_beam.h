@@ -69,8 +69,14 @@ class FitBeam {
     // Those that are not 0 there; of differences, the slopes only where they are asked for.
     void at(const Eigen::Vector3d& w, bool has_slopes, std::vector<BeamPartValue>& values) const;
 
-    // I with these shares off the axis, of a table.
+    // Whether it is one that is fitted and the same all about its axis.
+    [[nodiscard]] bool is_round() const {
+        return kind_ == FitBeamKind::Table || kind_ == FitBeamKind::Cones ||
+               kind_ == FitBeamKind::Cosine;
+    }
+    // Of a round one, off its axis: each part, and the first part's slopes over the shapes.
     [[nodiscard]] Eigen::VectorXd parts_at(double theta_rad) const;
+    [[nodiscard]] std::array<double, 2> slopes_at(double theta_rad) const;
     // As a rig has it: scaled to a flux of 1, and that flux.
     struct Fitted {
         Beam beam;

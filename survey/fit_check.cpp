@@ -71,14 +71,17 @@ void look_for_far_numbers(const FitResult& result, std::vector<Suspicion>& found
         const double off = std::abs(one.value - one.start);
         const bool has_none = one.start == 0.0 && one.value == 0.0;  // and the rig told of none
         if ((!one.is_at_bound || has_none) && off <= kFarthest * one.plausible) continue;
+        std::string held;
+        for (const NotTold& none : result.held) held += fmt::format(", another {}", none.key);
         found.push_back(
             {"range",
              fmt::format("{} went from {:.3g} to {:.3g}, where {:.2g} is plausible: another beam, "
-                         "lens or water than the fit allows, or other poses",
+                         "lens or water than the fit allows{}, or other poses",
                          one.key,
                          one.start,
                          one.value,
-                         one.plausible)});
+                         one.plausible,
+                         held)});
     }
 }
 
@@ -144,17 +147,18 @@ ImageLook look_at(const FitImage& image, const VectorXd& signal) {
 
 }  // namespace
 
-std::optional<Suspicion> swapped_channels(const FitSamples& samples,
-                                          const FitLight& fit_light,
-                                          const FitState& state,
-                                          const PathLight& light,
-                                          const VectorXd& shares) {
+std::optional<Suspicion> mistaken_input(const FitSamples& samples,
+                                        const FitLight& fit_light,
+                                        const FitState& state,
+                                        const PathLight& light,
+                                        const VectorXd& shares) {
     std::vector<ImageLook> looks;
     FitLight::Rows parts;
     for (const FitImage& image : samples.images) {
         fit_light.parts_into(state, light, image.sled, parts);
         looks.push_back(look_at(image, parts * shares));
     }
+    if (const auto turned = turned_brightness(looks)) return turned;
     return red_for_blue(looks, samples.mosaic);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Before a fit, by the light of the rig that it begins with: red and blue that are swapped
-// (survey_check.h). After it, signs that its model is not the images', or that its errors may not
-// hold:
+// Before a fit, by the light of the rig that it begins with: poses of other images, and red and
+// blue that are swapped (survey_check.h). After it, signs that its model is not the images', or
+// that its errors may not hold:
 //
 //   pattern     residuals that stay in place from image to image, over kMostPattern rms
 //   altitude    brightness left of kFewestImages or more that goes with the altitude, over
@@ -40,11 +40,11 @@ inline constexpr double kOneAltitude = 1.25;
 inline constexpr double kMostTexture = 0.003;
 inline constexpr double kMostSaturation = 0.02;
 
-[[nodiscard]] std::optional<Suspicion> swapped_channels(const FitSamples& samples,
-                                                        const FitLight& fit_light,
-                                                        const FitState& state,
-                                                        const PathLight& light,
-                                                        const Eigen::VectorXd& shares);
+[[nodiscard]] std::optional<Suspicion> mistaken_input(const FitSamples& samples,
+                                                      const FitLight& fit_light,
+                                                      const FitState& state,
+                                                      const PathLight& light,
+                                                      const Eigen::VectorXd& shares);
 
 [[nodiscard]] std::vector<Suspicion> suspicions(const FitSamples& samples, const FitResult& result);
 

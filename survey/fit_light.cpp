@@ -267,34 +267,51 @@ struct Scene {
 
 namespace {
 
-// Second differences along one way of a grid, at its ends those beside them: places by places.
-void add_differences(std::size_t places,
-                     std::size_t count,
-                     std::size_t apart,
-                     double factor,
-                     std::vector<Eigen::Triplet<double>>& weights) {
-    if (count < 3) return;
-    for (std::size_t k = 0; k < places; ++k) {
-        const std::size_t along = k / apart % count;
-        const std::size_t middle = std::clamp<std::size_t>(along, 1, count - 2);
-        const std::size_t at = k - along * apart + middle * apart;
-        for (const auto& [place, weight] :
-             {std::pair{at - apart, 1.0}, {at, -2.0}, {at + apart, 1.0}})
-            weights.emplace_back(static_cast<int>(k), static_cast<int>(place), factor * weight);
+// The mean over a block by its neighbours' middles, along one way of a grid.
+struct BlockMean {
+    std::size_t first = 0;  // block
+    std::vector<double> weights;
+};
+
+// By Lagrange's polynomial through the middles, at each of the block's pixels.
+BlockMean mean_over(std::size_t block, std::size_t blocks, int block_px) {
+    const std::size_t size = std::min(kMeanBlocks, blocks);
+    const std::size_t before = std::min(block, size / 2);
+    BlockMean mean{.first = std::min(block - before, blocks - size),
+                   .weights = std::vector<double>(size, 0.0)};
+    for (int pixel = 0; pixel < block_px; ++pixel) {
+        const double at = static_cast<double>(block - mean.first) + (pixel + 0.5) / block_px - 0.5;
+        for (std::size_t i = 0; i < size; ++i) {
+            double share = 1.0 / block_px;
+            for (std::size_t k = 0; k < size; ++k) {
+                if (k == i) continue;
+                share *= (at - static_cast<double>(k)) /
+                         (static_cast<double>(i) - static_cast<double>(k));
+            }
+            mean.weights[i] += share;
+        }
     }
+    return mean;
 }
 
 Eigen::SparseMatrix<double, Eigen::RowMajor> means_over_blocks(const FitPlaces& places) {
     Eigen::SparseMatrix<double, Eigen::RowMajor> means;
     if (places.block_px < 2) return means;
-    const std::size_t across =
+    const auto across =
         static_cast<std::size_t>(std::ranges::count(places.rows, places.rows.front()));
-    const double factor = (1.0 - std::pow(places.block_px, -2.0)) / 24.0;
+    const std::size_t down = places.size() / across;
     std::vector<Eigen::Triplet<double>> weights;
-    for (std::size_t k = 0; k < places.size(); ++k)
-        weights.emplace_back(static_cast<int>(k), static_cast<int>(k), 1.0);
-    add_differences(places.size(), across, 1, factor, weights);
-    add_differences(places.size(), places.size() / across, across, factor, weights);
+    for (std::size_t place = 0; place < places.size(); ++place) {
+        const BlockMean x = mean_over(place % across, across, places.block_px);
+        const BlockMean y = mean_over(place / across, down, places.block_px);
+        for (std::size_t j = 0; j < y.weights.size(); ++j) {
+            for (std::size_t i = 0; i < x.weights.size(); ++i) {
+                weights.emplace_back(static_cast<int>(place),
+                                     static_cast<int>((y.first + j) * across + x.first + i),
+                                     x.weights[i] * y.weights[j]);
+            }
+        }
+    }
     means.resize(static_cast<Index>(places.size()), static_cast<Index>(places.size()));
     means.setFromTriplets(weights.begin(), weights.end());
     return means;

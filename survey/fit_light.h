@@ -16,8 +16,8 @@
 // kFitVeilPoints of Gauss and Legendre's over the angle at the lamp, at kFitVeilNodes across and
 // down the image at most; between these it is the cubic through the four next of each way.
 //
-// The mean over a block of b pixels a side is that of its middle and (1 - 1/b^2)/24 of its second
-// differences from the blocks beside it, each way; at the image's edge, of its neighbour's.
+// The mean over a block is that of its pixels of the polynomial through the middles of the
+// kMeanBlocks next blocks, each way.
 //
 // Aim is turned by two small angles, towards `along` and `across` of the rig's own frame of the
 // strobe (rig/beam.h). Offsets are added to the altitude, pitch and roll that the navigation tells.
@@ -40,6 +40,7 @@ namespace aphotic {
 
 inline constexpr unsigned kFitVeilPoints = 12;
 inline constexpr std::size_t kFitVeilNodes = 13;
+inline constexpr std::size_t kMeanBlocks = 5;
 // By how much an aim may be off before the beam's table ends within the image; and how much farther
 // off their axes lamps light water that the image sees.
 inline constexpr double kAimRoom_rad = 0.15;

@@ -62,7 +62,7 @@ std::string warnings(const FitResult& result) {
 std::string numbers(const FitResult& result) {
     std::vector<HtmlRow> rows;
     for (const FittedNumber& one : result.numbers) {
-        rows.push_back({.style = "",
+        rows.push_back({.style = one.is_at_bound ? "fails" : "",
                         .cells = {user_text(one.key),
                                   plain(one.start),
                                   plain(one.value),

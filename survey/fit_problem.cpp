@@ -36,19 +36,43 @@ constexpr std::array kWords{
     "beam", "aim", "power", "water", "vignetting", "floor", "altitude", "attitude", "gain"};
 constexpr std::size_t kByDefault = 6;
 
+// Of keys that may be asked for by themselves: what is in them, and the word that they are part of.
+struct KeyOfWord {
+    std::string_view within;
+    std::string_view word;
+};
+constexpr std::array<KeyOfWord, 8> kKeys{{{".aim_a", "aim"},
+                                          {".power", "power"},
+                                          {"camera.vignetting.a", "vignetting"},
+                                          {"floor.brightness", "floor"},
+                                          {"sled.altitude_offset_m", "altitude"},
+                                          {"camera.pitch_offset_deg", "attitude"},
+                                          {"camera.roll_offset_deg", "attitude"},
+                                          {"gain.", "gain"}}};
+
+std::string_view word_with(std::string_view key) {
+    for (const auto& [within, word] : kKeys)
+        if (key.find(within) != std::string_view::npos) return word;
+    return {};
+}
+
+// By the word, or by a key that is part of it.
 bool is_asked(const FitOptions& options, const std::string& word) {
     if (!options.free)
         return std::find(kWords.begin(), kWords.begin() + kByDefault, word) !=
                kWords.begin() + kByDefault;
-    return std::ranges::find(*options.free, word) != options.free->end();
+    return std::ranges::any_of(*options.free, [&](const std::string& asked) {
+        return asked == word || word_with(asked) == word;
+    });
 }
 
 void require_known(const FitOptions& options, const Rig& rig) {
     for (const std::string& word : options.free.value_or(std::vector<std::string>{})) {
-        if (std::ranges::find(kWords, word) != kWords.end() || word.starts_with("water.")) continue;
+        if (std::ranges::find(kWords, word) != kWords.end() || word.starts_with("water.") ||
+            !word_with(word).empty())
+            continue;
         throw InputError(
-            "--free: found '{}'; allowed: {}, or a number of [water] as "
-            "water.multiple",
+            "--free: found '{}'; allowed: {}, or one number by its key, as water.multiple",
             word,
             fmt::join(kWords, ", "));
     }
@@ -239,6 +263,27 @@ void add_camera(const Rig& rig,
     }
 }
 
+// Of a word that was not asked for as a whole, the numbers alone that were.
+void keep_those_asked(const FitOptions& options, FitProblem& problem) {
+    if (!options.free) return;
+    const auto has = [&](std::string_view word) {
+        return std::ranges::find(*options.free, word) != options.free->end();
+    };
+    for (const std::string& key : *options.free) {
+        const std::string_view word = word_with(key);
+        if (word.empty() || key.starts_with("water.") ||
+            std::ranges::count(problem.free, key, &FreeNumber::key) > 0)
+            continue;
+        std::vector<std::string> allowed;
+        for (const FreeNumber& one : problem.free)
+            if (one.group == word) allowed.push_back(one.key);
+        throw InputError("--free: found '{}'; allowed: {}", key, fmt::join(allowed, ", "));
+    }
+    std::erase_if(problem.free, [&](const FreeNumber& one) {
+        return !word_with(one.key).empty() && !has(one.group) && !has(one.key);
+    });
+}
+
 }  // namespace
 
 std::vector<FitNumber> FitProblem::numbers() const {
@@ -295,6 +340,7 @@ FitProblem fit_problem(const RigText& text, const FitOptions& options, const Fit
     add_beams(rig, options, angles, state, problem.free);
     add_strobes(rig, options, state, problem.free);
     add_camera(rig, options, state, problem.free);
+    keep_those_asked(options, problem);
     for (FreeNumber& one : problem.free) one.start = number_in(state, one.number);
     return problem;
 }
@@ -304,6 +350,9 @@ std::vector<std::string> words_fixed_in(const FitProblem& problem) {
     for (const FreeNumber& one : problem.free) free.insert(one.group);
     for (const FitBeam& beam : problem.state.beams)
         if (beam.kind() != FitBeamKind::Held) free.insert("beam");
+    // A beam of its own has its own power.
+    const FitState& state = problem.state;
+    if (free.contains("beam") && state.beams.size() == state.beam_of.size()) free.insert("power");
     std::vector<std::string> fixed;
     for (const char* word : kWords)
         if (!free.contains(word)) fixed.emplace_back(word);

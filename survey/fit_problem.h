@@ -21,7 +21,7 @@ struct FitOptions {
     FitBeamKind beam = FitBeamKind::Table;
     std::size_t parts = 40;      // of a table
     bool has_beam_each = false;  // each strobe its own
-    // beam, aim, power, water, vignetting, floor, altitude, attitude, gain, or a key of [water];
+    // beam, aim, power, water, vignetting, floor, altitude, attitude, gain, or the key of a number;
     // none: the first six, as far as they can be told. floor is its brightness, which in water that
     // scatters the veil tells. Its colour is free besides, unless the channels' gains are: these
     // two cannot be parted.

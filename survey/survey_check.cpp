@@ -188,13 +188,26 @@ std::string range_of(std::span<const ImageLook> looks) {
     return fmt::format("{:g} to {:g} m", *lowest.altitude_m, *highest.altitude_m);
 }
 
-void check_altitude(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
-    std::vector<double> maps;
+// Logarithms of a channel over the images: of their light, and of themselves.
+struct Brightness {
+    std::vector<double> light;
     std::vector<double> images;
+};
+Brightness brightness_of(std::span<const ImageLook> looks, std::size_t channel) {
+    Brightness of;
     for (const ImageLook& look : looks) {
-        maps.push_back(std::log(look.map_mean[kGreenChannel]));
-        images.push_back(maps.back() + std::log(look.quotient[kGreenChannel]));
+        of.light.push_back(std::log(look.map_mean[channel]));
+        of.images.push_back(of.light.back() + std::log(look.quotient[channel]));
     }
+    return of;
+}
+
+bool is_turned(const Line& line) {
+    return 1.0 - line.slope >= std::max(kTurned, kStandardErrors * line.error);
+}
+
+void check_altitude(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
+    const auto [maps, images] = brightness_of(looks, kGreenChannel);
     const Line line = line_through(maps, images);
     if (std::abs(line.slope - 1.0) < std::max(kSlope, kStandardErrors * line.error)) return;
     found.push_back({.about = "altitude",
@@ -343,15 +356,32 @@ Likeness likeness(const RawImage& raw,
     return {.xx = sums.xx, .xy = sums.xy};
 }
 
+std::optional<Suspicion> turned_brightness(std::span<const ImageLook> looks) {
+    const auto [light, images] = brightness_of(lit(looks), kGreenChannel);
+    if (!is_turned(line_through(light, images))) return std::nullopt;
+    return Suspicion{
+        .about = "altitude",
+        .what = fmt::format(
+            "brightness varies {:.3g}-fold over the images' altitudes where the rig's light varies "
+            "{:.3g}-fold the other way: poses of other images, or another altitude column",
+            fold_of(images),
+            fold_of(light))};
+}
+
 std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks, Mosaic mosaic) {
+    const std::vector<ImageLook> lit_looks = lit(looks);
+    const Brightness red = brightness_of(lit_looks, kRed);
+    const Brightness green = brightness_of(lit_looks, kGreenChannel);
+    const Brightness blue = brightness_of(lit_looks, kBlue);
     std::vector<double> light;
     std::vector<double> images;
-    for (const ImageLook& look : lit(looks)) {
-        light.push_back(std::log(look.map_mean[kRed] / look.map_mean[kBlue]));
-        images.push_back(light.back() + std::log(look.quotient[kRed] / look.quotient[kBlue]));
+    for (std::size_t i = 0; i < lit_looks.size(); ++i) {
+        light.push_back(red.light[i] - blue.light[i]);
+        images.push_back(red.images[i] - blue.images[i]);
     }
-    const Line line = line_through(light, images);
-    if (1.0 - line.slope < std::max(kTurned, kStandardErrors * line.error)) return std::nullopt;
+    if (!is_turned(line_through(light, images)) ||
+        line_through(green.light, green.images).slope < kSlope)
+        return std::nullopt;
     return Suspicion{
         .about = "bayer",
         .what = fmt::format(

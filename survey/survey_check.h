@@ -10,7 +10,7 @@
 // bayer        Both green sites see one light, so their medians agree. Where those that the pattern
 //              makes green differ by over kGreen, and the other two by under a fourth of that, the
 //              pattern is another. Red and blue that are swapped: log(red / blue) of the images
-//              falls over altitude where that of the light rises.
+//              falls over altitude where that of the light rises, and green falls with it.
 // altitude     Over the images, log(image) = s log(map) + const with s = 1 whatever the floor's
 //              mean, in the green channel. Told where s is off by over kSlope and by five of its
 //              standard errors, of kEnoughImages and more at altitudes that differ.
@@ -96,7 +96,10 @@ struct Suspicion {
 [[nodiscard]] std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Suspicion>& suspicions);
 
-// Of images at altitudes that differ: red and blue that are swapped.
+// Of images at altitudes that differ, in the light of a rig that is about right: what runs the
+// other way. The green channel's brightness: poses of other images. Where that goes as it should,
+// red over blue: these two are swapped.
+[[nodiscard]] std::optional<Suspicion> turned_brightness(std::span<const ImageLook> looks);
 [[nodiscard]] std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks,
                                                     Mosaic mosaic);
 

@@ -356,6 +356,10 @@ TEST(CommandFit, SaysWhatItNeeds) {
     refused({"--parts", "20", "--beam", "cosine"},
             "--parts: found with another beam; allowed: with --beam table");
     refused({}, "a.exr: cannot be read: No such file or directory");
+    // Before the images are read, which take longer.
+    run = run_aphotic(folder.path(), {"fit", "rig.toml", "--maps", "a.exr", "-o", "rig.toml/in"});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_NE(run.err.find("rig.toml/in: cannot be created: "), std::string::npos) << run.err;
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "fitted"));
 
     std::filesystem::rename(folder.path() / "rig.toml", folder.path() / "fitted.toml");

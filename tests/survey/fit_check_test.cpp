@@ -108,6 +108,18 @@ TEST(FitCheck, NumbersThatAreFarFromTheRigs) {
     EXPECT_EQ(fitted.signs(), "");
 }
 
+// What is held may be what another number makes up for.
+TEST(FitCheck, NumbersAtTheirEndsNameWhatIsHeld) {
+    Fitted fitted;
+    fitted.result.numbers[0].value = 1.0 + 1.1 * kFarthest * fitted.result.numbers[0].plausible;
+    fitted.result.held = {{.key = "water.chlorophyll_mg_m3"}};
+    const std::vector<Suspicion> found = suspicions(fitted.samples, fitted.result);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NE(found[0].what.find("than the fit allows, another water.chlorophyll_mg_m3, or"),
+              std::string::npos)
+        << found[0].what;
+}
+
 TEST(FitCheck, OneAltitude) {
     Fitted fitted;
     fitted.samples.images.resize(2);

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <variant>
@@ -42,6 +43,45 @@ TEST(FitProblem, RefusesANumberThatTheWaterHasNot) {
                           "'; allowed of this water: water.multiple, water.uniform_loss_per_m");
         }
     }
+}
+
+// Of vignetting or aims one number may be told where the others are not.
+TEST(FitProblem, TakesNumbersByTheirKeys) {
+    FitOptions options;
+    const auto keys = [&](const std::vector<std::string>& asked) {
+        options.free = asked;
+        std::vector<std::string> found;
+        for (const FreeNumber& one : fit_problem(fit_rig({}), options, {.widest_rad = 1.0}).free)
+            if (one.group != kFloorColour) found.push_back(one.key);
+        return found;
+    };
+    const std::vector<std::string> two{"strobe.aft.aim_across_deg", "camera.vignetting.a1"};
+    EXPECT_EQ(keys(two), two);
+    EXPECT_EQ(keys({"camera.vignetting.a2", "vignetting"}).size(), 3U);
+    EXPECT_EQ(keys({"gain.R"}).front(), "gain.R");
+    try {
+        keys({"strobe.stern.aim_along_deg"});
+        ADD_FAILURE();
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "--free: found 'strobe.stern.aim_along_deg'; allowed: "
+                     "strobe.fore.aim_along_deg, strobe.fore.aim_across_deg, "
+                     "strobe.aft.aim_along_deg, strobe.aft.aim_across_deg");
+    }
+    // The first strobe's power is what the others' are relative to.
+    EXPECT_THROW(keys({"strobe.fore.power"}), InputError);
+}
+
+TEST(FitProblem, ABeamOfItsOwnHasItsOwnPower) {
+    FitOptions options;
+    options.free = {{"beam"}};
+    const auto is_power_fixed = [&] {
+        const FitProblem problem = fit_problem(fit_rig({}), options, {.widest_rad = 1.0});
+        return std::ranges::count(words_fixed_in(problem), "power") > 0;
+    };
+    EXPECT_TRUE(is_power_fixed());
+    options.has_beam_each = true;
+    EXPECT_FALSE(is_power_fixed());
 }
 
 TEST(FitProblem, TellsALensInTheRigsUnits) {

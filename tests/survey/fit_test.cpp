@@ -248,6 +248,20 @@ TEST(Fit, FindsTheExponentOfACosine) {
     options.beam = FitBeamKind::Cosine;
     const FitResult result = fit(guess(), samples, options, {});
     expect_told(result, "strobe.fore.beam.exponent", 6.0);
+    // (n + 1)/(2 pi) cos^n, whose error is that of n.
+    const auto exponent =
+        std::ranges::find(result.numbers, "strobe.fore.beam.exponent", &FittedNumber::key);
+    ASSERT_EQ(result.beam_curves.size(), 1U);
+    for (const BeamPoint& point : result.beam_curves[0]) {
+        constexpr double kRounding = 1e-9;
+        const double n = exponent->value;
+        const double cosine = std::cos(point.theta_rad);
+        if (cosine < 0.1) continue;
+        const double intensity = (n + 1.0) / (2.0 * std::numbers::pi) * std::pow(cosine, n);
+        const double slope = intensity * (1.0 / (n + 1.0) + std::log(cosine));
+        EXPECT_NEAR(point.intensity, intensity, kRounding);
+        EXPECT_NEAR(point.error, std::abs(slope) * exponent->error, kRounding);
+    }
     const TempFolder folder;
     write_fitted_rig(guess(), result, folder.path());
     EXPECT_LT(

@@ -172,6 +172,26 @@ TEST(SurveyCheck, RedAndBlueThatAreSwappedAreTold) {
               std::string::npos);
 }
 
+// Poses of other images turn brightness and colours alike, and no pattern puts them right.
+TEST(SurveyCheck, PosesOfOtherImagesAreNoSwappedColours) {
+    std::vector<ImageLook> right = survey(1, 16, [](double h) { return h; });
+    EXPECT_FALSE(turned_brightness(right));
+    EXPECT_FALSE(red_for_blue(right, Mosaic::Rggb));
+    std::vector<ImageLook> reversed = right;
+    for (std::size_t i = 0; i < right.size(); ++i) {
+        const ImageLook& other = right[right.size() - 1 - i];
+        for (std::size_t c = 0; c < 3; ++c) {
+            reversed[i].quotient[c] =
+                other.quotient[c] * other.map_mean[c] / reversed[i].map_mean[c];
+        }
+    }
+    const auto turned = turned_brightness(reversed);
+    ASSERT_TRUE(turned);
+    EXPECT_EQ(turned->about, "altitude");
+    EXPECT_NE(turned->what.find("poses of other images"), std::string::npos) << turned->what;
+    EXPECT_FALSE(red_for_blue(reversed, Mosaic::Rggb));
+}
+
 TEST(SurveyCheck, GreenSitesThatDifferAreNoGreenSites) {
     ImageLook look;
     look.sites = {{100.0, 180.0, 182.0, 60.0}};
