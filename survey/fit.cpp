@@ -186,12 +186,12 @@ void start_gains(const Bench& bench, FitProblem& problem) {
 }
 
 // An answer's light, and what of it each part has.
-struct Lit {
+struct LitAnswer {
     PathLight light;
     VectorXd shares;
 };
 
-Lit lit_by(const Bench& bench, const FitProblem& problem) {
+LitAnswer lit_by(const Bench& bench, const FitProblem& problem) {
     PathLight light = bench.path_light(problem.state, false);
     VectorXd shares = shares_of(bench.equations.parts(problem.state, light)).shares;
     if (!(shares.maxCoeff() > 0.0)) {
@@ -271,34 +271,24 @@ std::vector<Sled> sleds_of(const FitSamples& samples) {
     return sleds;
 }
 
-// Fluxes of the parts, each with a share of 1.
-VectorXd fluxes_of(const FitBeam& beam) {
-    const auto parts = static_cast<Index>(beam.parts());
-    VectorXd fluxes(parts);
-    for (Index k = 0; k < parts; ++k) fluxes(k) = beam.beam_of(VectorXd::Unit(parts, k)).flux;
-    return fluxes;
-}
-
-// The beam for a flux of 1, i = f beta / (F beta), round about its axis; its error from that of
-// the shares, di/dbeta = (f - i F) / (F beta), and of the exponent.
+// The beam scaled to a flux of 1, by its flux as fitted: where nobody looks that is told badly, and
+// the shape elsewhere is none the worse for it. Errors are those of the shares and the exponent.
 std::vector<BeamPoint> curve_of(const FitBeam& beam,
                                 const VectorXd& shares,
                                 const MatrixXd& covariance) {
     constexpr int kPoints = 91;
-    const VectorXd fluxes = fluxes_of(beam);
-    const double flux = fluxes.dot(shares);
+    const double flux = beam.beam_of(shares).flux;
     std::vector<BeamPoint> points;
     for (int i = 0; i < kPoints; ++i) {
         const double theta_rad = std::min(beam.widest_rad(), beam.widest_rad() * i / (kPoints - 1));
         const VectorXd f = beam.parts_at(theta_rad);
-        const double intensity = f.dot(shares) / flux;
         VectorXd slopes(covariance.rows());
-        slopes.head(shares.size()) = (f - intensity * fluxes) / flux;
+        slopes.head(shares.size()) = f / flux;
         for (std::size_t k = 0; k < beam.shapes().size(); ++k)
             slopes(shares.size() + static_cast<Index>(k)) =
                 beam.slopes_at(theta_rad).at(k) * shares(0) / flux;
         points.push_back({.theta_rad = theta_rad,
-                          .intensity = intensity,
+                          .intensity = f.dot(shares) / flux,
                           .error = std::sqrt(std::max(0.0, slopes.dot(covariance * slopes)))});
     }
     return points;

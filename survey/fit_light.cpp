@@ -494,14 +494,14 @@ void FitLight::average_over_blocks(Rows& rows) const {
 }
 
 bool FitLight::is_bright(const FitState& state) const {
-    constexpr int kSteps = 64;
+    constexpr int kRadii = 64;
     const Camera& camera = rig_.camera;
     double farthest2 = 0.0;
     for (const int column : {0, camera.width_px})
         for (const int row : {0, camera.height_px})
             farthest2 = std::max(farthest2, radial_square(camera, column, row));
-    for (int i = 0; i <= kSteps && !state.vignetting.empty(); ++i) {
-        if (vignetting_of(state.vignetting, farthest2 * i / kSteps) <= 0.0) return false;
+    for (int i = 0; i <= kRadii && !state.vignetting.empty(); ++i) {
+        if (vignetting_of(state.vignetting, farthest2 * i / kRadii) <= 0.0) return false;
     }
     return true;
 }

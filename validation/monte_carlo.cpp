@@ -2,6 +2,7 @@
 #include "validation/monte_carlo.h"
 
 #include "base/error.h"
+#include "rig/geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -26,11 +27,6 @@ Vector3d turned(const Vector3d& from, double angle_rad, double azimuth_rad) {
     const Vector3d other = from.cross(side);
     return std::cos(angle_rad) * from +
            std::sin(angle_rad) * (std::cos(azimuth_rad) * side + std::sin(azimuth_rad) * other);
-}
-
-// Of unit vectors; small angles lose no digits.
-double angle_between(const Vector3d& a, const Vector3d& b) {
-    return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 // Of a number that many paths each tell.

@@ -28,7 +28,7 @@ double square(double x) {
     return x * x;
 }
 
-double angle_between(const Vector3d& a, const Vector3d& b) {
+double angle_from_to(const Vector3d& a, const Vector3d& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
@@ -112,7 +112,7 @@ Angles goniometer_angles(TableAngles type, const Vector3d& lamp) {
             break;
     }
     const double around = azimuth(lamp, x, -y);
-    return {angle_between(lamp, z), around < 0.0 ? around + 2.0 * kPi : around};
+    return {angle_from_to(lamp, z), around < 0.0 ? around + 2.0 * kPi : around};
 }
 
 double intensity_of(const BeamTable& table, const Vector3d& lamp) {
@@ -508,7 +508,7 @@ void TracedBeam::place_rectangle(const std::array<Cap, 4>& sides,
 // Beyond the window's last angle, what is on it. Outwards angles in air grow faster and faster.
 TracedBeam::Aim TracedBeam::in_air(const Aim& in_water) const {
     const double n = beam_.window->water_index;
-    const double off_axis = angle_between(in_water.towards, axis_);
+    const double off_axis = angle_from_to(in_water.towards, axis_);
     const auto refracted = [&](double angle_rad) {
         return std::asin(std::min(1.0, n * std::sin(std::clamp(angle_rad, 0.0, kQuarterTurn))));
     };
@@ -523,7 +523,7 @@ TracedBeam::Aim TracedBeam::in_air(const Aim& in_water) const {
 
 bool TracedBeam::is_on(const Edge& edge, const std::array<Aim, 2>& aims) {
     const auto beyond = [](const Aim& aim, const Cap& cap) {
-        return angle_between(aim.towards, cap.centre) - cap.radius_rad;
+        return angle_from_to(aim.towards, cap.centre) - cap.radius_rad;
     };
     const auto is_within_others = [&](const Aim& aim) {
         return std::ranges::all_of(

@@ -258,9 +258,15 @@ TEST(Fit, FindsTheExponentOfACosine) {
         const double cosine = std::cos(point.theta_rad);
         if (cosine < 0.1) continue;
         const double intensity = (n + 1.0) / (2.0 * std::numbers::pi) * std::pow(cosine, n);
-        const double slope = intensity * (1.0 / (n + 1.0) + std::log(cosine));
+        const double slope = 1.0 / (n + 1.0) + std::log(cosine);
         EXPECT_NEAR(point.intensity, intensity, kRounding);
-        EXPECT_NEAR(point.error, std::abs(slope) * exponent->error, kRounding);
+        const double of_share = std::sqrt(result.covariance(0, 0)) / result.shares(0);
+        const auto row = result.shares.size() + (exponent - result.numbers.begin());
+        const double both = result.covariance(0, row) / result.shares(0);
+        EXPECT_NEAR(point.error / intensity,
+                    std::sqrt(of_share * of_share + 2.0 * slope * both +
+                              std::pow(slope * exponent->error, 2.0)),
+                    kRounding);
     }
     const TempFolder folder;
     write_fitted_rig(guess(), result, folder.path());
