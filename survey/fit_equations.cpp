@@ -79,6 +79,19 @@ Sum added_up(const std::vector<Sum>& of, const auto& add) {
     return all;
 }
 
+// By which differences of a beam's parts are measured: each the least of those up to it, from the
+// axis on.
+VectorXd sizes_for_ties(const VectorXd& shares) {
+    const double most = shares.maxCoeff();
+    VectorXd sizes(shares.size());
+    double least = most;
+    for (Index m = 0; m < shares.size(); ++m) {
+        least = std::min(least, shares(m));
+        sizes(m) = std::max(kDimmestTie * most, least);
+    }
+    return sizes;
+}
+
 }  // namespace
 
 bool FitEquations::Image::has(Index row) const {
@@ -332,15 +345,15 @@ void FitEquations::tie_parts(const FitState& state, const VectorXd& shares) {
     Index first = 0;
     for (const FitBeam& beam : state.beams) {
         const auto count = static_cast<Index>(beam.parts());
-        const double most = shares.segment(first, count).maxCoeff();
+        const VectorXd sizes = sizes_for_ties(shares.segment(first, count));
         const auto tie = [&](const auto& difference, double deviation) {
             constexpr auto kSize = std::remove_cvref_t<decltype(difference)>::SizeAtCompileTime;
-            for (Index m = first; m + kSize <= first + count; ++m) {
-                tie_.template block<kSize, kSize>(m, m) +=
-                    difference * difference.transpose() / std::pow(deviation * most, 2.0);
+            for (Index m = 0; m + kSize <= count; ++m) {
+                tie_.template block<kSize, kSize>(first + m, first + m) +=
+                    difference * difference.transpose() / std::pow(deviation * sizes(m), 2.0);
             }
         };
-        if (beam.kind() == FitBeamKind::Table && most > 0.0) {
+        if (beam.kind() == FitBeamKind::Table && sizes(0) > 0.0) {
             tie(Eigen::Vector2d(1.0, -1.0), kTie);
             tie(Eigen::Vector3d(1.0, -2.0, 1.0), kBend);
         }

@@ -22,9 +22,11 @@
 //   A^T V^-1 A = (W A)^T (W A) - (W A)^T W U (Gamma^-1 + (W U)^T W U)^-1 (W U)^T W A
 //
 // A table's parts are tied so weakly that little changes where the images see them: their
-// differences are random, with the standard deviation kTie of the largest share, and so are the
-// differences of these, with kBend. So a beam goes on as it was where nobody looks, and where few
-// do it does not swing between parts that make up for each other.
+// differences are random, with the standard deviation kTie of their size, and so are the
+// differences of these, with kBend. The size is the least share from the axis up to there, and
+// kDimmestTie of the largest at least: few lamps grow brighter off their axis. So a beam goes on as
+// it was where nobody looks, as dim as it was, and where few do it does not swing between parts
+// that make up for each other.
 //
 // Blocks that are off count less, by the biweight, and those far off nothing: on rough floors
 // stones shade what is behind them, where the light is no flat floor's. Far from the rig that would
@@ -58,6 +60,7 @@ namespace aphotic {
 
 inline constexpr double kTie = 0.3;
 inline constexpr double kBend = 0.1;
+inline constexpr double kDimmestTie = 0.05;
 inline constexpr double kMostMove = 3.0;
 inline constexpr double kMostEffect = 0.5;
 inline constexpr std::size_t kTilesAcross = 8;

@@ -110,6 +110,36 @@ TEST(FitEquations, AreThoseOfTheDenseCovariance) {
     EXPECT_LT((H - wanted).cwiseAbs().maxCoeff(), kRounding * wanted.cwiseAbs().maxCoeff());
 }
 
+// (s_m - s_m+1)^2 / (kTie size_m)^2 + (s_m - 2 s_m+1 + s_m+2)^2 / (kBend size_m)^2: of shares that
+// fall off, a step and a bend far out are as unlikely as larger ones near the axis; and what the
+// beam is brighter by farther out makes no step there likelier.
+TEST(FitEquations, TieDimPartsMoreFirmly) {
+    Seen seen;
+    seen.state.beams = {FitBeam::table(5, seen.light.widest_rad({seen.sled}))};
+    const Eigen::VectorXd shares = Eigen::Vector<double, 5>(1.0, 0.4, 0.01, 0.3, 0.02);
+    const Eigen::VectorXd sizes =
+        Eigen::Vector<double, 5>(1.0, 0.4, kDimmestTie, kDimmestTie, kDimmestTie);
+    const FitLight::Rows columns = seen.columns(seen.state, shares);
+    FitEquations equations(seen.light, seen.samples(columns.rightCols<1>()), 1);
+    equations.assume_noise();
+    const PathLight path = seen.path();
+    const Eigen::MatrixXd before = equations.parts(seen.state, path).G;
+    equations.tie_parts(seen.state, shares);
+    const Eigen::MatrixXd ties = equations.parts(seen.state, path).G - before;
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    for (int k = 0; k < 5; ++k) {
+        Eigen::VectorXd s(5);
+        for (double& share : s) share = normal(random);
+        double wanted = 0.0;
+        for (Eigen::Index m = 0; m < 4; ++m)
+            wanted += std::pow((s(m) - s(m + 1)) / (kTie * sizes(m)), 2.0);
+        for (Eigen::Index m = 0; m < 3; ++m)
+            wanted += std::pow((s(m) - 2.0 * s(m + 1) + s(m + 2)) / (kBend * sizes(m)), 2.0);
+        EXPECT_NEAR(s.dot(ties * s) / wanted, 1.0, kRounding);
+    }
+}
+
 TEST(FitEquations, WhatAFloorIsBrighterByLeavesTheVeilAlone) {
     const Seen seen;
     FitState bright = seen.state;
