@@ -158,7 +158,7 @@ std::optional<Suspicion> mistaken_input(const FitSamples& samples,
         fit_light.parts_into(state, light, image.sled, parts);
         looks.push_back(look_at(image, parts * shares));
     }
-    if (const auto turned = turned_brightness(looks)) return turned;
+    if (auto turned = turned_brightness(looks)) return turned;
     return red_for_blue(looks, samples.mosaic);
 }
 
