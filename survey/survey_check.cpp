@@ -13,6 +13,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -206,6 +207,14 @@ bool is_turned(const Line& line) {
     return 1.0 - line.slope >= std::max(kTurned, kStandardErrors * line.error);
 }
 
+std::string words_of_turned(const Brightness& of) {
+    return fmt::format(
+        "varies {:.3g}-fold over the images' altitudes where the rig's light varies "
+        "{:.3g}-fold the other way",
+        fold_of(of.images),
+        fold_of(of.light));
+}
+
 void check_altitude(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
     const auto [maps, images] = brightness_of(looks, kGreenChannel);
     const Line line = line_through(maps, images);
@@ -357,41 +366,30 @@ Likeness likeness(const RawImage& raw,
 }
 
 std::optional<Suspicion> turned_brightness(std::span<const ImageLook> looks) {
-    const auto [light, images] = brightness_of(lit(looks), kGreenChannel);
-    if (!is_turned(line_through(light, images))) return std::nullopt;
-    return Suspicion{
-        .about = "altitude",
-        .what = fmt::format(
-            "brightness varies {:.3g}-fold over the images' altitudes where the rig's light varies "
-            "{:.3g}-fold the other way: poses of other images, or another altitude column",
-            fold_of(images),
-            fold_of(light))};
+    const Brightness green = brightness_of(lit(looks), kGreenChannel);
+    if (!is_turned(line_through(green.light, green.images))) return std::nullopt;
+    return Suspicion{.about = "altitude",
+                     .what = "brightness " + words_of_turned(green) +
+                             ": poses of other images, or another altitude column"};
 }
 
 std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks, Mosaic mosaic) {
     const std::vector<ImageLook> lit_looks = lit(looks);
-    const Brightness red = brightness_of(lit_looks, kRed);
     const Brightness green = brightness_of(lit_looks, kGreenChannel);
     const Brightness blue = brightness_of(lit_looks, kBlue);
-    std::vector<double> light;
-    std::vector<double> images;
+    Brightness ratio = brightness_of(lit_looks, kRed);
     for (std::size_t i = 0; i < lit_looks.size(); ++i) {
-        light.push_back(red.light[i] - blue.light[i]);
-        images.push_back(red.images[i] - blue.images[i]);
+        ratio.light[i] -= blue.light[i];
+        ratio.images[i] -= blue.images[i];
     }
-    if (!is_turned(line_through(light, images)) ||
+    if (!is_turned(line_through(ratio.light, ratio.images)) ||
         line_through(green.light, green.images).slope < kSlope)
         return std::nullopt;
-    return Suspicion{
-        .about = "bayer",
-        .what = fmt::format(
-            "red over blue varies {:.3g}-fold over the images' altitudes where the rig's light "
-            "varies {:.3g}-fold the other way: red and blue are swapped{}",
-            fold_of(images),
-            fold_of(light),
-            is_bayer(mosaic) ? fmt::format("; --bayer {} puts them right",
-                                           mosaic_name(with_red_for_blue(mosaic)))
-                             : "")};
+    std::string what = "red over blue " + words_of_turned(ratio) + ": red and blue are swapped";
+    if (is_bayer(mosaic)) {
+        what += fmt::format("; --bayer {} puts them right", mosaic_name(with_red_for_blue(mosaic)));
+    }
+    return Suspicion{.about = "bayer", .what = std::move(what)};
 }
 
 std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic) {

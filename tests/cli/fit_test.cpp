@@ -30,6 +30,17 @@ FitRigNumbers of_few_pixels() {
     return numbers;
 }
 
+// Of truth.toml at three altitudes, made and named last on the command line.
+void add_maps(const TempFolder& folder, std::vector<std::string>& command) {
+    for (const std::string altitude : {"1.5", "2", "2.5"}) {
+        command.push_back(altitude + ".exr");
+        const CommandResult map =
+            run_aphotic(folder.path(),
+                        {"lightmap", "truth.toml", "--altitude", altitude, "-o", command.back()});
+        ASSERT_EQ(map.status, 0) << map.err;
+    }
+}
+
 TEST(CommandFit, LearnsARigFromASurvey) {
     const TempFolder folder;
     FitRigNumbers numbers = of_few_pixels();
@@ -278,12 +289,7 @@ TEST(CommandFit, GivesEachStrobeABeamOfItsOwn) {
                                  "-o",
                                  "fitted",
                                  "--maps"};
-    for (const std::string altitude : {"1.5", "2", "2.5"}) {
-        fit.push_back(altitude + ".exr");
-        const CommandResult map = run_aphotic(
-            folder.path(), {"lightmap", "truth.toml", "--altitude", altitude, "-o", fit.back()});
-        ASSERT_EQ(map.status, 0) << map.err;
-    }
+    add_maps(folder, fit);
     const CommandResult run = run_aphotic(folder.path(), fit);
     ASSERT_EQ(run.status, 0) << run.err;
     const Rig fitted = read_rig(folder.path() / "fitted/fitted.toml");
@@ -311,12 +317,7 @@ TEST(CommandFit, FindsALensByItsOptics) {
     with_lens("rig.toml", 47.0);
     std::vector<std::string> fit{
         "fit", "rig.toml", "--free", "beam", "--beam", "optics", "-o", "fitted", "--maps"};
-    for (const std::string altitude : {"1.5", "2", "2.5"}) {
-        fit.push_back(altitude + ".exr");
-        const CommandResult map = run_aphotic(
-            folder.path(), {"lightmap", "truth.toml", "--altitude", altitude, "-o", fit.back()});
-        ASSERT_EQ(map.status, 0) << map.err;
-    }
+    add_maps(folder, fit);
     const CommandResult run = run_aphotic(folder.path(), fit);
     ASSERT_EQ(run.status, 0) << run.err;
     const Rig fitted = read_rig(folder.path() / "fitted/fitted.toml");
