@@ -139,6 +139,8 @@ Outcome outcome_of(const Flight& flight) {
         const FitResult result = fit(drawn.text, drawn.samples, options, {});
         rivals += static_cast<int>(std::ranges::count_if(
             result.looks_wrong, [](const Suspicion& one) { return one.about == "rival"; }));
+        EXPECT_EQ(result.rivals.empty(),
+                  std::ranges::count(result.looks_wrong, "rival", &Suspicion::about) == 0);
         FitState truth = drawn.truth;
         const auto add = [&](const std::string& key, double off, double error) {
             const bool is_within = std::abs(off) <= 2.0 * error;

@@ -452,14 +452,14 @@ FitSamples thirty_maps(std::uint64_t seed) {
     return fit_samples_of(fit_rig(numbers).rig(), sleds, kNoise, seed);
 }
 
-FitResult fitted_to(const FitSamples& samples) {
+FitResult fitted_to(const FitSamples& samples, const RunWatch& watch = {}) {
     FitRigNumbers numbers;
     numbers.width_px = 10;
     numbers.height_px = 8;
     FitOptions options;
     options.threads = 2;
     options.parts = 8;
-    return fit(fit_rig(numbers), samples, options, {});
+    return fit(fit_rig(numbers), samples, options, watch);
 }
 
 std::string warnings_of(const FitResult& result) {
@@ -562,6 +562,23 @@ TEST(Fit, FindsOutASurveyWhosePosesAreThoseOfOtherImages) {
     for (std::size_t i = 0; i + 1 < samples.images.size(); ++i)
         std::swap(samples.images[i].sled, samples.images[i + 1].sled);
     EXPECT_NE(warnings_of(fitted_to(samples)).find("exposure\n"), std::string::npos);
+}
+
+// The lowest image has the highest one's altitude, and so on: said before the fit, which need not
+// find any rig.
+TEST(Fit, FindsOutPosesThatRunTheOtherWayFirst) {
+    FitSamples samples = thirty_maps(6);
+    for (FitImage& image : samples.images)
+        image.sled.altitude_m = 1.2 + 2.65 - image.sled.altitude_m;
+    std::string told;
+    RunWatch watch;
+    watch.looks_wrong = [&](const std::vector<Suspicion>& found) {
+        for (const Suspicion& one : found) told += one.about + ": " + one.what;
+        throw InputError("as --strict does");
+    };
+    EXPECT_THROW(static_cast<void>(fitted_to(samples, watch)), InputError);
+    EXPECT_TRUE(told.starts_with("altitude: brightness varies ")) << told;
+    EXPECT_NE(told.find("the other way: poses of other images"), std::string::npos) << told;
 }
 
 // A black level of a fifth of the brightest that nobody took off.

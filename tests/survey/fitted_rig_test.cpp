@@ -115,6 +115,13 @@ TEST(FittedRig, IsWrittenAgain) {
     const Rig fitted = written(rig, result);
     ASSERT_EQ(fitted.strobes[0].beam.cones.size(), 1U);
     EXPECT_NEAR(fitted.strobes[0].beam.cones[0].exponent, 3.0, kRounding);
+    // Half as bright at 60 degrees, without the digits that a rounding leaves.
+    result.state.beams.front().shape(0) = 1.0;
+    const TempFolder folder;
+    write_fitted_rig(rig, result, folder.path());
+    const std::string toml = read_text_file(folder.path() / kFittedRig);
+    EXPECT_NE(toml.find("fwhm_deg = 120"), std::string::npos) << toml;
+    EXPECT_EQ(toml.find("0000000"), std::string::npos) << toml;
 
     result = start_of(rig, {.beam = FitBeamKind::Cones});
     result.shares << 0.5, 0.25, 0.25;
