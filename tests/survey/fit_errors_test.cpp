@@ -183,7 +183,7 @@ Outcome outcome_of(const Flight& flight) {
 }
 
 Outcome expect_held(const Flight& flight) {
-    const Outcome outcome = outcome_of(flight);
+    Outcome outcome = outcome_of(flight);
     EXPECT_GT(outcome.share_within, kLeast);
     EXPECT_LT(outcome.share_within, kMost);
     EXPECT_EQ(outcome.rivals, 0);
