@@ -128,7 +128,8 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
                  {"stress", "--only", "altitude", "-o", "out"},
                  {"atlas", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
                  {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.csv", "-o", "out"},
-                 {"baseline", "homomorphic", "raw", "-o", "out"}}) {
+                 {"baseline", "homomorphic", "raw", "-o", "out"},
+                 {"fit", "rig.toml", "--maps", "raw/a.exr", "-o", "out"}}) {
             expect_message(run_aphotic(folder_.path(), command),
                            kRunFailed,
                            "out: another aphotic is at work in this folder");
