@@ -127,13 +127,9 @@ void print_confounded(const std::vector<Confounded>& pairs) {
 }
 
 void print_result(const std::string& title,
-                  const FitSamples& samples,
                   const FitResult& result,
                   const std::filesystem::path& folder) {
-    fmt::print("{}: {} fitted to {}\n",
-               title,
-               counted(result.numbers.size(), "number"),
-               counted(samples.images.size(), samples.are_maps ? "map" : "image"));
+    fmt::print("{}: {}\n", title, words_of(result));
     for (const FittedNumber& one : result.numbers) {
         fmt::print("  {:<34} {:>10.4g} +- {:.2g}{}\n",
                    one.key,
@@ -179,7 +175,7 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     if (options.json) {
         fmt::print("{}", json_text(json));
     } else {
-        print_result(rig.title, samples, result, options.folder);
+        print_result(rig.title, result, options.folder);
     }
     if (options.strict && !result.looks_wrong.empty()) return kAnswerIsNo;
     return status_of_skips(samples.skipped.size(),
@@ -202,9 +198,10 @@ Action configure_fit(CLI::App& app) {
         ->type_name("table|cones|cosine|optics")
         ->default_str("table");
     app.add_flag("--beam-each", options->fit.has_beam_each, "Fit each strobe's beam by itself");
-    app.add_option("--parts", options->fit.parts, "Splines of a beam's table")
-        ->check(in_range(4, 200))
-        ->capture_default_str();
+    app.add_option("--parts",
+                   options->fit.parts,
+                   "Splines of a beam's table; by default as many as images tell, 40 of maps")
+        ->check(in_range(4, 200));
     app.add_option("--free",
                    options->free,
                    "Fit these alone: beam, aim, power, water, vignetting, floor, altitude, "

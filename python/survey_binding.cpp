@@ -230,7 +230,7 @@ Fitted fit_rig(const TextRig& rig,
                std::optional<float> black_level,
                std::optional<float> white_level,
                const std::string& beam,
-               std::size_t parts,
+               std::optional<std::size_t> parts,
                const std::optional<std::vector<std::string>>& free,
                double altitude_error_m,
                double attitude_error_deg,
@@ -242,7 +242,7 @@ Fitted fit_rig(const TextRig& rig,
     }
     if (!images.empty() && !navigation)
         throw InputError("images: found no navigation; allowed: with nav");
-    require_range("parts", static_cast<double>(parts), 4, 200);
+    if (parts) require_range("parts", static_cast<double>(*parts), 4, 200);
     require_range("blocks", blocks, 8, 1000);
     const FitOptions options{.beam = beam_named(beam),
                              .parts = parts,
@@ -305,7 +305,7 @@ void bind_fit(nb::module_& module) {
                nb::arg("black_level") = nb::none(),
                nb::arg("white_level") = nb::none(),
                nb::arg("beam") = "table",
-               nb::arg("parts") = FitOptions{}.parts,
+               nb::arg("parts") = nb::none(),
                nb::arg("free") = nb::none(),
                nb::arg("altitude_error_m") = 0.02,
                nb::arg("attitude_error_deg") = 0.5,

@@ -21,27 +21,13 @@
 // altitude at which further images would part them. The errors of the others allow for those held
 // to be off by as much as is plausible.
 //
-// Ten images and more are fitted twice, the second time from the rig again with the noise that is
-// known by then: on a rough floor two rigs may explain them almost equally well, and a search that
-// knows no noise may lead to either. The better stays.
+// Of ten images and more a beam's table has as many parts as these tell (fit_parts.h): with more it
+// would follow the floor's texture, and seem to tell aims to a hair that it tells wrong.
 //
-// Errors are the sandwich of fit_equations.h. Of ten images and more the jackknife takes its place
-// where it is larger by more than chance: how far the fit, its weights found anew, moves as each
-// group of images in turn is left out,
-//
-//   (n - 1)/n sum over groups (x_g - mean x_g)^2       n = min(kGroups, images)
-//
-// which knows no model of the noise, nor that the light is anything like a straight line in the
-// numbers (R. G. Miller, Biometrika 61, 1974, 1).
-//
-// On a rough floor many answers may lie scattered over a wide valley, each by itself sharp. So
-// eight more searches begin at the rig and off it by half of what is plausible, at random, on
-// coarse blocks and by the noise of the answer. Those whose objective is as good as the answer's x,
-// to three standard errors, are as likely as it, and
-//
-//   variance = the above + mean over these and the answer of (x_s - x)^2
-//
-// Where one differs by over two errors in some number, a doubt says so.
+// Errors are the sandwich of fit_equations.h. Of ten images and more the variance by halves of the
+// images (fit_halves.h) takes its place where it is larger by more than chance. It knows no model
+// of the noise, nor that the light is anything like a straight line in the numbers: on a rough
+// floor many rigs explain the images almost equally well, and halves come to different ones.
 //
 // The scale of all light is no part of a rig: powers are relative to the first strobe's of each
 // beam, gains to green's.
@@ -84,14 +70,6 @@ struct BeamPoint {
     double error = 0.0;
 };
 
-// Another answer to the same images, by coarse blocks.
-struct Rival {
-    Eigen::VectorXd values;  // shares, then numbers, in the state's units
-    double excess = 0.0;     // of its objective over the answer's, in squares of standard errors
-};
-// Of the objective: such a rival is as good to three standard errors.
-inline constexpr double kAsGood = 9.0;
-
 struct FitResult {
     FitState state;
     Eigen::VectorXd shares;
@@ -102,7 +80,6 @@ struct FitResult {
     std::vector<Confounded> confounded;               // |correlation| over 0.9, the largest first
     std::vector<std::vector<BeamPoint>> beam_curves;  // of fitted ones that are round
     FitResiduals left;
-    std::vector<Rival> rivals;  // as good as the answer, and over two errors from it
     std::vector<Suspicion> looks_wrong;
     bool are_maps = false;
     int block_px = 1;
@@ -121,5 +98,8 @@ void require_bare_floor(const Rig& rig);
                             const FitSamples& samples,
                             const FitOptions& options,
                             const RunWatch& watch);
+
+// Such as "11 numbers and a beam of 8 splines fitted to 40 images".
+[[nodiscard]] std::string words_of(const FitResult& result);
 
 }  // namespace aphotic

@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

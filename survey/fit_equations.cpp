@@ -361,6 +361,10 @@ void FitEquations::tie_parts(const FitState& state, const VectorXd& shares) {
     }
 }
 
+void FitEquations::untie() {
+    tie_.resize(0, 0);
+}
+
 MatrixXd FitEquations::information(const Image& image, const Rows& white) {
     const MatrixXd across = image.white_effects.transpose() * white;
     return squared(white) - across.transpose() * image.effect_covariance * across;
@@ -494,37 +498,6 @@ void FitEquations::add_meat(const Image& image,
     normal.meat = weights_factor_ * weights_factor_ * scores * scores.transpose() +
                   Z * variances.asDiagonal() * Z.transpose();
     normal.tiles = static_cast<std::size_t>((scores.colwise().squaredNorm().array() > 0.0).count());
-}
-
-FitEquations::Normal FitEquations::without(std::size_t group,
-                                           std::size_t groups,
-                                           const FitState& state,
-                                           const PathLight& light,
-                                           const VectorXd& shares,
-                                           const std::vector<FitNumber>& numbers,
-                                           Robust robust) const {
-    constexpr int kSweeps = 2;  // weights and effects each need the other
-    std::vector<Image> images;
-    for (std::size_t i = 0; i < images_.size(); ++i)
-        if (i % groups != group) images.push_back(images_[i]);
-    std::vector<Normal> of(images.size());
-    for_each_image(images, threads_, [&](Image& image, std::size_t i) {
-        const Rows A = columns_at(state, light, shares, numbers, image.sled);
-        const VectorXd signal = A.leftCols(shares.size()) * shares;
-        const VectorXd off = image.moved - signal;
-        for (int sweep = 0; sweep < kSweeps; ++sweep)
-            weigh(signal, off - image.effects * image.effects_in(off), robust, image);
-        const Rows white = image.white(A);
-        of[i] = {.H = information(image, white),
-                 .gradient = white.transpose() * image.white_rest(off),
-                 .meat = {}};
-    });
-    Normal all = added_up(of, [](Normal& sum, const Normal& one) {
-        sum.H += one.H;
-        sum.gradient += one.gradient;
-    });
-    add_tie(shares, all);
-    return all;
 }
 
 MatrixXd FitEquations::normal_of(const FitState& state,

@@ -88,8 +88,9 @@ class FitEquations {
                      const Eigen::VectorXd& shares,
                      Robust robust,
                      bool estimate_effects);
-    // From now on parts are tied; none before.
+    // From now on parts are tied; none before, nor once they are untied.
     void tie_parts(const FitState& state, const Eigen::VectorXd& shares);
+    void untie();
     void set_effects(const EffectVariances& variances);
     // As large as the residuals of a solution without effects, with some room, and no larger than
     // `most`: few images, from which none are learned, may be of a grey card.
@@ -124,15 +125,6 @@ class FitEquations {
                                 const Eigen::VectorXd& shares,
                                 const std::vector<FitNumber>& numbers,
                                 bool has_meat) const;
-    // normal() without every image whose number leaves this one over `groups`, with weights about
-    // this solution.
-    [[nodiscard]] Normal without(std::size_t group,
-                                 std::size_t groups,
-                                 const FitState& state,
-                                 const PathLight& light,
-                                 const Eigen::VectorXd& shares,
-                                 const std::vector<FitNumber>& numbers,
-                                 Robust robust) const;
     // The H that one more image at this pose would add, with noise as the others'.
     [[nodiscard]] Eigen::MatrixXd normal_of(const FitState& state,
                                             const PathLight& light,

@@ -69,22 +69,12 @@ std::string_view word_of(FitBeamKind kind) {
 FitJson source_json(const FitResult& result) {
     const auto by_altitude = [](const ImageOutcome& image) { return image.sled.altitude_m; };
     const auto [lowest, highest] = std::ranges::minmax(result.left.images, {}, by_altitude);
+    const FitBeam& beam = result.state.beams.front();
     return {{result.are_maps ? "maps" : "images", result.left.images.size()},
             {"altitude_m", {lowest.sled.altitude_m, highest.sled.altitude_m}},
             {"block_px", result.block_px},
-            {"beam", word_of(result.state.beams.front().kind())}};
-}
-
-FitJson rivals_json(const FitResult& result) {
-    FitJson rivals = FitJson::array();
-    for (const Rival& rival : result.rivals) {
-        FitJson values;
-        Eigen::Index at = result.shares.size();
-        for (const FittedNumber& one : result.numbers)
-            values[one.key] = one.per_unit * rival.values(at++);
-        rivals.push_back({{"excess", rival.excess}, {"values", std::move(values)}});
-    }
-    return rivals;
+            {"beam", word_of(beam.kind())},
+            {"parts", beam.parts()}};
 }
 
 }  // namespace
@@ -120,7 +110,6 @@ FitJson to_json(const FitResult& result) {
             {"held", std::move(held)},
             {"as_the_rig_has", result.fixed},
             {"confounded", std::move(confounded)},
-            {"rivals", rivals_json(result)},
             {"looks_wrong", to_json(result.looks_wrong)},
             {"beams", std::move(beams)},
             {"shares", std::vector<double>(result.shares.begin(), result.shares.end())},

@@ -91,10 +91,11 @@ struct NodeWeight {
     double weight;
 };
 
-// Nodes along one way of the image, from the first place to the last. No more than there are
-// places: then each has its own.
+// Nodes along one way of the image, from the first place to the last: each place its own, or one
+// for any two, but neither under kFewestVeilNodes nor over kFitVeilNodes.
 struct VeilAxis {
     std::size_t nodes;
+    bool has_each_its_own;
     double first;
     double apart;
 
@@ -103,7 +104,9 @@ struct VeilAxis {
         first = places.front();
         const double last = places.back();
         places.erase(std::unique(places.begin(), places.end()), places.end());
-        nodes = std::min(places.size(), kFitVeilNodes);
+        nodes = std::min(places.size(),
+                         std::clamp(places.size() / 2, kFewestVeilNodes, kFitVeilNodes));
+        has_each_its_own = nodes == places.size();
         apart = nodes > 1 ? (last - first) / static_cast<double>(nodes - 1) : 1.0;
     }
     [[nodiscard]] double place(std::size_t node) const {
@@ -111,7 +114,7 @@ struct VeilAxis {
     }
     [[nodiscard]] std::vector<NodeWeight> weights(double at) const {
         const double x = (at - first) / apart;
-        if (nodes < kFitVeilNodes) return {{static_cast<std::size_t>(std::lround(x)), 1.0}};
+        if (has_each_its_own) return {{static_cast<std::size_t>(std::lround(x)), 1.0}};
         const auto cell = static_cast<std::size_t>(x);
         const std::size_t left = std::clamp<std::size_t>(cell, 1, nodes - 3) - 1;
         const std::array<double, 4> cubic = lagrange_weights(x - static_cast<double>(left));

@@ -13,8 +13,9 @@
 //
 // All else is rig/veil.h's and docs/physics.md's. Lamps are points, the floor is flat and matt.
 // Behind a port each channel has the ray of its mean wavelength. The veil is integrated by
-// kFitVeilPoints of Gauss and Legendre's over the angle at the lamp, at kFitVeilNodes across and
-// down the image at most; between these it is the cubic through the four next of each way.
+// kFitVeilPoints of Gauss and Legendre's over the angle at the lamp, at kFewestVeilNodes to
+// kFitVeilNodes across and down the image, one for two blocks; between these it is the cubic through
+// the four next of each way.
 //
 // The mean over a block is that of its pixels of the polynomial through the middles of the
 // kMeanBlocks next blocks, each way.
@@ -38,7 +39,8 @@
 
 namespace aphotic {
 
-inline constexpr unsigned kFitVeilPoints = 12;
+inline constexpr unsigned kFitVeilPoints = 8;
+inline constexpr std::size_t kFewestVeilNodes = 7;
 inline constexpr std::size_t kFitVeilNodes = 13;
 inline constexpr std::size_t kMeanBlocks = 5;
 // By how much an aim may be off before the beam's table ends within the image; and how much farther

@@ -34,10 +34,7 @@ std::string altitudes_of(const FitSamples& samples) {
 }
 
 std::string verdict(const FitSamples& samples, const FitResult& result) {
-    std::string words =
-        fmt::format("{} fitted to {}",
-                    counted(result.numbers.size(), "number"),
-                    counted(samples.images.size(), samples.are_maps ? "map" : "image"));
+    std::string words = words_of(result);
     if (!result.held.empty()) words += ", " + counted(result.held.size(), "number") + " held";
     if (!result.looks_wrong.empty()) words += ", " + counted(result.looks_wrong.size(), "warning");
     return html_verdict(

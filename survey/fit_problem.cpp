@@ -150,7 +150,8 @@ void add_beams(const Rig& rig,
         if (!is_asked(options, "beam")) {
             state.beams.push_back(FitBeam::held(beam));
         } else if (options.beam == FitBeamKind::Table) {
-            state.beams.push_back(FitBeam::table(options.parts, angles.widest_rad));
+            state.beams.push_back(
+                FitBeam::table(options.parts.value_or(kMostParts), angles.widest_rad));
         } else if (options.beam == FitBeamKind::Cones) {
             state.beams.push_back(FitBeam::cones(beam, angles.block_rad));
         } else if (options.beam == FitBeamKind::Cosine) {

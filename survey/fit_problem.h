@@ -17,9 +17,12 @@
 
 namespace aphotic {
 
+inline constexpr std::size_t kMostParts = 40;
+
 struct FitOptions {
     FitBeamKind beam = FitBeamKind::Table;
-    std::size_t parts = 40;      // of a table
+    // Of a table; none: kMostParts, or of many images as many as they tell (fit_parts.h).
+    std::optional<std::size_t> parts{};
     bool has_beam_each = false;  // each strobe its own
     // beam, aim, power, water, vignetting, floor, altitude, attitude, gain, or the key of a number;
     // none: the first six, as far as they can be told. floor is its brightness, which in water that

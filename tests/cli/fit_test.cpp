@@ -98,8 +98,9 @@ TEST(CommandFit, LearnsARigFromASurvey) {
     EXPECT_EQ(json.at("fitted_to").at("images"), 30);
     EXPECT_EQ(json.at("fitted_to").at("block_px"), 8);
     EXPECT_EQ(json.at("fitted_to").at("beam"), "table");
+    EXPECT_EQ(json.at("fitted_to").at("parts"), 8);
     const std::string page = read_text_file(folder.path() / "fitted/report.html");
-    for (const char* part : {"30 images",
+    for (const char* part : {" and a beam of 8 splines fitted to 30 images",
                              "Observed and fitted",
                              "strobe.fore.aim_along_deg",
                              "within twice its standard error",

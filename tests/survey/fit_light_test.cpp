@@ -16,9 +16,9 @@ namespace {
 
 // Bands of a nanometre against an adaptive grid.
 constexpr double kBands = 3e-4;
-// Besides, twenty points over the veil's angle, and a phase function's table.
+// Besides, kFitVeilPoints over the veil's angle, and a phase function's table.
 constexpr double kVeilRule = 2e-3;
-// Where all of the signal is veil, from farther away than twelve points are made for.
+// Where all of the signal is veil, from farther away than these points are made for.
 constexpr double kVeilOfTheHorizon = 1e-2;
 // Central differences of the light, and the water's own.
 constexpr double kDifference = 2e-5;
@@ -100,6 +100,9 @@ TEST(FitLight, IsTheMeanOverBlocks) {
 TEST(FitLight, HasTheVeilOfTheSameRig) {
     FitRigNumbers numbers;
     numbers.water = "type = \"jerlov-1C\"\nmultiple = {}";
+    EXPECT_LT(worst_against_lightmap(numbers), kVeilRule);
+    numbers.width_px = 20;
+    numbers.height_px = 15;  // of which the veil has kFewestVeilNodes
     EXPECT_LT(worst_against_lightmap(numbers), kVeilRule);
 }
 
