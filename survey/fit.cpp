@@ -49,20 +49,54 @@ FitSamples coarse_of(const FitSamples& samples, const FitState& state) {
     return has_edges ? samples : in_blocks(samples, kBlocksAcross);
 }
 
-// What the same search makes of a half of the images, from the rig.
+// A search on some of the images: from the rig, or on from an answer.
+struct HalfSearch {
+    HalfSearch(const RigText& text,
+               const FitSamples& samples,
+               const FitOptions& options,
+               const FitProblem& answer,
+               bool is_from_rig)
+        : bench(text, samples, options.threads), problem(answer) {
+        const EffectVariances first = first_effects(options, samples.are_maps);
+        const auto silently = [](double) {};
+        if (is_from_rig) {
+            problem.state = answer.at(answer.start().data());
+            search_in_rounds(bench, problem, first, silently);
+        } else {
+            bench.equations.assume_noise();
+            search_on(bench, problem, first, silently);
+        }
+        values = values_of(lit_by(bench, problem).shares, problem);
+    }
+    FitBench bench;
+    FitProblem problem;
+    VectorXd values;
+};
+
+// What a half of the images gives, from the rig; where that is far from the answer to all, beyond
+// kFar of its errors, the better of that and what comes of the answer, lest it be a valley that the
+// half itself does not prefer.
 VectorXd values_of_half(std::size_t half,
                         const RigText& text,
                         const FitSamples& samples,
                         const FitOptions& options,
-                        FitProblem problem) {
+                        const FitProblem& answer,
+                        const VectorXd& errors) {
+    constexpr double kFar = 3.0;
     FitSamples some = samples;
     some.images.clear();
     for (std::size_t i = 0; i < samples.images.size(); ++i)
         if (is_in_half(i, half)) some.images.push_back(samples.images[i]);
-    FitBench bench(text, some, options.threads);
-    problem.state = problem.at(problem.start().data());
-    search_in_rounds(bench, problem, first_effects(options, samples.are_maps), [](double) {});
-    return values_of(lit_by(bench, problem).shares, problem);
+    HalfSearch by_rig(text, some, options, answer, true);
+    const VectorXd off =
+        (by_rig.problem.now() - answer.now()).cwiseProduct(answer.plausible()).cwiseAbs();
+    if ((off.array() < kFar * errors.array()).all()) return by_rig.values;
+    HalfSearch by_answer(text, some, options, answer, false);
+    learn_to_compare(by_rig.bench, by_rig.problem);
+    learn_to_compare(by_answer.bench, by_answer.problem);
+    const double excess_of_rig =
+        excess(by_rig.bench, by_rig.problem, by_answer.bench, by_answer.problem);
+    return excess_of_rig > 0.0 ? by_answer.values : by_rig.values;
 }
 
 // Of a variance by kHalves: by chance it is so many times the true one or more in a twentieth of
@@ -136,14 +170,13 @@ MatrixXd covariance_with(const std::vector<FreeNumber>& held,
 
 FitResult result_of(const FitBench& bench,
                     const FitProblem& problem,
-                    const std::vector<FreeNumber>& held,
                     const FitSamples& samples,
-                    const std::optional<VectorXd>& by_halves) {
-    const Linearised at = linearised_at(bench, problem);
+                    const Linearised& at,
+                    const MatrixXd& covariance) {
     FitResult result;
     result.state = problem.state;
     result.shares = at.shares;
-    result.covariance = covariance_with(held, bench, problem, at);
+    result.covariance = covariance;
     result.effects = bench.equations.effects();
     result.noise = bench.equations.noise();
     result.blocks = bench.equations.blocks();
@@ -151,7 +184,6 @@ FitResult result_of(const FitBench& bench,
     result.left = fit_residuals(bench.equations, samples, result.state, at.light, result.shares);
     result.are_maps = samples.are_maps;
     result.block_px = samples.places.block_px;
-    if (by_halves) widen(*by_halves, result.covariance);
     const Index parts = result.shares.size();
     for (std::size_t k = 0; k < problem.free.size(); ++k) {
         const FreeNumber& one = problem.free[k];
@@ -250,15 +282,19 @@ FitResult fit(const RigText& text,
         hold(untold, options, problem, held);
         all_untold.insert(all_untold.end(), untold.begin(), untold.end());
     }
-    std::optional<VectorXd> by_halves;
+    const Linearised at = linearised_at(bench, problem);
+    MatrixXd covariance = covariance_with(held, bench, problem, at);
     if (has_many) {
-        by_halves = variances_by_halves([&](std::size_t half) {
+        const VectorXd errors =
+            covariance.diagonal().tail(std::ssize(problem.free)).cwiseMax(0.0).cwiseSqrt();
+        const VectorXd by_halves = variances_by_halves([&](std::size_t half) {
             watch.progress("fitting halves",
                            static_cast<double>(half) / static_cast<double>(kHalves + 1));
-            return values_of_half(half, text, coarse, options, problem);
+            return values_of_half(half, text, coarse, options, problem, errors);
         });
+        widen(by_halves, covariance);
     }
-    FitResult result = result_of(bench, problem, held, samples, by_halves);
+    FitResult result = result_of(bench, problem, samples, at, covariance);
     watch.progress("fitting", 1.0);
     result.held = std::move(all_untold);
     for (const Suspicion& one : suspicions(samples, result)) doubts.push_back(one);

@@ -14,8 +14,8 @@
 // All else is rig/veil.h's and docs/physics.md's. Lamps are points, the floor is flat and matt.
 // Behind a port each channel has the ray of its mean wavelength. The veil is integrated by
 // kFitVeilPoints of Gauss and Legendre's over the angle at the lamp, at kFewestVeilNodes to
-// kFitVeilNodes across and down the image, one for two blocks; between these it is the cubic through
-// the four next of each way.
+// kFitVeilNodes across and down the image, one for two blocks; between these it is the cubic
+// through the four next of each way.
 //
 // The mean over a block is that of its pixels of the polynomial through the middles of the
 // kMeanBlocks next blocks, each way.

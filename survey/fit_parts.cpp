@@ -47,10 +47,7 @@ double cost_of(const FitBench& bench, const FitProblem& problem) {
 
 // By how much the rung is worse.
 double excess_over(const Rung& best, const Rung& rung) {
-    const auto by_noise_of = [&](const FitBench& bench) {
-        return objective(bench, rung.problem) - objective(bench, best.problem);
-    };
-    return 0.5 * (by_noise_of(best.bench) + by_noise_of(rung.bench)) + rung.cost - best.cost;
+    return excess(rung.bench, rung.problem, best.bench, best.problem) + rung.cost - best.cost;
 }
 
 void answer(const FitSamples& samples,
@@ -61,8 +58,7 @@ void answer(const FitSamples& samples,
     if (before) rung.problem.state = rung.problem.at(before->now().data());
     search_in_rounds(
         rung.bench, rung.problem, first_effects(options, samples.are_maps), [](double) {});
-    learn(rung.bench, rung.problem, Robust::Huber);
-    rung.bench.equations.untie();  // rungs have ties of their own
+    learn_to_compare(rung.bench, rung.problem);
     rung.cost = cost_of(rung.bench, rung.problem);
 }
 

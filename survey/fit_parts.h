@@ -14,9 +14,8 @@
 // what is fitted, which holds for any noise. Takeuchi's own, of 2 for ln(n), and twice that choose
 // too many: it is derived for one valley of S, and the least of several is lower by chance alone.
 //
-// Two numbers are compared by the mean of what they are under the noise that either leaves, with
-// Huber's weights: by the biweight what speaks against an answer counts as stones. From the fewest
-// on, until two more rungs do not do better.
+// S of two rungs is compared as fit_search.h says (excess). From the fewest on, until two more
+// rungs do not do better.
 #pragma once
 
 #include "rig/rig_text.h"

@@ -215,6 +215,21 @@ void learn(FitBench& bench, const FitProblem& problem, Robust robust) {
     bench.equations.learn_noise(problem.state, light, shares, robust, bench.learns_effects);
 }
 
+void learn_to_compare(FitBench& bench, const FitProblem& answer) {
+    learn(bench, answer, Robust::Huber);
+    bench.equations.untie();
+}
+
+double excess(const FitBench& bench,
+              const FitProblem& answer,
+              const FitBench& other_bench,
+              const FitProblem& other) {
+    double sum = 0.0;
+    for (const FitBench* by : {&bench, &other_bench})
+        sum += objective(*by, answer) - objective(*by, other);
+    return sum / 2.0;
+}
+
 EffectVariances first_effects(const FitOptions& options, bool are_maps) {
     constexpr double kLevel = 0.05;  // of floors
     constexpr double kHue = 0.02;
@@ -233,12 +248,20 @@ int search_in_rounds(FitBench& bench,
                      FitProblem& problem,
                      const EffectVariances& first,
                      const std::function<void(double share)>& progress) {
-    constexpr double kSearches = static_cast<double>(kRobustRounds.size()) + 1.0;
     progress(0.0);
     bench.equations.assume_noise();
     bench.equations.tie_parts(problem.state, lit_by(bench, problem).shares);
-    int steps = search(bench, problem, kFirstSteps);
+    const int steps = search(bench, problem, kFirstSteps);
+    return steps + search_on(bench, problem, first, progress);
+}
+
+int search_on(FitBench& bench,
+              FitProblem& problem,
+              const EffectVariances& first,
+              const std::function<void(double share)>& progress) {
+    constexpr double kSearches = static_cast<double>(kRobustRounds.size()) + 1.0;
     start_effects(bench, problem, first);
+    int steps = 0;
     for (std::size_t round = 0; round < kRobustRounds.size(); ++round) {
         progress(static_cast<double>(round + 1) / kSearches);
         learn(bench, problem, kRobustRounds[round]);

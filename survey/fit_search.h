@@ -66,6 +66,17 @@ void start_gains(const FitBench& bench, FitProblem& problem);
 // Ties, noise and poses as this answer leaves them.
 void learn(FitBench& bench, const FitProblem& problem, Robust robust);
 
+// The noise that this answer leaves, for excess: with Huber's weights, for by the biweight what
+// speaks against another answer counts as stones, and without ties, which are each answer's own.
+void learn_to_compare(FitBench& bench, const FitProblem& answer);
+
+// S of one answer less S of another to the same images: the mean of what it is under the noise that
+// either leaves, as learned to compare.
+[[nodiscard]] double excess(const FitBench& bench,
+                            const FitProblem& answer,
+                            const FitBench& other_bench,
+                            const FitProblem& other);
+
 // Variances of what images share, at first.
 [[nodiscard]] EffectVariances first_effects(const FitOptions& options, bool are_maps);
 
@@ -75,5 +86,10 @@ int search_in_rounds(FitBench& bench,
                      FitProblem& problem,
                      const EffectVariances& first,
                      const std::function<void(double share)>& progress);
+// The rounds alone, from an answer: without a first search, which the assumed noise may lead away.
+int search_on(FitBench& bench,
+              FitProblem& problem,
+              const EffectVariances& first,
+              const std::function<void(double share)>& progress);
 
 }  // namespace aphotic
