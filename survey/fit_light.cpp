@@ -104,8 +104,8 @@ struct VeilAxis {
         first = places.front();
         const double last = places.back();
         places.erase(std::unique(places.begin(), places.end()), places.end());
-        nodes = std::min(places.size(),
-                         std::clamp(places.size() / 2, kFewestVeilNodes, kFitVeilNodes));
+        nodes =
+            std::min(places.size(), std::clamp(places.size() / 2, kFewestVeilNodes, kFitVeilNodes));
         has_each_its_own = nodes == places.size();
         apart = nodes > 1 ? (last - first) / static_cast<double>(nodes - 1) : 1.0;
     }

@@ -438,8 +438,8 @@ TEST(Fit, SaysThatNoLightFits) {
     }
 }
 
-// As maps, which nobody halves for their errors: that is most of the work, and doubts know nothing of
-// it.
+// As maps, which nobody halves for their errors: that is most of the work, and doubts know nothing
+// of it.
 FitSamples thirty_maps(std::uint64_t seed) {
     std::vector<Sled> sleds;
     for (int i = 0; i < 30; ++i) {
