@@ -50,28 +50,16 @@ TEST(CommandFit, LearnsARigFromASurvey) {
     write_text_file(folder.path() / "rig.toml", fit_rig(numbers).text());
     const CommandResult survey = run_aphotic(
         folder.path(),
-        {"survey", "truth.toml", "--images", "30", "--texture", "0.02", "-o", "survey"});
+        {"survey", "truth.toml", "--images", "20", "--texture", "0.02", "-o", "survey"});
     ASSERT_EQ(survey.status, 0) << survey.err;
-    const CommandResult fit = run_aphotic(folder.path(),
-                                          {"fit",
-                                           "rig.toml",
-                                           "--images",
-                                           "survey/raw",
-                                           "--nav",
-                                           "survey/navigation-measured.txt",
-                                           "--bayer",
-                                           "RGGB",
-                                           "--black-level",
-                                           "64",
-                                           "--white-level",
-                                           "4095",
-                                           "--blocks",
-                                           "12",
-                                           "--parts",
-                                           "8",
-                                           "-o",
-                                           "fitted",
-                                           "--json"});
+    const CommandResult fit = run_aphotic(
+        folder.path(), {"fit",        "rig.toml",       "--images",
+                        "survey/raw", "--nav",          "survey/navigation-measured.txt",
+                        "--bayer",    "RGGB",           "--black-level",
+                        "64",         "--white-level",  "4095",
+                        "--free",     "beam,aim,water", "--blocks",
+                        "12",         "--parts",        "8",
+                        "-o",         "fitted",         "--json"});
     ASSERT_EQ(fit.status, 0) << fit.err;
     const auto json = nlohmann::json::parse(fit.out);
     const auto& covariance = json.at("covariance");
@@ -95,12 +83,12 @@ TEST(CommandFit, LearnsARigFromASurvey) {
     EXPECT_TRUE(is_found);
     EXPECT_EQ(read_text_file(folder.path() / "fitted/fit.json"), fit.out);
     EXPECT_EQ(read_rig(folder.path() / "fitted/fitted.toml").strobes[0].beam.name, "fitted");
-    EXPECT_EQ(json.at("fitted_to").at("images"), 30);
+    EXPECT_EQ(json.at("fitted_to").at("images"), 20);
     EXPECT_EQ(json.at("fitted_to").at("block_px"), 8);
     EXPECT_EQ(json.at("fitted_to").at("beam"), "table");
     EXPECT_EQ(json.at("fitted_to").at("parts"), 8);
     const std::string page = read_text_file(folder.path() / "fitted/report.html");
-    for (const char* part : {" and a beam of 8 splines fitted to 30 images",
+    for (const char* part : {" and a beam of 8 splines fitted to 20 images",
                              "Observed and fitted",
                              "strobe.fore.aim_along_deg",
                              "within twice its standard error",
@@ -126,7 +114,7 @@ TEST(CommandFit, FindsOutASaturatedSurvey) {
     write_text_file(folder.path() / "rig.toml", fit_rig({}).text());
     const CommandResult survey =
         run_aphotic(folder.path(),
-                    {"survey", "rig.toml", "--images", "12", "--floor-share", "2", "-o", "survey"});
+                    {"survey", "rig.toml", "--images", "8", "--floor-share", "2", "-o", "survey"});
     ASSERT_EQ(survey.status, 0) << survey.err;
     const auto fit = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments{"fit",
@@ -237,7 +225,7 @@ TEST(CommandFit, FindsOutRedForBlue) {
     write_text_file(folder.path() / "rig.toml", fit_rig(of_few_pixels()).text());
     const CommandResult survey =
         run_aphotic(folder.path(),
-                    {"survey", "rig.toml", "--images", "16", "--texture", "0.1", "-o", "survey"});
+                    {"survey", "rig.toml", "--images", "12", "--texture", "0.1", "-o", "survey"});
     ASSERT_EQ(survey.status, 0) << survey.err;
     const auto fit = [&](const std::string& pattern) {
         return run_aphotic(folder.path(),

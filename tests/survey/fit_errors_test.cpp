@@ -210,7 +210,7 @@ TEST(FitErrors, HoldAsOftenAsTheySayForMaps) {
 
 TEST(FitErrors, HoldForImagesWhosePosesAndFloorsAreOff) {
     expect_held({.rigs = 20,
-                 .images = 40,
+                 .images = 24,
                  .noise = 0.03,
                  .level = 0.04,
                  .hue = 0.01,

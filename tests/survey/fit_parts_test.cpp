@@ -21,7 +21,7 @@ constexpr double kLoud = 0.1;
 constexpr double kQuiet = 0.003;
 
 FitRigNumbers small() {
-    return {.width_px = 20, .height_px = 15};
+    return {.width_px = 12, .height_px = 9};
 }
 
 std::vector<Sled> flown() {
