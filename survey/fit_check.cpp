@@ -113,12 +113,13 @@ void look_for_one_altitude(const FitSamples& samples,
 void look_for_texture(const FitSamples& samples,
                       const FitResiduals& left,
                       std::vector<Suspicion>& found) {
-    if (!samples.are_maps || left.smooth <= kMostTexture) return;
+    if (!samples.are_maps || left.smooth <= std::max(kMostTexture, kMostShared * left.residual))
+        return;
     found.push_back(
         {"maps",
          fmt::format("neighbouring blocks are off alike, by {:.2g} rms: texture that has not "
                      "averaged out, or light that the fit does not allow, and errors are too "
-                     "small: fit to images, or to maps of more",
+                     "small: fit to images, to maps of more of them, or with more --parts",
                      left.smooth)});
 }
 

@@ -12,9 +12,9 @@
 //               end of its range
 //   altitudes   the highest within kOneAltitude times the lowest, beam and water or lens free: they
 //               nearly make up for each other, and what the model lacks goes where it costs least
-//   maps        what residuals of neighbouring blocks of maps share, over kMostTexture rms: texture
-//               that was not averaged out, or light that the model lacks, is alike over wide parts
-//               of a map, where errors take it for noise of each block
+//   maps        what residuals of neighbouring blocks of maps share, over kMostTexture rms and
+//               kMostShared of all that is left: texture that was not averaged out, or light that
+//               the model lacks, is alike over wide parts of a map, and errors do not allow for it
 //   saturation  more than kMostSaturation of all samples, which the fit leaves out
 #pragma once
 
@@ -37,7 +37,9 @@ inline constexpr double kTrendSigmas = 4.0;
 inline constexpr double kMostLevel = 0.25;
 inline constexpr double kFarthest = 3.0;
 inline constexpr double kOneAltitude = 1.25;
-inline constexpr double kMostTexture = 0.003;
+inline constexpr double kMostTexture = 0.0005;
+// By chance noise shares a (number of blocks)^-1/4 of itself: 0.14 of five maps of 16 x 12.
+inline constexpr double kMostShared = 0.3;
 inline constexpr double kMostSaturation = 0.02;
 
 [[nodiscard]] std::optional<Suspicion> mistaken_input(const FitSamples& samples,

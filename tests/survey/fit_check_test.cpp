@@ -145,6 +145,12 @@ TEST(FitCheck, TextureThatMapsHaveKept) {
     EXPECT_EQ(fitted.signs(), "maps\n");
     fitted.result.left.smooth = kLess * kMostTexture;
     EXPECT_EQ(fitted.signs(), "");
+    // Of noise some is shared by chance.
+    fitted.result.left.residual = 0.01;
+    fitted.result.left.smooth = kLess * kMostShared * 0.01;
+    EXPECT_EQ(fitted.signs(), "");
+    fitted.result.left.smooth = kMore * kMostShared * 0.01;
+    EXPECT_EQ(fitted.signs(), "maps\n");
 }
 
 TEST(FitCheck, SaturatedSamples) {
