@@ -2,10 +2,13 @@
 #include "survey/fit_check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace aphotic {
 namespace {
@@ -83,6 +86,18 @@ void look_for_far_numbers(const FitResult& result, std::vector<Suspicion>& found
                          one.plausible,
                          held)});
     }
+}
+
+void look_for_wide_errors(const FitResult& result, std::vector<Suspicion>& found) {
+    std::vector<std::string> words;
+    for (const FittedNumber& one : result.numbers)
+        if (one.error > kMostError * one.plausible)
+            words.push_back(fmt::format("{} to +-{:.2g}", one.key, one.error));
+    if (words.empty()) return;
+    found.push_back({"halves",
+                     fmt::format("halves of the images give other rigs, which leaves {}: leave it "
+                                 "out of --free, or fly more images at more altitudes",
+                                 fmt::join(words, ", "))});
 }
 
 void look_for_one_altitude(const FitSamples& samples,
@@ -168,6 +183,7 @@ std::vector<Suspicion> suspicions(const FitSamples& samples, const FitResult& re
     look_for_saturation(samples, found);
     look_for_misfit(result.left, found);
     look_for_far_numbers(result, found);
+    look_for_wide_errors(result, found);
     look_for_one_altitude(samples, result, found);
     look_for_texture(samples, result.left, found);
     return found;

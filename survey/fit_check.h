@@ -10,6 +10,8 @@
 //   exposure    brightness left of the images over kMostLevel rms: other poses, other exposures
 //   range       a number farther from the rig's than kFarthest times what is plausible, or at the
 //               end of its range
+//   halves      errors over kMostError of what is plausible: all images seem to tell the number, but
+//               halves of them give others
 //   altitudes   the highest within kOneAltitude times the lowest, beam and water or lens free: they
 //               nearly make up for each other, and what the model lacks goes where it costs least
 //   maps        what residuals of neighbouring blocks of maps share, over kMostTexture rms and
@@ -36,6 +38,7 @@ inline constexpr double kMostTrend = 0.02;  // of a rough floor more is resolved
 inline constexpr double kTrendSigmas = 4.0;
 inline constexpr double kMostLevel = 0.25;
 inline constexpr double kFarthest = 3.0;
+inline constexpr double kMostError = 0.5;
 inline constexpr double kOneAltitude = 1.25;
 inline constexpr double kMostTexture = 0.0005;
 // By chance noise shares a (number of blocks)^-1/4 of itself: 0.14 of five maps of 16 x 12.

@@ -137,6 +137,15 @@ TEST(FitCheck, OneAltitude) {
     EXPECT_EQ(fitted.signs(), "");
 }
 
+TEST(FitCheck, ErrorsAsWideAsWhatIsPlausible) {
+    Fitted fitted;
+    FittedNumber& one = fitted.result.numbers.front();
+    one.error = kLess * kMostError * one.plausible;
+    EXPECT_EQ(fitted.signs(), "");
+    one.error = kMore * kMostError * one.plausible;
+    EXPECT_EQ(fitted.signs(), "halves\n");
+}
+
 TEST(FitCheck, TextureThatMapsHaveKept) {
     Fitted fitted;
     fitted.result.left.smooth = kMore * kMostTexture;
