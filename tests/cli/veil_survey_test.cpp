@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -63,34 +64,42 @@ spectrum = "xenon-flash"
 
 class VeilSurvey : public testing::Test {
   protected:
-    void SetUp() override {
+    // Traced once, which takes most of the time.
+    static void SetUpTestSuite() {
+        survey_ = std::make_unique<TempFolder>();
         for (const int percent : {18, 30, 45}) {
             const double rho = percent / 100.0;
-            write_file(folder_.path() / fmt::format("grey{}.csv", percent),
+            write_file(folder() / fmt::format("grey{}.csv", percent),
                        fmt::format("wavelength_nm,reflectance\n300,{}\n900,{}\n", rho, rho));
-            const fs::path images = folder_.path() / std::to_string(percent);
+            const fs::path images = folder() / std::to_string(percent);
             fs::create_directory(images);
             std::string navigation = "image,altitude_m\n";
             for (const char* altitude_m : kAltitudes) {
-                write_file(folder_.path() / "rig.toml", rig_over(percent, altitude_m));
+                write_file(folder() / "rig.toml", rig_over(percent, altitude_m));
                 expect_done({"trace", "rig.toml", "-o", "traced"});
-                fs::rename(folder_.path() / "traced" / "image.exr",
+                fs::rename(folder() / "traced" / "image.exr",
                            images / fmt::format("at-{}.exr", altitude_m));
-                fs::remove_all(folder_.path() / "traced");
+                fs::remove_all(folder() / "traced");
                 navigation += fmt::format("at-{},{}\n", altitude_m, altitude_m);
             }
-            write_file(folder_.path() / "nav.csv", navigation);
+            write_file(folder() / "nav.csv", navigation);
         }
-        write_file(folder_.path() / "rig.toml", rig_over(30, "2.0"));
+        write_file(folder() / "rig.toml", rig_over(30, "2.0"));
+    }
+    static void TearDownTestSuite() { survey_.reset(); }
+    void SetUp() override {
+        for (const int percent : {18, 30, 45}) fs::remove_all(folder() / result(percent));
     }
 
-    void expect_done(const std::vector<std::string>& arguments) {
-        const CommandResult run = run_aphotic(folder_.path(), arguments);
+    static const fs::path& folder() { return survey_->path(); }
+
+    static void expect_done(const std::vector<std::string>& arguments) {
+        const CommandResult run = run_aphotic(folder(), arguments);
         ASSERT_EQ(run.status, 0) << run.err;
     }
 
     // The survey over the rig's own floor has the gain, the charts take it.
-    void correct(int percent, std::vector<std::string> more) {
+    static void correct(int percent, std::vector<std::string> more) {
         std::vector<std::string> arguments{"correct",
                                            std::to_string(percent),
                                            "--rig",
@@ -116,8 +125,7 @@ class VeilSurvey : public testing::Test {
     Off judge(int percent) {
         Off off;
         for (const char* altitude_m : kAltitudes) {
-            ExrReader reader(folder_.path() / result(percent) /
-                             fmt::format("at-{}.exr", altitude_m));
+            ExrReader reader(folder() / result(percent) / fmt::format("at-{}.exr", altitude_m));
             for (const char* channel : {"R", "G", "B"}) {
                 const std::vector<float> samples = reader.planes(std::vector<std::string>{channel});
                 double sum = 0.0;
@@ -137,7 +145,8 @@ class VeilSurvey : public testing::Test {
         return off;
     }
 
-    TempFolder folder_;
+  private:
+    static inline std::unique_ptr<TempFolder> survey_;
 };
 
 TEST_F(VeilSurvey, ChartsAreFlatAndOfTheirReflectance) {
@@ -161,7 +170,7 @@ TEST_F(VeilSurvey, WithTheVeilLeftInTheyAreNot) {
 // Results of one kind are not continued as the other.
 TEST_F(VeilSurvey, ARunWithoutIsAnother) {
     correct(30, {"--no-veil"});
-    const CommandResult again = run_aphotic(folder_.path(),
+    const CommandResult again = run_aphotic(folder(),
                                             {"correct",
                                              "30",
                                              "--rig",
