@@ -94,8 +94,8 @@ void look_for_wide_errors(const FitResult& result, std::vector<Suspicion>& found
         if (one.error > kMostError * one.plausible)
             words.push_back(fmt::format("{} to +-{:.2g}", one.key, one.error));
     if (words.empty()) return;
-    found.push_back({"halves",
-                     fmt::format("halves of the images give other rigs, which leaves {}: leave it "
+    found.push_back({"errors",
+                     fmt::format("halves of the images, or what is held, leave {}: leave it "
                                  "out of --free, or fly more images at more altitudes",
                                  fmt::join(words, ", "))});
 }

@@ -10,8 +10,8 @@
 //   exposure    brightness left of the images over kMostLevel rms: other poses, other exposures
 //   range       a number farther from the rig's than kFarthest times what is plausible, or at the
 //               end of its range
-//   halves      errors over kMostError of what is plausible: all images seem to tell the number,
-//               but halves of them give others
+//   errors      over kMostError of what is plausible: by itself the number seems to be told, but
+//               halves of the images give others, or a number that is held leaves it open
 //   altitudes   the highest within kOneAltitude times the lowest, beam and water or lens free: they
 //               nearly make up for each other, and what the model lacks goes where it costs least
 //   maps        what residuals of neighbouring blocks of maps share, over kMostTexture rms and

@@ -143,7 +143,7 @@ TEST(FitCheck, ErrorsAsWideAsWhatIsPlausible) {
     one.error = kLess * kMostError * one.plausible;
     EXPECT_EQ(fitted.signs(), "");
     one.error = kMore * kMostError * one.plausible;
-    EXPECT_EQ(fitted.signs(), "halves\n");
+    EXPECT_EQ(fitted.signs(), "errors\n");
 }
 
 TEST(FitCheck, TextureThatMapsHaveKept) {
