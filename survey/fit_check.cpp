@@ -95,7 +95,7 @@ void look_for_wide_errors(const FitResult& result, std::vector<Suspicion>& found
             words.push_back(fmt::format("{} to +-{:.2g}", one.key, one.error));
     if (words.empty()) return;
     found.push_back({"errors",
-                     fmt::format("halves of the images, or what is held, leave {}: leave it "
+                     fmt::format("halves of the images, or what is held, tell {} only: take it "
                                  "out of --free, or fly more images at more altitudes",
                                  fmt::join(words, ", "))});
 }
