@@ -92,11 +92,12 @@ void look_for_wide_errors(const FitResult& result, std::vector<Suspicion>& found
     std::vector<std::string> words;
     for (const FittedNumber& one : result.numbers)
         if (one.error > kMostError * one.plausible)
-            words.push_back(fmt::format("{} to +-{:.2g}", one.key, one.error));
+            words.push_back(fmt::format("{} +-{:.2g}", one.key, one.error));
     if (words.empty()) return;
     found.push_back({"errors",
-                     fmt::format("halves of the images, or what is held, tell {} only: take it "
-                                 "out of --free, or fly more images at more altitudes",
+                     fmt::format("{}: over half of what is plausible, by halves of the images "
+                                 "or by what is held: fly more images at more altitudes, or leave "
+                                 "these out of --free",
                                  fmt::join(words, ", "))});
 }
 
@@ -128,8 +129,8 @@ void look_for_one_altitude(const FitSamples& samples,
 void look_for_texture(const FitSamples& samples,
                       const FitResiduals& left,
                       std::vector<Suspicion>& found) {
-    if (!samples.are_maps || left.smooth <= std::max(kMostTexture, kMostShared * left.residual))
-        return;
+    const double most = std::clamp(kMostShared * left.residual, kLeastTexture, kMostTexture);
+    if (!samples.are_maps || left.smooth <= most) return;
     found.push_back(
         {"maps",
          fmt::format("neighbouring blocks are off alike, by {:.2g} rms: texture that has not "

@@ -14,9 +14,10 @@
 //               halves of the images give others, or a number that is held leaves it open
 //   altitudes   the highest within kOneAltitude times the lowest, beam and water or lens free: they
 //               nearly make up for each other, and what the model lacks goes where it costs least
-//   maps        what residuals of neighbouring blocks of maps share, over kMostTexture rms and
-//               kMostShared of all that is left: texture that was not averaged out, or light that
-//               the model lacks, is alike over wide parts of a map, and errors do not allow for it
+//   maps        what residuals of neighbouring blocks of maps share, over kMostShared of all that
+//               is left, but at least kLeastTexture and at most kMostTexture rms: texture that was
+//               not averaged out, or light that the model lacks, is alike over wide parts of a map,
+//               and errors do not allow for it
 //   saturation  more than kMostSaturation of all samples, which the fit leaves out
 #pragma once
 
@@ -40,7 +41,8 @@ inline constexpr double kMostLevel = 0.25;
 inline constexpr double kFarthest = 3.0;
 inline constexpr double kMostError = 0.5;
 inline constexpr double kOneAltitude = 1.25;
-inline constexpr double kMostTexture = 0.0005;
+inline constexpr double kLeastTexture = 0.0005;
+inline constexpr double kMostTexture = 0.003;
 // By chance noise shares a (number of blocks)^-1/4 of itself: 0.14 of five maps of 16 x 12.
 inline constexpr double kMostShared = 0.3;
 inline constexpr double kMostSaturation = 0.02;

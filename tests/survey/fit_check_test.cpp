@@ -152,14 +152,17 @@ TEST(FitCheck, TextureThatMapsHaveKept) {
     EXPECT_EQ(fitted.signs(), "");
     fitted.samples.are_maps = true;
     EXPECT_EQ(fitted.signs(), "maps\n");
-    fitted.result.left.smooth = kLess * kMostTexture;
-    EXPECT_EQ(fitted.signs(), "");
-    // Of noise some is shared by chance.
-    fitted.result.left.residual = 0.01;
-    fitted.result.left.smooth = kLess * kMostShared * 0.01;
-    EXPECT_EQ(fitted.signs(), "");
-    fitted.result.left.smooth = kMore * kMostShared * 0.01;
-    EXPECT_EQ(fitted.signs(), "maps\n");
+    // Of noise some is shared by chance, and of much noise too much.
+    const auto expect_most = [&](double residual, double most) {
+        fitted.result.left.residual = residual;
+        fitted.result.left.smooth = kLess * most;
+        EXPECT_EQ(fitted.signs(), "") << residual;
+        fitted.result.left.smooth = kMore * most;
+        EXPECT_EQ(fitted.signs(), "maps\n") << residual;
+    };
+    expect_most(0.0, kLeastTexture);
+    expect_most(0.005, kMostShared * 0.005);
+    expect_most(0.05, kMostTexture);
 }
 
 TEST(FitCheck, SaturatedSamples) {
