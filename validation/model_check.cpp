@@ -5,8 +5,11 @@
 #include "validation/traced_veil.h"
 #include "validation/tracer.h"
 
+#include <boost/math/quadrature/gauss.hpp>
+
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 
 namespace aphotic {
@@ -41,22 +44,45 @@ Rig bare(Rig rig) {
     return rig;
 }
 
-std::size_t pixel_at(int place, int places, int pixels) {
-    return static_cast<std::size_t>((2 * place + 1) * pixels / (2 * places));
+// A place along the image's width or height, from 0 to 1, and its weight.
+struct Node {
+    double at = 0.0;
+    double weight = 0.0;
+
+    [[nodiscard]] std::size_t pixel_of(int pixels) const {
+        return static_cast<std::size_t>(at * pixels);
+    }
+};
+
+// Boost lists the half of its symmetric nodes that is not negative, the middle first.
+template <int kNodes>
+std::array<Node, kNodes> gauss_nodes() {
+    static_assert(kNodes % 2 == 1);
+    using Rule = boost::math::quadrature::gauss<double, kNodes>;
+    std::array<Node, kNodes> nodes;
+    for (int n = 0; n < kNodes; ++n) {
+        const int from_middle = n - kNodes / 2;
+        const auto half = static_cast<std::size_t>(std::abs(from_middle));
+        const double side = from_middle < 0 ? -1.0 : 1.0;
+        nodes[static_cast<std::size_t>(n)] = {.at = 0.5 + 0.5 * side * Rule::abscissa()[half],
+                                              .weight = Rule::weights()[half]};
+    }
+    return nodes;
 }
 
 }  // namespace
 
 std::array<double, kChannels> ModelCheck::rms() const {
     std::array<double, kChannels> squares{};
-    std::array<double, kChannels> count{};
+    std::array<double, kChannels> weights{};
     for (const ModelPlace& place : places) {
-        squares[place.channel] += place.error() * place.error();
-        count[place.channel] += 1.0;
+        const double off = std::abs(place.error()) + place.truth.tail / place.truth.sum.mean;
+        squares[place.channel] += place.weight * off * off;
+        weights[place.channel] += place.weight;
     }
     std::array<double, kChannels> rms{};
     for (std::size_t c = 0; c < kChannels; ++c) {
-        if (count[c] > 0.0) rms[c] = std::sqrt(squares[c] / count[c]);
+        if (weights[c] > 0.0) rms[c] = std::sqrt(squares[c] / weights[c]);
     }
     return rms;
 }
@@ -70,6 +96,8 @@ ModelCheck check_model(const Rig& rig,
     const Rig floor = bare(rig);
     const TracedVeil veil(floor, TracedWater(floor.water));
     const auto width = static_cast<std::size_t>(floor.camera.width_px);
+    const auto across = gauss_nodes<kPlacesAcross>();
+    const auto down = gauss_nodes<kPlacesDown>();
     for (int c = 0; c < kChannels; ++c) {
         const double nm = mean_wavelength_nm(floor, c);
         const Tracer tracer(floor, {.signals = false, .planes_nm = {nm}, .threads = 1});
@@ -79,16 +107,16 @@ ModelCheck check_model(const Rig& rig,
         std::atomic<std::size_t> done = 0;
         parallel_for(
             kPlaces, static_cast<std::size_t>(threads), [&](std::size_t i, std::size_t thread) {
-                const int place = static_cast<int>(i);
-                const std::size_t column =
-                    pixel_at(place % kPlacesAcross, kPlacesAcross, floor.camera.width_px);
-                const std::size_t row =
-                    pixel_at(place / kPlacesAcross, kPlacesDown, floor.camera.height_px);
+                const Node& u = across[i % kPlacesAcross];
+                const Node& v = down[i / kPlacesAcross];
+                const std::size_t column = u.pixel_of(floor.camera.width_px);
+                const std::size_t row = v.pixel_of(floor.camera.height_px);
                 ModelPlace at{.column = static_cast<double>(column) + 0.5,
                               .row = static_cast<double>(row) + 0.5,
                               .channel = static_cast<std::size_t>(c),
                               .lambda_nm = nm,
-                              .truth = {}};
+                              .truth = {},
+                              .weight = u.weight * v.weight};
                 if (const auto ray = tracer.ray(at.column, at.row, nm)) {
                     const std::size_t pixel = row * width + column;
                     at.veil = veil.radiance(*ray, nm);

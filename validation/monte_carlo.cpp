@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-// Paths that have lost so much of their weight live on by chance, with this share of it.
+// Paths whose importance has fallen to this share live on by chance, with this share of it.
 constexpr double kLeastShare = 0.1;
 
 // A unit vector at an angle from another.
@@ -76,6 +76,7 @@ struct MonteCarlo::Path {
     std::vector<Vector3d> lamps_m;  // drawn on the emitters
     double floor = 0.0;
     double veil = 0.0;
+    double late = 0.0;  // of both, by the second half of the turns
 
     struct Vertex {
         Vector3d place_m;
@@ -86,7 +87,10 @@ struct MonteCarlo::Path {
         int turns;  // up to here
     };
 
-    void see(bool has_met_floor, double radiance) { (has_met_floor ? floor : veil) += radiance; }
+    void see(const Vertex& at, double radiance) {
+        (at.has_met_floor ? floor : veil) += radiance;
+        if (at.turns > light.options_.most_turns / 2) late += radiance;
+    }
 
     // To the floor.
     [[nodiscard]] double reach_m(const Vector3d& from_m, const Vector3d& direction) const {
@@ -154,7 +158,7 @@ struct MonteCarlo::Path {
             d_m < triangle.far_m ? s_m * s_m / (4.0 * std::numbers::pi * triangle.far_m) : 0.0;
         const double drawn = by_path + by_turn + by_lamp;
         if (!(drawn > 0.0)) return;
-        see(at.has_met_floor,
+        see(at,
             at.weight * light.turns_.scattering_per_m() *
                 arriving_from(s, y_m - lamps_m[s], s_m + d_m) * onwards * turn / drawn);
     }
@@ -215,16 +219,22 @@ struct MonteCarlo::Path {
             const double d_m = w.norm();
             const double cosine = down_cosine_height(light.rig_, light.down_, lamps_m[s]) / d_m;
             if (!(cosine > 0.0)) continue;
-            see(true,
-                at.weight * cosine / std::numbers::pi * arriving_from(s, w, d_m) / (d_m * d_m));
+            see(at, at.weight * cosine / std::numbers::pi * arriving_from(s, w, d_m) / (d_m * d_m));
         }
+    }
+
+    // What a path may yet bring: a random walk that is D away from the lamps comes back with a
+    // probability of about 1/(c D). Without this, paths in water that absorbs nothing stray for
+    // thousands of turns.
+    [[nodiscard]] double importance(const Vertex& at) const {
+        return at.weight / (1.0 + light.attenuation_per_m_ * at.place_m.norm());
     }
 
     // From a vertex to the end of the path.
     void follow(Vertex at) {
         const double c = light.attenuation_per_m_;
         const double b = light.turns_.scattering_per_m();
-        const double least = kLeastShare * at.weight;
+        const double least = kLeastShare * importance(at);
         for (;;) {
             if (at.is_floor) {
                 at.has_met_floor = true;
@@ -232,9 +242,10 @@ struct MonteCarlo::Path {
                 join_straight(at);
             }
             if (at.turns >= light.options_.most_turns || b == 0.0) return;
-            if (at.weight < least) {
-                if (dice.roll() >= at.weight / least) return;
-                at.weight = least;
+            const double chance = importance(at) / least;
+            if (chance < 1.0) {
+                if (dice.roll() >= chance) return;
+                at.weight /= chance;
             }
             const Vector3d direction = next_direction(at);
             const double reach = at.is_floor ? kForever : reach_m(at.place_m, direction);
@@ -309,6 +320,7 @@ LightOfAllOrders MonteCarlo::radiance(const VeilRay& ray, std::uint64_t stream) 
     Tally floor;
     Tally veil;
     Tally sum;
+    Tally late;
     Path path{.light = *this, .dice = dice, .lamps_m = {}};
     for (std::size_t n = 0; n < options_.paths; ++n) {
         path.lamps_m.clear();
@@ -318,14 +330,20 @@ LightOfAllOrders MonteCarlo::radiance(const VeilRay& ray, std::uint64_t stream) 
         }
         path.floor = 0.0;
         path.veil = 0.0;
+        path.late = 0.0;
         const double stratum =
             (static_cast<double>(n) + dice.roll()) / static_cast<double>(options_.paths);
         path.trace(ray, stratum);
         floor.add(path.floor);
         veil.add(path.veil);
         sum.add(path.floor + path.veil);
+        late.add(path.late);
     }
-    return {floor.of(options_.paths), veil.of(options_.paths), sum.of(options_.paths)};
+    const double later_over_late = 1.0 / (std::numbers::sqrt2 - 1.0);
+    return {floor.of(options_.paths),
+            veil.of(options_.paths),
+            sum.of(options_.paths),
+            later_over_late * late.of(options_.paths).mean};
 }
 
 }  // namespace aphotic

@@ -27,6 +27,11 @@
 // b_t, c   scattering by kLeastTurn or more, and a + b_t [1/m]: what is turned by less is not
 //          followed, for it arrives within 4 cm a metre of where it was going
 // floor    light that has met the floor; veil: that has not
+// tail     what turns beyond most_turns would add. Where water and floor absorb nothing, a path
+// comes
+//          back as a random walk does, and its n-th turn brings light as n^(-3/2): all later turns
+//          together bring 1/(sqrt(2) - 1) times what the second half of the turns followed did.
+//          Any absorption makes it less.
 //
 // The same seed gives the same bits. A standard error is of the mean, from the paths' own spread.
 // Limits: no objects, no highlight; the sea has no surface.
@@ -42,19 +47,21 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 namespace aphotic {
 
 inline constexpr double kLeastTurn = 2.0 * std::numbers::pi / 180.0;
+// In natural water a path ends after some tens of turns; in water that absorbs nothing it need not
+// end at all.
+inline constexpr int kMostTurns = 250;
 
 struct MonteCarloOptions {
     std::size_t paths = 10000;
     std::uint64_t seed = 1;
     // Scatterings of a path; fewer for those who look at an order by itself.
-    int most_turns = std::numeric_limits<int>::max();
+    int most_turns = kMostTurns;
     double least_turn_rad = kLeastTurn;
 };
 
@@ -67,6 +74,7 @@ struct LightOfAllOrders {
     Estimate floor;
     Estimate veil;
     Estimate sum;  // of both, whose errors are of the same paths
+    double tail = 0.0;
 };
 
 class MonteCarlo {

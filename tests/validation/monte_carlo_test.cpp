@@ -258,6 +258,31 @@ TEST(MonteCarlo, DoesNotHangOnTheLeastTurn) {
     EXPECT_LT(fine.standard_error, kWorthIt * fine.mean);
 }
 
+// Paths that lose nothing on their way nor at the floor need not end. They bring what paths do that
+// lose next to nothing: a ten thousandth on each mean free path.
+TEST(MonteCarlo, EndsInWaterThatAbsorbsNothing) {
+    constexpr double kScattering_per_m = 0.1;
+    constexpr std::size_t kPaths = 400;
+    constexpr double kNextToNothing = 0.02;  // of paths of 200 turns
+    const auto light_in = [&](double a) {
+        Rig rig = even_lamp(a, kScattering_per_m, henyey_greenstein(0.1));
+        rig.sled.altitude_m = 3.0;
+        rig.seafloor = {.reflectance = flat(1.0)};
+        const VeilRay ray{
+            .origin_m = {0.5, 0.0, 0.0}, .direction = Vector3d::UnitZ(), .length_m = 3.0};
+        return MonteCarlo(rig, kNm, {.paths = kPaths}).radiance(ray, 0);
+    };
+    const LightOfAllOrders endless = light_in(1e-157);
+    const LightOfAllOrders fading = light_in(1e-5);
+    EXPECT_GT(endless.tail, 0.0);
+    EXPECT_LT(endless.tail, kNextToNothing * endless.sum.mean);
+    EXPECT_NEAR(
+        endless.sum.mean,
+        fading.sum.mean,
+        kNextToNothing * endless.sum.mean +
+            kStandardErrors * std::hypot(endless.sum.standard_error, fading.sum.standard_error));
+}
+
 TEST(MonteCarlo, IsOfBareFloors) {
     Rig rig = even_lamp(0.1, 0.1, henyey_greenstein(0.5));
     rig.seafloor.phong = 0.5;
