@@ -9,6 +9,8 @@
 //   random_nasty_rig(seed) the same geometry with users' worst tables: filters that rise over
 //                          hundreds of decades, lamps of a single line, notches, knots that almost
 //                          coincide, and 30 decades between lamps
+//   random_extended_rig(seed)  the full rig through a calibrated lens, any port and vignetting, in
+//                          water that scatters: any of these or none
 //
 // A test that fails prints the seed with in_words(); run alone with APHOTIC_RIG_SEED=<seed>, it
 // tries that rig and no other.
@@ -18,8 +20,10 @@
 #include "rig/rig.h"
 #include "rig/solid.h"
 #include "spectral/curve_loader.h"
+#include "spectral/natural_water.h"
 #include "support/box_mesh.h"
 #include "support/random_beam.h"
+#include "support/random_camera.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -244,6 +248,41 @@ inline Rig random_full_rig(std::uint64_t seed) {
     return rig;
 }
 
+inline PhaseFunction random_phase(Dice& dice) {
+    if (dice.chance(0.5)) {
+        return {.name = "henyey-greenstein", .kind = HenyeyGreenstein{dice.between(-0.5, 0.95)}};
+    }
+    return fournier_forand(dice.over_octaves(0.003, 0.1));
+}
+
+// By its chlorophyll, or the water as it was with particles of any kind.
+inline void give_scatterers(Dice& dice, Water& water) {
+    if (dice.chance(0.5)) {
+        const double chlorophyll_mg_m3 =
+            dice.over_octaves(kLeastChlorophyll, 0.1 * kMostChlorophyll);
+        take_constituents({.chlorophyll_mg_m3 = chlorophyll_mg_m3}, water);
+    } else {
+        water.scatterers.push_back(
+            {random_curve(dice, 0.0, dice.over_octaves(0.01, 1.0)), random_phase(dice)});
+    }
+    water.multiple = std::max(water.multiple, 0.1);
+}
+
+// Objects have no place in a veil, nor in the housing of a port.
+inline Rig random_extended_rig(std::uint64_t seed) {
+    Rig rig = random_full_rig(seed);
+    Dice dice(seed ^ 0x657874656e646564ULL);
+    Camera& camera = rig.camera;
+    if (dice.chance(0.5)) give_lens(kLensKinds.at(dice.index_in(kLensKinds)), dice, camera);
+    if (dice.chance(0.6)) give_port(kPortKinds.at(dice.index_in(kPortKinds)), dice, camera);
+    if (dice.chance(0.5)) give_vignetting(dice.index_in(kPortKinds), dice, camera);
+    if (dice.chance(0.4)) give_scatterers(dice, rig.water);
+    std::erase_if(rig.objects, [&](const Object& object) {
+        return rig.water.scatters() || !has_place(rig, object.shape);
+    });
+    return rig;
+}
+
 // Knots: some even, some so close to another that they almost coincide.
 inline std::vector<double> nasty_knots_nm(Dice& dice) {
     constexpr WavelengthRange kCovered{.first_nm = 360.0, .last_nm = 760.0};
@@ -347,7 +386,7 @@ inline Rig with_pixels(Rig rig, int width_px, int height_px) {
 inline std::string in_words(std::uint64_t seed, const Rig& rig) {
     return fmt::format(
         "APHOTIC_RIG_SEED={}: {:.3g} m up, pitch {:.3g} and roll {:.3g} degrees, {} "
-        "strobes, {} objects{}{}",
+        "strobes, {} objects{}{}{}{}{}",
         seed,
         rig.sled.altitude_m,
         rig.sled.pitch_rad / kDegree,
@@ -355,7 +394,10 @@ inline std::string in_words(std::uint64_t seed, const Rig& rig) {
         rig.strobes.size(),
         rig.objects.size(),
         rig.seafloor.phong > 0.0 ? ", a highlight" : "",
-        rig.camera.port ? ", a port" : "");
+        rig.camera.lens ? ", a lens" : "",
+        rig.camera.port ? ", a port" : "",
+        rig.camera.vignetting ? ", vignetting" : "",
+        rig.water.scatters() ? ", a veil" : "");
 }
 
 // The seeds first_seed, first_seed + 1, ...; or the one that the environment asks for.
