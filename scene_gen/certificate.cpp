@@ -15,7 +15,6 @@
 namespace aphotic {
 namespace {
 
-constexpr int kSide = 17;
 // Over these points of the range light is a straight line: dispersion bends it by some per cent.
 constexpr int kGeometryPoints = 65;
 constexpr double kBlackShare = 1e-8;
@@ -129,10 +128,8 @@ std::array<double, kChannels> port_error(const Rig& rig, std::span<const Planned
     Rig at_power_1 = rig;
     for (Strobe& strobe : at_power_1.strobes) strobe.power = 1.0;
     std::vector<Signals> image;
-    for (int v = 0; v < kSide; ++v) {
-        for (int u = 0; u < kSide; ++u) {
-            const double column = rig.camera.width_px * (u / (kSide - 1.0));
-            const double row = rig.camera.height_px * (v / (kSide - 1.0));
+    for (const double row : places_along(rig.camera.height_px)) {
+        for (const double column : places_along(rig.camera.width_px)) {
             const auto signals = signals_of(at_power_1, column, row, nodes, rule);
             if (signals) image.push_back(*signals);
         }

@@ -6,9 +6,9 @@
 //
 // Behind a port every wavelength shows a point of the floor of its own, and a pixel's light changes
 // over wavelength along a curve of its own, of which the family's tilt is an envelope. So the rule
-// is tried on the pixels themselves, on an even grid of the image from corner to corner:
+// is tried on the pixels themselves, at places_along() the image's sides (scene_gen/light_paths.h):
 //
-//   error_c = kBetweenPixels max over the grid of |sum_j w_cj L_j / S_c - 1|
+//   error_c = kBetweenPixels max over the places of |sum_j w_cj L_j / S_c - 1|
 //   S_c     = int L Q_c dlambda          L_j  what frame j holds, with its own refractive indices
 //
 // Pixels darker than black, 1e-8 of the brightest, do not count. Nor does light that dispersion
@@ -25,7 +25,7 @@
 
 namespace aphotic {
 
-// The grid's maximum may lie between its points.
+// The maximum may lie between the places.
 inline constexpr double kBetweenPixels = 1.02;
 
 // In view through the port, by channel, of the bare floor by the light of the wavelengths.

@@ -86,9 +86,8 @@ std::vector<std::size_t> lamps_by_strobe(const Rig& rig) {
 
 // The port's tilt: for each wavelength, the largest such change over the image.
 Spectrum port_tilt(const Rig& rig) {
-    constexpr int kGrid = 33;
     constexpr int kWavelengths = 25;
-    constexpr double kBetween = 1.1;  // for what lies between the grid's points
+    constexpr double kBetween = 1.1;  // for what lies between the places
     const WavelengthRange range = rig.camera.range;
     const double middle_nm = std::midpoint(range.first_nm, range.last_nm);
     const std::vector<std::size_t> lamps = lamps_by_strobe(rig);
@@ -97,10 +96,8 @@ Spectrum port_tilt(const Rig& rig) {
     for (int j = 0; j < kWavelengths; ++j) {
         const double nm = std::lerp(range.first_nm, range.last_nm, j / (kWavelengths - 1.0));
         double worst = 0.0;
-        for (int v = 0; v < kGrid; ++v) {
-            for (int u = 0; u < kGrid; ++u) {
-                const double column = rig.camera.width_px * (u / (kGrid - 1.0));
-                const double row = rig.camera.height_px * (v / (kGrid - 1.0));
+        for (const double row : places_along(rig.camera.height_px)) {
+            for (const double column : places_along(rig.camera.width_px)) {
                 const WaterRay middle = pixel_ray(rig, column, row, middle_nm);
                 const auto distance_m = distance_to(floor_plane(rig.sled), middle);
                 if (!distance_m) continue;
@@ -141,6 +138,14 @@ std::vector<Spectrum> lamps_of(const Rig& rig) {
 }
 
 }  // namespace
+
+std::vector<double> places_along(int pixels) {
+    const int count = std::min(pixels, kMostPlaces);
+    std::vector<double> places;
+    for (int i = 0; i < count; ++i)
+        places.push_back(std::lerp(0.5, pixels - 0.5, i / std::max(1.0, count - 1.0)));
+    return places;
+}
 
 std::vector<Spectrum> materials_of(const Rig& rig) {
     std::vector<Spectrum> materials{rig.seafloor.reflectance};

@@ -17,10 +17,18 @@
 #include "spectral/light_family.h"
 #include "spectral/planned_wavelength.h"
 
+#include <vector>
+
 namespace aphotic {
 
 // Logarithm of a change of light.
 inline constexpr double kObjectTilt = 0.05;
+
+// Places along the width or height of an image where the light behind a port is sampled [pixel]:
+// the middle of every pixel, or of kMostPlaces evenly from the first to the last. A beam's table
+// may be steep over an angle as narrow as its rows, which fewer places would miss.
+[[nodiscard]] std::vector<double> places_along(int pixels);
+inline constexpr int kMostPlaces = 65;
 
 // Lamps with the same spectrum are one, and so are materials.
 [[nodiscard]] LightFamily light_family(const Rig& rig);

@@ -47,12 +47,14 @@ constexpr std::uint64_t kSeed = 20240613;
 constexpr int kRigs = 500;
 constexpr int kRigsOfWavelengths = 100;
 constexpr int kNastyRigs = 100;
+constexpr int kExtendedRigs = 60;
 #else
 // In debug builds, with sanitizers, the plan of one rig takes half a minute: there it is enough
 // that every line runs.
 constexpr int kRigs = 1;
 constexpr int kRigsOfWavelengths = 1;
 constexpr int kNastyRigs = 1;
+constexpr int kExtendedRigs = 1;
 #endif
 constexpr unsigned kThreads = 2;
 
@@ -91,6 +93,23 @@ Rig in_the_light_of(Rig rig, double lambda_nm) {
     rig.water.multiple = 1.0;
     rig.water.uniform_loss_per_m = 0.0;
     return rig;
+}
+
+// The floor's light alone, in water that takes as much of it: frames hold no veil.
+Rig without_veil(Rig rig) {
+    if (!rig.water.scatters()) return rig;
+    const std::vector<double> knots_nm = union_of_knots(rig.water.curves(), rig.camera.range);
+    std::vector<double> loss_per_m;
+    for (const double nm : knots_nm) loss_per_m.push_back(rig.water.attenuation_per_m(nm));
+    rig.water.absorption_per_m = {"loss", knots_nm, std::move(loss_per_m)};
+    rig.water.multiple = 1.0;
+    rig.water.uniform_loss_per_m = 0.0;
+    rig.water.scatterers.clear();
+    return rig;
+}
+
+Rig random_extended_rig_without_veil(std::uint64_t seed) {
+    return without_veil(random_extended_rig(seed));
 }
 
 std::vector<double> frame_of(const Rig& rig, const PlannedWavelength& w) {
@@ -378,6 +397,23 @@ TEST(Promise, HoldsWithUsersWorstTables) {
         expect_kept(trials, i);
     }
     EXPECT_LE(refused, kNastyRefusals * static_cast<double>(trials.size()) + 1.0);
+}
+
+// Through lenses and ports, by beams of every kind. APHOTIC_EXTENDED_RIGS=1000 tries so many.
+TEST(Promise, HoldsThroughLensesAndPorts) {
+    const char* asked = std::getenv("APHOTIC_EXTENDED_RIGS");
+    const int count = asked != nullptr ? std::atoi(asked) : kExtendedRigs;
+    const char* first = std::getenv("APHOTIC_RIG_SEED");
+    const std::vector<Trial> trials = try_out_all(random_extended_rig_without_veil,
+                                                  first != nullptr ? std::stoull(first) : kSeed,
+                                                  count,
+                                                  Frames::Halves);
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+        EXPECT_EQ(trials[i].fault, "") << description_of(trials, i);
+        if (trials[i].tolerance == 0.0)
+            std::cout << description_of(trials, i) << ": " << trials[i].refusal << '\n';
+        expect_kept(trials, i);
+    }
 }
 
 // Rigs that were found with promises that did not hold: by 114 times, 33 times, 1.8 times, and
