@@ -38,6 +38,11 @@ double transmittance_by_cosine(const BeamWindow& window, double cos_in_air) {
     const double cos_water = cosine_beyond(sine, window.water_index);
     double sum = 0.0;
     for (const bool is_s : {true, false}) {
+        if (window.glass_index ==
+            1.0) {  // no glass at all: of its cosine, 0 along it, none is left
+            sum += face(1.0, cos_in_air, window.water_index, cos_water, is_s).by_cosine;
+            continue;
+        }
         const Face outer = face(1.0, cos_in_air, window.glass_index, cos_glass, is_s);
         const Face inner = face(window.glass_index, cos_glass, window.water_index, cos_water, is_s);
         sum += outer.by_cosine * inner.by_cosine * cos_glass /

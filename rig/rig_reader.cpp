@@ -453,6 +453,9 @@ Cone RigReader::read_cone(Section& section) {
     if (cone.edge_rad > cone.half_angle_rad) {
         section.found_but("edge_deg", "up to half_angle_deg, where the cone ends");
     }
+    // No cosine tells such an edge from a sharp one.
+    if (std::cos(cone.half_angle_rad - cone.edge_rad) == std::cos(cone.half_angle_rad))
+        cone.edge_rad = 0.0;
     section.refuse_unknown_keys();
     return cone;
 }

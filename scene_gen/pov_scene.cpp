@@ -32,6 +32,14 @@ constexpr double kFadeShare = 1e-3;
 // A user's scene may hold anything: so it does from a millimetre on.
 constexpr double kUserFade_m = 0x1p-20;
 
+// Units between the surfaces of a port, at least: twice what aphotic.inc takes, and a millimetre of
+// glass stays in metres.
+constexpr double kPortClearance = 0x1p-10;
+
+double power_of_two_within(double most) {
+    return std::exp2(std::floor(std::log2(most)));
+}
+
 // Wavelengths as they stand in file names: with as few decimals as tell all of them apart.
 std::vector<std::string> wavelength_labels(std::span<const PlannedWavelength> wavelengths) {
     constexpr int kMostDecimals = 6;
@@ -62,7 +70,27 @@ double least_throw_m(const Rig& rig) {
 // Fade distance: a power of two, so that 1/(2 f^2) scales the light without rounding it.
 double fade_distance_m(const Rig& rig, const SceneOptions& options) {
     if (options.user_scene) return kUserFade_m;
-    return std::exp2(std::floor(std::log2(kFadeShare * least_throw_m(rig))));
+    return power_of_two_within(kFadeShare * least_throw_m(rig));
+}
+
+// Of the pinhole that POV-Ray has for the camera: half a pixel, at a distance of 1.
+double half_pixel_slope(const Camera& camera) {
+    const Pinhole pinhole = pinhole_about(camera);
+    return 0.5 * pinhole.sensor_width_m / camera.width_px / pinhole.focal_length_m;
+}
+
+// No ray is farther from the normal of a flat port.
+double widest_off_normal_rad(const Camera& camera) {
+    const double half_view =
+        half_pixel_slope(camera) * std::hypot(camera.width_px, camera.height_px);
+    return std::atan(half_view) + std::acos(std::min(1.0, camera.port->normal.z()));
+}
+
+// Between the surfaces round the pupil that POV-Ray has to find.
+double least_clearance_m(const PortWindow& port) {
+    const double room_m =
+        port.dome ? port.dome->radius_m - port.dome->centre_m.norm() : port.distance_m;
+    return std::min(room_m, port.thickness_m);
 }
 
 // What holds the glass around camera and pupil, in the sled's frame, as aphotic.inc has it. It is
@@ -75,16 +103,13 @@ Eigen::AlignedBox3d housing(const Camera& camera) {
         return {port.dome->centre_m - reach_m, port.dome->centre_m + reach_m};
     }
     const double front_m = port.distance_m + port.thickness_m;
-    const Pinhole pinhole = pinhole_about(camera);
-    const double half_pixel =
-        0.5 * pinhole.sensor_width_m / camera.width_px / pinhole.focal_length_m;
     if (!is_across_axis(port)) {
-        const double half_view = half_pixel * std::hypot(camera.width_px, camera.height_px);
-        const double widest_rad = std::atan(half_view) + std::acos(std::min(1.0, port.normal.z()));
-        const double aside_m = kRoom * std::tan(widest_rad) * front_m + 2.0 * port.thickness_m;
+        const double aside_m =
+            kRoom * std::tan(widest_off_normal_rad(camera)) * front_m + 2.0 * port.thickness_m;
         const Vector3d reach_m = Vector3d::Constant(std::hypot(aside_m, aside_m, front_m));
         return {-reach_m, reach_m};
     }
+    const double half_pixel = half_pixel_slope(camera);
     const double half_pixel_m = kRoom * front_m * half_pixel;
     const Vector3d half_m(half_pixel_m * camera.height_px + 2.0 * port.thickness_m,
                           half_pixel_m * camera.width_px + 2.0 * port.thickness_m,
@@ -173,7 +198,32 @@ double unit_with_shells_m(const Rig& rig, std::span<const LampGrid> lamps) {
     const double unit_m = scene_unit_m(rig);
     if (std::ranges::none_of(rig.strobes, needs_shell, &Strobe::beam)) return unit_m;
     const double least_m = std::min(kMost_m, least_way_to_shell_m(rig, lamps));
-    return std::min(unit_m, std::exp2(std::floor(std::log2(least_m))));
+    return std::min(unit_m, power_of_two_within(least_m));
+}
+
+void require_port(const Camera& camera) {
+    constexpr double kWidest_deg = 85.0;  // in aphotic.inc
+    constexpr double kLeastClearance_m = 1e-5;
+    if (!camera.port) return;
+    const double clearance_m = least_clearance_m(*camera.port);
+    if (clearance_m < kLeastClearance_m) {
+        throw InputError(fmt::format(
+            "camera.port: found {:.3g} mm of {}; allowed for a render: {} mm and more, for POV-Ray "
+            "takes no notice of surfaces that are nearer",
+            clearance_m * 1e3,
+            clearance_m < camera.port->thickness_m ? "air between the pupil and the glass"
+                                                   : "glass",
+            kLeastClearance_m * 1e3));
+    }
+    if (camera.port->dome || is_across_axis(*camera.port)) return;
+    const double widest_deg = widest_off_normal_rad(camera) * 180.0 / std::numbers::pi;
+    if (widest_deg > kWidest_deg) {
+        throw InputError(fmt::format(
+            "camera.port.normal: found a view that reaches {:.1f} degrees from it; allowed for a "
+            "render: up to {}, as the port has to be wider than any ray",
+            widest_deg,
+            kWidest_deg));
+    }
 }
 
 void require_place(const Rig& rig, std::span<const LampGrid> lamps) {
@@ -420,7 +470,10 @@ double scene_unit_m(const Rig& rig) {
     for (const Object& object : rig.objects) {
         least_m = std::min(least_m, bounds_m(object.shape).sizes().maxCoeff());
     }
-    return least_m < kLeastInMetres_m ? std::exp2(std::floor(std::log2(least_m))) : 1.0;
+    const double unit_m = least_m < kLeastInMetres_m ? power_of_two_within(least_m) : 1.0;
+    if (!rig.camera.port) return unit_m;
+    return std::min(unit_m,
+                    power_of_two_within(least_clearance_m(*rig.camera.port) / kPortClearance));
 }
 
 double fog_m(const Rig& rig, const SceneOptions& options) {
@@ -455,6 +508,7 @@ std::vector<FrameScene> make_scenes(const Rig& rig,
                                     const SceneOptions& options,
                                     std::span<PlannedWavelength> wavelengths) {
     require_few_enough_lights(rig, lamps);
+    require_port(rig.camera);
     require_place(rig, lamps);
     const Parts parts = parts_of(rig, lamps, options);
     const std::vector<std::string> labels = wavelength_labels(wavelengths);

@@ -245,10 +245,15 @@ double integral_of(const BeamOptics& optics) {
         const double middle = per_height * height_m / s;
         return Heights{middle - 0.5 * side_m / s, middle + 0.5 * side_m / s};
     };
+    // In parts of an interval: Boost compares an error that it has not multiplied by its length.
+    const auto integrate = [&](const auto& f, double from, double to) {
+        const double length = to - from;
+        const auto part = [&](double u) { return f(from + length * u); };
+        return length * Adaptive::integrate(part, 0.0, 1.0, kDepth, kError);
+    };
     const auto in_pieces = [&](const auto& f, double most, double cut) {
-        if (!(cut < most)) return Adaptive::integrate(f, 0.0, most, kDepth, kError);
-        return Adaptive::integrate(f, 0.0, cut, kDepth, kError) +
-               Adaptive::integrate(f, cut, most, kDepth, kError);
+        if (!(cut < most)) return integrate(f, 0.0, most);
+        return integrate(f, 0.0, cut) + integrate(f, cut, most);
     };
     const double end_along_m = 0.5 * optics.along_m / std::abs(per_height);
     const double end_across_m = 0.5 * optics.across_m / std::abs(per_height);

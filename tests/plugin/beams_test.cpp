@@ -61,6 +61,23 @@ Beam soft_cones() {
                       {.part = "all", .half_angle_rad = 90.0 * kDegree, .weight = 0.1}}};
 }
 
+// Where cosines are 0, and their powers 0^0.
+Beam extreme_cones() {
+    const auto cone = [](double half_angle_deg, double exponent, double edge_deg) {
+        return Cone{.part = "part",
+                    .half_angle_rad = half_angle_deg * kDegree,
+                    .weight = 0.3,
+                    .exponent = exponent,
+                    .edge_rad = edge_deg * kDegree};
+    };
+    return {.name = "extreme",
+            .weights = ConeWeights::Flux,
+            .cones = {cone(90.0, 0.0, 13.949023469432351),
+                      cone(90.0, 0.0, 90.0),
+                      cone(90.0, 1000.0, 90.0),
+                      cone(90.0, 1e-300, 1e-9)}};
+}
+
 Beam behind_window(Beam beam) {
     beam.window = kWindow;
     return beam;
@@ -106,6 +123,7 @@ void PrintTo(const Kind& kind, std::ostream* out) {
 }
 
 const std::vector<Kind> kKinds{
+    {"ExtremeCones", extreme_cones},
     {"SoftCones", soft_cones},
     {"ConesBehindAWindow", [] { return behind_window(soft_cones()); }},
     {"RoundTable", [] { return beam_of(table(TableAngles::TypeC, kUneven, {0})); }},

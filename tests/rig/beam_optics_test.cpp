@@ -105,6 +105,25 @@ TEST(BeamOptics, HasTheFluxOfItsIntensity) {
     }
 }
 
+// All lengths 1e-5 times as long: the same angles, from 1e-10 of the area. The integral
+// takes no longer.
+TEST(BeamOptics, OfAnySizeHasTheFluxOfItsArea) {
+    const BeamOptics metres{.along_m = 1.0,
+                            .across_m = 1.0,
+                            .focal_length_m = 1e6,
+                            .distance_m = 1.0,
+                            .aperture_m = 1.0};
+    BeamOptics small = metres;
+    for (double* length_m : {&small.along_m,
+                             &small.across_m,
+                             &small.focal_length_m,
+                             &small.distance_m,
+                             &small.aperture_m}) {
+        *length_m *= 1e-5;
+    }
+    EXPECT_NEAR(optics_flux(small) / (1e-10 * optics_flux(metres)), 1.0, 1e-10);
+}
+
 // A lens far larger than the diffuser close behind it takes all that a Lambertian rectangle emits,
 // pi times its area: that of the image, 1/(1 - s/f)^2 times as large.
 TEST(BeamOptics, ALargeLensTakesAll) {

@@ -31,6 +31,15 @@ TEST(BeamWindow, OfNothingChangesNothing) {
     }
 }
 
+// The index 1 is air's: no glass, but one face to water, along which the light has a limit.
+TEST(BeamWindow, OfAirHasItsLimitAlongTheFace) {
+    const BeamWindow air{.glass_index = 1.0, .water_index = 1.3437};
+    constexpr double kAlmost = 1e-9;
+    EXPECT_NEAR(window_factor(air, 0.0) / window_factor(air, kAlmost), 1.0, 1e-7);
+    const double reflected = std::pow(0.3437 / 2.3437, 2);
+    EXPECT_NEAR(window_factor(air, 1.0), (1.0 - reflected) * 1.3437 * 1.3437, 1e-13);
+}
+
 // Light of p polarisation passes glass in air at Brewster's angle; s is reflected twice, each time
 // by ((n^2 - 1)/(n^2 + 1))^2.
 TEST(BeamWindow, HasBrewstersAngle) {

@@ -451,6 +451,10 @@ TEST(RigReader, ReadsEveryKindOfBeam) {
     const Beam soft =
         beam_of("cones = [{ part = \"x\", half_angle_deg = 60, weight = 0.5, edge_deg = 30 }]");
     EXPECT_NEAR(soft.cones[0].edge_rad, kPi / 6.0, kRounding);
+    // One that no cosine tells from a sharp one has none to divide by.
+    const Beam sharp = beam_of(
+        "cones = [{ part = \"x\", half_angle_deg = 0.001, weight = 0.5, edge_deg = 1e-13 }]");
+    EXPECT_EQ(sharp.cones[0].edge_rad, 0.0);
 
     // cos^n is a half at 60 degrees for n = 1.
     const Beam wide = beam_of("fwhm_deg = 120");

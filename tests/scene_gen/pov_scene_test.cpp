@@ -2,6 +2,7 @@
 #include "scene_gen/pov_scene.h"
 
 #include "base/error.h"
+#include "rig/lens.h"
 #include "rig/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "tests/support/closed_form.h"
@@ -388,6 +389,30 @@ TEST(PovScene, RefusesAStrobeInTheHousing) {
     rig.strobes[1].position_m = {0.01, -0.01, 0.03};
     rig.camera.port.reset();
     EXPECT_EQ(input_error(rig), "no error") << "without a housing";
+}
+
+// POV-Ray passes over surfaces within 1e-4 of its units of the last.
+TEST(PovScene, HasPortsInUnitsInWhichPovrayFindsTheirSurfaces) {
+    Rig rig = with_port(odd_rig());
+    EXPECT_EQ(scene_unit_m(rig), 1.0);
+    rig.camera.port->thickness_m = 1e-3;
+    EXPECT_EQ(scene_unit_m(rig), 1.0) << "the thinnest that the reader takes";
+    rig.camera.port->dome = Dome{.centre_m = {0.0, 0.0, 0.04995}, .radius_m = 0.05};
+    EXPECT_LE(scene_unit_m(rig), 0.05);
+    EXPECT_EQ(input_error(rig), "no error");
+    rig.camera.port->dome->centre_m.z() = 0.049999;
+    EXPECT_EQ(input_error(rig),
+              "camera.port: found 0.001 mm of air between the pupil and the glass; allowed for a "
+              "render: 0.01 mm and more, for POV-Ray takes no notice of surfaces that are nearer");
+}
+
+TEST(PovScene, RefusesATiltedPortThatRaysHardlyMeet) {
+    Rig rig = with_port(odd_rig());
+    const double tilt_rad = 87.0 * std::numbers::pi / 180.0 - half_view_rad(rig.camera);
+    rig.camera.port->normal = {0.0, std::sin(tilt_rad), std::cos(tilt_rad)};
+    const std::string message = input_error(rig);
+    EXPECT_TRUE(message.starts_with("camera.port.normal: found a view that reaches ")) << message;
+    EXPECT_TRUE(message.find("allowed for a render: up to 85") != std::string::npos) << message;
 }
 
 // Facing aft from 10 cm above the floor, with 30 cm from edge to edge.

@@ -52,7 +52,8 @@ struct PovRayRun {
 inline PovRayRun run_povray(const std::filesystem::path& folder,
                             const std::string& sdl,
                             int width_px = 8,
-                            int height_px = 8) {
+                            int height_px = 8,
+                            const std::vector<std::string>& settings = {}) {
     constexpr double kTimeoutS = 120.0;
     for (const IncludeFile& file : include_library()) {
         write_file(folder / file.name, file.text);
@@ -61,17 +62,19 @@ inline PovRayRun run_povray(const std::filesystem::path& folder,
     const std::filesystem::path image = folder / "scene.exr";
     std::filesystem::remove(image);
     PovRayRun run;
+    std::vector<std::string> arguments{"+Iscene.pov",
+                                       "+Oscene.exr",
+                                       "+FE",
+                                       "-D",
+                                       "-A",
+                                       "-V",
+                                       "-GR",
+                                       "-GS",
+                                       fmt::format("+W{}", width_px),
+                                       fmt::format("+H{}", height_px)};
+    arguments.insert(arguments.end(), settings.begin(), settings.end());
     run.end = run_process({.executable = find_povray("").executable,
-                           .arguments = {"+Iscene.pov",
-                                         "+Oscene.exr",
-                                         "+FE",
-                                         "-D",
-                                         "-A",
-                                         "-V",
-                                         "-GR",
-                                         "-GS",
-                                         fmt::format("+W{}", width_px),
-                                         fmt::format("+H{}", height_px)},
+                           .arguments = arguments,
                            .folder = folder,
                            .environment = {},
                            .log = folder / "scene.log"},
