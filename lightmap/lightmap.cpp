@@ -4,6 +4,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "image/camera_image.h"
 #include "lightmap/row_light.h"
 #include "rig/geometry.h"
 #include "rig/index_nodes.h"
@@ -39,6 +40,43 @@ void require_bare_floor(const Rig& rig) {
     }
     if (!rig.scene.empty()) {
         throw InputError(fmt::format("found the scene {}; {}", rig.scene.string(), kAllowed));
+    }
+}
+
+// Maps are of floats. What a strobe's light is made of has room below the largest float for what
+// is close, and above the least for what is dark.
+void require_float_scale(const Rig& rig) {
+    constexpr double kLeast = 1e-28;
+    constexpr double kMost = 1e28;
+    const auto fits = [&](double x) { return x == 0.0 || (x >= kLeast && x <= kMost); };
+    const Camera& camera = rig.camera;
+    for (const Strobe& strobe : rig.strobes) {
+        if (strobe.power == 0.0 || is_dark(strobe.beam)) continue;
+        std::vector<const Spectrum*> curves = camera.sensor.curves();
+        curves.push_back(&strobe.spectrum);
+        curves.push_back(&rig.seafloor.reflectance);
+        const std::vector<double> knots_nm = union_of_knots(curves, camera.range);
+        const double brightest = strobe.power * most_intensity(strobe.beam);
+        for (int c = 0; c < kChannels; ++c) {
+            double signal = 0.0;
+            for (const double nm : knots_nm) {
+                signal = std::max(signal,
+                                  strobe.spectrum.at(nm) * rig.seafloor.reflectance.at(nm) *
+                                      camera.sensor.response(c, nm));
+            }
+            if (signal == 0.0 || (fits(signal) && fits(brightest) && fits(signal * brightest)))
+                continue;
+            throw InputError(fmt::format(
+                "strobe '{}', {}: found up to {:.3g} of lamp spectrum times reflectance times "
+                "response, and {:.3g} of power times beam; allowed: each, and their product, from "
+                "{:g} to {:g}, for maps are of 32-bit floats",
+                strobe.name,
+                kChannelNames.at(static_cast<std::size_t>(c)),
+                signal,
+                brightest,
+                kLeast,
+                kMost));
+        }
     }
 }
 
@@ -293,6 +331,7 @@ LightmapMaker::LightmapMaker(const Rig& rig,
                              const LightmapOptions& options)
     : rig_(rig), options_(options), spectrum_of_strobe_(lamps_by_strobe(rig)) {
     require_bare_floor(rig);
+    require_float_scale(rig);
     for (const Strobe& strobe : rig.strobes) edges_.push_back(beam_edges(strobe));
     direct_ = paths ? *paths : path_range(rig);
     paths_ = direct_;
