@@ -62,10 +62,12 @@ void take_file(const std::string& file, ShownBeam& shown) {
     if (largest_intensity(read.table) == 0.0) {
         throw InputError(fmt::format("{}: found no light in it; allowed: some", file));
     }
-    shown.beam = scaled_to_flux({.name = file, .cones = {}, .pattern = read.table});
+    shown.beam = scaled_to_flux({.name = file, .cones = {}, .pattern = normalised(read.table)});
     const bool is_candela = !file.ends_with(".csv");
     std::optional<double> flux_lm;
     if (is_candela) flux_lm = table_flux(read.table);
+    if (flux_lm && !std::isfinite(*flux_lm))
+        throw InputError(fmt::format("{}: found a flux of more lumens than 1.8e308", file));
     shown.users.push_back({.name = "the file's lamp", .luminous_flux_lm = flux_lm});
     shown.stated_lm = read.luminous_flux_lm;
 }

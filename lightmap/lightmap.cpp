@@ -4,6 +4,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "image/camera_image.h"
 #include "lightmap/row_light.h"
 #include "rig/geometry.h"
 #include "rig/index_nodes.h"
@@ -39,6 +40,43 @@ void require_bare_floor(const Rig& rig) {
     }
     if (!rig.scene.empty()) {
         throw InputError(fmt::format("found the scene {}; {}", rig.scene.string(), kAllowed));
+    }
+}
+
+// Maps are of floats. What a strobe's light is made of has room below the largest float for what
+// is close, and above the least for what is dark.
+void require_float_scale(const Rig& rig) {
+    constexpr double kLeast = 1e-28;
+    constexpr double kMost = 1e28;
+    const auto fits = [&](double x) { return x == 0.0 || (x >= kLeast && x <= kMost); };
+    const Camera& camera = rig.camera;
+    for (const Strobe& strobe : rig.strobes) {
+        if (strobe.power == 0.0 || is_dark(strobe.beam)) continue;
+        std::vector<const Spectrum*> curves = camera.sensor.curves();
+        curves.push_back(&strobe.spectrum);
+        curves.push_back(&rig.seafloor.reflectance);
+        const std::vector<double> knots_nm = union_of_knots(curves, camera.range);
+        const double brightest = strobe.power * most_intensity(strobe.beam);
+        for (int c = 0; c < kChannels; ++c) {
+            double signal = 0.0;
+            for (const double nm : knots_nm) {
+                signal = std::max(signal,
+                                  strobe.spectrum.at(nm) * rig.seafloor.reflectance.at(nm) *
+                                      camera.sensor.response(c, nm));
+            }
+            if (signal == 0.0 || (fits(signal) && fits(brightest) && fits(signal * brightest)))
+                continue;
+            throw InputError(fmt::format(
+                "strobe '{}', {}: found up to {:.3g} of lamp spectrum times reflectance times "
+                "response, and {:.3g} of power times beam; allowed: each, and their product, from "
+                "{:g} to {:g}, for maps are of 32-bit floats",
+                strobe.name,
+                kChannelNames.at(static_cast<std::size_t>(c)),
+                signal,
+                brightest,
+                kLeast,
+                kMost));
+        }
     }
 }
 
@@ -132,14 +170,25 @@ struct PlacedLamp {
 
 using FitBlock = std::array<bool, kSampledBlocks>;
 
+// Factors of one kind, the floor's or the highlight's, of one lamp at the nodes.
+struct FactorBlock {
+    std::array<RowBlock<float>, kIndexNodes> at_nodes;
+    RowBlock<float> doubt;
+};
+
 // Of one thread.
 struct Workspace {
     std::array<RayBlock, kIndexNodes> rays;
+    std::array<RayBlock, kHalfWay.size()> between;  // rays half way between nodes
     LampBlock lit;
+    FactorBlock diffuse;
+    FactorBlock highlight;
     SumBlock sums;
-    std::array<RowBlock<double>, kChannels> totals;  // of many lamps, whose floats would not do
-    SumBlock sampled;                                // of kSampledBlocks
-    FitBlock may_fit;                                // which of them
+    SumBlock doubts;            // of the sums
+    std::vector<int> in_doubt;  // columns of the row
+    TotalBlock totals;          // of many lamps, whose floats would not do
+    SumBlock sampled;           // of kSampledBlocks
+    FitBlock may_fit;           // which of them
     Outside outside;
 };
 
@@ -153,6 +202,13 @@ void move_to_totals(Workspace& work) {
         }
         work.sums[c].fill(0.0F);
     }
+}
+
+bool is_in_doubt(const Workspace& work, std::size_t pixel) {
+    bool is = false;
+    for (std::size_t c = 0; c < kChannels; ++c)
+        is |= work.doubts[c][pixel] > kMostDoubt * work.sums[c][pixel];
+    return is;
 }
 
 Lightmap rows_of(const Lightmap& map, int first_row, int count) {
@@ -275,6 +331,7 @@ LightmapMaker::LightmapMaker(const Rig& rig,
                              const LightmapOptions& options)
     : rig_(rig), options_(options), spectrum_of_strobe_(lamps_by_strobe(rig)) {
     require_bare_floor(rig);
+    require_float_scale(rig);
     for (const Strobe& strobe : rig.strobes) edges_.push_back(beam_edges(strobe));
     direct_ = paths ? *paths : path_range(rig);
     paths_ = direct_;
@@ -323,9 +380,16 @@ void LightmapMaker::tabulate() {
     const auto grid =
         reference_grid(rig_.camera.sensor, family, rig_.camera.range, kGridShare * options_.error);
     grid_size_ = grid.size();
+    for (std::size_t i = 0; i < grid.size() && rig_.camera.port; ++i) {
+        const std::vector<std::size_t> order = node_order(index_nodes_nm_.size());
+        IndexShares shares{};
+        for (std::size_t j = 0; j < order.size(); ++j)
+            shares.at(j) = index_share(rig_, index_nodes_nm_, order[j], grid[i].lambda_nm);
+        shares_.push_back(shares);
+    }
 
-    // Lagrange's polynomials of three of Chebyshev's points sum, in size, to 5/3 at most.
-    constexpr double kLebesgue = 5.0 / 3.0;
+    // Lagrange's polynomials of three even points sum, in size, to 5/4 at most.
+    constexpr double kLebesgue = 5.0 / 4.0;
     const double table_error = kTableShare * options_.error / (rig_.camera.port ? kLebesgue : 1.0);
     steps_ = {};
     std::vector<std::function<double(double)>> kinds;
@@ -357,6 +421,11 @@ void LightmapMaker::tabulate_lamp(const Spectrum& lamp,
         if (rig_.seafloor.phong == 0.0) continue;
         tables.highlight.push_back(path_table(spectral_sum(rig_, grid, bare), steps_));
     }
+    if (!rig_.camera.port) return;
+    tables.dispersed.diffuse =
+        spectral_sum(rig_, grid, [&](double nm) { return lamp.at(nm) * floor.at(nm); });
+    if (rig_.seafloor.phong == 0.0) return;
+    tables.dispersed.highlight = spectral_sum(rig_, grid, [&](double nm) { return lamp.at(nm); });
 }
 
 LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
@@ -423,6 +492,31 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
     map.samples.resize(kChannels * static_cast<std::size_t>(map.width_px) *
                        static_cast<std::size_t>(count));
     const Scene scene = scene_of(sled);
+    const bool is_dispersed = scene.nodes.size() == kIndexNodes;
+    // Of the last lamp added.
+    const auto add_doubts = [&](const PlacedLamp& lamp, Workspace& work) {
+        const LightTables& tables = tables_[lamp.spectrum];
+        work.diffuse.doubt.fill(0.0F);
+        work.highlight.doubt.fill(0.0F);
+        for (std::size_t h = 0; h < kHalfWay.size(); ++h) {
+            const auto take = [&](const RowBlock<float>& found, FactorBlock& factors) {
+                take_doubt(factors.at_nodes, kHalfWay.at(h), found, factors.doubt);
+            };
+            shine(work.between.at(h), lamp.terms, Edges::Kept, work.lit);
+            static_cast<void>(weigh(work.between.at(h), lamp.terms, steps_, work.lit));
+            take(work.lit.diffuse, work.diffuse);
+            if (tables.highlight.empty()) continue;
+            weigh_highlight(work.between.at(h), lamp.terms, work.lit);
+            take(work.lit.highlight, work.highlight);
+        }
+        const auto sum_up = [&](const FactorBlock& factors, const auto& by_node) {
+            if (by_node.empty() || !is_in_doubt(factors.doubt, factors.at_nodes[0])) return;
+            for (const std::vector<float>& table : by_node)
+                look_up(work.lit, factors.doubt, table, work.doubts);
+        };
+        sum_up(work.diffuse, tables.diffuse);
+        sum_up(work.highlight, tables.highlight);
+    };
     const auto add_lamp = [&](const PlacedLamp& lamp, Workspace& work) {
         const LightTables& tables = tables_[lamp.spectrum];
         for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
@@ -432,16 +526,28 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
             work.outside.before += found.before;
             work.outside.beyond += found.beyond;
             look_up(work.lit, work.lit.diffuse, tables.diffuse[scene.nodes[j]], work.sums);
+            work.diffuse.at_nodes[j] = work.lit.diffuse;
             if (tables.highlight.empty()) continue;
             weigh_highlight(rays, lamp.terms, work.lit);
             look_up(work.lit, work.lit.highlight, tables.highlight[scene.nodes[j]], work.sums);
+            work.highlight.at_nodes[j] = work.lit.highlight;
         }
+        if (is_dispersed) add_doubts(lamp, work);
     };
     const auto look = [&](int row, const ColumnBlock& columns, Workspace& work) {
         for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
             look_along(scene.rays[j], steps_, first_row + row, columns, work.rays[j]);
         }
+        for (std::size_t h = 0; h < kHalfWay.size() && is_dispersed; ++h) {
+            look_between(scene.rays.front(),
+                         steps_,
+                         work.rays,
+                         kHalfWay.at(h),
+                         columns.count,
+                         work.between.at(h));
+        }
         for (RowBlock<float>& sum : work.sums) sum.fill(0.0F);
+        for (RowBlock<float>& doubt : work.doubts) doubt.fill(0.0F);
         for (RowBlock<double>& total : work.totals) total.fill(0.0);
     };
     const auto add_lamps = [&](Workspace& work, const auto& after_each) {
@@ -469,6 +575,9 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
                     is_between(edges_[lamp.strobe], work.lit.V, b * kFitSamples, kFitSamples);
             }
         });
+        // A kink that no sample shows is less than the fit's own error.
+        for (std::size_t i = 0; i < kBlockCount; ++i)
+            work.may_fit[i / kFitSamples] &= !is_in_doubt(work, i);
         // Said where a pixel of the image is outside, and samples may be beyond it.
         if (work.outside != before) work.may_fit.fill(false);
         work.outside = before;
@@ -482,7 +591,38 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
         }
         return fits;
     };
+    const auto note_doubts = [&](const ColumnBlock& columns, Workspace& work) {
+        for (int i = 0; i < columns.count && is_dispersed; ++i) {
+            const auto pixel = static_cast<std::size_t>(i);
+            if (is_in_doubt(work, pixel)) work.in_doubt.push_back(columns.column[pixel]);
+        }
+    };
+    const auto disperse = [&](int row, std::span<const int> in_doubt, Workspace& work) {
+        const ColumnBlock columns = some_columns(scene.rays.front(), in_doubt);
+        look(row, columns, work);
+        for (const PlacedLamp& lamp : scene.lamps) {
+            shine(work.rays.front(), lamp.terms, Edges::Found, work.lit);
+            add_dispersed(scene.rays.front(),
+                          steps_,
+                          work.rays,
+                          shares_,
+                          columns.count,
+                          lamp.terms,
+                          tables_[lamp.spectrum].dispersed,
+                          work.lit,
+                          work.totals);
+        }
+        const auto width = static_cast<std::size_t>(map.width_px);
+        const std::size_t plane = width * static_cast<std::size_t>(map.height_px);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(columns.count); ++i) {
+            const std::size_t at =
+                static_cast<std::size_t>(row) * width + static_cast<std::size_t>(columns.column[i]);
+            for (std::size_t c = 0; c < kChannels; ++c)
+                map.samples[c * plane + at] = static_cast<float>(work.totals[c][i]);
+        }
+    };
     const auto make_row = [&](int row, Workspace& work) {
+        work.in_doubt.clear();
         for (std::size_t block = 0; block < scene.blocks.size(); ++block) {
             const bool is_sampled = !scene.samples.empty();
             if (is_sampled && block % kSampledBlocks == 0)
@@ -495,7 +635,10 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
             look(row, scene.blocks[block], work);
             add_lamps(work, [](const PlacedLamp&) {});
             store(work.sums, row, static_cast<int>(block) * kRowBlock, map);
+            note_doubts(scene.blocks[block], work);
         }
+        for (std::size_t first = 0; first < work.in_doubt.size(); first += kBlockCount)
+            disperse(row, std::span(work.in_doubt).subspan(first), work);
     };
     const auto take_off = [&](int row, std::vector<float>& all) {
         const auto width = static_cast<std::size_t>(map.width_px);

@@ -15,8 +15,10 @@
 //   S_c = sum_j  G_j T_jc(l_j),      T_jc(l) = int f Q_c L_j(n(lambda)) exp(-K l) dlambda
 //
 // with G_j and l_j the geometry of the ray of n_j: exact where G exp(-K l) is of degree
-// kIndexNodes - 1 in n over the range. A beam's edge, which dispersion spreads over several pixels,
-// is sharp here and stands where the middle index has it.
+// kIndexNodes - 1 in n over the range. Pixels where it is not, as where a kink of a beam lies
+// between two nodes, are found by looking at two indices more, and have a ray for each wavelength
+// (dispersed_light.h). A beam's edge, which dispersion spreads over several pixels, is sharp here
+// and stands where the middle index has it.
 //
 // An emitter of a size is the grid of lamps of rig/geometry.h. Where the image sees no floor,
 // the map is black; and so it is beyond the longest path when the paths have a horizon, that is
@@ -24,6 +26,7 @@
 #pragma once
 
 #include "lightmap/beam_edges.h"
+#include "lightmap/dispersed_light.h"
 #include "lightmap/ray_table.h"
 #include "rig/path_range.h"
 #include "rig/path_table.h"
@@ -118,10 +121,12 @@ class LightmapMaker {
     [[nodiscard]] int table_steps() const { return steps_.count; }
 
   private:
-    // A lamp spectrum on the floor, and bare where the floor has a highlight, by index node.
+    // A lamp spectrum on the floor, and bare where the floor has a highlight, by index node; and
+    // behind a port by wavelength.
     struct LightTables {
         std::vector<std::vector<float>> diffuse;
         std::vector<std::vector<float>> highlight;
+        DispersedSpectrum dispersed{};
     };
 
     struct Scene;  // what all rows of a map have in common
@@ -140,6 +145,7 @@ class LightmapMaker {
     PathRange direct_;  // as they were asked for
     PathSteps steps_;
     std::size_t grid_size_ = 0;
+    std::vector<IndexShares> shares_;     // by wavelength of the grid, behind a port
     std::vector<double> index_nodes_nm_;  // wavelengths whose rays are traced; one without a port
     std::vector<std::shared_ptr<const RayTable>> ray_tables_;  // at each; none has a formula
     std::vector<float> vignetting_;                            // by pixel; empty: none

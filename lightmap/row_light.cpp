@@ -176,7 +176,35 @@ ColumnBlock samples_of_blocks(const RayTerms& terms, int first_block) {
     return columns;
 }
 
+ColumnBlock some_columns(const RayTerms& terms, std::span<const int> columns) {
+    const std::size_t count = std::min(columns.size(), kBlockCount);
+    ColumnBlock block{
+        .v = {}, .column = {}, .count = static_cast<int>(count), .is_in_order = false};
+    for (std::size_t i = 0; i < kBlockCount; ++i) {
+        block.column[i] = columns[std::min(i, count - 1)];
+        block.v[i] = slope_of(terms, block.column[i], 0);
+    }
+    return block;
+}
+
 namespace {
+
+void end_row(int count, RayBlock& rays) {
+    for (int i = count; i < kRowBlock; ++i) rays.w3[static_cast<std::size_t>(i)] = 0.0F;
+}
+
+APHOTIC_WIDE void mix(const std::array<RayBlock, kIndexNodes>& nodes,
+                      const std::array<double, kIndexNodes>& shares,
+                      RowBlock<double> RayBlock::*part,
+                      RayBlock& rays) {
+    static_assert(kIndexNodes == 3);
+    const RowBlock<double>& a = nodes[0].*part;
+    const RowBlock<double>& b = nodes[1].*part;
+    const RowBlock<double>& c = nodes[2].*part;
+    RowBlock<double>& mixed = rays.*part;
+    for (std::size_t i = 0; i < kBlockCount; ++i)
+        mixed[i] = shares[0] * a[i] + shares[1] * b[i] + shares[2] * c[i];
+}
 
 void look_by_table(const RayTable& table, int row, const ColumnBlock& columns, RayBlock& rays) {
     rays.o_z = table.front_m();
@@ -208,7 +236,21 @@ void look_along(const RayTerms& terms,
         has_port ? bend(terms, u, columns.v, rays) : go_straight(u, columns.v, rays);
         meet_floor(terms, steps, rays);
     }
-    for (int i = columns.count; i < kRowBlock; ++i) rays.w3[static_cast<std::size_t>(i)] = 0.0F;
+    end_row(columns.count, rays);
+}
+
+void look_between(const RayTerms& terms,
+                  const PathSteps& steps,
+                  const std::array<RayBlock, kIndexNodes>& nodes,
+                  const std::array<double, kIndexNodes>& shares,
+                  int count,
+                  RayBlock& rays) {
+    rays.o_z = nodes.front().o_z;
+    for (const auto part : {&RayBlock::D_x, &RayBlock::D_y, &RayBlock::o_x, &RayBlock::o_y})
+        mix(nodes, shares, part, rays);
+    if (terms.table) mix(nodes, shares, &RayBlock::ahead, rays);
+    (terms.table ? meet_floor_ahead : meet_floor)(terms, steps, rays);
+    end_row(count, rays);
 }
 
 namespace {

@@ -39,6 +39,7 @@
 #include "lightmap/row_block.h"
 #include "lightmap/row_fit.h"
 #include "rig/geometry.h"
+#include "rig/index_nodes.h"
 #include "rig/path_table.h"
 #include "rig/rig.h"
 
@@ -99,12 +100,23 @@ struct ColumnBlock {
 inline constexpr std::size_t kSampledBlocks = kBlockCount / kFitSamples;
 [[nodiscard]] int first_sampled_column(const RayTerms& terms, int block);
 [[nodiscard]] ColumnBlock samples_of_blocks(const RayTerms& terms, int first_block);
+// As many as there are, up to kRowBlock; the rest of the block repeats the last.
+[[nodiscard]] ColumnBlock some_columns(const RayTerms& terms, std::span<const int> columns);
 
 void look_along(const RayTerms& terms,
                 const PathSteps& steps,
                 int row,
                 const ColumnBlock& columns,
                 RayBlock& rays);
+
+// The rays of another index behind a port: those of the nodes (rig/index_nodes.h), each counted
+// by its share, for rays move smoothly with the index. `count`: of the columns looked along.
+void look_between(const RayTerms& terms,
+                  const PathSteps& steps,
+                  const std::array<RayBlock, kIndexNodes>& nodes,
+                  const std::array<double, kIndexNodes>& shares,
+                  int count,
+                  RayBlock& rays);
 
 struct LampTerms {
     Eigen::Vector3d position_m;

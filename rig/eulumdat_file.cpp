@@ -143,7 +143,7 @@ std::size_t next_plane_count(ValueLines& lines, std::size_t symmetry) {
 // The factor from values to candela, and what the file says of the lamps.
 double next_lamps(ValueLines& lines, PhotometricFile& photometry) {
     const std::string& file = lines.file();
-    double factor =
+    const double factor =
         above_zero(file, lines.number("the conversion factor"), "the conversion factor");
     lines.skip(1, "the tilt");
     const FileNumber sets = lines.number("the number of sets of lamps");
@@ -163,10 +163,11 @@ double next_lamps(ValueLines& lines, PhotometricFile& photometry) {
                                1,
                                kMostLampsOfSet));
     take_label(photometry, "LAMP", lines.next("the type of lamps"));
-    const double lumens = above_zero(file, lines.number("the lamps' lumens"), "the lamps' lumens");
-    if (!photometry.is_absolute) photometry.luminous_flux_lm = lumens;
+    const FileNumber lumens = lines.number("the lamps' lumens");
+    static_cast<void>(above_zero(file, lumens, "the lamps' lumens"));
+    if (!photometry.is_absolute) photometry.luminous_flux_lm = lumens.value;
     lines.skip(3, "colour, rendering and watts");
-    return factor * lumens / 1000.0;
+    return product_of_factors(file, lumens, factor) / 1000.0;
 }
 
 std::vector<std::vector<double>> next_planes(ValueLines& lines,

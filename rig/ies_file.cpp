@@ -206,10 +206,11 @@ IesHeader next_header(NumberReader& numbers, int edition, PhotometricFile& photo
     const auto count = [&](std::string_view what, std::size_t least, std::size_t most) {
         return count_of(file, numbers.next(what), what, least, most);
     };
-    const auto factor = [&](std::string_view what) {
-        return above_zero(file, numbers.next(what), what);
-    };
     IesHeader header;
+    const auto take_factor = [&](const FileNumber& factor, std::string_view what) {
+        static_cast<void>(above_zero(file, factor, what));
+        header.factor = product_of_factors(file, factor, header.factor);
+    };
     const std::size_t lamps = count("the number of lamps", 1, kMostLamps);
     const FileNumber lumens = numbers.next("lumens per lamp");
     photometry.is_absolute = lumens.value == -1.0;
@@ -220,7 +221,7 @@ IesHeader next_header(NumberReader& numbers, int edition, PhotometricFile& photo
                     fmt::format("0 to {}, or -1 for absolute photometry", kMostLumens));
     }
     if (lumens.value > 0.0) photometry.luminous_flux_lm = static_cast<double>(lamps) * lumens.value;
-    header.factor = factor("the multiplier of candela");
+    take_factor(numbers.next("the multiplier of candela"), "the multiplier of candela");
     header.verticals = count("the number of vertical angles", 2, kMostTableNodes);
     const FileNumber horizontals = numbers.next("the number of horizontal angles");
     header.horizontals = count_of(file,
@@ -233,10 +234,9 @@ IesHeader next_header(NumberReader& numbers, int edition, PhotometricFile& photo
     static_cast<void>(count("the type of units", 1, 2));
     for (const std::string_view side : {"the width", "the length", "the height"})
         static_cast<void>(numbers.next(side));
-    header.factor *= factor("the ballast factor");
+    take_factor(numbers.next("the ballast factor"), "the ballast factor");
     const FileNumber lamp_factor = numbers.next("the ballast-lamp photometric factor");
-    if (edition <= 1995)
-        header.factor *= above_zero(file, lamp_factor, "the ballast-lamp photometric factor");
+    if (edition <= 1995) take_factor(lamp_factor, "the ballast-lamp photometric factor");
     static_cast<void>(numbers.next("the input watts"));
     return header;
 }

@@ -2,7 +2,6 @@
 #include "rig/index_nodes.h"
 
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace aphotic {
@@ -28,9 +27,8 @@ std::vector<double> index_nodes_nm(const Rig& rig) {
     const double last = rig.water.refractive_index(rig.camera.range.last_nm);
     std::vector<double> nodes_nm;
     for (std::size_t j = 0; j < kIndexNodes; ++j) {
-        const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / kIndexNodes;
-        const double index = std::midpoint(first, last) + 0.5 * (first - last) * std::cos(angle);
-        nodes_nm.push_back(wavelength_of_index(rig, index));
+        const double share = static_cast<double>(j) / (kIndexNodes - 1);
+        nodes_nm.push_back(wavelength_of_index(rig, std::lerp(first, last, share)));
     }
     return nodes_nm;
 }

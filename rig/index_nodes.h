@@ -4,8 +4,11 @@
 //
 //   L(n) = sum_j L(n_j) l_j(n),      l_j(n) = prod_{m != j} (n - n_m) / (n_j - n_m)
 //
-// n    the water's refractive index      n_j  kIndexNodes of Chebyshev's points of its range
+// n    the water's refractive index      n_j  both ends of its range, and its middle
 // l_j  Lagrange's polynomials: what light of node j's ray counts at another wavelength
+//
+// Right to the third order of n where L is smooth. A kink of L lies between two nodes, wherever it
+// is; who cannot rule one out looks half way between nodes (lightmap/dispersed_light.h).
 //
 // Without a port one node serves, and counts 1.
 #pragma once
@@ -19,7 +22,7 @@ namespace aphotic {
 
 inline constexpr std::size_t kIndexNodes = 3;
 
-// The wavelengths of the nodes; the middle one is in the middle.
+// The wavelengths of the nodes, from the range's first to its last.
 [[nodiscard]] std::vector<double> index_nodes_nm(const Rig& rig);
 
 // l_j at the water's index there.

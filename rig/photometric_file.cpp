@@ -12,6 +12,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <limits>
+
 namespace aphotic {
 
 namespace {
@@ -35,11 +38,9 @@ Format format_of(const std::string& file_name) {
                     kPhotometricEndings));
 }
 
-}  // namespace
-
-PhotometricFile parse_photometric_file(const std::string& file_name,
-                                       std::string_view text,
-                                       const ReadBeside& read_beside) {
+PhotometricFile parse_by_ending(const std::string& file_name,
+                                std::string_view text,
+                                const ReadBeside& read_beside) {
     switch (format_of(file_name)) {
         case Format::Ies:
             return parse_ies(file_name, text, read_beside);
@@ -49,6 +50,31 @@ PhotometricFile parse_photometric_file(const std::string& file_name,
             break;
     }
     return parse_beam_csv(file_name, text);
+}
+
+}  // namespace
+
+PhotometricFile parse_photometric_file(const std::string& file_name,
+                                       std::string_view text,
+                                       const ReadBeside& read_beside) {
+    PhotometricFile file = parse_by_ending(file_name, text, read_beside);
+    const double largest = largest_intensity(file.table);
+    if (largest > 0.0 && !std::isnormal(largest)) {
+        throw InputError(fmt::format(
+            "{}: found no intensity above {:.3g}, by the file's own factors; allowed: a "
+            "largest one of {:.3g} or more, for doubles lose digits below",
+            printable(file_name),
+            largest,
+            std::numeric_limits<double>::min()));
+    }
+    return file;
+}
+
+BeamTable normalised(BeamTable table) {
+    int exponent = 0;
+    std::frexp(largest_intensity(table), &exponent);
+    for (double& intensity : table.intensity) intensity = std::ldexp(intensity, -exponent);
+    return table;
 }
 
 PhotometricFile read_photometric_file(const std::filesystem::path& file) {

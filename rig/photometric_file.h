@@ -68,6 +68,12 @@ using ReadBeside = std::function<std::string(const std::string& name)>;
                                                      const ReadBeside& read_beside);
 [[nodiscard]] PhotometricFile read_photometric_file(const std::filesystem::path& file);
 
+// The same shape with its largest intensity from 0.5 to below 1, by a power of two: no digit
+// changes, and no sum or product of intensities overflows, or underflows unless it is negligible.
+// Intensities under 2.2e-308 of the largest lose digits that are negligible too. Reading refuses
+// tables whose largest intensity is itself so small, for doubles have lost its digits.
+[[nodiscard]] BeamTable normalised(BeamTable table);
+
 // Whether a name ends as these files do.
 [[nodiscard]] bool is_photometric_file_name(std::string_view name);
 inline constexpr std::string_view kPhotometricEndings = ".ies, .ldt or .csv";

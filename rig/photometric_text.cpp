@@ -140,9 +140,29 @@ double intensity_of(const std::string& file,
     if (number.value < 0.0) fail_number(file, number, what, "0 or more");
     const double intensity = number.value * factor;
     if (!std::isfinite(intensity)) {
-        fail_number(file, number, what, fmt::format("a number that {} can multiply", factor));
+        fail_number(file,
+                    number,
+                    what,
+                    fmt::format("up to {:.3g}, for the file's factors multiply it by {:.3g}",
+                                std::numeric_limits<double>::max() / factor,
+                                factor));
     }
     return intensity;
+}
+
+double product_of_factors(const std::string& file, const FileNumber& last, double others) {
+    const double product = others * last.value;
+    if (!std::isnormal(product)) {
+        fail_number(
+            file,
+            last,
+            "a factor of all intensities",
+            fmt::format("one whose product with the others, {:.3g}, is from {:.3g} to {:.3g}",
+                        others,
+                        std::numeric_limits<double>::min(),
+                        std::numeric_limits<double>::max()));
+    }
+    return product;
 }
 
 void check_angles(const std::string& file,

@@ -61,6 +61,11 @@ struct FileNumber {
                                   std::string_view what,
                                   double factor);
 
+// A file's factor of all intensities, above 0, times the others: no overflow, and no digit lost.
+[[nodiscard]] double product_of_factors(const std::string& file,
+                                        const FileNumber& last,
+                                        double others);
+
 // Strictly rising and within a range.
 void check_angles(const std::string& file,
                   const std::vector<FileNumber>& angles_deg,

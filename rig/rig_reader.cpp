@@ -489,7 +489,7 @@ BeamTable RigReader::read_beam_table(Section& section) {
                             "factors of 1",
                             name));
         }
-        return file.table;
+        return normalised(file.table);
     });
 }
 

@@ -33,11 +33,13 @@
 // (k.(P - L))^2 = cos^2 d^2, and at a tabulated phase function's rows. A lamp on the ray is
 // kVeilBeside_m beside it (traced_veil.h).
 //
-// Limits: point lamps, no objects, a flat floor; in water that scatters, beams of cones. Q_c is
-// taken in double, for its table is double; so are phase functions, and I of a pattern, or behind a
-// window (traced_beam.h).
+// Limits: a pinhole, with a flat port across its axis or none, and no vignetting; point lamps, no
+// objects, a flat floor; in water that scatters, beams of cones in water. All else is an
+// InputError. Q_c is taken in double, for its table is double; so are phase functions, and I of a
+// pattern, or behind a window (traced_beam.h).
 #pragma once
 
+#include "base/error.h"
 #include "rig/rig.h"
 #include "spectral/refractive_index.h"
 #include "spectral/sensor.h"
@@ -65,6 +67,7 @@ template <typename Real>
 class ExactLight {
   public:
     explicit ExactLight(const Rig& rig) : rig_(rig), water_(rig.water) {
+        require_to_know(rig);
         using std::cos;
         using std::sin;
         const Real pitch = rig.sled.pitch_rad;
@@ -160,6 +163,30 @@ class ExactLight {
         std::vector<Lit> lit;  // none where the image sees no floor
         std::vector<Turned> turned;
     };
+
+    static void require_to_know(const Rig& rig) {
+        const Camera& camera = rig.camera;
+        const auto refuse_if = [](bool is_there, const char* found) {
+            if (!is_there) return;
+            throw InputError(
+                "found {}; allowed in the exact light: a pinhole, with a flat port "
+                "across its axis or none, point lamps and a bare floor; and beams of "
+                "cones where the water scatters",
+                found);
+        };
+        refuse_if(camera.lens.has_value(), "a calibrated lens");
+        refuse_if(camera.vignetting.has_value(), "vignetting");
+        refuse_if(camera.port && camera.port->dome, "a dome");
+        refuse_if(camera.port && !is_across_axis(*camera.port), "a tilted port");
+        refuse_if(!rig.objects.empty() || !rig.scene.empty(), "objects");
+        for (const Strobe& strobe : rig.strobes) {
+            refuse_if(strobe.emitter.has_value(), "an emitter of a size");
+            const bool is_of_cones =
+                std::holds_alternative<std::monostate>(strobe.beam.pattern) && !strobe.beam.window;
+            refuse_if(rig.water.scatters() && !is_of_cones,
+                      "a beam that is no sum of cones in water that scatters");
+        }
+    }
 
     [[nodiscard]] double middle_nm(std::size_t first, std::size_t last) const {
         return 0.5 * (knots_nm_[first] + knots_nm_[last]);

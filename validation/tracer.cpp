@@ -287,20 +287,40 @@ std::vector<WeightedWavelength> Tracer::spectrum_in_view() const {
                          veil_in_view(family, is_all_floor));
 }
 
-// From the lamp nearest to the pupil's side of the port; as far as the floor's light goes, or as
-// light goes at all where the image sees the horizon.
+// From where a sight enters the water.
+double Tracer::nearest_lamp_m() const {
+    constexpr int kSteps = 16;
+    const Index index = index_at(0.5 * (rig_.camera.range.first_nm + rig_.camera.range.last_nm));
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < (kSteps + 1) * (kSteps + 1); ++k) {
+        const auto in_air = sight(rig_.camera.width_px * (k % (kSteps + 1)) / double{kSteps},
+                                  rig_.camera.height_px * (k / (kSteps + 1)) / double{kSteps});
+        if (!in_air) continue;
+        View view;
+        view.is_clear = true;                                 // objects do not matter here
+        static_cast<void>(look_along(*in_air, index, view));  // nor whether there is floor
+        for (const Strobe& strobe : rig_.strobes) {
+            for (const auto& [x, y] : kCornersAndMiddle) {
+                const Vector3d place_m = place_on_emitter(strobe, x, y);
+                nearest_m = std::min(nearest_m, (view.ray.origin_m - place_m).norm());
+            }
+        }
+    }
+    return nearest_m;
+}
+
+// From the lamp nearest to where any sight enters the water; as far as the floor's light goes, or
+// as light goes at all where the image sees the horizon.
 VeilLights Tracer::veil_in_view(const LightFamily& family, bool is_all_floor) const {
     constexpr double kRoom = 1.05;
     constexpr double kSpentDepth = 20.0;  // of which kSpectralError / 4 is left
     VeilLights veil;
     if (!veil_) return veil;
-    const double port_m = rig_.camera.port ? rig_.camera.port->distance_m : 0.0;
-    double nearest_m = std::numeric_limits<double>::infinity();
     for (const Strobe& strobe : rig_.strobes) {
-        nearest_m = std::min(nearest_m, strobe.position_m.norm() - port_m);
         for (std::size_t i = 0; i < water_.phases().size(); ++i)
             veil.sources.push_back({strobe.spectrum, rig_.water.scatterers[i].scattering_per_m});
     }
+    const double nearest_m = nearest_lamp_m();
     double least_per_m = std::numeric_limits<double>::infinity();
     for (const double nm : union_of_knots(rig_.water.curves(), rig_.camera.range))
         least_per_m = std::min(least_per_m, water_.loss_per_m(nm));

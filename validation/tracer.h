@@ -185,6 +185,7 @@ class Tracer {
     [[nodiscard]] double spacing_m(std::size_t strobe, double d_m, bool is_floor) const;
     void tabulate_spectra();
     [[nodiscard]] std::vector<WeightedWavelength> spectrum_in_view() const;
+    [[nodiscard]] double nearest_lamp_m() const;
     [[nodiscard]] VeilLights veil_in_view(const LightFamily& family, bool is_all_floor) const;
     // Over the floor.
     [[nodiscard]] double height_m(const Eigen::Vector3d& point_m) const;

@@ -12,6 +12,7 @@
 #include "support/effort.h"
 #include "support/random_beam.h"
 #include "support/random_camera.h"
+#include "support/temp_folder.h"
 #include "validation/tracer.h"
 
 #include <fmt/format.h>
@@ -19,9 +20,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic::lightmap_test {
@@ -424,6 +428,72 @@ TEST(Lightmap, IsLinearInTheLamps) {
     for (std::size_t i = 0; i < sum.size(); ++i) {
         EXPECT_EQ(twice.samples[i], 2.0F * map.samples[i]);
         EXPECT_NEAR(sum[i] / map.samples[i], 1.0, 2.0 * kAsked);
+    }
+}
+
+// The shape of a beam's table counts, not its unit.
+TEST(Lightmap, DoesNotDependOnTheScaleOfABeamsTable) {
+    const TempFolder folder;
+    const auto map_with = [&](const std::string& one, const std::string& half) {
+        write_file(folder.path() / "lamp.csv",
+                   fmt::format("theta_deg,intensity\n0,{0}\n30,{0}\n50,{1}\n90,0\n", one, half));
+        std::ifstream habcam(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml");
+        std::string text{std::istreambuf_iterator<char>(habcam), {}};
+        const std::string fwhm = "fwhm_deg = 100.0";
+        text.replace(text.find(fwhm), fwhm.size(), "table = \"lamp.csv\"");
+        Rig rig = parse_rig(text, "rig.toml", folder.path());
+        rig.camera.width_px = 32;
+        rig.camera.height_px = 24;
+        return map_of(rig).samples;
+    };
+    const std::vector<float> expected = map_with("2", "1");
+    EXPECT_GT(*std::ranges::max_element(expected), 0.0F);
+    for (const auto& [one, half] : {std::pair{"1e308", "5e307"},
+                                    std::pair{"1e200", "5e199"},
+                                    std::pair{"1e-200", "5e-201"},
+                                    std::pair{"1e-307", "5e-308"}}) {
+        const std::vector<float> found = map_with(one, half);
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            ASSERT_NEAR(found[i] / expected[i], 1.0, 4.0 * 0x1p-24) << one << ", sample " << i;
+    }
+}
+
+// Else maps would be black, infinite, or of few digits.
+TEST(Lightmap, RefusesALightThatFloatsDoNotHold) {
+    const auto error_of = [](const auto& change) {
+        Rig rig = scene("habcam", 8, 6);
+        change(rig);
+        try {
+            static_cast<void>(map_of(rig));
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    const auto lamp = [](double value) {
+        return [value](Rig& rig) {
+            rig.strobes[1].spectrum = Spectrum("lamp", {300.0, 900.0}, {value, value});
+        };
+    };
+    const auto weight = [](double value) {
+        return [value](Rig& rig) {
+            for (Cone& cone : rig.strobes[1].beam.cones) cone.weight = value;
+        };
+    };
+    const auto power = [](double value) {
+        return [value](Rig& rig) { rig.strobes[1].power = value; };
+    };
+    for (const double value : {1e-320, 1e-100, 1e-40, 1e40, 1e100, 1e308}) {
+        for (const std::string& error :
+             {error_of(lamp(value)), error_of(weight(value)), error_of(power(value))}) {
+            EXPECT_TRUE(error.starts_with("strobe 'aft', R: found up to "))
+                << value << ": " << error;
+        }
+    }
+    for (const double value : {0.0, 1e-20, 1e20}) {
+        EXPECT_EQ(error_of(lamp(value)), "none") << value;
+        EXPECT_EQ(error_of(weight(value)), "none") << value;
+        EXPECT_EQ(error_of(power(value)), "none") << value;
     }
 }
 

@@ -452,6 +452,69 @@ TEST(PhotometricFile, IsReadAgainToTheLastBit) {
     }
 }
 
+// What a rig takes of a file: the shape, whatever the unit of the numbers.
+TEST(PhotometricFile, HasItsShapeAtAnyScale) {
+    constexpr double kRoundings = 1e-14;  // of three decimal numbers, and of a sum
+    const auto shape_of = [](const std::string& file, const std::string& text) {
+        const BeamTable table = normalised(parse(file, text).table);
+        const double largest = largest_intensity(table);
+        EXPECT_GE(largest, 0.5) << text;
+        EXPECT_LT(largest, 1.0) << text;
+        return Numbers{table.intensity[0] / largest,
+                       table.intensity[1] / largest,
+                       table.intensity[2] / largest,
+                       table_flux(table) / largest};
+    };
+    const Numbers expected = shape_of("a.csv", "theta_deg,intensity\n0,3\n45,1.5\n90,0.6\n");
+    const auto expect_shape = [&](const std::string& file, const std::string& text) {
+        const Numbers found = shape_of(file, text);
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            EXPECT_NEAR(found[i], expected[i], kRoundings) << text;
+    };
+    for (const int exponent : {-307, -200, -20, 0, 20, 200, 307}) {
+        expect_shape(
+            "a.csv",
+            fmt::format("theta_deg,intensity\n0,3e{0}\n45,1.5e{0}\n90,0.6e{0}\n", exponent));
+        expect_shape("a.ies",
+                     fmt::format("IESNA:LM-63-1995\nTILT=NONE\n1 1000 1e{0} 3 1 1 2 0 0 0\n1 1 1\n"
+                                 "0 45 90\n0\n3 1.5 0.6\n",
+                                 exponent));
+        expect_shape("a.ies",
+                     fmt::format("IESNA:LM-63-1995\nTILT=NONE\n1 1000 1e{0} 3 1 1 2 0 0 0\n"
+                                 "1e{1} 1 1\n0 45 90\n0\n3 1.5 0.6\n",
+                                 exponent,
+                                 -exponent));
+    }
+    // Beside the largest an intensity that doubles hold with few digits is nothing.
+    const BeamTable faint =
+        normalised(parse("a.csv", "theta_deg,intensity\n0,2\n45,1e-320\n90,0\n").table);
+    EXPECT_EQ(faint.intensity, (Numbers{0.5, 0.0, 0.0}));
+}
+
+TEST(PhotometricFile, RefusesAScaleThatDoublesDoNotHold) {
+    EXPECT_EQ(error_of("a.csv", "theta_deg,intensity\n0,1e-320\n45,1e-320\n90,0\n"),
+              "a.csv: found no intensity above 1e-320, by the file's own factors; allowed: a "
+              "largest one of 2.23e-308 or more, for doubles lose digits below");
+    const auto ies = [](const std::string& multiplier, const std::string& factors) {
+        return error_of("a.ies",
+                        fmt::format("IESNA:LM-63-1995\nTILT=NONE\n1 1000 {} 3 1 1 2 0 0 0\n{} 1\n"
+                                    "0 45 90\n0\n3 1.5 0\n",
+                                    multiplier,
+                                    factors));
+    };
+    EXPECT_EQ(
+        ies("1e308", "1 1"),
+        "a.ies:7: candela: found 3; allowed: up to 1.8, for the file's factors multiply it by "
+        "1e+308");
+    EXPECT_EQ(ies("1e200", "1e200 1"),
+              "a.ies:4: a factor of all intensities: found 1e+200; allowed: one whose product with "
+              "the others, 1e+200, is from 2.23e-308 to 1.8e+308");
+    EXPECT_EQ(ies("1e-200", "1e-120 1"),
+              "a.ies:4: a factor of all intensities: found 1e-120; allowed: one whose product with "
+              "the others, 1e-200, is from 2.23e-308 to 1.8e+308");
+    EXPECT_TRUE(ies("1e-200", "1 1e-120").starts_with("a.ies:4: a factor of all intensities"));
+}
+
 TEST(PhotometricFile, WritesWhatItReadOfEverySample) {
     const TempFolder folder;
     for (const auto& entry : fs::directory_iterator(sample(""))) {

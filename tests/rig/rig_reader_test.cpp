@@ -489,7 +489,7 @@ TEST(RigReader, ReadsABeamsTableBesideIt) {
     const Rig read = parse_rig(rig, "rig.toml", folder.path());
     const BeamTable& table = std::get<BeamTable>(read.strobes[0].beam.pattern);
     EXPECT_EQ(table.angles, TableAngles::TypeC);
-    EXPECT_EQ(table.intensity, (std::vector<double>{4.0, 2.0, 0.0}));
+    EXPECT_EQ(table.intensity, (std::vector<double>{0.5, 0.25, 0.0}));  // only the shape counts
     ASSERT_EQ(read.files.size(), 1U);
     EXPECT_EQ(read.files[0].name, "lamp.csv");
     // What it holds counts in the digest.

@@ -4,6 +4,7 @@
 // double is worth where doubles end.
 #include "validation/exact_light.h"
 
+#include "base/error.h"
 #include "rig/rig_reader.h"
 #include "support/closed_form.h"
 
@@ -231,6 +232,47 @@ TEST(ExactLight, LongDoubleIsGoodForThirteenDigitsOfTheVeil) {
     rig.water.scatterers = {{b, {.name = "forward", .kind = HenyeyGreenstein{.g = 0.924}}},
                             {b, {.name = "sea", .kind = MolecularScattering{}}}};
     EXPECT_LT(worst_of_long_double(rig, 550.0), kOfPhase);
+}
+
+// It would take a dome and a tilted port for a flat one, and a lens for a pinhole.
+TEST(ExactLight, RefusesWhatItDoesNotKnow) {
+    const auto error_of = [](const Rig& rig) {
+        try {
+            static_cast<void>(ExactLight<long double>(rig));
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    const auto expect_refused = [&](const std::string& what, const auto& change) {
+        Rig rig = habcam();
+        EXPECT_EQ(error_of(rig), "none");
+        change(rig);
+        EXPECT_TRUE(error_of(rig).starts_with("found " + what + "; allowed in the exact light"))
+            << error_of(rig);
+    };
+    const PortWindow flat{.distance_m = 0.05, .thickness_m = 0.01, .glass = builtin_glass("bk7")};
+    Rig behind_a_port = habcam();
+    behind_a_port.camera.port = flat;
+    EXPECT_EQ(error_of(behind_a_port), "none");
+    expect_refused("a dome", [&](Rig& rig) {
+        rig.camera.port = flat;
+        rig.camera.port->dome = Dome{.radius_m = 0.08};
+    });
+    expect_refused("a tilted port", [&](Rig& rig) {
+        rig.camera.port = flat;
+        rig.camera.port->normal = Eigen::Vector3d(0.1, 0.0, 1.0).normalized();
+    });
+    expect_refused("a calibrated lens", [](Rig& rig) { rig.camera.lens = LensModel{}; });
+    expect_refused("vignetting", [](Rig& rig) { rig.camera.vignetting = NaturalVignetting{}; });
+    expect_refused("an emitter of a size",
+                   [](Rig& rig) { rig.strobes[1].emitter = {.across_m = 0.05, .along_m = 0.02}; });
+    expect_refused("objects", [](Rig& rig) { rig.scene = "reef.pov"; });
+    const Spectrum b("b", {300.0, 900.0}, {0.4, 0.2});
+    expect_refused("a beam that is no sum of cones in water that scatters", [&](Rig& rig) {
+        rig.water.scatterers = {{b, {.name = "sea", .kind = MolecularScattering{}}}};
+        rig.strobes[2].beam.window = BeamWindow{};
+    });
 }
 
 }  // namespace

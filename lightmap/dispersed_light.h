@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where light behind a port may not be interpolated over the water's index (rig/index_nodes.h), and
+// what it is there.
+//
+//   G(n) = I cos(i) / d^2 of one lamp, by the ray of index n
+//   doubt = max |G(n) - sum_j G(n_j) l_j(n)|       over the indices n half way between nodes
+//
+// Where a kink of the beam (a row of a table, an end of a soft edge, of a blur, of a highlight)
+// lies between two nodes, G is no polynomial of n. Half way between nodes a single kink shows at
+// least a third of the most that it does anywhere; G that is smooth but steep shows nearly all.
+// Pixels whose doubts are over kMostDoubt of their signal are computed by a ray for each wavelength
+// of the spectral grid instead:
+//
+//   S_c = sum_i w_ci G(n_i) exp(-K_i l(n_i))
+//
+// On which side of a beam's edge such a pixel is, is still the middle index's to say.
+#pragma once
+
+#include "lightmap/row_light.h"
+#include "rig/index_nodes.h"
+#include "rig/path_table.h"
+
+#include <array>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr float kMostDoubt = 1e-5F;
+
+// Nodes are in the order of the map: the middle one, then the first and the last.
+using IndexShares = std::array<double, kIndexNodes>;
+inline constexpr std::array<IndexShares, 2> kHalfWay{
+    {{0.75, 0.375, -0.125}, {0.75, -0.125, 0.375}}};
+
+// Of one lamp: its factors at each node, and at an index whose shares these are.
+void take_doubt(const std::array<RowBlock<float>, kIndexNodes>& at_nodes,
+                const IndexShares& shares,
+                const RowBlock<float>& found,
+                RowBlock<float>& doubt);
+[[nodiscard]] bool is_in_doubt(const RowBlock<float>& doubt, const RowBlock<float>& factors);
+
+// The floor's light of one lamp spectrum by wavelength of the grid; a highlight's has no nodes
+// where there is none.
+struct DispersedSpectrum {
+    SpectralSum diffuse;
+    SpectralSum highlight;
+};
+
+// Adds the light of one lamp along these rays. `block` holds the beam's sides of the middle ray.
+using TotalBlock = std::array<RowBlock<double>, kChannels>;
+void add_dispersed(const RayTerms& terms,
+                   const PathSteps& steps,
+                   const std::array<RayBlock, kIndexNodes>& nodes,
+                   const std::vector<IndexShares>& shares,
+                   int count,
+                   const LampTerms& lamp,
+                   const DispersedSpectrum& spectrum,
+                   LampBlock& block,
+                   TotalBlock& totals);
+
+}  // namespace aphotic

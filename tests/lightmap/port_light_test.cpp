@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Maps behind ports, where every wavelength has its own ray, against the reference tracer: beams
+// with kinks and steep edges, ports of every kind. The printed figure must hold at every pixel off
+// the beams' edges.
+#include "lightmap/lightmap.h"
+
+#include "rig/rig_reader.h"
+#include "support/effort.h"
+#include "support/random_beam.h"
+#include "support/random_camera.h"
+#include "validation/tracer.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace aphotic::port_light_test {
+namespace {
+
+Rig small_rig(int width_px, int height_px) {
+    Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+    rig.camera.pixel_pitch_m *= static_cast<double>(rig.camera.width_px) / width_px;
+    rig.camera.width_px = width_px;
+    rig.camera.height_px = height_px;
+    return rig;
+}
+
+// Three lines of 2 nm: in light of one wavelength no neighbour evens out what a kink does.
+Sensor line_sensor() {
+    std::vector<Spectrum> responses;
+    for (const double line_nm : {650.0, 550.0, 450.0}) {
+        responses.emplace_back(
+            fmt::format("line at {} nm", line_nm),
+            std::vector<double>{400.0, line_nm - 1.0, line_nm, line_nm + 1.0, 720.0},
+            std::vector<double>{0.0, 0.0, 1.0, 0.0, 0.0});
+    }
+    return {std::move(responses), ResponseKind::Energy};
+}
+
+struct Worst {
+    double of_promise = 0.0;  // error / what is printed
+    std::size_t sample = 0;
+    int compared = 0;
+};
+
+Worst worst_off_edges(const Rig& rig) {
+    const LightmapOptions options;
+    const double promise = map_promise(rig, options).error + kSpectralError;
+    const std::vector<float> found =
+        signal_of(LightmapMaker(rig, std::nullopt, options).map(rig.sled));
+    const Tracer tracer(rig, {});
+    const std::vector<double> expected = tracer.rows(0, rig.camera.height_px);
+    const std::vector<unsigned char> edges = tracer.on_edges(rig.camera.range);
+    const std::size_t plane = edges.size();
+    Worst worst;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const auto first = expected.begin() + static_cast<std::ptrdiff_t>(c * plane);
+        const double brightest =
+            *std::max_element(first, first + static_cast<std::ptrdiff_t>(plane));
+        for (std::size_t i = 0; i < plane; ++i) {
+            const std::size_t k = c * plane + i;
+            const double off = std::abs(found[k] - expected[k]);
+            if (edges[i] != 0 || off <= kDarkShare * brightest) continue;
+            ++worst.compared;
+            const double ratio = off / expected[k] / promise;
+            if (ratio > worst.of_promise) {
+                worst.of_promise = ratio;
+                worst.sample = k;
+            }
+        }
+    }
+    return worst;
+}
+
+// Sleds with one to four strobes of any beam, whose camera sees by colours or by lines.
+Rig random_port_rig(std::uint64_t seed) {
+    Dice dice(seed);
+    Rig rig = small_rig(40, 30);
+    rig.sled = {.altitude_m = dice.over_octaves(0.6, 6.0),
+                .pitch_rad = dice.between(-15.0, 15.0) * kDegree,
+                .roll_rad = dice.between(-15.0, 15.0) * kDegree};
+    rig.camera.pixel_pitch_m *= dice.between(0.5, 2.5);
+    rig.water.multiple = dice.between(0.0, 3.0);
+    if (dice.chance(0.5)) rig.camera.sensor = line_sensor();
+    if (dice.chance(0.2)) {
+        rig.seafloor.phong = dice.between(0.05, 1.0);
+        rig.seafloor.phong_size = dice.over_octaves(4.0, 200.0);
+    }
+    rig.strobes.resize(static_cast<std::size_t>(dice.whole(1, 4)));
+    for (Strobe& strobe : rig.strobes) {
+        strobe.position_m = {
+            dice.between(-0.7, 0.7), dice.between(-0.7, 0.7), dice.between(-0.3, 0.1)};
+        strobe.axis =
+            Eigen::Vector3d(dice.between(-0.6, 0.6), dice.between(-0.6, 0.6), 1.0).normalized();
+        strobe.power = dice.between(0.1, 3.0);
+        strobe.beam = random_beam_of(kBeamKinds.at(dice.index_in(kBeamKinds)), dice);
+    }
+    give_port(kPortKinds.at(seed % kPortKinds.size()), dice, rig.camera);
+    if (dice.chance(0.3)) give_lens(kLensKinds.at(dice.index_in(kLensKinds)), dice, rig.camera);
+    if (dice.chance(0.3)) give_vignetting(dice.index_in(kLensKinds), dice, rig.camera);
+    return rig;
+}
+
+// By hand: APHOTIC_PORT_RIGS=300 build/ci/tests/lightmap_unit_that_computes_tests
+// --gtest_filter='PortLight.IsWithinThePrintedFigure*'
+TEST(PortLight, IsWithinThePrintedFigureForRandomBeamsAndPorts) {
+    const char* asked = std::getenv("APHOTIC_PORT_RIGS");
+    const int count = asked != nullptr ? std::stoi(asked) : cases(12);
+    double worst = 0.0;
+    for (int i = 0; i < count; ++i) {
+        const std::uint64_t seed = 4000 + static_cast<std::uint64_t>(i);
+        const Rig rig = random_port_rig(seed);
+        const Worst found = worst_off_edges(rig);
+        worst = std::max(worst, found.of_promise);
+        EXPECT_LE(found.of_promise, 1.0) << "seed " << seed << ", sample " << found.sample << " of "
+                                         << rig.camera.width_px << " x " << rig.camera.height_px;
+    }
+    fmt::print("worst error over the printed figure, of {} rigs: {:.3f}\n", count, worst);
+    RecordProperty("worst", std::to_string(worst));
+}
+
+// Rows of a table 5 degrees apart, of the smooth cos^4 that a maker's file would have, and steep
+// ones, as no maker's has; a soft edge that is narrower than dispersion.
+TEST(PortLight, FollowsKinksThatLieBetweenTheWatersIndices) {
+    Beam smooth{.name = "smooth", .cones = {}};
+    Beam steep{.name = "steep", .cones = {}};
+    BeamTable rows{
+        .angles = TableAngles::TypeC, .vertical_rad = {}, .horizontal_rad = {0.0}, .intensity = {}};
+    BeamTable zigzag = rows;
+    for (double theta_deg = 0.0; theta_deg <= 90.0; theta_deg += 5.0) {
+        rows.vertical_rad.push_back(theta_deg * kDegree);
+        rows.intensity.push_back(std::pow(std::cos(theta_deg * kDegree), 4));
+        zigzag.vertical_rad.push_back(theta_deg * kDegree);
+        zigzag.intensity.push_back(zigzag.intensity.size() % 2 == 0 ? 1.0 : 0.3);
+    }
+    rows.intensity.back() = 0.0;
+    smooth.pattern = rows;
+    steep.pattern = zigzag;
+    const Beam soft{
+        .name = "soft",
+        .cones = {{.part = "all", .half_angle_rad = 0.5 * std::numbers::pi, .weight = 0.5},
+                  {.part = "soft",
+                   .half_angle_rad = 20.0 * kDegree,
+                   .weight = 0.5,
+                   .edge_rad = 0.1 * kDegree}}};
+    for (const Beam& beam : {smooth, steep, soft}) {
+        for (const PortKind kind : kPortKinds) {
+            Dice dice(5);
+            Rig rig = small_rig(pixels(136), pixels(102));
+            rig.camera.sensor = line_sensor();
+            rig.strobes.resize(2);
+            for (Strobe& strobe : rig.strobes) strobe.beam = scaled_to_flux(beam);
+            give_port(kind, dice, rig.camera);
+            const Worst found = worst_off_edges(rig);
+            EXPECT_LE(found.of_promise, 1.0)
+                << beam.name << ", port " << static_cast<int>(kind) << ", sample " << found.sample;
+            EXPECT_GT(found.compared, 1000);
+        }
+    }
+}
+
+// The same pixels by any number of threads and by rows, wherever they are computed anew.
+TEST(PortLight, IsTheSameToTheBitForAnyThreadsAndRows) {
+    const Rig rig = random_port_rig(4007);
+    const LightmapMaker maker(rig, std::nullopt, {.threads = 1});
+    const Lightmap whole = maker.map(rig.sled);
+    EXPECT_EQ(LightmapMaker(rig, std::nullopt, {.threads = 3}).map(rig.sled).samples,
+              whole.samples);
+    Lightmap some;
+    maker.rows_into(rig.sled, 7, 5, some);
+    const auto width = static_cast<std::size_t>(rig.camera.width_px);
+    const auto height = static_cast<std::size_t>(rig.camera.height_px);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        for (std::size_t i = 0; i < 5 * width; ++i) {
+            ASSERT_EQ(some.samples[c * 5 * width + i], whole.samples[(c * height + 7) * width + i]);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace aphotic::port_light_test
