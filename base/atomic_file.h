@@ -13,7 +13,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <string_view>
 
@@ -47,11 +46,13 @@ void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 inline constexpr std::size_t kMebibyte = std::size_t{1} << 20U;
 
+// More than any text that people write or that is worth to be kept in memory.
+inline constexpr std::size_t kMostTextFile_bytes = 256 * kMebibyte;
+
 // The whole file. An unreadable one is an InputError: users name such files. So is one of more
-// bytes than most_bytes, of which no more than that is read: a device has no end.
-[[nodiscard]] std::string read_text_file(
-    const std::filesystem::path& path,
-    std::size_t most_bytes = std::numeric_limits<std::size_t>::max());
+// bytes than most_bytes, of which no more than that is read: a device or a pipe may have no end.
+[[nodiscard]] std::string read_text_file(const std::filesystem::path& path,
+                                         std::size_t most_bytes = kMostTextFile_bytes);
 
 // Makes the folder and its parents. A RunError says why it cannot be created or written to.
 void make_folder(const std::filesystem::path& folder);

@@ -13,9 +13,11 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
+#include "cli/survey_command.h"
 #include "plugin/survey_render.h"
 #include "rig/rig_reader.h"
 #include "survey/camera_numbers.h"
+#include "survey/first_look.h"
 #include "survey/navigation_file.h"
 
 #include <fmt/format.h>
@@ -143,8 +145,10 @@ void fly(const SurveyCommandOptions& options, SimulatedSurvey& survey) {
         survey.corners = corners_of(options.ranges);
         return;
     }
-    const Navigation navigation = read_navigation({.source = options.flight}, {}, &survey.rig);
-    survey.legs = naming(options.flight, [&] { return flight_of(navigation); });
+    const std::optional<Navigation> navigation =
+        read_navigation({.source = options.flight}, {}, &survey.rig);
+    terminal_watch(false).looks_wrong(suspicions_of(navigation));
+    survey.legs = naming(options.flight, [&] { return flight_of(*navigation); });
     std::vector<Sled> sleds;
     for (const Leg& leg : survey.legs) sleds.push_back(leg.sled);
     survey.corners = corners_of(sleds);

@@ -2,6 +2,7 @@
 #include "rig/calibration_file.h"
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "rig/calibration_keys.h"
 #include "rig/colmap_calibration.h"
 #include "rig/kalibr_calibration.h"
@@ -47,6 +48,22 @@ CameraCalibration read_any(const std::string& file_name, std::string_view text) 
     return is_xml ? read_xml(file_name, text) : read_yaml(file_name, text);
 }
 
+void require_text(const std::string& file_name, std::string_view text) {
+    if (is_cameras_bin(text)) {
+        throw InputError(
+            "{}: found COLMAP's cameras.bin, which is binary; allowed: its cameras.txt, which "
+            "COLMAP makes of it: colmap model_converter --input_path MODEL --output_path TEXT "
+            "--output_type TXT",
+            file_name);
+    }
+    const std::string_view kind = binary_kind(text);
+    if (kind.empty() && text.find('\0') == std::string_view::npos) return;
+    throw InputError("{}: found {}; allowed, as text: {}",
+                     file_name,
+                     kind.empty() ? "zero bytes, which no text has" : kind,
+                     kKnownCalibrations);
+}
+
 void require_within(
     const std::string& file_name, std::string_view what, double value, double least, double most) {
     if (value >= least && value <= most) return;
@@ -77,6 +94,7 @@ void require_sound(const std::string& file_name, const LensModel& lens) {
 }  // namespace
 
 CameraCalibration parse_calibration(const std::string& file_name, std::string_view text) {
+    require_text(file_name, text);
     CameraCalibration calibration = read_any(file_name, utf8_of(text));
     require_sound(file_name, calibration.lens);
     return calibration;

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <span>
 
@@ -157,6 +158,27 @@ bool is_cameras_txt(std::string_view text) {
     if (cameras.empty()) return false;
     const std::string_view id = cameras.front().words.front();
     return id.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+bool is_cameras_bin(std::string_view bytes) {
+    // How many cameras there are, then of each its number, its model's, width, height and three
+    // parameters or more: little-endian, of 8, 4, 4, 8, 8, 8 bytes.
+    constexpr std::size_t kLeastBytes = 56;
+    if (bytes.size() < kLeastBytes) return false;
+    const auto number = [&](std::size_t at, std::size_t length) {
+        std::uint64_t value = 0;
+        for (std::size_t i = length; i-- > 0;)
+            value = (value << 8U) | static_cast<unsigned char>(bytes[at + i]);
+        return value;
+    };
+    constexpr std::uint64_t kMostCameras = 1'000'000;
+    constexpr std::uint64_t kMostModels = 100;
+    constexpr std::uint64_t kMostPixels = kLargestImagePx;
+    const auto is_up_to = [](std::uint64_t value, std::uint64_t most) {
+        return value >= 1 && value <= most;
+    };
+    return is_up_to(number(0, 8), kMostCameras) && number(12, 4) <= kMostModels &&
+           is_up_to(number(16, 8), kMostPixels) && is_up_to(number(24, 8), kMostPixels);
 }
 
 CameraCalibration parse_cameras_txt(const std::string& file_name, std::string_view text) {

@@ -29,6 +29,9 @@
 
 namespace aphotic {
 
+// Whether bytes begin as COLMAP's cameras.bin, which is not read.
+[[nodiscard]] bool is_cameras_bin(std::string_view bytes);
+
 // Whether the first line, comments aside, begins with a camera's number.
 [[nodiscard]] bool is_cameras_txt(std::string_view text);
 [[nodiscard]] CameraCalibration parse_cameras_txt(const std::string& file_name,

@@ -229,7 +229,8 @@ BaselineReport correct_by_baseline(const Survey& survey,
     BaselineReport report{.baseline = name_of(options.baseline),
                           .settings = settings_of(survey, options),
                           .folder = options.run.folder.string()};
-    report.looks_wrong = suspicions_of(survey.files, survey.camera, options.run.jobs, watch);
+    report.looks_wrong =
+        suspicions_of(survey.files, survey.camera, survey.navigation, options.run.jobs, watch);
     report.srgb = encoding_of(survey, options, report.settings);
     // Before the first image: also what an interrupted run leaves is no survey.
     write_text_file(notes, json_text(to_json(report)));

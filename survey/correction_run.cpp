@@ -101,6 +101,7 @@ void look_first(const Survey& survey,
                                      .least_light = options.limit.share,
                                      .jobs = options.run.jobs},
                                     watch);
+    std::ranges::move(suspicions_of(survey.navigation), std::back_inserter(report.looks_wrong));
     std::ranges::move(suspicions(look.images, mosaic_of(look.images)),
                       std::back_inserter(report.looks_wrong));
     report.not_checked = not_checked(look.images);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -117,15 +118,25 @@ std::string SurveyLook::none_can_be(std::string_view done) const {
                      "none of the {} images looked at can be {}; {}", count, done, first_why);
 }
 
+std::vector<Suspicion> suspicions_of(const std::optional<Navigation>& navigation) {
+    std::vector<Suspicion> found;
+    if (!navigation) return found;
+    for (const std::string& warning : navigation->warnings())
+        found.push_back({.about = std::string(kAboutNavigation), .what = warning});
+    return found;
+}
+
 std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
                                      const CameraNumbers& camera,
+                                     const std::optional<Navigation>& navigation,
                                      std::size_t jobs,
                                      const RunWatch& watch) {
     const SurveyLook look = look_at({.files = files, .camera = camera}, {.jobs = jobs}, watch);
     if (look.images.empty() && look.count > 0) {
         throw InputError("{}", look.none_can_be("read"));
     }
-    std::vector<Suspicion> found = suspicions(look.images, mosaic_of(look.images));
+    std::vector<Suspicion> found = suspicions_of(navigation);
+    std::ranges::move(suspicions(look.images, mosaic_of(look.images)), std::back_inserter(found));
     watch.looks_wrong(found);
     return found;
 }

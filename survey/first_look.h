@@ -37,10 +37,14 @@ struct SurveyLook {
                                  const LookRequest& request,
                                  const RunWatch& watch);
 
-// What looks wrong about images whose light nobody knows: says it to the watch, too. Refused, once
-// for all, where none of them can be read.
+// What the reader of the navigation warns of.
+[[nodiscard]] std::vector<Suspicion> suspicions_of(const std::optional<Navigation>& navigation);
+
+// What looks wrong about the navigation and about images whose light nobody knows: says it to the
+// watch, too. Refused, once for all, where none of them can be read.
 [[nodiscard]] std::vector<Suspicion> suspicions_of(const std::vector<ImageFile>& files,
                                                    const CameraNumbers& camera,
+                                                   const std::optional<Navigation>& navigation,
                                                    std::size_t jobs,
                                                    const RunWatch& watch);
 

@@ -177,7 +177,8 @@ FitSamples samples_of_images(const Survey& survey,
     FitSamples samples;
     samples.places = fit_places(size.width_px, size.height_px, blocks_across);
     samples.mosaic = survey.camera.mosaic.value_or(Mosaic::None);
-    samples.looks_wrong = suspicions_of(survey.files, survey.camera, jobs, watch);
+    samples.looks_wrong =
+        suspicions_of(survey.files, survey.camera, survey.navigation, jobs, watch);
     const auto skip = [&](std::size_t i, const std::string& why) {
         samples.skipped.push_back({.image = survey.files[i].source.string(), .why = why});
         watch.skipped(samples.skipped.back());

@@ -81,6 +81,13 @@ void compare_levels(const nlohmann::json& settings,
     }
 }
 
+// A warning about the navigation, as of a track that still grows, is none about the gain.
+bool looked_wrong(const nlohmann::json& notes) {
+    return std::ranges::any_of(notes.at("looks_wrong"), [](const nlohmann::json& one) {
+        return one.at("about") != std::string(kAboutNavigation);
+    });
+}
+
 }  // namespace
 
 SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
@@ -113,7 +120,7 @@ std::optional<SurveyGain> kept_gain(std::string_view text, const std::string& se
     try {
         const nlohmann::json notes = parse_json(text, "correction.json");
         if (notes.at("settings_sha256") != settings_sha256) return std::nullopt;
-        if (!notes.at("looks_wrong").empty()) return std::nullopt;
+        if (looked_wrong(notes)) return std::nullopt;
         return gain_in(notes);
     } catch (const nlohmann::json::exception&) {
         return std::nullopt;
@@ -136,7 +143,7 @@ SurveyGain gain_of_notes(std::string_view text,
             compare_light(notes.at("settings"), light, folder, doubts);
             compare_levels(notes.at("settings"), camera, folder, doubts);
         }
-        if (!notes.at("looks_wrong").empty()) {
+        if (looked_wrong(notes)) {
             doubts.push_back({"gain-from", folder + ": its own survey looked wrong"});
         }
     } catch (const nlohmann::json::exception&) {

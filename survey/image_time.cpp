@@ -3,6 +3,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/printable.h"
 #include "image/any_image.h"
 #include "survey/image_files.h"
 #include "survey/time_text.h"
@@ -45,6 +46,12 @@ std::optional<int> part_in(std::string_view name, std::string_view mask, std::st
 std::string tag(const std::map<std::string, std::string>& tags, const std::string& name) {
     const auto found = tags.find(name);
     return found == tags.end() ? "" : std::string(trimmed(found->second));
+}
+
+// Blanks, with or without the colon between them, are EXIF's way to say that it is not known.
+std::string zone_in(const std::map<std::string, std::string>& tags, const std::string& name) {
+    const std::string zone = tag(tags, name);
+    return zone.find_first_not_of(" :") == std::string::npos ? "" : zone;
 }
 
 }  // namespace
@@ -93,25 +100,34 @@ std::optional<double> time_in_habcam_name(const std::string& name) {
 
 std::optional<double> time_in_exif(const std::map<std::string, std::string>& tags) {
     std::string text = tag(tags, "Exif:DateTimeOriginal");
+    if (text.find(':') == std::string::npos) return std::nullopt;  // seconds are no time of EXIF's
     const std::string part = tag(tags, "Exif:SubsecTimeOriginal");
-    const std::string own_zone = tag(tags, "Exif:OffsetTimeOriginal");
     if (!part.empty()) text += "." + part;
-    text += own_zone.empty() ? tag(tags, "Exif:OffsetTime") : own_zone;
     const auto time_s = unix_time_s(text);
-    const bool is_calendar = text.find(':') != std::string::npos;
-    return is_calendar ? time_s : std::nullopt;
+    const std::string zone = zone_in(tags, "Exif:OffsetTimeOriginal");
+    if (!time_s || zone.empty()) return time_s;
+    if (const auto shifted_s = unix_time_s(text + zone)) return shifted_s;
+    throw InputError(
+        "OffsetTimeOriginal: found '{}'; allowed: Z, or hours and minutes such as "
+        "+02:00",
+        printable(zone));
 }
 
-double image_time_s(const std::filesystem::path& image, const std::string& mask) {
+ImageTime image_time(const std::filesystem::path& image, const std::string& mask) {
     const std::string name = image.filename().string();
     if (!mask.empty()) {
         if (const auto time_s = time_by_mask(without_extension(name).string(), mask))
-            return *time_s;
+            return {*time_s};
         throw InputError("its name has no time where --image-time {} has it", mask);
     }
     require_file(image);
-    if (const auto time_s = time_in_exif(header_of_image(image))) return *time_s;
-    if (const auto time_s = time_in_habcam_name(name)) return *time_s;
+    const std::map<std::string, std::string> tags = header_of_image(image);
+    if (const auto time_s = time_in_exif(tags)) {
+        const bool lacks_zone = zone_in(tags, "Exif:OffsetTimeOriginal").empty() &&
+                                !zone_in(tags, "Exif:OffsetTime").empty();
+        return {.time_s = *time_s, .lacks_zone = lacks_zone};
+    }
+    if (const auto time_s = time_in_habcam_name(name)) return {*time_s};
     throw InputError(
         "it tells no time: no DateTimeOriginal in its EXIF, and its name is not HabCam's; "
         "--image-time says where its name has the time");

@@ -11,8 +11,9 @@
 // and uuu for microseconds; any other character for any one character. It may end before the name
 // does. The letters are those of oplab's filename_to_date.
 //
-// Without a mask: EXIF's DateTimeOriginal with SubSecTimeOriginal, in the zone of
-// OffsetTimeOriginal, without one in UTC; else a time as in HabCam's names,
+// Without a mask: EXIF's DateTimeOriginal with SubSecTimeOriginal, the digits of a decimal
+// fraction, in the zone of OffsetTimeOriginal; where that is not there or blank, in UTC. OffsetTime
+// is the zone of the file's last change, and counts for nothing. Else a time as in HabCam's names,
 // 20120623.171552346.1219.tif, to the millisecond. Times in names are UTC.
 #pragma once
 
@@ -31,10 +32,16 @@ void require_time_mask(const std::string& mask);
 // None where a digit is missing or there is no such time.
 [[nodiscard]] std::optional<double> time_by_mask(std::string_view name, const std::string& mask);
 [[nodiscard]] std::optional<double> time_in_habcam_name(const std::string& name);
-// Tags: header_of_image() of image/any_image.h.
+
+// Tags: header_of_image() of image/any_image.h. An InputError when the zone is none.
 [[nodiscard]] std::optional<double> time_in_exif(const std::map<std::string, std::string>& tags);
 
+struct ImageTime {
+    double time_s = 0.0;
+    bool lacks_zone = false;  // of the shot, though its file has one: OffsetTime
+};
+
 // An empty mask is none. An InputError when the image tells no time.
-[[nodiscard]] double image_time_s(const std::filesystem::path& image, const std::string& mask);
+[[nodiscard]] ImageTime image_time(const std::filesystem::path& image, const std::string& mask);
 
 }  // namespace aphotic

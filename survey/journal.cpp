@@ -61,7 +61,7 @@ std::map<std::string, JournalEntry> parse_journal(std::string_view text) {
 }
 
 Journal::Journal(fs::path file) : file_(std::move(file)) {
-    if (fs::exists(file_)) entries_ = parse_journal(read_text_file(file_));
+    if (fs::exists(file_)) entries_ = parse_journal(read_text_file(file_, kMostJournal_bytes));
     std::string text;
     for (const auto& [name, entry] : entries_) text += line_of(name, entry);
     write_text_file(file_, text);

@@ -33,6 +33,7 @@ struct JournalEntry {
 
 // Its name in a folder of results.
 inline constexpr std::string_view kJournal = "corrected.jsonl";
+inline constexpr std::size_t kMostJournal_bytes = std::size_t{4} << 30U;  // ten million images
 
 class Journal {
   public:

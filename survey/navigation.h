@@ -77,6 +77,10 @@ class Navigation {
     [[nodiscard]] const std::optional<NavigationNotes>& notes() const { return notes_; }
     void note(NavigationNotes notes) { notes_ = std::move(notes); }
 
+    // What may be wrong though it can be read, each with the source's name.
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    void warn(std::string what) { warnings_.push_back(std::move(what)); }
+
   private:
     [[nodiscard]] std::string key_of(const std::string& image) const;
 
@@ -85,6 +89,7 @@ class Navigation {
     ToldAngles known_;
     ImagesKnownBy known_by_;
     std::optional<NavigationNotes> notes_{};
+    std::vector<std::string> warnings_{};
     std::size_t nameless_line_ = 0;  // the first; 0: none
     double least_m_ = 0.0;
     double most_m_ = std::numeric_limits<double>::infinity();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/navigation_cell.h"
 
-#include "base/printable.h"
 #include "base/words.h"
+#include "rig/photometric_text.h"
 
 #include <fmt/format.h>
 
@@ -21,6 +21,13 @@ bool is_unknown(std::string_view field) {
     return std::ranges::find(kUnknown, lower_case(std::string(field))) != kUnknown.end();
 }
 
+// 2,15, as spreadsheets of half of Europe write it.
+bool has_decimal_comma(std::string_view field) {
+    const std::size_t comma = field.find(',');
+    return comma != std::string_view::npos && comma > 0 && comma + 1 < field.size() &&
+           field.find_first_not_of("+-0123456789eE,") == std::string_view::npos;
+}
+
 }  // namespace
 
 double number_in(ImagePose& pose, std::string_view column, std::string_view field) {
@@ -32,7 +39,10 @@ double number_in(ImagePose& pose, std::string_view column, std::string_view fiel
     const auto [stop, error] = std::from_chars(digits.data(), end, number);
     if (error == std::errc() && stop == end) return number;
     if (pose.fault.empty()) {
-        pose.fault = fmt::format("{}: found '{}'; allowed: a number", column, printable(field));
+        pose.fault = fmt::format("{}: found {}; allowed: a number{}",
+                                 column,
+                                 shown_word(field),
+                                 has_decimal_comma(field) ? " with a decimal point" : "");
     }
     return kNone;
 }

@@ -13,13 +13,19 @@
 //   SQUIDLE+'s CSV  key             timestamp_start            pose.alt             pose.data.pitch
 //                                                                                   pose.data.roll
 //   HabCam's .img   imagename       none                       alt1                 pitch, roll
+//   a table         any of these, with units where they are in doubt: altitude_m, altitude [m],
+//                   distance_to_ground, SUB_distance; pitch_deg, pitch [deg]; roll_deg, roll [deg]
+//   PANGAEA's .tab  image,          date/time                  altitude_m           pitch [deg]
+//                   file name                                                       roll [deg]
 //
 // All are in metres and degrees. Heights over the sea level are never taken: gps_altitude,
-// SUB_altitude, pose.dep, depth.
+// SUB_altitude, pose.dep, depth, and PANGAEA's altitude [m].
 //
 // Sources: oplab_pipeline, auv_nav/sensors.py and tools/csv_tools.py, and its
 // generate_nav_file_for_squidle.py; biigle/core, image metadata parser; oii, HabCam's metadata.
 #pragma once
+
+#include "survey/navigation_notes.h"
 
 #include <array>
 #include <map>
@@ -71,11 +77,21 @@ inline constexpr std::array<std::string_view, 16> kHabCamColumns{"imagename",
                                                                  "backscatter",
                                                                  "therm"};
 
-// An InputError, which begins with file and line, when the columns are of no format, or a column
-// that `given` names is not there.
-[[nodiscard]] NavigationColumns navigation_columns(const std::string& file,
-                                                   std::size_t line,
-                                                   const std::vector<std::string_view>& header,
-                                                   const ColumnNames& given);
+struct HeaderRequest {
+    std::string file{};  // it and its line stand in messages
+    std::size_t line = 0;
+    ColumnNames given{};
+    AngleUnit angles_in = AngleUnit::Degrees;
+    bool is_pangaeas = false;
+};
+
+// Whether the columns are of a format, with those that are given.
+[[nodiscard]] bool is_navigation_header(const HeaderRequest& request,
+                                        const std::vector<std::string>& header);
+
+// An InputError, which begins with file and line, when the columns are of no format, one that is
+// given is not there, or one says a unit in its name that is not the one it would be taken for.
+[[nodiscard]] NavigationColumns navigation_columns(const HeaderRequest& request,
+                                                   const std::vector<std::string>& header);
 
 }  // namespace aphotic

@@ -4,75 +4,102 @@
 #include "base/csv.h"
 #include "base/degrees.h"
 #include "base/error.h"
+#include "rig/photometric_text.h"
+#include "survey/navigation_acfr.h"
 #include "survey/navigation_cell.h"
+#include "survey/table_text.h"
 #include "survey/time_text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace aphotic {
 namespace {
 
-constexpr std::size_t kEicFields = 4;
-
 using enum NavigationField;
-using Fields = std::vector<std::string_view>;
+using Fields = std::vector<std::string>;
 
-// Where the field that begins at `start` ends: at a comma outside of its quotes.
-std::size_t field_end(std::string_view line, std::size_t start) {
-    std::size_t from = line.find_first_not_of(kBlanks, start);
-    if (from == std::string_view::npos || line[from] != '"') return line.find(',', start);
-    const std::size_t close = line.find('"', from + 1);
-    return line.find(',', close == std::string_view::npos ? start : close);
-}
-
-Fields unquoted_fields(std::string_view line) {
-    Fields fields;
-    for (std::size_t start = 0; start <= line.size();) {
-        const std::size_t end = std::min(field_end(line, start), line.size());
-        std::string_view field = trimmed(line.substr(start, end - start));
-        const bool is_quoted = field.size() > 1 && field.front() == '"' && field.back() == '"';
-        fields.push_back(is_quoted ? trimmed(field.substr(1, field.size() - 2)) : field);
-        start = end + 1;
-    }
-    return fields;
-}
-
-Fields blank_fields(std::string_view line) {
-    Fields fields;
-    for (std::size_t start = line.find_first_not_of(kBlanks); start != std::string_view::npos;) {
-        const std::size_t end = std::min(line.find_first_of(kBlanks, start), line.size());
-        fields.push_back(line.substr(start, end - start));
-        start = line.find_first_not_of(kBlanks, end);
-    }
-    return fields;
-}
+// What separates fields, where commas are more likely than what may stand within a name.
+constexpr std::array kSeparators{',', ';', '\t', kByBlanks};
 
 // How lines are taken apart, and what their fields say.
 struct Layout {
-    NavigationColumns columns;
-    bool has_commas = true;
+    NavigationColumns columns{};
+    char separator = ',';
+    bool has_header = false;
+    bool is_acfrs = false;
 };
+
+// HabCam's .eic: image, altitude, pitch, roll.
+constexpr std::size_t kEicFields = 4;
 
 Layout eic_layout() {
     return {.columns = {.format = "HabCam's .eic",
                         .count = kEicFields,
                         .places = {0, std::nullopt, 1, 2, 3},
                         .names = {"image", "", "altitude_m", "pitch_deg", "roll_deg"}},
-            .has_commas = false};
+            .separator = kByBlanks};
 }
 
-// Sixteen fields, of which latitude to roll are numbers.
+// Matisse's .dim2: dive, date, time, source, format, name, latitude, longitude, depth, altitude,
+// yaw, roll, pitch, and more. Source: IfremerUnderwater/Matisse, NavTools/dim2.cpp, and
+// OpticalMapping/mosaic_descriptor.cpp, which turns by Ry(pitch) Rx(roll) with z down.
+Layout dim2_layout(std::size_t count) {
+    return {.columns = {.format = "Matisse's .dim2",
+                        .count = count,
+                        .places = {5, std::nullopt, 9, 12, 11},
+                        .names = {"name", "", "altitude", "pitch", "roll"}},
+            .separator = ';'};
+}
+
+Layout acfr_layout() {
+    return {.columns = {.format = "ACFR's stereo_pose_est.data",
+                        .places = {0, std::nullopt, 0, 0, 0},
+                        .names = {"left, right", "", "altitude", "X angle", "Y angle"}},
+            .separator = kByBlanks,
+            .is_acfrs = true};
+}
+
+bool are_numbers(const Fields& fields, std::size_t first, std::size_t count) {
+    return std::all_of(fields.begin() + static_cast<std::ptrdiff_t>(first),
+                       fields.begin() + static_cast<std::ptrdiff_t>(first + count),
+                       [](const std::string& field) {
+                           ImagePose none;
+                           static_cast<void>(number_in(none, "", field));
+                           return none.fault.empty();
+                       });
+}
+
+// Latitude to roll are numbers.
 bool is_habcam_img(const Fields& fields) {
-    if (fields.size() != kHabCamColumns.size()) return false;
-    return std::ranges::all_of(fields.begin() + 1, fields.begin() + 6, [](std::string_view field) {
-        ImagePose none;
-        static_cast<void>(number_in(none, "", field));
-        return none.fault.empty();
-    });
+    return fields.size() == kHabCamColumns.size() && are_numbers(fields, 1, 5);
+}
+
+bool is_eic(const Fields& fields) {
+    return fields.size() == kEicFields && are_numbers(fields, 1, 3);
+}
+
+// Its date is 31/12/2018; latitude to pitch are numbers.
+bool is_dim2(const Fields& fields) {
+    constexpr std::size_t kLeast = 13;
+    if (fields.size() < kLeast) return false;
+    const std::string& date = fields[1];
+    return date.size() == 10 && date[2] == '/' && date[5] == '/' && are_numbers(fields, 6, 7);
+}
+
+std::string count_fault(const Layout& layout, std::size_t found) {
+    const std::size_t count = layout.columns.count;
+    if (layout.has_header)
+        return fmt::format("found {} fields; allowed: {}, as in the header row", found, count);
+    return fmt::format("found {} fields; allowed: {}{}",
+                       found,
+                       count,
+                       count == kEicFields ? ": image, altitude, pitch, roll" : "");
 }
 
 ImagePose pose_in(const Layout& layout,
@@ -84,11 +111,7 @@ ImagePose pose_in(const Layout& layout,
         return number_in(pose, columns.name(field), fields[*columns.place(field)]);
     };
     if (fields.size() != columns.count) {
-        pose.fault =
-            fmt::format("found {} fields; allowed: {}",
-                        fields.size(),
-                        layout.has_commas ? fmt::format("{}, as in the header row", columns.count)
-                                          : "4: image, altitude, pitch, roll");
+        pose.fault = count_fault(layout, fields.size());
         return pose;
     }
     pose.sled.altitude_m = number(Altitude);
@@ -99,14 +122,149 @@ ImagePose pose_in(const Layout& layout,
 
 void add_time(NavigationRow& row, const NavigationColumns& columns, const Fields& fields) {
     if (!row.pose.fault.empty()) return;
-    const std::string_view text = fields[*columns.place(Time)];
+    const std::string& text = fields[*columns.place(Time)];
     const auto time_s = unix_time_s(text);
     if (time_s) row.time_s = *time_s;
     if (time_s) return;
     row.pose.fault = fmt::format(
-        "{}: found '{}'; allowed: seconds since 1970, or a time such as 2024-03-09 12:34:56.789",
+        "{}: found {}; allowed: seconds since 1970, or a time such as 2024-03-09 12:34:56.789",
         columns.name(Time),
-        text);
+        shown_word(text));
+}
+
+// A table's columns and what parts them, judged at its first line, which may be a header.
+class LayoutReader {
+  public:
+    LayoutReader(TableText& table, HeaderRequest request)
+        : table_(table), request_(std::move(request)) {}
+
+    // None: the text ends without a table. Else the table is at its first row of values.
+    std::optional<Layout> read() {
+        while (table_.find_row('\0')) {
+            request_.line = table_.line();
+            if (auto layout = of_header()) return layout;
+            if (auto layout = of_comment()) return layout;
+            if (auto layout = of_values()) return layout;
+            if (!is_passed_over()) return with_header(most_frequent());  // which refuses it
+            table_.pass_line();
+        }
+        return std::nullopt;
+    }
+
+  private:
+    Layout with_header(char separator) {
+        const Fields header = table_.take_row(separator).fields;
+        return {.columns = navigation_columns(request_, header),
+                .separator = separator,
+                .has_header = true};
+    }
+
+    std::optional<Layout> of_header() {
+        for (const char separator : kSeparators) {
+            if (is_navigation_header(request_, table_.row(separator).fields))
+                return with_header(separator);
+        }
+        return std::nullopt;
+    }
+
+    // A header row behind the mark of a comment, just before a line of as many fields.
+    std::optional<Layout> of_comment() {
+        TableText comment(request_.file, table_.last_comment());
+        for (const char separator : kSeparators) {
+            const Fields header = comment.row(separator).fields;
+            if (header.size() != table_.row(separator).fields.size() ||
+                !is_navigation_header(request_, header))
+                continue;
+            return Layout{.columns = navigation_columns(request_, header),
+                          .separator = separator,
+                          .has_header = true};
+        }
+        return std::nullopt;
+    }
+
+    // By what the values are.
+    std::optional<Layout> of_values() {
+        for (const char separator : kSeparators) {
+            if (!is_habcam_img(table_.row(separator).fields)) continue;
+            const Fields header(kHabCamColumns.begin(), kHabCamColumns.end());
+            return Layout{.columns = navigation_columns(request_, header), .separator = separator};
+        }
+        const Fields words = table_.row(kByBlanks).fields;
+        const Fields cells = table_.row(';').fields;
+        std::optional<Layout> layout;
+        if (is_eic(words)) layout = eic_layout();
+        if (is_dim2(cells)) layout = dim2_layout(cells.size());
+        if (is_acfr_line(words)) layout = acfr_layout();
+        if (layout && !request_.given.empty()) {
+            fail_at_line(request_.file, request_.line, "found no header row; needed by --columns");
+        }
+        return layout;
+    }
+
+    // Rows of separators alone, comments that only what is not separated by ; can have, what
+    // spreadsheets write of their separator, and the origin of ACFR's coordinates.
+    [[nodiscard]] bool is_passed_over() const {
+        const auto is_empty = [](const std::string& field) { return field.empty(); };
+        return std::ranges::all_of(table_.row(most_frequent()).fields, is_empty) ||
+               table_.begins_with(";") || table_.begins_with("sep=") ||
+               table_.begins_with("ORIGIN_LATITUDE") || table_.begins_with("ORIGIN_LONGITUDE");
+    }
+
+    // Blanks part words only where nothing else does.
+    [[nodiscard]] char most_frequent() const {
+        char best = kByBlanks;
+        std::size_t most = 1;
+        for (const char separator : {',', ';', '\t'}) {
+            const std::size_t count = table_.row(separator).fields.size();
+            if (count > most) best = separator;
+            most = std::max(most, count);
+        }
+        return best;
+    }
+
+    TableText& table_;
+    HeaderRequest request_;
+};
+
+bool is_pangaeas(std::string_view text) {
+    return without_byte_order_mark(text).starts_with("/* DATA DESCRIPTION");
+}
+
+// Where a last number may lack digits: the line that ends with the file, and what stands there.
+std::string cut_warning(const std::string& name, const Layout& layout, const TextRow& row) {
+    if (row.has_line_end || layout.is_acfrs || row.fields.size() != layout.columns.count) return "";
+    const std::size_t last = row.fields.size() - 1;
+    for (const NavigationField field : {Time, Altitude, Pitch, Roll}) {
+        if (layout.columns.place(field) != last) continue;
+        return fmt::format(
+            "{}:{}: the file ends within this line, without a line end: if it was cut short, {} = "
+            "{} may lack digits",
+            name,
+            row.line,
+            shown_word(layout.columns.name(field)),
+            shown_word(row.fields[last]));
+    }
+    return "";
+}
+
+void add_rows(NavigationTable& table,
+              const Layout& layout,
+              const TextRow& row,
+              const Sled& rig_sled,
+              double radians_per_unit) {
+    if (layout.is_acfrs) {
+        const auto [left, right] = acfr_poses(row.fields, row.line);
+        table.rows.push_back({.pose = left});
+        if (right.image != left.image) table.rows.push_back({.pose = right});
+        return;
+    }
+    const NavigationColumns& columns = layout.columns;
+    ImagePose pose{.sled = rig_sled, .line = row.line};
+    if (const auto image = columns.place(Image); image && *image < row.fields.size())
+        pose.image = row.fields[*image];
+    NavigationRow made{.pose = pose_in(layout, row.fields, std::move(pose), radians_per_unit)};
+    if (columns.is_track()) add_time(made, columns, row.fields);
+    table.rows.push_back(std::move(made));
 }
 
 }  // namespace
@@ -117,48 +275,30 @@ NavigationTable parse_navigation_csv(const std::string& name,
                                      const ColumnNames& given,
                                      AngleUnit angles_in) {
     const double radians_per_unit = angles_in == AngleUnit::Degrees ? kRadiansPerDegree : 1.0;
+    TableText lines(name, text);
+    LayoutReader reader(
+        lines,
+        {.file = name, .given = given, .angles_in = angles_in, .is_pangaeas = is_pangaeas(text)});
+    const std::optional<Layout> layout = reader.read();
     NavigationTable table;
-    std::optional<Layout> layout;
-    table.lines = for_each_line(text, [&](std::size_t line, std::string_view words) {
-        const std::string_view content = trimmed(words);
+    while (layout && lines.find_row(layout->separator)) {
+        const TextRow row = lines.take_row(layout->separator);
         // Spreadsheets end a table with rows of commas alone.
-        const bool is_empty = content.find_first_not_of(',') == std::string_view::npos;
-        if (is_empty || content.front() == '#') return;
-        const bool has_commas =
-            layout ? layout->has_commas : content.find(',') != std::string_view::npos;
-        const Fields fields = has_commas ? unquoted_fields(content) : blank_fields(content);
-        if (!layout && !has_commas && content.find(';') != std::string_view::npos)
-            fail_at_line(name, line, "found semicolons between fields; allowed: commas");
-        if (!layout && !has_commas && content.find('\t') != std::string_view::npos &&
-            fields.size() != kEicFields)
-            fail_at_line(name, line, "found tabs between fields; allowed: commas");
-        if (!layout && !has_commas) {
-            if (!given.empty())
-                fail_at_line(name, line, "found no header row; needed by --columns");
-            layout = eic_layout();
+        if (std::ranges::all_of(row.fields, &std::string::empty)) continue;
+        if (table.rows.size() >= kMostNavigationRows) {
+            fail_at_line(name, row.line, "found more than {} lines", kMostNavigationRows);
         }
-        if (!layout) {
-            const bool is_img = is_habcam_img(fields);
-            const Fields header =
-                is_img ? Fields(kHabCamColumns.begin(), kHabCamColumns.end()) : fields;
-            layout = Layout{.columns = navigation_columns(name, line, header, given)};
-            if (!is_img) return;
-        }
-        const NavigationColumns& columns = layout->columns;
-        ImagePose pose{.sled = rig_sled, .line = line};
-        if (const auto image = columns.place(Image); image && *image < fields.size())
-            pose.image = std::string(fields[*image]);
-        NavigationRow row{.pose = pose_in(*layout, fields, std::move(pose), radians_per_unit)};
-        if (columns.is_track()) add_time(row, columns, fields);
-        table.rows.push_back(std::move(row));
-    });
+        add_rows(table, *layout, row, rig_sled, radians_per_unit);
+        table.cut_warning = cut_warning(name, *layout, row);
+    }
     if (layout) table.columns = layout->columns;
+    if (layout && layout->is_acfrs) table.are_cameras_own = true;
     const bool is_of_use = std::ranges::any_of(table.rows, [&](const NavigationRow& row) {
         return table.columns.is_track() || !row.pose.image.empty();
     });
     if (!is_of_use) {
         fail_at_line(name,
-                     table.lines + 1,
+                     lines.line(),
                      "the file ends without a line of {}",
                      layout && table.columns.is_track() ? "a pose" : "an image");
     }

@@ -3,7 +3,9 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/parallel.h"
+#include "base/words.h"
 #include "image/any_image.h"
 #include "survey/habcam_tags.h"
 #include "survey/image_time.h"
@@ -13,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <thread>
 #include <utility>
 
@@ -124,23 +127,32 @@ Navigation navigation_by_time(const NavigationTable& table,
                                 .longest_gap_s = options.longest_gap_s,
                                 .lines_left_out = table.rows.size() - points.size()};
     const Track track(std::move(points), options.longest_gap_s);
+    std::atomic<std::size_t> without_zone = 0;
     const auto read = [&](const std::filesystem::path& image, ImagePose& pose) {
-        pose.sled = track.at(image_time_s(image, options.time_mask) + options.clock_offset_s);
+        const ImageTime time = image_time(image, options.time_mask);
+        if (time.lacks_zone) ++without_zone;
+        pose.sled = track.at(time.time_s + options.clock_offset_s);
     };
     Navigation navigation(options.source, poses_of(files, read), told, ImagesKnownBy::Path);
     navigation.note(std::move(notes));
+    if (without_zone > 0) {
+        navigation.warn(fmt::format(
+            "{}: the times of {} are taken for UTC: their EXIF has an OffsetTime, which is of the "
+            "file's last change, and no OffsetTimeOriginal; --clock-offset-s shifts them",
+            options.source,
+            counted(without_zone, "image")));
+    }
     return navigation;
 }
 
-Navigation navigation_of_table(std::string_view text,
+Navigation navigation_of_table(const NavigationTable& table,
                                const NavigationOptions& options,
                                const std::vector<ImageFile>& files,
-                               const Mounting& mounting,
-                               const Sled& rig_sled) {
-    const NavigationTable table =
-        parse_navigation_csv(options.source, text, rig_sled, options.columns, options.angles_in);
+                               const Mounting& mounting) {
     const NavigationColumns& columns = table.columns;
-    NavigationNotes notes{.format = columns.format, .angles_in = options.angles_in};
+    NavigationNotes notes{
+        .format = columns.format,
+        .angles_in = table.are_cameras_own ? AngleUnit::Radians : options.angles_in};
     for (std::size_t field = 0; field < kNavigationFields.size(); ++field) {
         if (columns.places.at(field))
             notes.columns.emplace_back(kNavigationFields.at(field), columns.names.at(field));
@@ -155,6 +167,15 @@ Navigation navigation_of_table(std::string_view text,
     Navigation navigation(options.source, poses, told);
     navigation.note(std::move(notes));
     return navigation;
+}
+
+// Poses that are the camera's own cannot be turned by its place on the vehicle.
+void require_no_place(const NavigationOptions& options, const Mounting& mounting) {
+    if (!is_mounted_apart(mounting)) return;
+    throw InputError(
+        "{}: has the angles of the camera itself; found position_m or orientation_deg in the rig, "
+        "which place it on a vehicle; allowed: a rig without them",
+        options.source);
 }
 
 // Of angles that the navigation does not tell, the rig's count; they are the camera's.
@@ -208,6 +229,13 @@ Navigation navigation_of_ifdo(std::string_view text,
     if (navigation.told().pitch) notes.columns.emplace_back("pitch_deg", kIfdoPitch);
     if (navigation.told().roll) notes.columns.emplace_back("roll_deg", kIfdoRoll);
     navigation.note(std::move(notes));
+    // JSON has a bracket at its end; YAML may be cut anywhere.
+    if (!text.ends_with('\n') && !text.ends_with('}')) {
+        navigation.warn(fmt::format(
+            "{}: the file ends without a line end: if it was cut short, its last value may lack "
+            "digits",
+            options.source));
+    }
     return navigation;
 }
 
@@ -223,6 +251,14 @@ Navigation mounted(Navigation navigation,
     return navigation;
 }
 
+void require_text(const std::string& source, std::string_view text) {
+    if (const std::string_view kind = binary_kind(text); !kind.empty()) {
+        throw InputError("{}: found {}; allowed: text in UTF-8, such as CSV", source, kind);
+    }
+    if (text.find('\0') != std::string_view::npos)
+        throw InputError("{}: found zero bytes, as UTF-16 has; allowed: UTF-8", source);
+}
+
 Navigation limited(Navigation navigation, const NavigationOptions& options) {
     navigation.limit_altitude(options.least_altitude_m, options.most_altitude_m);
     return navigation;
@@ -234,13 +270,18 @@ Navigation parse_navigation(std::string_view text,
                             const NavigationOptions& options,
                             const std::vector<ImageFile>& files,
                             const Rig* rig) {
-    if (text.find('\0') != std::string_view::npos)
-        throw InputError("{}: found zero bytes, as UTF-16 has; allowed: UTF-8", options.source);
+    require_text(options.source, text);
     // The camera's own poses are not mounted.
     if (is_ifdo(text)) return limited(navigation_of_ifdo(text, options, rig), options);
     const Mounting mounting = mounting_of(options, rig);
-    const Sled sled = rig != nullptr ? rig->sled : Sled{};
-    Navigation vehicle = navigation_of_table(text, options, files, mounting, sled);
+    const NavigationTable table = parse_navigation_csv(options.source,
+                                                       text,
+                                                       rig != nullptr ? rig->sled : Sled{},
+                                                       options.columns,
+                                                       options.angles_in);
+    if (table.are_cameras_own) require_no_place(options, mounting);
+    Navigation vehicle = navigation_of_table(table, options, files, mounting);
+    if (!table.cut_warning.empty()) vehicle.warn(table.cut_warning);
     if (rig != nullptr) vehicle.take_angles_of_rig();
     return limited(mounted(std::move(vehicle), options, mounting, rig != nullptr), options);
 }
@@ -249,7 +290,8 @@ Navigation read_navigation(const NavigationOptions& options,
                            const std::vector<ImageFile>& files,
                            const Rig* rig) {
     if (options.source != kNavigationInTags)
-        return parse_navigation(read_text_file(options.source), options, files, rig);
+        return parse_navigation(
+            read_text_file(options.source, kMostNavigation_bytes), options, files, rig);
     Navigation vehicle = navigation_in_tags(options, files);
     return limited(mounted(std::move(vehicle), options, mounting_of(options, rig), rig != nullptr),
                    options);

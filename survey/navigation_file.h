@@ -13,11 +13,13 @@
 // Else poses are those of the vehicle; from them follow the camera's (vehicle_pose.h).
 #pragma once
 
+#include "survey/ifdo.h"
 #include "survey/image_files.h"
 #include "survey/navigation.h"
 #include "survey/navigation_columns.h"
 #include "survey/track.h"
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -27,6 +29,7 @@
 namespace aphotic {
 
 inline constexpr std::string_view kNavigationInTags = "tags";
+inline constexpr std::size_t kMostNavigation_bytes = kMostIfdo_bytes;
 
 struct NavigationOptions {
     std::string source{};  // a file, or kNavigationInTags

@@ -223,7 +223,8 @@ Observation observe(const Survey& survey,
     observation.average = options.average;
     std::vector<ImageFile> files;
     for (const ChosenImage& image : selection.images) files.push_back(image.file);
-    observation.looks_wrong = suspicions_of(files, survey.camera, options.jobs, watch);
+    observation.looks_wrong =
+        suspicions_of(files, survey.camera, survey.navigation, options.jobs, watch);
     Pass pass{survey.camera, options, watch, selection};
     const Observed observed = options.average == Average::Mean
                                   ? running_mean(pass)

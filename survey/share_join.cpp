@@ -23,7 +23,7 @@ std::size_t join_share(const fs::path& share,
     const FolderLock lock(share, FolderUse::Write);
     if (!fs::exists(share / kJournal)) return 0;
     const std::map<std::string, JournalEntry> done =
-        parse_journal(read_text_file(share / kJournal));
+        parse_journal(read_text_file(share / kJournal, kMostJournal_bytes));
     std::size_t count = 0;
     for (const ImageFile& file : files) {
         const auto entry = done.find(file.name.string());

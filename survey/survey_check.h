@@ -89,8 +89,11 @@ inline constexpr double kSmall_deg = 0.6;
 // Images with light, for a line through them.
 inline constexpr std::size_t kEnoughImages = 12;
 
+// What is about the navigation says nothing of the light.
+inline constexpr std::string_view kAboutNavigation = "navigation";
+
 struct Suspicion {
-    std::string about;  // "white-level", "bayer", "altitude", "map", "attitude"
+    std::string about;  // "white-level", "bayer", "altitude", "map", "attitude", "navigation"
     std::string what;   // with the number that shows it
 };
 [[nodiscard]] std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic);

@@ -76,12 +76,27 @@ std::optional<double> offset_at(Reader& text) {
     return sign == '-' ? -ahead_s : ahead_s;
 }
 
+struct CalendarDate {
+    std::optional<int> year{};
+    std::optional<int> month{};
+    std::optional<int> day{};
+};
+
+// 2024-03-09, or 09.03.2024: between points the day comes first everywhere. Without a year it is
+// none.
+CalendarDate date_at(Reader& text) {
+    CalendarDate date{.year = text.number(4)};
+    const bool is_year_first = date.year.has_value();
+    if (!is_year_first) date.day = text.number(2);
+    const char mark = text.one_of(is_year_first ? "-/:" : ".");
+    date.month = text.number(2);
+    if (mark == '\0' || text.one_of({&mark, 1}) == '\0') return {};
+    (is_year_first ? date.day : date.year) = text.number(is_year_first ? 2 : 4);
+    return date;
+}
+
 std::optional<double> calendar_time_s(Reader text) {
-    const auto year = text.number(4);
-    const char mark = text.one_of("-/:");
-    const auto month = text.number(2);
-    if (mark == '\0' || text.one_of({&mark, 1}) == '\0') return std::nullopt;
-    const auto day = text.number(2);
+    const auto [year, month, day] = date_at(text);
     if (text.one_of(" T") == '\0') return std::nullopt;
     const auto hour = text.number(2);
     if (text.one_of(":") == '\0') return std::nullopt;

@@ -27,9 +27,9 @@ struct DateAndTime {
 //
 //   2024-03-09 12:34:56.789
 //
-// with - / or : in the date, a blank or T before the time, any digits of a second or none, and at
-// the end nothing or Z for UTC, or an offset from it such as +02:00 or -0330. None of anything
-// else.
+// with - / or : in the date, or a date such as 09.03.2024, a blank or T before the time, any digits
+// of a second or none, and at the end nothing or Z for UTC, or an offset from it such as +02:00 or
+// -0330. None of anything else.
 [[nodiscard]] std::optional<double> unix_time_s(std::string_view text);
 
 // 2024-03-09T12:34:56.789Z

@@ -5,6 +5,7 @@
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -239,6 +241,22 @@ TEST(TextFile, AnUnreadableOneIsAnInputErrorThatNamesIt) {
               missing.string() + ": cannot be read: No such file or directory");
     EXPECT_EQ(message_of<InputError>([&] { static_cast<void>(read_text_file(folder.path())); }),
               folder.path().string() + ": cannot be read: it is a folder");
+}
+
+// Whoever reads it: no reader need ask for a limit.
+TEST(TextFile, AnEndlessOneIsRefused) {
+    const TempFolder folder;
+    const fs::path sparse = folder.path() / "sparse";
+    write_text_file(sparse, "");
+    fs::resize_file(sparse, kMostTextFile_bytes + 1);
+    EXPECT_EQ(message_of<InputError>([&] { static_cast<void>(read_text_file(sparse)); }),
+              sparse.string() + ": found more than 256 MiB; allowed: 256 MiB or less");
+    const fs::path pipe = folder.path() / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const std::string yes = "yes > '" + pipe.string() + "' 2> /dev/null &";
+    ASSERT_EQ(std::system(yes.c_str()), 0);  // it ends when nobody reads any more
+    EXPECT_EQ(message_of<InputError>([&] { static_cast<void>(read_text_file(pipe, kMebibyte)); }),
+              pipe.string() + ": found more than 1 MiB; allowed: 1 MiB or less");
 }
 
 TEST(MakeFolder, MakesParentsAndAcceptsWhatIsThere) {

@@ -618,6 +618,20 @@ TEST_F(CorrectCommand, AnImageWithoutAnAltitudeIsSkippedHoweverItIsWritten) {
     }
 }
 
+// 2 may have been 2.55; the images cannot tell, but whoever copied the file can.
+TEST_F(CorrectCommand, ACutNavigationIsWarnedOf) {
+    take("a.tif", {2.0, 0.0, 0.0});
+    write_file(path("nav.eic"), "image,pitch_deg,roll_deg,altitude_m\na.tif,0,0,2");
+    const CommandResult run = correct({});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("looks wrong: navigation: " + path("nav.eic") +
+                           ":2: the file ends within this line"),
+              std::string::npos)
+        << run.err;
+    const CommandResult strict = correct({"--strict"});
+    EXPECT_EQ(strict.status, kBadInput) << strict.err;
+}
+
 // Numbers that the images contradict: a warning, with --strict an error, and no gain that outlives
 // them.
 TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {

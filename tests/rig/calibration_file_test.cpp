@@ -17,6 +17,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
@@ -575,6 +576,41 @@ TEST(CalibrationFile, RefusesWhatIsNoCalibration) {
          "cam:17: found a second document; allowed: one"},
         {"a: [1, 2\nb: 3\n", "cam:2: is not YAML: end of sequence flow not found"},
     });
+}
+
+// COLMAP's own writer packs a camera as <Q, <I i Q Q, <d d d d.
+TEST(CalibrationFile, ColmapsBinaryIsRefusedByNameAndTheWayOutTold) {
+    std::string bytes;
+    const auto add = [&](std::uint64_t number, int length) {
+        for (int i = 0; i < length; ++i)
+            bytes += static_cast<char>((number >> (8U * static_cast<unsigned>(i))) & 0xFFU);
+    };
+    add(1, 8);
+    add(1, 4);
+    add(1, 4);  // PINHOLE
+    add(4000, 8);
+    add(3000, 8);
+    for (int i = 0; i < 4; ++i) add(0x40A7700000000000U, 8);  // 3000.0
+    EXPECT_EQ(error_of(bytes),
+              "cam: found COLMAP's cameras.bin, which is binary; allowed: its cameras.txt, which "
+              "COLMAP makes of it: colmap model_converter --input_path MODEL --output_path TEXT "
+              "--output_type TXT");
+}
+
+TEST(CalibrationFile, WhatIsNoTextIsSaidByName) {
+    using namespace std::string_view_literals;
+    const std::string allowed =
+        "; allowed, as text: camera_matrix (OpenCV, ROS), cam0 (Kalibr), model and parameters "
+        "(calibmar), <calibration> (Metashape), or lines of COLMAP's cameras.txt";
+    for (const auto& [bytes, kind] :
+         {std::pair{"MATLAB 5.0 MAT-file, Platform\0"sv, "a MATLAB file (.mat)"},
+          {"PK\x03\x04\x14\0"sv, "a zip archive, such as .xlsx, .ods or .npz"},
+          {"\x93NUMPY\x01\0"sv, "a NumPy array (.npy)"},
+          {"\x80\x04\x95"sv, "a pickle of Python"},
+          {"\xFF\xD8\xFF\xE0"sv, "a JPEG image"},
+          {"\xFF\xFE<\0"sv, "text in UTF-16"},
+          {"a\0b"sv, "zero bytes, which no text has"}})
+        EXPECT_EQ(error_of(bytes), fmt::format("cam: found {}{}", kind, allowed));
 }
 
 // --- Hostile files -----------------------------------------------------------------------------

@@ -6,10 +6,15 @@
 #include "base/error.h"
 #include "image/any_image.h"
 #include "support/temp_folder.h"
+#include "survey/navigation_file.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <utility>
@@ -88,13 +93,71 @@ TEST(ImageTime, ExifHasPartsOfASecondAndAZone) {
     EXPECT_NEAR(time_in_exif(tags).value_or(0.0), 1709987696.0, kDouble_s);
     tags["Exif:SubsecTimeOriginal"] = "789 ";
     EXPECT_NEAR(time_in_exif(tags).value_or(0.0), kTime_s, kDouble_s);
+    // That of the file's last change.
     tags["Exif:OffsetTime"] = "+02:00";
-    EXPECT_NEAR(time_in_exif(tags).value_or(0.0), kTime_s - 7200.0, kDouble_s);
+    EXPECT_NEAR(time_in_exif(tags).value_or(0.0), kTime_s, kDouble_s);
+    for (const char* blank : {"", "      ", "   :  "}) {
+        tags["Exif:OffsetTimeOriginal"] = blank;
+        EXPECT_NEAR(time_in_exif(tags).value_or(0.0), kTime_s, kDouble_s) << blank;
+    }
     tags["Exif:OffsetTimeOriginal"] = "-01:00";
     EXPECT_NEAR(time_in_exif(tags).value_or(0.0), kTime_s + 3600.0, kDouble_s);
+    tags["Exif:SubsecTimeOriginal"] = "05";
+    EXPECT_NEAR(time_in_exif(tags).value_or(0.0), kTime_s + 3600.0 - 0.739, kDouble_s);
+    tags["Exif:OffsetTimeOriginal"] = "CEST";
+    EXPECT_EQ(fault_of([&] { static_cast<void>(time_in_exif(tags)); }),
+              "OffsetTimeOriginal: found 'CEST'; allowed: Z, or hours and minutes such as +02:00");
     EXPECT_FALSE(time_in_exif({}).has_value());
     EXPECT_FALSE(time_in_exif({{"Exif:DateTimeOriginal", "    :  :     :  :  "}}).has_value());
     EXPECT_FALSE(time_in_exif({{"Exif:DateTimeOriginal", "1709987696"}}).has_value());
+}
+
+// A grey TIFF of one pixel whose Exif has these texts, by tag (TIFF 6.0, Exif 2.31).
+std::string tiff_with_exif(const std::map<std::uint16_t, std::string>& texts) {
+    std::string bytes("II*\0\x08\0\0\0", 8);
+    const auto add = [&](std::uint64_t number, unsigned length) {
+        for (unsigned i = 0; i < length; ++i)
+            bytes += static_cast<char>((number >> (8U * i)) & 0xFFU);
+    };
+    const auto entry =
+        [&](std::uint16_t tag, std::uint16_t type, std::size_t count, std::size_t value) {
+            add(tag, 2);
+            add(type, 2);
+            add(count, 4);
+            add(value, 4);
+        };
+    const std::array<std::array<std::uint16_t, 2>, 7> shorts{
+        {{256, 1}, {257, 1}, {258, 8}, {259, 1}, {262, 1}, {277, 1}, {278, 1}}};
+    constexpr std::size_t kEntries = 10;
+    constexpr std::size_t kExif = 8 + 2 + 12 * kEntries + 4;
+    std::size_t place = kExif + 2 + 12 * texts.size() + 4;  // of the pixel, then of the texts
+    add(kEntries, 2);
+    for (const auto& [tag, value] : shorts) {
+        if (tag == 277) entry(273, 4, 1, place);  // StripOffsets
+        entry(tag, 3, 1, value);
+    }
+    entry(279, 4, 1, 1);        // StripByteCounts
+    entry(34665, 4, 1, kExif);  // Exif
+    add(0, 4);
+    add(texts.size(), 2);
+    ++place;
+    for (const auto& [tag, text] : texts) {
+        if (text.size() < 4) {
+            add(tag, 2);
+            add(2, 2);
+            add(text.size() + 1, 4);
+            bytes += text + std::string(4 - text.size(), '\0');
+            continue;
+        }
+        entry(tag, 2, text.size() + 1, place);
+        place += text.size() + 1;
+    }
+    add(0, 4);
+    bytes += '\x80';
+    for (const auto& [tag, text] : texts) {
+        if (text.size() >= 4) bytes += text + '\0';
+    }
+    return bytes;
 }
 
 class TimeOfFiles : public testing::Test {
@@ -118,21 +181,59 @@ TEST_F(TimeOfFiles, ExiftoolsTimeIsRead) {
             "-SubSecTimeOriginal=789 -OffsetTimeOriginal=+02:00 -ImageDescription='lat=41.5' '" +
             file.string() + "'";
         ASSERT_EQ(std::system(command.c_str()), 0);
-        EXPECT_NEAR(image_time_s(file, ""), kTime_s - 7200.0, kDouble_s) << name;
+        EXPECT_NEAR(image_time(file, "").time_s, kTime_s - 7200.0, kDouble_s) << name;
         EXPECT_EQ(header_of_image(file)["ImageDescription"], "lat=41.5") << name;
     }
 }
 
+constexpr std::uint16_t kDateTimeOriginal = 0x9003;
+constexpr std::uint16_t kOffsetTime = 0x9010;
+constexpr std::uint16_t kOffsetTimeOriginal = 0x9011;
+constexpr std::uint16_t kSubSecTimeOriginal = 0x9291;
+
+TEST_F(TimeOfFiles, AZoneOfTheFileAloneIsSaid) {
+    const std::filesystem::path file = folder_.path() / "a.tif";
+    const auto time = [&](std::map<std::uint16_t, std::string> texts) {
+        texts[kDateTimeOriginal] = "2024:03:09 12:34:56";
+        write_file(file, tiff_with_exif(texts));
+        return image_time(file, "");
+    };
+    const double whole_s = kTime_s - 0.789;
+    const ImageTime of_file = time({{kOffsetTime, "+02:00"}, {kOffsetTimeOriginal, "   :  "}});
+    EXPECT_NEAR(of_file.time_s, whole_s, kDouble_s);
+    EXPECT_TRUE(of_file.lacks_zone);
+    const ImageTime of_shot = time({{kOffsetTime, "+01:00"}, {kOffsetTimeOriginal, "+02:00"}});
+    EXPECT_NEAR(of_shot.time_s, whole_s - 7200.0, kDouble_s);
+    EXPECT_FALSE(of_shot.lacks_zone);
+    const ImageTime of_none = time({{kSubSecTimeOriginal, "05"}});
+    EXPECT_NEAR(of_none.time_s, whole_s + 0.05, kDouble_s);
+    EXPECT_FALSE(of_none.lacks_zone);
+    // Of a track, the survey is told.
+    write_file(
+        file,
+        tiff_with_exif({{kDateTimeOriginal, "2024:03:09 12:34:56"}, {kOffsetTime, "+02:00"}}));
+    const Navigation track =
+        parse_navigation("time,altitude_m\n2024-03-09 12:34:56,2\n2024-03-09 12:34:57,3\n",
+                         {.source = "nav"},
+                         {{.source = file, .name = "a.tif"}},
+                         nullptr);
+    EXPECT_EQ(track.pose_of(file).sled.altitude_m, 2.0);
+    ASSERT_EQ(track.warnings().size(), 1U);
+    EXPECT_TRUE(track.warnings().front().starts_with("nav: the times of 1 image are taken for UTC"))
+        << track.warnings().front();
+}
+
 TEST_F(TimeOfFiles, ANameCountsWhereThereIsNoExif) {
-    EXPECT_NEAR(image_time_s(image("20120623.171552346.1219.png"), ""), 1340471752.346, kDouble_s);
+    EXPECT_NEAR(
+        image_time(image("20120623.171552346.1219.png"), "").time_s, 1340471752.346, kDouble_s);
     const std::filesystem::path file = image("c_20240309_123456.png");
-    EXPECT_NEAR(image_time_s(file, "xxYYYYMMDDxhhmmss"), 1709987696.0, kDouble_s);
-    EXPECT_EQ(fault_of([&] { static_cast<void>(image_time_s(file, "YYYYMMDDxhhmmss")); }),
+    EXPECT_NEAR(image_time(file, "xxYYYYMMDDxhhmmss").time_s, 1709987696.0, kDouble_s);
+    EXPECT_EQ(fault_of([&] { static_cast<void>(image_time(file, "YYYYMMDDxhhmmss")); }),
               "its name has no time where --image-time YYYYMMDDxhhmmss has it");
-    EXPECT_EQ(fault_of([&] { static_cast<void>(image_time_s(file, "")); }),
+    EXPECT_EQ(fault_of([&] { static_cast<void>(image_time(file, "")); }),
               "it tells no time: no DateTimeOriginal in its EXIF, and its name is not HabCam's; "
               "--image-time says where its name has the time");
-    EXPECT_EQ(fault_of([&] { static_cast<void>(image_time_s(folder_.path() / "none.png", "")); }),
+    EXPECT_EQ(fault_of([&] { static_cast<void>(image_time(folder_.path() / "none.png", "")); }),
               "there is no such file any more");
 }
 

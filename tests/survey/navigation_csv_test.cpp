@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 namespace aphotic::navigation_csv_test {
@@ -183,15 +184,119 @@ TEST(NavigationCsv, FaultsOfTheHeaderNameFileAndLine) {
               "'altitude'?), or --columns altitude_m=NAME");
     EXPECT_EQ(fault_in("image,altitude_m,altitude_m\n"),
               "nav.csv:1: the column 'altitude_m' stands twice");
-    EXPECT_EQ(fault_in("image;altitude_m\na.tif;2\n"),
-              "nav.csv:1: found semicolons between fields; allowed: commas");
-    EXPECT_EQ(fault_in("image\taltitude_m\tpitch_deg\na.tif\t2\t0\n"),
-              "nav.csv:1: found tabs between fields; allowed: commas");
+    EXPECT_EQ(fault_in("image,altitude_m,Altitude_M\n"),
+              "nav.csv:1: the column 'altitude_m' stands twice");
+    EXPECT_EQ(fault_in("photo;altitude_m\na.tif;2\n"),
+              "nav.csv:1: found the columns photo,altitude_m; needed: 'image' or 'timestamp', or "
+              "--columns image=NAME");
     EXPECT_EQ(fault_in(std::string_view("i\0m\0", 4)),
               "nav.csv: found zero bytes, as UTF-16 has; allowed: UTF-8");
     EXPECT_EQ(fault_in("# nothing\n"), "nav.csv:2: the file ends without a line of an image");
     EXPECT_EQ(fault_in("image,altitude_m\n,2\n"),
               "nav.csv:3: the file ends without a line of an image");
+}
+
+// What parts fields is judged where the table begins, however much stands before it.
+TEST(NavigationCsv, ATableMayBeginAnywhereWithAnySeparator) {
+    std::string many;
+    for (int i = 0; i < 30; ++i) many += "% camera A; strobes 1, 2\t3\n";
+    for (const std::string& before : {std::string(),
+                                      std::string("# exported 2026-05-07, camera A\n"),
+                                      std::string("; a;b;c\n"),
+                                      std::string("// a\tb\n\n"),
+                                      std::string("/* DATA: \na,b\tc; */\n"),
+                                      std::string("sep=;\n"),
+                                      std::string("\xEF\xBB\xBF#\r\n"),
+                                      many}) {
+        for (const char separator : {',', ';', '\t', ' '}) {
+            std::string text =
+                "image,altitude_m,pitch_deg,roll_deg\nx/a.tif,1.5,4,-3\nb.tif,2.5,1,2\n";
+            std::ranges::replace(text, ',', separator);
+            const Navigation nav = parsed(before + text);
+            EXPECT_EQ(nav.size(), 2U);
+            EXPECT_EQ(nav.pose_of("a.tif").sled.altitude_m, 1.5) << before << text;
+            EXPECT_DOUBLE_EQ(nav.pose_of("b.tif").sled.roll_rad, 2.0 * kDegree) << before << text;
+        }
+    }
+}
+
+TEST(NavigationCsv, ACommentInATableIsNoRow) {
+    const Navigation nav = parsed(
+        "# exported\nimage,altitude_m\na.tif,2.15\n# strobe failed\n#b.tif,2.25\n%c.tif,2\n"
+        "//d.tif,2\n;e.tif,2\n/* f.tif,2\ng.tif,2 */\nh.tif,2.45\n");
+    EXPECT_EQ(nav.size(), 2U);
+    EXPECT_EQ(nav.pose_of("h.tif").sled.altitude_m, 2.45);
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
+              "nav.csv has no line for it");
+    EXPECT_EQ(fault_in("/* DATA DESCRIPTION:\nimage,altitude_m\na,2\n"),
+              "nav.csv:1: found a comment that begins with /* and never ends in */");
+}
+
+// As numpy.savetxt writes it. By place, the pitch would be an altitude.
+TEST(NavigationCsv, AHeaderMayStandInACommentBeforeTheTable) {
+    for (const char* text : {"# image pitch_deg roll_deg altitude_m\na.tif 4 -3 1.5\n",
+                             "# exported\n#image,pitch_deg,roll_deg,altitude_m\na.tif,4,-3,1.5\n",
+                             "% image;pitch_deg;roll_deg;altitude_m\r\na.tif;4;-3;1.5\r\n"}) {
+        const Navigation nav = parsed(text);
+        EXPECT_EQ(nav.size(), 1U);
+        EXPECT_EQ(nav.pose_of("a.tif").sled.altitude_m, 1.5) << text;
+        EXPECT_DOUBLE_EQ(nav.pose_of("a.tif").sled.pitch_rad, 4.0 * kDegree) << text;
+    }
+}
+
+// A row of an unnamed first column is no comment.
+TEST(NavigationCsv, ASemicolonMayBeginARow) {
+    const Navigation nav = parsed(";image;altitude_m\n0;a.tif;1.5\n;b.tif;2.5\n");
+    EXPECT_EQ(nav.pose_of("a.tif").sled.altitude_m, 1.5);
+    EXPECT_EQ(nav.pose_of("b.tif").sled.altitude_m, 2.5);
+}
+
+// By place, its pitch would be taken for the altitude.
+TEST(NavigationCsv, AHeaderOfFourWordsIsNoLineOfHabCams) {
+    EXPECT_EQ(fault_in("name pitch roll altitude\na.tif 4 -3 1.5\n"),
+              "nav.csv:1: found the columns name,pitch,roll,altitude; needed: 'altitude_m' (is it "
+              "'altitude'?), or --columns altitude_m=NAME");
+}
+
+TEST(NavigationCsv, ALastLineWithoutAnEndIsWarnedOf) {
+    const Navigation nav = parsed("image,pitch_deg,altitude_m\na,4,2.45\nb,4,2");
+    EXPECT_EQ(nav.pose_of("b").sled.altitude_m, 2.0);
+    ASSERT_EQ(nav.warnings().size(), 1U);
+    EXPECT_EQ(nav.warnings().front(),
+              "nav.csv:3: the file ends within this line, without a line end: if it was cut short, "
+              "'altitude_m' = '2' may lack digits");
+    // Nothing that counts is in doubt.
+    for (const char* whole : {"image,altitude_m\nb,2\n",
+                              "image,altitude_m\nb,2\r\n",
+                              "altitude_m,image\n2,b",
+                              "image,altitude_m,place\nb,2,Geor"})
+        EXPECT_TRUE(parsed(whole).warnings().empty()) << whole;
+    const Navigation cut = parsed("image,altitude_m,roll_deg\na,2,0\nb,2.");
+    EXPECT_EQ(fault_of([&] { static_cast<void>(cut.pose_of("b")); }),
+              "nav.csv:3: found 2 fields; allowed: 3, as in the header row");
+    EXPECT_EQ(parsed("a 2 0 0\nb 2 0 1").warnings().size(), 1U);
+}
+
+TEST(NavigationCsv, NamesMayHoldQuotesAndLineEnds) {
+    const Navigation nav =
+        parsed("image,\"altitude_m\"\n\"a \"\"best\"\".tif\",1.5\n\"b\nc.tif\",2.5\nd,3\n");
+    EXPECT_EQ(nav.pose_of("a \"best\".tif").sled.altitude_m, 1.5);
+    EXPECT_EQ(nav.pose_of("b\nc.tif").sled.altitude_m, 2.5);
+    EXPECT_EQ(nav.pose_of("d").line, 5U);
+}
+
+TEST(NavigationCsv, ADecimalCommaIsNamed) {
+    const Navigation nav = parsed("image;altitude_m\na;2,15\nb;2.25\n");
+    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("a")); }),
+              "nav.csv:2: altitude_m: found '2,15'; allowed: a number with a decimal point");
+}
+
+TEST(NavigationCsv, WhatIsNoTextIsSaidByName) {
+    EXPECT_EQ(fault_in(std::string_view("PK\x03\x04\0\0", 6)),
+              "nav.csv: found a zip archive, such as .xlsx, .ods or .npz; allowed: text in UTF-8, "
+              "such as CSV");
+    EXPECT_EQ(fault_in(std::string_view("\xFF\xFEi\0m\0", 6)),
+              "nav.csv: found text in UTF-16; allowed: text in UTF-8, such as CSV");
 }
 
 TEST(NavigationCsv, FilesAreReadAndNamed) {

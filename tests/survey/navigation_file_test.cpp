@@ -96,6 +96,54 @@ TEST(NavigationFile, BiiglesCsvInAnyLetterCaseAndByOtherNames) {
     EXPECT_EQ(sub.notes()->format, "BIIGLE's CSV");
 }
 
+// Of several formats' names in one table each is what it is in its own.
+TEST(NavigationFile, NamesOfColumnsMayBeMixed) {
+    const Navigation nav = parsed(
+        "Image,Altitude [m],Pitch [deg],Roll (deg),SUB_datetime\na.tif,2.05,4.8,-0.3,2024\n");
+    expect_sled(nav.pose_of("a.tif").sled, 2.05, 4.8, -0.3);
+}
+
+TEST(NavigationFile, AUnitInAColumnsNameIsNotIgnored) {
+    EXPECT_EQ(refusal("image,alt [cm]\na,205\n", {.columns = {{"altitude_m", "alt [cm]"}}}),
+              "nav:1: the column 'alt [cm]' is in cm; allowed: metres");
+    const std::string text = "image,altitude_m,pitch [rad],roll_rad\na,2,0.1,0.2\n";
+    const ColumnNames given{{"pitch_deg", "pitch [rad]"}, {"roll_deg", "roll_rad"}};
+    EXPECT_EQ(refusal(text, {.columns = given}),
+              "nav:1: the column 'pitch [rad]' is in rad; allowed: degrees, or --angles-in rad");
+    const Navigation nav = parsed(text, {.columns = given, .angles_in = AngleUnit::Radians});
+    EXPECT_DOUBLE_EQ(nav.pose_of("a").sled.pitch_rad, 0.1);
+}
+
+// As PANGAEA gives its tables out.
+TEST(NavigationFile, PangaeasTabFiles) {
+    const std::string before =
+        "/* DATA DESCRIPTION:\nCitation:\tA, B (2023): Seafloor images, "
+        "https://doi.org/10.1594/PANGAEA.0\nParameter(s):\tDATE/TIME (Date/Time)\n*/\n";
+    const std::string table =
+        "Event\tDate/Time\tLatitude\tFile name\tAltitude [m]\tHeight [m]\tPitch [deg]\t"
+        "Roll [deg]\n"
+        "SO268\t2019-03-01T12:00:00\t11.9\ta.jpg\t-4100\t2.05\t4.8\t-0.3\n";
+    EXPECT_EQ(refusal(before + table),
+              "nav:5: found the columns Event,Date/Time,Latitude,File name,Altitude [m],Height [m]"
+              ",Pitch [deg],Roll [deg], of PANGAEA's tab file; needed: 'altitude_m' (is it "
+              "'Altitude [m]'?), or --columns altitude_m=NAME; 'Altitude [m]' is relative to the "
+              "sea level");
+    const Navigation nav = parsed(before + table, {.columns = {{"altitude_m", "Height [m]"}}});
+    expect_sled(nav.pose_of("a.jpg").sled, 2.05, 4.8, -0.3);
+    EXPECT_EQ(nav.notes()->format, "PANGAEA's tab file");
+}
+
+// As Matisse's DataPreprocessingWizard writes them.
+TEST(NavigationFile, MatissesDim2) {
+    const Navigation nav = parsed(
+        "0;09/03/2024;12:34:56.789;photo;photo;a.jpg;45.1234567890;-3.2;1700.123;2.050;181.20;-0.30"
+        ";4.80;;;;;;;;;;;;;;;;;\n"
+        "0;09/03/2024;12:34:57.789;photo;photo;b.jpg;45.1234567890;-3.2;1700.123;2.0");
+    expect_sled(nav.pose_of("a.jpg").sled, 2.05, 4.8, -0.3);
+    EXPECT_EQ(fault_of_image(nav, "b.jpg"), "nav:2: found 10 fields; allowed: 30");
+    EXPECT_EQ(nav.notes()->format, "Matisse's .dim2");
+}
+
 // A height over the sea is none over the floor.
 TEST(NavigationFile, AltitudesOverTheSeaAreNotTaken) {
     EXPECT_EQ(refusal("filename,lng,lat,gps_altitude\na.jpg,52.2,28.1,-1500\n"),
@@ -230,6 +278,15 @@ TEST(NavigationFile, LinesOfATrackThatNoSledCanHaveMakeAGap) {
         "nav:2: the first of 1 lines, none of which can be used: altitude_m: found 0; allowed: "
         "0.001 to 10000");
     EXPECT_EQ(refusal("time,altitude_m\n"), "nav:2: the file ends without a line of a pose");
+}
+
+TEST(NavigationFile, ATracksTimeMayHaveAnotherFormatsName) {
+    const std::string image = "c20240309_120000_500.tif";
+    const Navigation track =
+        parsed("SUB_datetime;altitude_m\n2024-03-09 12:00:00;2\n09.03.2024 12:00:01;3\n",
+               {.time_mask = std::string(kMask)},
+               images({image}));
+    EXPECT_EQ(track.pose_of(image).sled.altitude_m, 2.5);
 }
 
 // Images of two folders may have one name; the table that names none has a pose for each.

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A table as text, line by line and field by field, as loggers, databases and spreadsheets write
+// it: RFC 4180 with any separator, and comments.
+//
+// Lines end in LF, CR LF or CR. A field in double quotes may hold separators, line ends, and a
+// quote, which is doubled; where the quotes do not close before a separator or a line end, they are
+// letters like others. Blanks around a field do not count. Separated by blanks, a line has as many
+// fields as it has words.
+//
+// A line that begins with #, % or // is a comment, and so is all from a line that begins with /* to
+// the next */. So is one that begins with ;, unless semicolons separate the fields.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr char kByBlanks = ' ';
+inline constexpr std::size_t kMostTableFields = 10000;  // of a line
+inline constexpr std::size_t kMostFieldBytes = std::size_t{1} << 16U;
+
+struct TextRow {
+    std::size_t line = 0;  // its first
+    std::vector<std::string> fields{};
+    bool has_line_end = true;
+};
+
+class TableText {
+  public:
+    // name stands in messages. The text must outlive this.
+    TableText(std::string name, std::string_view text);
+
+    // Goes on to a line that is neither empty nor a comment; false: there is none. A separator of
+    // '\0' is not known yet: then a line that begins with ; is none of both.
+    bool find_row(char separator);
+
+    // The row that begins here. take_row() goes past it. An InputError when it has more than
+    // kMostTableFields, or one of more than kMostFieldBytes.
+    [[nodiscard]] TextRow row(char separator) const;
+    TextRow take_row(char separator);
+
+    // The last comment of one line that find_row() passed, without its mark; numpy.savetxt puts the
+    // header row there.
+    [[nodiscard]] std::string_view last_comment() const { return last_comment_; }
+
+    [[nodiscard]] std::size_t line() const { return line_; }
+    [[nodiscard]] bool begins_with(std::string_view word) const;
+    void pass_line();
+
+  private:
+    [[nodiscard]] bool is_at_line_end() const;
+    void pass_line_end();
+    void pass_to(std::size_t end);
+    void pass_block_comment();
+    [[nodiscard]] std::size_t closing_quote(std::size_t open, char separator) const;
+    std::string take_field(char separator);
+
+    std::string name_;
+    std::string_view text_;
+    std::size_t at_ = 0;
+    std::size_t line_ = 1;
+    std::string_view last_comment_{};
+};
+
+}  // namespace aphotic
