@@ -169,11 +169,6 @@ void require_sound_header(const std::filesystem::path& file) {
 void require_sound_spec(const OIIO::ImageSpec& spec, const std::filesystem::path& file) {
     aphotic::require_sides(spec.width, spec.height);
     if (spec.deep || spec.depth > 1) throw aphotic::InputError("found deep pixels or a volume");
-    constexpr int kMostChannels = 4096;
-    if (spec.nchannels > kMostChannels) {
-        throw aphotic::InputError(
-            "found {} channels; allowed: {} or less", spec.nchannels, kMostChannels);
-    }
     const std::uint64_t samples = spec.image_pixels() * static_cast<std::uint64_t>(spec.nchannels);
     aphotic::require_file_size(std::filesystem::file_size(file), spec.image_bytes(true), samples);
     // A position on a page is none in an image of which this is a part.
@@ -269,6 +264,10 @@ extern "C" void aphotic_header_of_image(const std::filesystem::path& file,
                                         std::map<std::string, std::string>& tags) {
     reading(file, [&] {
         require_sound_header(file);
+        if (std::filesystem::file_size(file) > aphotic::kMostOfNotes_bytes) {
+            throw aphotic::InputError("found more than {0} MiB; allowed: {0} MiB or less",
+                                      aphotic::kMostOfNotes_bytes / aphotic::kMebi);
+        }
         const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
         if (!input) throw aphotic::InputError(OIIO::geterror());
         for (const OIIO::ParamValue& tag : input->spec().extra_attribs) {

@@ -39,6 +39,9 @@ struct BigSize {
 
 inline constexpr std::uint64_t kMebi = std::uint64_t{1} << 20U;
 
+// Of files whose notes alone are read: libraries hold what these are said to be.
+inline constexpr std::uint64_t kMostOfNotes_bytes = 512 * kMebi;
+
 inline void require_sides(std::int64_t width, std::int64_t height) {
     constexpr std::int64_t kMost = 2 * kLargestImagePx;
     const auto is_side = [](std::int64_t side) { return side > 0 && side <= kMost; };

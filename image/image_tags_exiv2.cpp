@@ -2,6 +2,7 @@
 //
 // The part of the command that links Exiv2; see image_tags.h.
 #include "image/checked_file.h"
+#include "image/decoded_size.h"
 #include "image/image_tags.h"
 
 #include <exiv2/exiv2.hpp>
@@ -168,6 +169,7 @@ extern "C" void aphotic_read_image_tags(const std::filesystem::path& file,
                                         aphotic::SharedTags& tags) {
     using namespace aphotic;
     try {
+        if (std::filesystem::file_size(file) > kMostOfNotes_bytes) return;
         const std::unique_ptr<Exiv2::Image> image = tagged(file);
         auto read = std::make_shared<ImageTags>();
         for (const Exiv2::Exifdatum& datum : image->exifData()) {
