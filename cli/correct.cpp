@@ -108,6 +108,12 @@ std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options
     return model_error(rig, options.rig, options.model_tolerance);
 }
 
+void expect_size_of(const LightAt& light, CameraNumbers& camera) {
+    if (!camera.expected) camera.expected.emplace();
+    camera.expected->image = light.size;
+    camera.expected->as = "as the map has";
+}
+
 // What is asked for, and of water that scatters what the model leaves out.
 struct Task {
     Survey survey;
@@ -131,7 +137,11 @@ Task task_of(const CorrectCommandOptions& options) {
                   .camera = options.camera};
     if (!options.map.empty()) {
         survey.camera = camera_of(survey.camera, survey.files, nullptr);
-        survey.light = light_of_map(options.map, !options.no_veil);
+        const auto& expected = survey.camera.expected;
+        survey.light = light_of_map(options.map,
+                                    !options.no_veil,
+                                    expected ? std::optional(expected->image) : std::nullopt);
+        expect_size_of(survey.light, survey.camera);
         return {.survey = std::move(survey)};
     }
     Rig rig = read_rig(options.rig);
@@ -149,6 +159,7 @@ Task task_of(const CorrectCommandOptions& options) {
         return light_of_rig(rig, *survey.navigation, survey.files, !options.no_veil);
     });
     survey.light.rig_size = own;
+    expect_size_of(survey.light, survey.camera);
     const auto model = model_error_of(options, rig, survey);
     return {.survey = std::move(survey), .model = model, .readout = rig.camera.readout};
 }

@@ -192,8 +192,7 @@ CameraNumbers camera_of(const CameraNumbers& said,
                         const Camera* rig) {
     CameraNumbers camera = rig != nullptr ? with_rig(said, *rig) : said;
     camera = with_reference(camera, files);
-    static_cast<void>(usual_size(files, camera));  // a crop that no image has is one mistake
-    return camera;
+    return expecting_usual_size(camera, files);  // a crop that no image has is one mistake
 }
 
 CameraNumbers camera_of(const CameraNumbers& said,

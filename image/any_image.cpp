@@ -6,7 +6,17 @@
 
 #include "image/any_image_part.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace aphotic {
+
+std::string names_of(const std::vector<std::string>& channels) {
+    constexpr std::size_t kFew = 20;
+    if (channels.size() <= kFew) return fmt::format("{}", fmt::join(channels, ", "));
+    return fmt::format(
+        "{} and {} more", fmt::join(std::span(channels).first(kFew), ", "), channels.size() - kFew);
+}
 
 AnyImage open_any_image(const std::filesystem::path& file) {
     using Open = void (*)(const std::filesystem::path&, AnyImage&);
@@ -23,10 +33,12 @@ std::map<std::string, std::string> header_of_image(const std::filesystem::path& 
 }
 
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image) {
-    using Write = void (*)(const std::filesystem::path&, const WrittenImage&);
+    using Write = std::string (*)(const std::filesystem::path&, const WrittenImage&);
     AtomicFile destination(file);
-    from_part<Write>("aphotic_write_any_image")(destination.temporary(), image);
-    if (image.tags) add_image_tags(destination.temporary(), *image.tags);
+    const std::string fault =
+        from_part<Write>("aphotic_write_any_image")(destination.temporary(), image);
+    if (!fault.empty()) throw RunError("{}: cannot be written: {}", file.string(), fault);
+    if (image.tags) add_image_tags(destination.temporary(), *image.tags, file);
     destination.commit();
 }
 

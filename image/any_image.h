@@ -32,6 +32,9 @@ struct AnyImage {
     std::string date_time;    // when it was taken, "YYYY:MM:DD hh:mm:ss", or empty
 };
 
+// For messages: no more than the first few by name.
+[[nodiscard]] std::string names_of(const std::vector<std::string>& channels);
+
 // An image that cannot be read, is cut short, or is of a format of which that cannot be told, is an
 // InputError, also when its samples are asked for; a program installed without the part, a
 // RunError.

@@ -3,8 +3,13 @@
 // The part of the command that links OpenImageIO; see any_image.h.
 #include "base/error.h"
 #include "image/any_image.h"
+#include "image/checked_file.h"
+#include "image/decoded_size.h"
+#include "image/exr_header.h"
+#include "image/png_pixels.h"
 #include "image/whole_tiff.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -69,6 +74,41 @@ bool write_as(OIIO::ImageOutput& output, const aphotic::WrittenImage& image) {
     return output.write_image(output.spec().format, pixels.data());
 }
 
+// Where the library writes to.
+class WatchedFile : public OIIO::Filesystem::IOProxy {
+  public:
+    explicit WatchedFile(const std::filesystem::path& file)
+        : IOProxy(file.string(), Write), file_(file) {}
+
+    [[nodiscard]] const char* proxytype() const override { return "aphotic"; }
+    std::size_t write(const void* bytes, std::size_t count) override {
+        const std::size_t written = pwrite(bytes, count, m_pos);
+        m_pos += static_cast<std::int64_t>(written);
+        return written;
+    }
+    std::size_t pwrite(const void* bytes, std::size_t count, std::int64_t at) override {
+        return file_.write(bytes, count, at) ? count : 0;
+    }
+    std::size_t read(void* bytes, std::size_t count) override {
+        const std::size_t many = pread(bytes, count, m_pos);
+        m_pos += static_cast<std::int64_t>(many);
+        return many;
+    }
+    std::size_t pread(void* bytes, std::size_t count, std::int64_t at) override {
+        return file_.read(bytes, count, at);
+    }
+    [[nodiscard]] std::size_t size() const override { return file_.size(); }
+
+    // What the system said against it, or nothing.
+    [[nodiscard]] std::string end() {
+        file_.close();
+        return file_.error();
+    }
+
+  private:
+    aphotic::CheckedFile file_;
+};
+
 void compress(OIIO::ImageSpec& spec, aphotic::Compression compression) {
     using aphotic::Compression;
     constexpr int kFastest = 1;
@@ -101,21 +141,66 @@ constexpr std::array<std::string_view, 13> kFormats{"bmp",
     throw aphotic::InputError("{}: cannot be read: {}", file.string(), why);
 }
 
-std::shared_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
-    std::shared_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
-    if (!input) refuse(file, OIIO::geterror());
-    const std::string_view format = input->format_name();
-    if (std::ranges::find(kFormats, format) == kFormats.end()) {
-        refuse(file,
-               fmt::format("found the format {}; allowed: {}", format, fmt::join(kFormats, ", ")));
-    }
-    if (format != "tiff") return input;
+// What read() gives. Whatever the libraries throw is said of the file.
+template <typename Read>
+auto reading(const std::filesystem::path& file, const Read& read) {
     try {
-        aphotic::require_whole_tiff(file);
-    } catch (const aphotic::InputError& error) {
+        return read();
+    } catch (const std::bad_alloc&) {
+        refuse(file, "out of memory");
+    } catch (const std::exception& error) {
         refuse(file, error.what());
     }
+}
+
+// Before a library looks at them.
+void require_sound_header(const std::filesystem::path& file) {
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(file, none)) {
+        throw aphotic::InputError(std::filesystem::exists(file, none)
+                                      ? "found a pipe, device or folder; allowed: a file"
+                                      : "No such file or directory");
+    }
+    if (aphotic::is_exr(file)) aphotic::require_sound_exr_header(file);
+    if (aphotic::is_png(file)) aphotic::require_sound_png_header(file);
+}
+
+// What the header of every format tells, once a library has read it.
+void require_sound_spec(const OIIO::ImageSpec& spec, const std::filesystem::path& file) {
+    aphotic::require_sides(spec.width, spec.height);
+    if (spec.deep || spec.depth > 1) throw aphotic::InputError("found deep pixels or a volume");
+    const std::uint64_t samples = spec.image_pixels() * static_cast<std::uint64_t>(spec.nchannels);
+    aphotic::require_file_size(std::filesystem::file_size(file), spec.image_bytes(true), samples);
+    // A position on a page is none in an image of which this is a part.
+    if (spec.full_width == spec.width && spec.full_height == spec.height) return;
+    throw aphotic::InputError("found {} x {} of {} x {} pixels; allowed: the whole image",
+                              spec.width,
+                              spec.height,
+                              spec.full_width,
+                              spec.full_height);
+}
+
+std::shared_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
+    require_sound_header(file);
+    OIIO::ImageSpec as_stored;
+    as_stored.attribute("oiio:UnassociatedAlpha", 1);
+    std::shared_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &as_stored);
+    if (!input) throw aphotic::InputError(OIIO::geterror());
+    const std::string_view format = input->format_name();
+    if (std::ranges::find(kFormats, format) == kFormats.end()) {
+        throw aphotic::InputError(
+            "found the format {}; allowed: {}", format, fmt::join(kFormats, ", "));
+    }
+    if (format == "tiff") aphotic::require_whole_tiff(file);
+    require_sound_spec(input->spec(), file);
     return input;
+}
+
+// Of a TIFF whose strips are higher than the image OpenImageIO 2.4 counts strips and bytes beyond
+// what its integers hold.
+bool is_read_by_rows(const OIIO::ImageSpec& spec, std::string_view format) {
+    const int rows = spec.get_int_attribute("tiff:RowsPerStrip", 0);
+    return format == "tiff" && spec.tile_width == 0 && (rows <= 0 || rows > spec.height);
 }
 
 // The channels from `first` up to, and without, `end`. OpenImageIO takes what it can get of a file
@@ -125,10 +210,27 @@ std::vector<float> pixels_in(OIIO::ImageInput& input,
                              int first,
                              int end) {
     const OIIO::ImageSpec& spec = input.spec();
-    std::vector<float> pixels(spec.image_pixels() * static_cast<std::size_t>(end - first));
-    const bool is_read = input.read_image(0, 0, first, end, OIIO::TypeDesc::FLOAT, pixels.data());
+    const std::string_view format = input.format_name();
+    if (format == "png") {
+        return aphotic::png_pixels(file, {spec.width, spec.height, spec.nchannels, first, end});
+    }
+    if (format == "tiff") aphotic::require_sound_streams(file);
+    const std::size_t row =
+        static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(end - first);
+    std::vector<float> pixels(row * static_cast<std::size_t>(spec.height));
+    const auto read = [&](int from, int to) {
+        float* const at = pixels.data() + row * static_cast<std::size_t>(from);
+        return input.read_scanlines(
+            0, 0, spec.y + from, spec.y + to, 0, first, end, OIIO::TypeDesc::FLOAT, at);
+    };
+    bool is_read = true;
+    if (is_read_by_rows(spec, format)) {
+        for (int y = 0; y < spec.height && is_read; ++y) is_read = read(y, y + 1);
+    } else {
+        is_read = input.read_image(0, 0, first, end, OIIO::TypeDesc::FLOAT, pixels.data());
+    }
     const std::string fault = input.geterror();
-    if (!is_read || !fault.empty()) refuse(file, fault);
+    if (!is_read || !fault.empty()) throw aphotic::InputError(fault);
     return pixels;
 }
 
@@ -137,18 +239,21 @@ std::vector<float> pixels_in(OIIO::ImageInput& input,
 extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
                                        aphotic::AnyImage& image) {
     // Opened directly: an image cache could hand back the pixels of a file that was since replaced.
-    const std::shared_ptr<OIIO::ImageInput> input = opened(file);
+    const auto input = reading(file, [&] { return opened(file); });
     const OIIO::ImageSpec& spec = input->spec();
     image.width_px = spec.width;
     image.height_px = spec.height;
     image.channels = spec.channelnames;
     image.samples = [input, file](std::size_t channel) {
         const auto c = static_cast<int>(channel);
-        return pixels_in(*input, file, c, c + 1);
+        return reading(file, [&] { return pixels_in(*input, file, c, c + 1); });
     };
     image.planes = [input, file] {
         const int channels = input->spec().nchannels;
-        return planes_of(pixels_in(*input, file, 0, channels), static_cast<std::size_t>(channels));
+        return reading(file, [&] {
+            return planes_of(pixels_in(*input, file, 0, channels),
+                             static_cast<std::size_t>(channels));
+        });
     };
     image.full_scale = full_scale_of(spec);
     image.description = spec.get_string_attribute("ImageDescription");
@@ -157,20 +262,27 @@ extern "C" void aphotic_open_any_image(const std::filesystem::path& file,
 
 extern "C" void aphotic_header_of_image(const std::filesystem::path& file,
                                         std::map<std::string, std::string>& tags) {
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
-    if (!input) refuse(file, OIIO::geterror());
-    for (const OIIO::ParamValue& tag : input->spec().extra_attribs) {
-        tags[tag.name().string()] = tag.get_string();
-    }
+    reading(file, [&] {
+        require_sound_header(file);
+        if (std::filesystem::file_size(file) > aphotic::kMostOfNotes_bytes) {
+            throw aphotic::InputError("found more than {0} MiB; allowed: {0} MiB or less",
+                                      aphotic::kMostOfNotes_bytes / aphotic::kMebi);
+        }
+        const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string());
+        if (!input) throw aphotic::InputError(OIIO::geterror());
+        for (const OIIO::ParamValue& tag : input->spec().extra_attribs) {
+            tags[tag.name().string()] = tag.get_string();
+        }
+    });
 }
 
-extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
-                                        const aphotic::WrittenImage& image) {
-    const auto fail = [&](const std::string& why) {
-        throw aphotic::RunError("{}: cannot be written: {}", file.string(), why);
-    };
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(file.string());
-    if (!output) fail(OIIO::geterror());
+// Why it could not be written, or nothing.
+extern "C" std::string aphotic_write_any_image(const std::filesystem::path& file,
+                                               const aphotic::WrittenImage& image) {
+    WatchedFile watched(file);
+    const std::unique_ptr<OIIO::ImageOutput> output =
+        OIIO::ImageOutput::create(file.string(), &watched);
+    if (!output) return OIIO::geterror();
     const bool is_bytes = image.type == aphotic::SampleType::Bits8;
     OIIO::ImageSpec spec(image.width_px,
                          image.height_px,
@@ -195,7 +307,11 @@ extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
                           (is_bytes ? write_as<std::uint8_t>(*output, image)
                                     : write_as<std::uint16_t>(*output, image)) &&
                           output->close();
-    if (!is_whole) fail(output->geterror());
+    const std::string fault = output->geterror();
+    const std::string cause = watched.end();
+    if (!cause.empty()) return cause;
+    if (is_whole) return "";
+    return fault.empty() ? "the library does not say why" : fault;
 }
 
 extern "C" void aphotic_resize(std::vector<float>& plane,

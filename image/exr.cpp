@@ -2,20 +2,21 @@
 #include "image/exr.h"
 
 #include "base/error.h"
+#include "image/checked_file.h"
+#include "image/exr_header.h"
 #include "image/row_blocks.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 
-#include <array>
 #include <cassert>
 #include <cstdint>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -53,94 +54,8 @@ Imf::FrameBuffer planar_rows(std::span<const std::string> channels,
     throw RunError("{}: {}: {}", path.string(), what, why.what());
 }
 
-// --- Whether a header is as long as its file, looked at before OpenEXR reads it, which takes a
-// size there at its word and asks for gigabytes on a damaged one:
-//
-//   magic, version                      4 bytes each, little-endian as all numbers
-//   name \0 type \0 size value ...      attributes, size is 4 bytes, the value as many as it says
-//   \0                                  ends a header; files of several parts end with two
-
-constexpr std::uint32_t kMagic = 20000630;
-constexpr std::uint32_t kIsOfSeveralParts = 0x1000;
-constexpr const char* kDamaged = "its header is damaged";
-constexpr std::size_t kLongestName = 255;  // by the format
-
-std::uint32_t number(std::istream& in) {
-    std::array<char, 4> bytes{};
-    in.read(bytes.data(), bytes.size());
-    std::uint32_t value = 0;
-    for (std::size_t i = bytes.size(); i-- > 0;) {
-        value = value << 8U | static_cast<unsigned char>(bytes[i]);
-    }
-    return value;
-}
-
-std::string name(std::istream& in) {
-    std::string text;
-    for (char c = 0; in.get(c) && c != '\0' && text.size() <= kLongestName;) text += c;
-    if (!in || text.size() > kLongestName) throw std::runtime_error(kDamaged);
-    return text;
-}
-
-// OpenEXR reads so many bytes of these, whatever their size says.
-std::optional<std::streamoff> size_of(const std::string& type) {
-    constexpr std::array<std::pair<std::streamoff, std::string_view>, 13> kTypes{
-        {{1, " compression deepImageState envmap lineOrder "},
-         {4, " float int "},
-         {8, " double rational timecode v2f v2i "},
-         {9, " tiledesc "},
-         {12, " v3f v3i "},
-         {16, " box2f box2i v2d "},
-         {24, " v3d "},
-         {28, " keycode "},
-         {32, " chromaticities "},
-         {36, " m33f "},
-         {64, " m44f "},
-         {72, " m33d "},
-         {128, " m44d "}}};
-    for (const auto& [size, types] : kTypes) {
-        if (types.find(" " + type + " ") != std::string_view::npos) return size;
-    }
-    return std::nullopt;
-}
-
-// A list that ends with an empty name, whatever its size says.
-void pass_over_channels(std::istream& in) {
-    constexpr std::streamoff kBytesOfAChannel = 16;
-    while (!name(in).empty()) in.seekg(kBytesOfAChannel, std::ios::cur);
-}
-
-// Throws std::runtime_error that says what is wrong.
-void require_sound_exr_header(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary | std::ios::ate);
-    const std::streamoff length = in.tellg();
-    in.seekg(0);
-    if (number(in) != kMagic || !in) throw std::runtime_error("it does not begin as one");
-    const bool has_parts = (number(in) & kIsOfSeveralParts) != 0;
-    for (bool at_start = true;;) {
-        if (name(in).empty()) {
-            if (at_start || !has_parts) return;
-            at_start = true;
-            continue;
-        }
-        at_start = false;
-        const std::string type = name(in);
-        const std::streamoff size = number(in);
-        const std::streamoff end = in.tellg() + size;
-        if (!in || end > length) throw std::runtime_error(kDamaged);
-        if (size != size_of(type).value_or(size)) throw std::runtime_error(kDamaged);
-        if (type == "chlist") pass_over_channels(in);
-        if (type == "chlist" && in.tellg() != end) throw std::runtime_error(kDamaged);
-        in.seekg(end);
-    }
-}
-
-// Far beyond any camera's; OpenEXR sets up tables of this many rows before it reads the first.
-constexpr int kMostSide_px = 65536;
-
 const char* sound_header(const fs::path& path) {
     require_sound_exr_header(path);
-    Imf::Header::setMaxImageSize(kMostSide_px, kMostSide_px);
     return path.c_str();
 }
 
@@ -157,7 +72,7 @@ struct ExrReader::File {
 ExrReader::ExrReader(const fs::path& file) : path_(file) {
     std::error_code ignored;
     if (!fs::exists(file, ignored))
-        throw InputError("{}: cannot be read: No such file or directory", file.string());
+        throw RunError("{}: cannot be read: No such file or directory", file.string());
     try {
         file_ = std::make_unique<File>(file);
     } catch (const std::exception& error) {
@@ -215,16 +130,51 @@ void ExrReader::read_rows(int first_row,
 }
 
 std::vector<float> ExrReader::planes(std::span<const std::string> channels) {
-    std::vector<float> samples(channels.size() * static_cast<std::size_t>(width_px()) *
-                               static_cast<std::size_t>(height_px()));
-    read_rows(0, height_px(), channels, samples);
-    return samples;
+    try {
+        std::vector<float> samples(channels.size() * static_cast<std::size_t>(width_px()) *
+                                   static_cast<std::size_t>(height_px()));
+        read_rows(0, height_px(), channels, samples);
+        return samples;
+    } catch (const std::bad_alloc&) {
+        throw RunError("{}: cannot be read: out of memory", path_.string());
+    }
 }
 
-struct ExrWriter::File {
-    File(const fs::path& path, const Imf::Header& header) : out(path.c_str(), header) {}
+// Where OpenEXR writes to; it takes what is thrown here for its own, but when it closes a file.
+class CheckedStream : public Imf::OStream {
+  public:
+    CheckedStream(const fs::path& file, const fs::path& called)
+        : OStream(called.c_str()), file_(file) {}
 
-    Imf::OutputFile out;
+    void write(const char bytes[], int count) override {
+        const auto many = static_cast<std::size_t>(count);
+        if (!file_.write(bytes, many, static_cast<std::int64_t>(at_)))
+            throw std::runtime_error(file_.error());
+        at_ += many;
+    }
+    std::uint64_t tellp() override { return at_; }
+    void seekp(std::uint64_t at) override { at_ = at; }
+
+    void close() { file_.close(); }
+    [[nodiscard]] std::string error() const { return file_.error(); }
+
+  private:
+    CheckedFile file_;
+    std::uint64_t at_ = 0;
+};
+
+struct ExrWriter::File {
+    File(const fs::path& file, const fs::path& called) : stream(file, called) {}
+
+    // What the system said comes before what OpenEXR makes of it.
+    [[noreturn]] void fail(const fs::path& called, const std::exception& why) const {
+        const std::string cause = stream.error();
+        throw RunError(
+            "{}: cannot be written: {}", called.string(), cause.empty() ? why.what() : cause);
+    }
+
+    CheckedStream stream;
+    std::optional<Imf::OutputFile> out{};
 };
 
 ExrWriter::ExrWriter(const fs::path& file,
@@ -249,10 +199,11 @@ ExrWriter::ExrWriter(const fs::path& file,
     for (const std::string& name : channels_)
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
     for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));
+    file_ = std::make_unique<File>(destination_.temporary(), file);
     try {
-        file_ = std::make_unique<File>(destination_.temporary(), header);
+        file_->out.emplace(file_->stream, header);
     } catch (const std::exception& error) {
-        fail(file, "cannot be written", error);
+        file_->fail(file, error);
     }
 }
 
@@ -264,26 +215,25 @@ void ExrWriter::write_rows(int rows, std::span<const float> samples) {
     try {
         // OpenEXR takes a mutable pointer for reading and writing alike.
         auto* bytes = const_cast<char*>(reinterpret_cast<const char*>(samples.data()));
-        file_->out.setFrameBuffer(planar_rows(channels_, width_px_, 0, next_row_, rows, bytes));
-        file_->out.writePixels(rows);
+        file_->out->setFrameBuffer(planar_rows(channels_, width_px_, 0, next_row_, rows, bytes));
+        file_->out->writePixels(rows);
     } catch (const std::exception& error) {
-        fail(destination_.final_path(), "cannot be written", error);
+        file_->fail(destination_.final_path(), error);
     }
     next_row_ += rows;
 }
 
 void ExrWriter::finish() {
     assert(next_row_ == height_px_);
-    // Closing writes the table of where each block stands, and says nothing when that fails, as
-    // on a full disk: look whether it is there.
-    file_.reset();
-    try {
-        if (!Imf::InputFile(destination_.temporary().c_str()).isComplete()) {
-            throw std::runtime_error("the file is not whole; is the disk full?");
-        }
-    } catch (const std::exception& error) {
-        fail(destination_.final_path(), "cannot be written", error);
+    // Closing writes the table of where each block stands, and OpenEXR says nothing when that
+    // fails, as on a full disk.
+    file_->out.reset();
+    file_->stream.close();
+    if (!file_->stream.error().empty()) {
+        throw RunError(
+            "{}: cannot be written: {}", destination_.final_path().string(), file_->stream.error());
     }
+    file_.reset();
     destination_.commit();
 }
 

@@ -6,10 +6,13 @@
 // rows of the second. Half floats of a file are widened exactly. Nothing is cached by name: a
 // file that was written again is read again.
 //
-// A file that cannot be opened, read or written is a RunError that names it.
+// A file that cannot be opened, read or written, or is gone, is a RunError that names it. So is one
+// whose data window is not its display window (exr_header.h): what is read here is the image, no
+// part of it.
 #pragma once
 
 #include "base/atomic_file.h"
+#include "base/error.h"
 
 #include <filesystem>
 #include <memory>
@@ -48,6 +51,18 @@ class ExrReader {
     std::unique_ptr<File> file_;
     std::filesystem::path path_;
 };
+
+// What read() makes of the reader of a file that the user named: that it cannot be read is an
+// InputError then.
+template <typename Read>
+auto from_named_exr(const std::filesystem::path& file, const Read& read) {
+    try {
+        ExrReader reader(file);
+        return read(reader);
+    } catch (const RunError& error) {
+        throw InputError("{}", error.what());
+    }
+}
 
 using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 

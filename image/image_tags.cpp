@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image/image_tags.h"
 
+#include "base/error.h"
 #include "image/any_image_part.h"
 
 namespace aphotic {
@@ -12,9 +13,14 @@ SharedTags read_image_tags(const std::filesystem::path& file) {
     return tags;
 }
 
-void add_image_tags(const std::filesystem::path& file, const ImageTags& tags) {
-    using Add = void (*)(const std::filesystem::path&, const ImageTags&);
-    from_part<Add>("aphotic_add_image_tags")(file, tags);
+void add_image_tags(const std::filesystem::path& file,
+                    const ImageTags& tags,
+                    const std::filesystem::path& called) {
+    using Add = std::string (*)(const std::filesystem::path&, const ImageTags&);
+    const std::string fault = from_part<Add>("aphotic_add_image_tags")(file, tags);
+    if (fault.empty()) return;
+    throw RunError(
+        "{}: its tags cannot be written: {}", (called.empty() ? file : called).string(), fault);
 }
 
 std::vector<std::pair<std::string, std::string>> words_of(const ImageTags& tags) {

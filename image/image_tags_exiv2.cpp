@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The part of the command that links Exiv2; see image_tags.h.
-#include "base/error.h"
+#include "image/checked_file.h"
+#include "image/decoded_size.h"
 #include "image/image_tags.h"
 
 #include <exiv2/exiv2.hpp>
@@ -168,6 +169,7 @@ extern "C" void aphotic_read_image_tags(const std::filesystem::path& file,
                                         aphotic::SharedTags& tags) {
     using namespace aphotic;
     try {
+        if (std::filesystem::file_size(file) > kMostOfNotes_bytes) return;
         const std::unique_ptr<Exiv2::Image> image = tagged(file);
         auto read = std::make_shared<ImageTags>();
         for (const Exiv2::Exifdatum& datum : image->exifData()) {
@@ -179,16 +181,21 @@ extern "C" void aphotic_read_image_tags(const std::filesystem::path& file,
         read->iptc = image->iptcData();
         read->exposure = exposure_in(image->exifData());
         if (!read->is_empty()) tags = std::move(read);
-    } catch (const Exiv2::AnyError&) {
+    } catch (const std::exception&) {
         // No format that it knows, or damaged tags: the pixels are as good without.
     }
 }
 
-extern "C" void aphotic_add_image_tags(const std::filesystem::path& file,
-                                       const aphotic::ImageTags& tags) {
+// Why it could not be written, or nothing. In memory, for Exiv2 does not say that a disk was full.
+extern "C" std::string aphotic_add_image_tags(const std::filesystem::path& file,
+                                              const aphotic::ImageTags& tags) {
     using namespace aphotic;
     try {
-        const std::unique_ptr<Exiv2::Image> image = tagged(file);
+        make_ready();
+        Exiv2::DataBuf bytes = Exiv2::readFile(file.string());
+        const std::unique_ptr<Exiv2::Image> image(
+            Exiv2::ImageFactory::open(bytes.pData_, bytes.size_).release());
+        image->readMetadata();
         for (const Exiv2::Exifdatum& datum : tags.exif) {
             image->exifData()[datum.key()].setValue(&datum.value());
         }
@@ -197,8 +204,15 @@ extern "C" void aphotic_add_image_tags(const std::filesystem::path& file,
         }
         image->setIptcData(tags.iptc);
         image->writeMetadata();
-    } catch (const Exiv2::AnyError& error) {
-        throw RunError("{}: its tags cannot be written: {}", file.string(), error.what());
+        bytes = Exiv2::DataBuf();
+        Exiv2::BasicIo& made = image->io();
+        if (made.open() != 0) return "there are no bytes";
+        CheckedFile out(file);
+        out.write(made.mmap(), made.size(), 0);
+        out.close();
+        return out.error();
+    } catch (const std::exception& error) {
+        return error.what();
     }
 }
 

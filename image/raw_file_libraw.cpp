@@ -2,6 +2,7 @@
 //
 // The part of the command that links LibRaw; see raw_file.h.
 #include "base/error.h"
+#include "image/decoded_size.h"
 #include "image/image_size.h"
 #include "image/raw_file.h"
 
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +23,10 @@ using aphotic::size_of;
 
 [[noreturn]] void refuse_raw(const std::filesystem::path& file, const std::string& why) {
     throw aphotic::InputError("{}: cannot be read: {}", file.string(), why);
+}
+
+[[noreturn]] void refuse_samples(const std::filesystem::path& file) {
+    refuse_raw(file, "found samples of another kind than whole numbers");
 }
 
 void require_success(int status, const std::filesystem::path& file) {
@@ -133,12 +139,34 @@ std::vector<float> colours_of(LibRaw& raw, double black) {
     return planes;
 }
 
+// Of samples as unpack() holds them, four of 16 bits for a pixel at the most, and of what it may
+// take beside them.
+void require_sound_sizes(LibRaw& raw, const std::filesystem::path& file) {
+    constexpr std::uint64_t kMostPixel_bytes = 8;
+    constexpr std::uint64_t kBeside_MiB = 256;
+    const auto& sizes = raw.imgdata.sizes;
+    const std::uint64_t pixels = std::uint64_t{sizes.raw_width} * sizes.raw_height;
+    try {
+        aphotic::require_sides(sizes.width, sizes.height);
+        aphotic::require_tiles(
+            {sizes.width, sizes.height}, {sizes.raw_width, sizes.raw_height}, kMostPixel_bytes);
+        aphotic::require_file_size(
+            std::filesystem::file_size(file), pixels * kMostPixel_bytes, pixels);
+    } catch (const aphotic::InputError& error) {
+        refuse_raw(file, error.what());
+    }
+    if (raw.is_floating_point() != 0) refuse_samples(file);
+    raw.imgdata.params.max_raw_memory_mb =
+        static_cast<unsigned>(pixels * kMostPixel_bytes / aphotic::kMebi + kBeside_MiB);
+}
+
 }  // namespace
 
 extern "C" void aphotic_open_raw_file(const std::filesystem::path& file, aphotic::RawFile& opened) {
     const auto raw = std::make_shared<LibRaw>();
     raw->set_dataerror_handler(nullptr, nullptr);  // it would print what is thrown as well
     require_success(raw->open_file(file.c_str()), file);
+    require_sound_sizes(*raw, file);
     const auto& sizes = raw->imgdata.sizes;
     opened.width_px = sizes.width;
     opened.height_px = sizes.height;
@@ -153,6 +181,6 @@ extern "C" void aphotic_open_raw_file(const std::filesystem::path& file, aphotic
         if (data.raw_image != nullptr) return mosaic_of(*raw, black);
         if (data.color3_image != nullptr || data.color4_image != nullptr)
             return colours_of(*raw, black);
-        refuse_raw(file, "found samples of another kind than whole numbers");
+        refuse_samples(file);
     };
 }

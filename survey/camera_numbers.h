@@ -36,6 +36,15 @@ enum class ExposureBy { Nothing, Exif, Flash };
 // Of a file that holds the images of two cameras side by side.
 enum class Half { Left, Right };
 
+// The size that a survey's images have, as cropped, by its map, its rig or most of its files:
+// others are refused by their headers, before a pixel is decoded. A crop says nothing of the file
+// around it, which is held to that of the other files.
+struct ExpectedSize {
+    PlaneSize image{};
+    std::string as{};      // "as the map has"
+    PlaneSize file{0, 0};  // not known
+};
+
 struct CameraNumbers {
     std::optional<Mosaic> mosaic{};      // none: the file's own, or R, G and B
     std::optional<float> black_level{};  // none: the file's own, or 0
@@ -44,6 +53,7 @@ struct CameraNumbers {
     std::optional<Crop> crop{};
     ExposureBy exposure_by = ExposureBy::Nothing;
     ShotExposure reference{};  // what images are brought to: what it tells counts, nothing else
+    std::optional<ExpectedSize> expected{};
 };
 
 // Which part of a file of this size is the image. An InputError, with that size, when it has no

@@ -2,6 +2,7 @@
 #include "survey/camera_of_files.h"
 
 #include "base/error.h"
+#include "image/image_size.h"
 #include "rig/lens.h"
 #include "survey/survey_image.h"
 
@@ -12,24 +13,52 @@
 
 namespace aphotic {
 
-std::optional<PlaneSize> usual_size(const std::vector<ImageFile>& files,
-                                    const CameraNumbers& camera) {
+namespace {
+
+std::optional<PlaneSize> size_if_readable(const ImageFile& file) {
+    try {
+        return size_in(file.source);
+    } catch (const InputError&) {
+        return std::nullopt;  // it is said of the image when its turn comes
+    }
+}
+
+// Of the whole files.
+std::optional<PlaneSize> usual_file_size(const std::vector<ImageFile>& files) {
     constexpr std::size_t kFew = 9;
     const std::size_t count = std::min(kFew, files.size());
     std::map<std::pair<int, int>, int> images;  // by size
     for (std::size_t i = 0; i < count; ++i) {
-        try {
-            const PlaneSize size = size_in(files[i * files.size() / count].source);
-            ++images[{size.width_px, size.height_px}];
-        } catch (const InputError&) {
-            // It is said of the image when its turn comes.
-        }
+        if (const auto size = size_if_readable(files[i * files.size() / count]))
+            ++images[{size->width_px, size->height_px}];
+    }
+    for (std::size_t i = 0; i < files.size() && images.empty(); ++i) {
+        if (const auto size = size_if_readable(files[i])) return size;
     }
     if (images.empty()) return std::nullopt;
     const auto [width_px, height_px] =
         std::ranges::max_element(images, {}, [](const auto& size) { return size.second; })->first;
-    const Crop crop = crop_of(camera, {width_px, height_px});
+    return PlaneSize{width_px, height_px};
+}
+
+}  // namespace
+
+std::optional<PlaneSize> usual_size(const std::vector<ImageFile>& files,
+                                    const CameraNumbers& camera) {
+    const std::optional<PlaneSize> file = usual_file_size(files);
+    if (!file) return std::nullopt;
+    const Crop crop = crop_of(camera, *file);
     return PlaneSize{crop.width_px, crop.height_px};
+}
+
+CameraNumbers expecting_usual_size(CameraNumbers camera, const std::vector<ImageFile>& files) {
+    const std::optional<PlaneSize> file = usual_file_size(files);
+    if (!file) return camera;
+    const Crop crop = crop_of(camera, *file);
+    camera.expected = ExpectedSize{.image = {crop.width_px, crop.height_px},
+                                   .as = "as most of the images looked at have",
+                                   .file = *file};
+    return camera;
 }
 
 CameraNumbers with_reference(CameraNumbers camera, const std::vector<ImageFile>& files) {
@@ -72,6 +101,7 @@ std::optional<PlaneSize> fit_to(Camera& camera, PlaneSize images) {
     const auto is_same_shape = std::int64_t{rig.width_px} * images.height_px ==
                                std::int64_t{rig.height_px} * images.width_px;
     if (!is_same_shape || rig.width_px == images.width_px) return std::nullopt;
+    if (std::max(images.width_px, images.height_px) > kLargestImagePx) return std::nullopt;
     enlarge_pixels(camera,
                    static_cast<double>(rig.width_px) / images.width_px,
                    images.width_px,

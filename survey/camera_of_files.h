@@ -14,10 +14,16 @@
 
 namespace aphotic {
 
-// The size that most of a few images have, spread evenly over the survey, as cropped. None when
-// none of these can be read. An InputError when the crop does not fit them.
+// The size that most of a few images have, spread evenly over the survey, as cropped: of sizes that
+// as many have, the smallest, for large ones cost more where they are wrong. Where none of these
+// can be read, that of the first that can, if there is one. An InputError when the crop does not
+// fit.
 [[nodiscard]] std::optional<PlaneSize> usual_size(const std::vector<ImageFile>& files,
                                                   const CameraNumbers& camera);
+
+// With that size expected of every image, where there is one; an InputError as above.
+[[nodiscard]] CameraNumbers expecting_usual_size(CameraNumbers camera,
+                                                 const std::vector<ImageFile>& files);
 
 // With the exposure of the first image that tells one in place of a reference that nobody gave. An
 // InputError when no image does.

@@ -120,8 +120,10 @@ void require_every_channel(const FitImage& image, const std::string& map) {
     }
 }
 
-FitImage image_of_map(const std::string& map, const Camera& camera, int block_px) {
-    ExrReader reader(map);
+FitImage image_of_map(ExrReader& reader,
+                      const std::string& map,
+                      const Camera& camera,
+                      int block_px) {
     const std::vector<std::string> names{kChannelNames.begin(), kChannelNames.end()};
     const std::vector<std::string> channels = reader.channels();
     for (const std::string& name : names) {
@@ -177,8 +179,12 @@ FitSamples samples_of_images(const Survey& survey,
     FitSamples samples;
     samples.places = fit_places(size.width_px, size.height_px, blocks_across);
     samples.mosaic = survey.camera.mosaic.value_or(Mosaic::None);
+    CameraNumbers numbers = survey.camera;
+    if (!numbers.expected) numbers.expected.emplace();
+    numbers.expected->image = size;
+    numbers.expected->as = "as the rig's camera has";
     samples.looks_wrong =
-        suspicions_of(survey.files, survey.camera, survey.navigation, jobs, watch);
+        suspicions_of(survey.files, numbers, survey.navigation, jobs, watch);
     const auto skip = [&](std::size_t i, const std::string& why) {
         samples.skipped.push_back({.image = survey.files[i].source.string(), .why = why});
         watch.skipped(samples.skipped.back());
@@ -189,8 +195,7 @@ FitSamples samples_of_images(const Survey& survey,
         [&](std::size_t i) {
             FitImage image{.name = survey.files[i].name.string(),
                            .sled = survey.sled_of(survey.files[i])};
-            SurveyImage taken = read_survey_image(survey.files[i].source, survey.camera);
-            require_size(taken.raw, size.width_px, size.height_px, "as the rig's camera has");
+            SurveyImage taken = read_survey_image(survey.files[i].source, numbers);
             take_off_black(taken);
             average(taken.raw, taken.levels.white, samples.places.block_px, image);
             return image;
@@ -244,7 +249,9 @@ FitSamples samples_of_maps(const std::vector<std::string>& maps,
     samples.are_maps = true;
     samples.places = fit_places(camera.width_px, camera.height_px, blocks_across);
     for (const std::string& map : maps)
-        samples.images.push_back(image_of_map(map, camera, samples.places.block_px));
+        samples.images.push_back(from_named_exr(map, [&](ExrReader& reader) {
+            return image_of_map(reader, map, camera, samples.places.block_px);
+        }));
     return samples;
 }
 

@@ -81,6 +81,18 @@ std::string response_digest(const Sensor& sensor) {
     return sha256_of_text(text);
 }
 
+void require_map_for(PlaneSize images, const ExrReader& map, const std::filesystem::path& file) {
+    constexpr std::int64_t kFew = std::int64_t{1} << 24U;  // more pixels than images have
+    const std::int64_t pixels = std::int64_t{map.width_px()} * map.height_px();
+    if (pixels <= std::int64_t{images.width_px} * images.height_px + kFew) return;
+    throw InputError("{}: found {} x {} pixels; allowed: {} x {}, as the images have",
+                     file.string(),
+                     map.width_px(),
+                     map.height_px(),
+                     images.width_px,
+                     images.height_px);
+}
+
 // Of all lamps, relative, down and back at the rig's own altitude.
 std::function<double(double)> light_on_its_way(const Rig& rig) {
     return [&rig, path_m = 2.0 * rig.sled.altitude_m](double lambda_nm) {
@@ -128,26 +140,22 @@ LightAt light_of_rig(const Rig& rig,
 }
 
 void require_light_for(const RawImage& raw, const LightAt& light) {
-    const bool is_double = std::int64_t{raw.width_px} * light.size.height_px ==
-                           2 * std::int64_t{light.size.width_px} * raw.height_px;
-    require_size(raw,
-                 light.size.width_px,
-                 light.size.height_px,
-                 is_double ? "as the map has; if two cameras' images are side by side, --half"
-                           : "as the map has");
+    require_size(raw, light.size.width_px, light.size.height_px, "as the map has");
     if (raw.mosaic != Mosaic::Mono || light.is_grey) return;
     throw InputError(
         "found the image of a mono camera, and a map whose R, G and B differ; allowed: the map of "
         "a mono camera");
 }
 
-LightAt light_of_map(const std::filesystem::path& map_file, bool has_veil) {
+LightAt light_of_map(const std::filesystem::path& map_file,
+                     bool has_veil,
+                     std::optional<PlaneSize> images) {
     static const std::vector<std::string> kNames{"R", "G", "B"};
     static const std::vector<std::string> kVeilNames{"veil.R", "veil.G", "veil.B"};
     Lightmap map;
     bool knows_veil = false;
-    try {
-        ExrReader reader(map_file);
+    from_named_exr(map_file, [&](ExrReader& reader) {
+        if (images) require_map_for(*images, reader, map_file);
         const std::vector<std::string> channels = reader.channels();
         for (const std::string& name : kNames) {
             if (std::ranges::find(channels, name) != channels.end()) continue;
@@ -158,9 +166,7 @@ LightAt light_of_map(const std::filesystem::path& map_file, bool has_veil) {
             return std::ranges::find(channels, name) != channels.end();
         });
         if (knows_veil && has_veil) map.veil = reader.planes(kVeilNames);
-    } catch (const RunError& error) {
-        throw InputError(error.what());  // the user named it
-    }
+    });
     for (std::vector<float>* samples : {&map.samples, &map.veil}) {
         for (float& sample : *samples) {
             if (!std::isfinite(sample) || sample < 0.0F) sample = 0.0F;

@@ -53,8 +53,11 @@ struct LightAt {
 void require_light_for(const RawImage& raw, const LightAt& light);
 
 // One map, whatever the pose: channels R, G and B of an EXR, and where it has them veil.R, veil.G
-// and veil.B. What is not finite in it, as where nothing was observed, is dark.
-[[nodiscard]] LightAt light_of_map(const std::filesystem::path& map_file, bool has_veil = true);
+// and veil.B. What is not finite in it, as where nothing was observed, is dark. An
+// InputError when it is far larger than the images that it is for, where their size is told.
+[[nodiscard]] LightAt light_of_map(const std::filesystem::path& map_file,
+                                   bool has_veil = true,
+                                   std::optional<PlaneSize> images = std::nullopt);
 
 // Of the rig's floor: how much of the lamps' own light, without water, it gives back to each
 // channel:  int sum_s P_s Phi_s rho Q_c dlambda / int sum_s P_s Phi_s Q_c dlambda.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstdint>
 
 namespace aphotic {
 namespace {
@@ -88,12 +89,15 @@ int channel_at(Mosaic mosaic, int column, int row) {
 
 void require_size(const RawImage& image, int width_px, int height_px, std::string_view as) {
     if (image.width_px == width_px && image.height_px == height_px) return;
-    throw InputError("found {} x {} pixels; allowed: {} x {}, {}",
+    const bool is_double =
+        std::int64_t{image.width_px} * height_px == 2 * std::int64_t{width_px} * image.height_px;
+    throw InputError("found {} x {} pixels; allowed: {} x {}, {}{}",
                      image.width_px,
                      image.height_px,
                      width_px,
                      height_px,
-                     as);
+                     as,
+                     is_double ? "; if two cameras' images are side by side, --half" : "");
 }
 
 void require_like(const RawImage& image, const RawImage& other, std::string_view as) {

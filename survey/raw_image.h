@@ -46,7 +46,8 @@ struct RawImage {
     [[nodiscard]] int planes() const { return mosaic == Mosaic::None ? kChannels : 1; }
 };
 
-// An InputError unless it is of this size, "as the map has".
+// An InputError unless it is of this size, "as the map has": of twice the width, it says what to do
+// about two cameras' images in a file.
 void require_size(const RawImage& image, int width_px, int height_px, std::string_view as);
 
 // And unless it has this pattern, too.

@@ -8,9 +8,9 @@
 #include "survey/image_files.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -21,8 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void refuse_channels(const AnyImage& image, std::string_view allowed) {
-    throw InputError(
-        "found the channels {}; allowed: {}", fmt::join(image.channels, ", "), allowed);
+    throw InputError("found the channels {}; allowed: {}", names_of(image.channels), allowed);
 }
 
 // Where those that are wanted stand among the file's.
@@ -74,6 +73,21 @@ std::vector<float> kept_of(std::vector<float> planes,
     return kept;
 }
 
+void require_expected(const Crop& crop, PlaneSize file, const ExpectedSize& expected) {
+    constexpr std::int64_t kFew = std::int64_t{1} << 24U;  // more pixels than the others have
+    const auto pixels = [](PlaneSize size) { return std::int64_t{size.width_px} * size.height_px; };
+    require_size({.width_px = crop.width_px, .height_px = crop.height_px},
+                 expected.image.width_px,
+                 expected.image.height_px,
+                 expected.as);
+    if (pixels(file) <= std::max(pixels(expected.file), pixels(expected.image)) + kFew) return;
+    throw InputError("found {} x {} pixels in the file; allowed: about {} x {}, as the others have",
+                     file.width_px,
+                     file.height_px,
+                     expected.file.width_px,
+                     expected.file.height_px);
+}
+
 // Without its samples; the mosaic is that of the whole file.
 SurveyImage cropped_image(const CameraNumbers& camera, PlaneSize file, Mosaic mosaic) {
     const Crop crop = crop_of(camera, file);
@@ -82,6 +96,7 @@ SurveyImage cropped_image(const CameraNumbers& camera, PlaneSize file, Mosaic mo
                          crop.width_px,
                          crop.height_px);
     }
+    if (camera.expected) require_expected(crop, file, *camera.expected);
     return {.raw = {.width_px = crop.width_px,
                     .height_px = crop.height_px,
                     .mosaic = shifted(mosaic, crop.left_px, crop.top_px)},
@@ -90,6 +105,21 @@ SurveyImage cropped_image(const CameraNumbers& camera, PlaneSize file, Mosaic mo
             .rounding = 0.0,
             .description = {},
             .date_time = {}};
+}
+
+// Of a file of many channels one at a time: the others may be of any number.
+std::vector<float> wanted_planes(const AnyImage& image,
+                                 PlaneSize size,
+                                 const std::vector<std::size_t>& places,
+                                 const Crop& crop) {
+    constexpr std::size_t kFewChannels = 4;
+    if (image.channels.size() <= kFewChannels) return kept_of(image.planes(), size, places, crop);
+    std::vector<float> all;
+    for (const std::size_t place : places) {
+        const std::vector<float> plane = kept_of(image.samples(place), size, {0}, crop);
+        all.insert(all.end(), plane.begin(), plane.end());
+    }
+    return all;
 }
 
 // Of what whole numbers can be; beyond it, levels are those of other files.
@@ -115,7 +145,7 @@ SurveyImage survey_image_of(const AnyImage& image, const CameraNumbers& camera) 
     SurveyImage taken = cropped_image(camera, size, mosaic);
     taken.description = image.description;
     taken.date_time = image.date_time;
-    taken.raw.samples = kept_of(image.planes(), size, places, taken.crop);
+    taken.raw.samples = wanted_planes(image, size, places, taken.crop);
     if (image.full_scale > 0.0) {
         const double scale = image.full_scale;
         for (float& sample : taken.raw.samples) sample = static_cast<float>(sample * scale);

@@ -128,9 +128,9 @@ ChannelPairs channels_of(const AnyImage& a, const AnyImage& b, const ComparisonR
     if (!pairs.compared.empty()) return pairs;
     throw InputError(fmt::format("{} has the channels {}, {} has {}: none in common",
                                  request.image,
-                                 fmt::join(a.channels, ", "),
+                                 names_of(a.channels),
                                  request.reference,
-                                 fmt::join(b.channels, ", ")));
+                                 names_of(b.channels)));
 }
 
 std::vector<float> samples_of(const AnyImage& image, const std::string& channel) {

@@ -9,6 +9,7 @@
 #include "image/preview.h"
 #include "lightmap/cone_edge.h"
 #include "rig/rig_reader.h"
+#include "support/absurd_images.h"
 #include "support/png.h"
 #include "support/run_command.h"
 #include "support/tiff.h"
@@ -350,6 +351,45 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     EXPECT_EQ(Json::parse(read_text_file(path("out/correction.json"))), summary);
     const auto files = files_in("out");
     EXPECT_EQ(files.size(), 4U + 2U);  // the images, and the two that say what was done
+}
+
+// Headers that ask for gigabytes: each costs itself alone, and no time.
+TEST_F(CorrectCommand, ImagesOfAbsurdSizeAreSkippedByTheirHeaders) {
+    take_survey();
+    const auto absurd = absurd_images(kWidth, kHeight);
+    for (const auto& [name, bytes] : absurd) {
+        write_file(path("raw/" + name), bytes);
+        note(name, {2.0, 0.0, 0.0});
+    }
+    const CommandResult run = correct({"--json"});
+    EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
+    const Json summary = Json::parse(run.out);
+    EXPECT_EQ(summary["corrected"], 4);
+    EXPECT_EQ(summary["skipped"].size(), absurd.size()) << summary.dump(2);
+    for (const Json& one : summary["skipped"]) {
+        const std::string why = one["why"];
+        for (const char* words : {"alloc", "memory", "vector"})
+            EXPECT_EQ(why.find(words), std::string::npos) << one;
+    }
+    EXPECT_EQ(run.err.find("libpng"), std::string::npos) << run.err;
+}
+
+// A map that lies elsewhere than it says, and one that no image is of.
+TEST_F(CorrectCommand, AMapOfAnotherWindowOrOfAbsurdSizeIsRefused) {
+    take("0.tif", {2.0, 0.0, 0.0});
+    const auto refused = [&](const std::string& map) {
+        write_file(path("map.exr"), map);
+        const CommandResult run = run_aphotic(
+            folder_.path(), {"correct", "raw", "--map", "map.exr", "-o", "out", "--bayer", "GRBG"});
+        EXPECT_EQ(run.status, kBadInput) << run.err;
+        return run.err;
+    };
+    EXPECT_NE(refused(exr_of_windows({2, 1, kWidth, kHeight}, {0, 0, kWidth + 4, kHeight + 3}))
+                  .find("its data window, 48 x 36 from 2, 1, is not its display window, 52 x 39 "
+                        "from 0, 0; allowed: both alike"),
+              std::string::npos);
+    const ExrSides large{0, 0, 8000, 8000};
+    EXPECT_NE(refused(exr_of_windows(large, large)).find("map.exr: "), std::string::npos);
 }
 
 // A fifth of the images cannot be read.

@@ -2,6 +2,7 @@
 //
 // aphotic observe and aphotic baseline on small surveys, as a user runs them.
 #include "image/exr.h"
+#include "support/absurd_images.h"
 #include "support/run_command.h"
 #include "support/tiff.h"
 #include "survey/raw_image.h"
@@ -91,6 +92,40 @@ class Survey : public testing::Test {
 };
 using CommandObserve = Survey;
 using CommandBaseline = Survey;
+
+// Headers that ask for gigabytes, at half of the survey's places: the others make the same map.
+TEST_F(CommandObserve, ImagesOfAbsurdSizeAreSkippedByTheirHeaders) {
+    write_survey();
+    ASSERT_EQ(observe({}).status, 0);
+    const Plane wanted = channel_of(path("map.exr"), "R");
+    std::string lines = read_text_file(path("nav.csv"));
+    std::size_t absurd = 0;
+    for (const auto& [name, bytes] : absurd_images(kWidth_px, kHeight_px)) {
+        // Too large for the survey's images, and none of these by their sizes.
+        write_file(path("raw/" + name), bytes);
+        lines += name + ",2,0,0\n";
+        ++absurd;
+    }
+    write_file(path("nav.csv"), lines);
+    const CommandResult run = observe({"--json"});
+    EXPECT_EQ(run.status, 1) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["images"], 3);
+    EXPECT_EQ(json["skipped"].size(), absurd) << json.dump(2);
+    EXPECT_EQ(channel_of(path("map.exr"), "R"), wanted);
+}
+
+TEST_F(CommandBaseline, ImagesOfAbsurdSizeAreSkippedByTheirHeaders) {
+    write_survey();
+    const auto absurd = absurd_images(kWidth_px, kHeight_px);
+    for (const auto& [name, bytes] : absurd) write_file(path("raw/" + name), bytes);
+    const CommandResult made =
+        run({"baseline", "average", "raw", "--format", "exr", "-o", "out", "--json"});
+    EXPECT_EQ(made.status, 1) << made.err;
+    const nlohmann::json json = nlohmann::json::parse(made.out);
+    EXPECT_EQ(json["corrected"], 4) << made.err;
+    EXPECT_EQ(json["skipped"].size(), absurd.size()) << json.dump(2);
+}
 
 TEST_F(CommandObserve, AnAttitudeThatNobodyToldIsUnknown) {
     write_survey();

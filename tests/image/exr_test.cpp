@@ -207,16 +207,69 @@ TEST(Exr, ThatCannotBeReadIsARunErrorThatNamesIt) {
                 }).starts_with(file.string() + ": is no readable OpenEXR image: "));
 }
 
-// Whoever names it has mistyped it.
-TEST(Exr, ThatIsNotThereIsAnInputErrorThatNamesIt) {
+TEST(Exr, ThatIsNotThereIsARunErrorThatNamesIt) {
     const TempFolder folder;
     const fs::path file = folder.path() / "image.exr";
+    const std::string why = file.string() + ": cannot be read: No such file or directory";
+    EXPECT_EQ(run_error([&] { const ExrReader in(file); }), why);
+    // Whoever names it has mistyped it.
     try {
-        const ExrReader in(file);
+        from_named_exr(file, [](ExrReader& reader) { return reader.width_px(); });
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_EQ(error.what(), file.string() + ": cannot be read: No such file or directory");
+        EXPECT_EQ(error.what(), why);
     }
+}
+
+// A part of the image, or more than it, as compositors write them.
+TEST(Exr, WhoseWindowsDifferIsRefusedWithBoth) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    const auto fault = [&](const ExrSides& data, const ExrSides& display) {
+        write_file(file, exr_of_windows(data, display));
+        return run_error([&] { const ExrReader in(file); });
+    };
+    const std::string begin = file.string() + ": is no readable OpenEXR image: its data window, ";
+    EXPECT_EQ(fault({2, 1, 4, 3}, {0, 0, 8, 6}),
+              begin +
+                  "4 x 3 from 2, 1, is not its display window, 8 x 6 from 0, 0; allowed: "
+                  "both alike");
+    EXPECT_EQ(fault({-1, -1, 4, 3}, {0, 0, 2, 1}),
+              begin +
+                  "4 x 3 from -1, -1, is not its display window, 2 x 1 from 0, 0; allowed: "
+                  "both alike");
+    EXPECT_EQ(fault({1, 0, 4, 3}, {0, 0, 4, 3}),
+              begin +
+                  "4 x 3 from 1, 0, is not its display window, 4 x 3 from 0, 0; allowed: "
+                  "both alike");
+}
+
+TEST(Exr, OfAbsurdSizeIsRefusedByItsHeader) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    for (const auto& [name, bytes] : absurd_images(kWidth, kHeight)) {
+        if (!name.ends_with(".exr")) continue;
+        write_file(file, bytes);
+        const std::string why = run_error([&] { const ExrReader in(file); });
+        EXPECT_TRUE(why.starts_with(file.string() + ": ")) << name << ": " << why;
+        for (const char* words : {"alloc", "memory", "vector"})
+            EXPECT_EQ(why.find(words), std::string::npos) << name << ": " << why;
+    }
+}
+
+// The limit of a process stands for the disk's; both fail a write.
+TEST(Exr, ThatDoesNotFitOnTheDiskIsSaidByItsOwnName) {
+    const TempFolder folder;
+    const fs::path file = folder.path() / "image.exr";
+    for (const ::rlim_t most_bytes : {0, 200, 2000}) {
+        const FileLimit limit(most_bytes);
+        EXPECT_EQ(run_error([&] {
+                      write_image(file, {16, 16, kHeight - 32});
+                  }),
+                  file.string() + ": cannot be written: File too large")
+            << most_bytes;
+    }
+    EXPECT_EQ(files_in(folder), 0U);
 }
 
 TEST(Exr, ThatIsCutShortIsARunErrorThatNamesIt) {

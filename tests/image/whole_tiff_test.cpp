@@ -8,6 +8,7 @@
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <cstdint>
 #include <limits>
@@ -137,11 +138,11 @@ TEST(WholeTiff, NumbersNear2To64AreNoWayRound) {
     // 2^32 x 2^32 tiles are 2^64, and as 64 bits have it, 0.
     EXPECT_EQ(fault_of(with(kTiles,
                             {{256, {kMost32 + 1}}, {257, {kMost32 + 1}}, {322, {1}}, {323, {1}}})),
-              "it is not whole: found 9 offsets and 9 sizes of strips or tiles; needed: "
-              "18446744073709551615");
+              "found 4294967296 x 4294967296 pixels; allowed: 1 to 32768 each way");
     EXPECT_EQ(fault_of(with(kStrips, {{257, {kMost}}, {278, {1}}, {277, {kMost}}, {284, {2}}})),
-              "it is not whole: found 4 offsets and 4 sizes of strips or tiles; needed: "
-              "18446744073709551615");
+              "found 10 x 9223372036854775807 pixels; allowed: 1 to 32768 each way");
+    EXPECT_NE(fault_of(with(kStrips, {{277, {kMost}}, {284, {2}}})), "");
+    EXPECT_NE(fault_of(with(kStrips, {{258, {kMost}}, {277, {kMost}}})), "");
     // 2^61 + 4 numbers of 8 bytes are 2^64 + 32.
     std::string bytes = file_of(kStrips);
     const std::size_t entry = 16 + 8 + 2 * 20;
@@ -149,6 +150,62 @@ TEST(WholeTiff, NumbersNear2To64AreNoWayRound) {
     const TempFolder folder;
     write_file(folder.path() / "a.tif", bytes);
     EXPECT_THROW(require_whole_tiff(folder.path() / "a.tif"), InputError);
+}
+
+// Strips of one byte that 64 KiB and more lie in.
+TEST(WholeTiff, OfSizesThatNoImageHasIsRefused) {
+    const std::string tiles = fault_of(with(
+        kTiles, {{258, {16}}, {322, {1U << 20U}}, {323, {1U << 20U}}, {324, {1000}}, {325, {9}}}));
+    EXPECT_EQ(tiles, "found tiles of 1048576 x 1048576 pixels for an image of 10 x 8");
+    EXPECT_EQ(fault_of(with(kStrips, {{32997, {5}}})), "found a depth of 5 pixels; allowed: 1");
+    EXPECT_NE(fault_of(with(kStrips, {{256, {32768}}, {257, {32768}}, {258, {64}}})), "");
+    // Of a tile each way that is far larger than the image, as small images have them.
+    EXPECT_EQ(fault_of(with(kTiles,
+                            {{258, {16}}, {322, {512}}, {323, {512}}, {324, {1000}}, {325, {9}}})),
+              "");
+}
+
+// "abcdefgh" ten times, by zlib, and what becomes of it.
+TEST(WholeTiff, AnyBitOfADeflatedStripIsLookedAt) {
+    std::string row;
+    for (int i = 0; i < 10; ++i) row += "abcdefgh";
+    std::string packed(200, '\0');
+    uLongf size = packed.size();
+    ASSERT_EQ(::compress(reinterpret_cast<Bytef*>(packed.data()),
+                         &size,
+                         reinterpret_cast<const Bytef*>(row.data()),
+                         row.size()),
+              Z_OK);
+    packed.resize(size);
+    const TempFolder folder;
+    const std::filesystem::path file = folder.path() / "a.tif";
+    const auto fault = [&](const std::string& pixels, std::uint64_t rows) -> std::string {
+        std::string bytes = file_of({{256, {10}},
+                                     {257, {rows}},
+                                     {258, {8}},
+                                     {259, {8}},
+                                     {273, {kPixelsAt}},
+                                     {279, {pixels.size()}}});
+        bytes.replace(kPixelsAt, pixels.size(), pixels);
+        write_file(file, bytes);
+        try {
+            require_whole_tiff(file);
+            require_sound_streams(file);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(fault(packed, 8), "");
+    EXPECT_EQ(fault(packed + "more", 8), "") << "what fills a strip up";
+    EXPECT_EQ(fault(packed, 3), "strip or tile 1 of 1 is damaged: it holds more than its 60 bytes");
+    EXPECT_EQ(fault(packed.substr(0, packed.size() - 1), 8),
+              "strip or tile 1 of 1 is damaged: its end is missing");
+    for (std::size_t bit = 0; bit < 8 * packed.size(); ++bit) {
+        std::string flipped = packed;
+        flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ static_cast<char>(1U << bit % 8));
+        EXPECT_NE(fault(flipped, 8), "") << bit;
+    }
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "image/exr.h"
+#include "support/absurd_images.h"
 #include "support/fit_rig.h"
 #include "support/temp_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,12 +39,22 @@ class FitSamplesOfAnImage : public testing::Test {
         ExrWriter exr(folder_.path() / "a.exr", kWidth_px, kHeight_px, {"Y"}, {});
         exr.write_rows(kHeight_px, plane);
         exr.finish();
+        return samples_of({"a.exr"});
+    }
+
+    [[nodiscard]] FitSamples samples_of(const std::vector<std::string>& names) const {
         Survey survey;
         survey.camera.mosaic = Mosaic::Rggb;
         survey.camera.black_level = 64.0F;
         survey.camera.white_level = 1000.0F;
-        survey.files = image_files({(folder_.path() / "a.exr").string()}, folder_.path() / "out");
-        survey.navigation = Navigation("track", {{.image = "a", .sled = {2.0, 0.1, 0.0}}});
+        std::vector<std::string> files;
+        std::vector<ImagePose> poses;
+        for (const std::string& name : names) {
+            files.push_back((folder_.path() / name).string());
+            poses.push_back({.image = without_extension(name).string(), .sled = {2.0, 0.1, 0.0}});
+        }
+        survey.files = image_files(files, folder_.path() / "out");
+        survey.navigation = Navigation("track", poses);
         return samples_of_images(survey, {kWidth_px, kHeight_px}, kAcross, 1, {});
     }
 
@@ -65,6 +77,29 @@ TEST_F(FitSamplesOfAnImage, ABlockOfAMosaicHasTheSlopesMiddle) {
                         kRounding * slope(column, row))
                 << column << ' ' << row << ' ' << c;
         }
+    }
+}
+
+// Headers that ask for gigabytes cost themselves alone.
+TEST_F(FitSamplesOfAnImage, ImagesOfAbsurdSizeAreSkippedByTheirHeaders) {
+    static_cast<void>(samples(0));
+    std::vector<std::string> names{"a.exr"};
+    for (const auto& [name, bytes] : absurd_images(kWidth_px, kHeight_px)) {
+        write_file(folder_.path() / name, bytes);
+        names.push_back(name);
+    }
+    const FitSamples found = samples_of(names);
+    EXPECT_EQ(found.images.size(), 1U);
+    ASSERT_EQ(found.skipped.size(), names.size() - 1);
+    for (const Skipped& one : found.skipped) {
+        for (const char* words : {"alloc", "memory", "vector"})
+            EXPECT_EQ(one.why.find(words), std::string::npos) << one.image << ": " << one.why;
+        if (!one.image.ends_with("tiff-large.tif")) continue;
+        EXPECT_EQ(one.why,
+                  fmt::format("found 16000 x 16000 pixels; allowed: {} x {}, as the rig's camera "
+                              "has",
+                              kWidth_px,
+                              kHeight_px));
     }
 }
 
