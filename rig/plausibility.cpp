@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -259,8 +261,8 @@ class Doubter {
 
     const Rig& rig_;
     std::vector<Doubt> doubts_;
-    std::vector<std::size_t> more_;      // of each doubt: how many further ones it stands for
-    std::vector<std::string> patterns_;  // of each doubt
+    std::vector<std::set<std::string>> more_;  // of each doubt: the keys that it stands for
+    std::vector<std::string> patterns_;        // of each doubt
     std::vector<std::pair<Place, double>> tilts_;
 };
 
@@ -272,11 +274,11 @@ void Doubter::add(const Place& place, std::string what) {
     // Strobes that are written alike are wrong alike: one line tells it.
     const auto same = std::ranges::find(patterns_, place.pattern);
     if (same != patterns_.end()) {
-        ++more_[static_cast<std::size_t>(same - patterns_.begin())];
+        more_[static_cast<std::size_t>(same - patterns_.begin())].insert(place.key);
         return;
     }
     patterns_.push_back(place.pattern);
-    more_.push_back(0);
+    more_.push_back({place.key});
     doubts_.push_back({.key = place.key, .line = place.line, .what = std::move(what)});
 }
 
@@ -477,48 +479,50 @@ void Doubter::judge_beam_tables() {
     }
 }
 
-// Red, where water itself takes most and what is in it hardly adds: nothing is clearer than pure
-// water.
+// Red, where water itself takes most and what is in it adds little: nothing is clearer than pure
+// water. All must be out of range, as by a unit; one knot may be anything.
 void Doubter::judge_absorption(const toml::table& root) {
     struct Pure {
         double lambda_nm;
         double per_m;  // Pope and Fry 1997
     };
     constexpr std::array kPure{Pure{600.0, 0.2224}, Pure{650.0, 0.340}, Pure{700.0, 0.624}};
-    constexpr double kLeast = 0.5;
+    constexpr double kLeast = 0.1;
     constexpr double kMost = 50.0;
     constexpr double kTypical = 1.2;
-    constexpr std::array kUnits{Unit{"1/cm", 100.0},
-                                Unit{"1/mm", 1000.0},
-                                Unit{"1/km", 1e-3},
-                                Unit{"decadic absorbances per metre", std::numbers::ln10}};
+    constexpr std::array kUnits{Unit{"1/cm", 100.0}, Unit{"1/mm", 1000.0}, Unit{"1/km", 1e-3}};
     const toml::node* node = root.at_path("water.absorption").node();
     if (node == nullptr || rig_.water.multiple == 0.0) return;
     const Spectrum& a = rig_.water.absorption_per_m;
-    for (const auto& [lambda_nm, pure_per_m] : kPure) {
-        if (!a.range().contains(lambda_nm)) continue;
-        const double per_m = a.at(lambda_nm);
-        const double ratio = per_m / pure_per_m;
-        if (per_m == 0.0 || (ratio >= kLeast && ratio <= kMost)) continue;
-        double nearest = std::numeric_limits<double>::infinity();
-        std::string fix;
-        for (const Unit& unit : kUnits) {
-            const double other = ratio * unit.factor;
-            const double away = std::abs(std::log(other / kTypical));
-            if (other < kLeast || other > kMost || !(away < nearest)) continue;
-            nearest = away;
-            fix = fmt::format("; {:.4g}/m if they are {}", per_m * unit.factor, unit.name);
-        }
-        add({.key = "water.absorption", .pattern = "water.absorption", .line = source_line(node)},
-            fmt::format("found {:.4g}/m at {:g} nm; usual: {:.3g} and more, of pure water, to "
-                        "{:.3g}{}",
-                        per_m,
-                        lambda_nm,
-                        pure_per_m,
-                        kMost * pure_per_m,
-                        fix));
+    const auto ratio_at = [&](const Pure& pure) { return a.at(pure.lambda_nm) / pure.per_m; };
+    std::vector<Pure> asked;
+    std::ranges::copy_if(kPure, std::back_inserter(asked), [&](const Pure& pure) {
+        return a.range().contains(pure.lambda_nm);
+    });
+    const auto is_all = [&](auto is_out) { return std::ranges::all_of(asked, is_out, ratio_at); };
+    if (asked.empty() || !(is_all([](double r) { return r > 0.0 && r < kLeast; }) ||
+                           is_all([](double r) { return r > kMost; }))) {
         return;
     }
+    const auto& [lambda_nm, pure_per_m] = asked.front();
+    const double per_m = a.at(lambda_nm);
+    double nearest = std::numeric_limits<double>::infinity();
+    std::string fix;
+    for (const Unit& unit : kUnits) {
+        const double ratio = ratio_at(asked.front()) * unit.factor;
+        const double away = std::abs(std::log(ratio / kTypical));
+        if (ratio < kLeast || ratio > kMost || !(away < nearest)) continue;
+        nearest = away;
+        fix = fmt::format("; {:.4g}/m if the table is in {}", per_m * unit.factor, unit.name);
+    }
+    add({.key = "water.absorption", .pattern = "water.absorption", .line = source_line(node)},
+        fmt::format("found {:.4g}/m at {:g} nm; usual: {:.3g} and more, which pure water has, to "
+                    "{:.3g}{}",
+                    per_m,
+                    lambda_nm,
+                    pure_per_m,
+                    kMost * pure_per_m,
+                    fix));
 }
 
 // What a strobe does to the floor in view.
@@ -631,13 +635,13 @@ std::vector<Doubt> Doubter::doubts() {
     judge_cones(root);
     judge_beam_tables();
     judge_absorption(root);
-    const auto by_line = [](const Doubt& doubt) { return doubt.line; };
     judge_light();
     for (std::size_t i = 0; i < doubts_.size(); ++i) {
-        if (more_[i] > 0) doubts_[i].what += fmt::format(" (and {} more like it)", more_[i]);
+        if (more_[i].size() > 1)
+            doubts_[i].what += fmt::format(" (and {} more like it)", more_[i].size() - 1);
     }
     std::ranges::stable_sort(doubts_, {}, [&](const Doubt& doubt) {
-        return doubt.line == 0 ? std::numeric_limits<int>::max() : by_line(doubt);
+        return doubt.line == 0 ? std::numeric_limits<int>::max() : doubt.line;
     });
     return std::move(doubts_);
 }
