@@ -53,6 +53,7 @@ constexpr double kLinear = 0.75;
 constexpr double kFallOff = 0.1;
 constexpr double kEven = 0.2;
 constexpr double kOffset = 0.01;
+constexpr double kVaried = 4.0;
 constexpr double kMostOfDarkest = 0.5;
 constexpr double kBlockNoise = 0.1;  // by which b may exceed what is darkest, of noise
 
@@ -346,9 +347,10 @@ bool check_encoding(std::span<const ImageLook> looks,
                     std::vector<Suspicion>& found) {
     const Line& line = is_known(powers.over) ? powers.over : powers.within;
     const bool is_said = !looks.empty() && std::ranges::all_of(looks, &ImageLook::says_srgb);
-    const bool is_denied = is_known(line) && line.slope >= kLinear;
-    const bool is_seen = is_near(line, kEncoded, kGamma) &&
-                         (is_said || is_near(powers.within, kEncoded, 2 * kGamma));
+    const auto is_linear = [](const Line& one) { return is_known(one) && one.slope >= kLinear; };
+    const bool is_denied = is_linear(powers.over) || is_linear(powers.within);
+    const bool is_seen = is_near(powers.within, kEncoded, kGamma) && is_known(powers.over) &&
+                         std::abs(powers.over.slope - kEncoded) <= 2.0 * kGamma;
     if (!is_seen && (!is_said || is_denied)) return false;
     std::string what = "the images look gamma-encoded, as a camera's JPEG is";
     if (is_known(line)) {
@@ -374,58 +376,86 @@ bool check_corrected(const Powers& powers, std::vector<Suspicion>& found) {
     return true;
 }
 
-// d = b (1 - rho) + phi_c rho q by least squares, each row over its d, for errors are relative.
+// A channel of an image.
+struct Darkness {
+    std::size_t channel = 0;
+    double darkest = 0.0;  // d
+    double median = 0.0;   // q
+    double share = 0.0;    // rho
+};
+
+struct Offset {
+    double b = 0.0;
+    double error = std::numeric_limits<double>::infinity();
+};
+
+// d = b (1 - phi_c rho) + phi_c rho q by least squares, each row over its d, for errors are
+// relative; phi of the factor before b is that of the last step.
+Offset offset_of(const std::vector<Darkness>& all, std::size_t images) {
+    constexpr int kSteps = 4;
+    // Channels of an image show one floor: they are one observation of it.
+    const double freedom = static_cast<double>(images) - 4.0;
+    if (all.empty() || freedom < 1.0) return {};
+    Eigen::Vector4d fit(0.0, 1.0, 1.0, 1.0);
+    Offset offset;
+    for (int step = 0; step < kSteps; ++step) {
+        Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::ssize(all), 4);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const auto& [channel, d, q, rho] = all[i];
+            const auto c = static_cast<Eigen::Index>(1 + channel);
+            const auto row = static_cast<Eigen::Index>(i);
+            rows(row, 0) = (1.0 - fit(c) * rho) / d;
+            rows(row, c) = rho * q / d;
+        }
+        const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.rows());
+        const Eigen::Matrix4d normal = rows.transpose() * rows;
+        // Of a mono camera two channels have no row.
+        const Eigen::Matrix4d inverse = normal.completeOrthogonalDecomposition().pseudoInverse();
+        fit = inverse * (rows.transpose() * ones);
+        offset = {.b = fit(0),
+                  .error = std::sqrt((ones - rows * fit).squaredNorm() / freedom * inverse(0, 0))};
+    }
+    return offset;
+}
+
 bool check_black(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
     if (looks.size() < kEnoughImages) return false;
-    std::vector<Eigen::Vector4d> rows;
+    std::vector<Darkness> all;
     double least = std::numeric_limits<double>::infinity();
     double brightest = 0.0;
     for (const ImageLook& look : looks) {
         for (std::size_t c = 0; c < kChannels; ++c) {
-            const double d = look.frame.darkest[c];
-            const double rho = look.frame.map_share[c];
-            if (look.frame.median[c] == 0.0) continue;  // of a mono camera
-            brightest = std::max(brightest, look.frame.median[c]);
-            if (!(d > 0.0) || !(rho > 0.0)) return false;  // it does fall to black
-            least = std::min(least, d);
-            Eigen::Vector4d row = Eigen::Vector4d::Zero();
-            row(0) = (1.0 - rho) / d;
-            row(static_cast<Eigen::Index>(1 + c)) = rho * look.frame.median[c] / d;
-            rows.push_back(row);
+            const Darkness one{.channel = c,
+                               .darkest = look.frame.darkest[c],
+                               .median = look.frame.median[c],
+                               .share = look.frame.map_share[c]};
+            if (one.median == 0.0) continue;                               // of a mono camera
+            if (!(one.darkest > 0.0) || !(one.share > 0.0)) return false;  // it does fall to black
+            least = std::min(least, one.darkest);
+            brightest = std::max(brightest, one.median);
+            all.push_back(one);
         }
     }
-    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d right = Eigen::Vector4d::Zero();
-    for (const Eigen::Vector4d& row : rows) {
-        normal += row * row.transpose();
-        right += row;
-    }
-    const Eigen::Matrix4d inverse = normal.completeOrthogonalDecomposition().pseudoInverse();
-    const Eigen::Vector4d fit = inverse * right;
-    double squares = 0.0;
-    for (const Eigen::Vector4d& row : rows) squares += std::pow(1.0 - row.dot(fit), 2.0);
-    const double freedom = static_cast<double>(rows.size()) - 4.0;
-    const double b = fit(0);
-    const double error = std::sqrt(squares / freedom * inverse(0, 0));
-    if (std::getenv("APHOTIC_DEBUG_BLACK"))
-        fmt::print(stderr,
-                   "black: b {} +- {} least {} brightest {} phi {} {} {}\n",
-                   b,
-                   error,
-                   least,
-                   brightest,
-                   fit(1),
-                   fit(2),
-                   fit(3));
-    if (b < kStandardErrors * error || b < kOffset * brightest || b < kMostOfDarkest * least ||
-        b > (1.0 + kBlockNoise) * least) {
+    const auto [b, error] = offset_of(all, looks.size());
+    // Of light that hardly varies anything is an offset.
+    const auto is_varied = [&](std::size_t c) {
+        double dimmest = std::numeric_limits<double>::infinity();
+        double most = 0.0;
+        for (const Darkness& one : all) {
+            if (one.channel != c) continue;
+            dimmest = std::min(dimmest, one.median - b);
+            most = std::max(most, one.median - b);
+        }
+        return most > kVaried * dimmest;
+    };
+    if (!(is_varied(0) || is_varied(1) || is_varied(2)) || !(b >= kStandardErrors * error) ||
+        b < kOffset * brightest || b < kMostOfDarkest * least || b > (1.0 + kBlockNoise) * least) {
         return false;
     }
     found.push_back(
         {.about = "black-level",
-         .what = fmt::format("no part of any image is darker than {:.3g}, in whatever light, as by "
-                             "an offset of about {:.3g} that light does not explain. Is the black "
-                             "level left out?",
+         .what = fmt::format("no part of any image is darker than {:.3g}, in whatever light: light "
+                             "does not explain about {:.3g} of that. Is the black level left out?",
                              least,
                              b)});
     return true;
@@ -643,9 +673,8 @@ std::vector<Suspicion> suspicions(std::span<const ImageLook> looks,
     const bool has_line = has_altitudes(lit_looks) && !is_one_altitude(lit_looks);
     const Powers powers = powers_of(lit_looks, has_line);
     // The first of these explains what the others would say.
-    if (!check_unit(lit_looks, rig_altitude_m, found) &&
-        !check_encoding(lit_looks, powers, found) && !check_corrected(powers, found) &&
-        !check_black(lit_looks, found)) {
+    if (!check_unit(looks, rig_altitude_m, found) && !check_black(lit_looks, found) &&
+        !check_encoding(lit_looks, powers, found) && !check_corrected(powers, found)) {
         if (has_line) check_altitude(lit_looks, found);
         check_gains(lit_looks, found);
     }

@@ -17,17 +17,17 @@
 //              Told first where the images' altitudes, by their median, are over kOtherUnit times
 //              the rig's own or under 1 / kOtherUnit of it: a unit that makes them alike is named.
 // encoding     Numbers that are shown by a gamma of 2.2 have s = 1/2.2, over the images and within
-//              each. Told where s is within kGamma of that, or where a file says that it is sRGB,
-//              as a camera's JPEG does, and no s of kLinear and more denies it.
+//              each. Told where s is within kGamma of that within images, and about that over
+//              them; or where the files say that they are sRGB, as a camera's JPEG is, and no s of
+//              kLinear and more denies it.
 // corrected    Of images that are even already, s is 0 within each image, by under kEven, where the
 //              maps vary by over kFallOff (standard deviation of the logarithm), and over the
 //              images too.
-// black level  An offset b that all samples have. Of an image's channel let d be the darkest
-// block's
-//              mean, q the median of all blocks, and rho the map's own d/q. Over images and
-//              channels d = b (1 - rho) + phi_c rho q, with a factor of each channel's floor. Told
-//              where b is over five of its standard errors and over kOffset of the largest q, and
-//              is most of the least d, which it cannot exceed: offsets alone are as dark as that.
+// black level  An offset b that all samples have. Of an image's channel let d be the mean of the
+//              darkest block, q the median of all blocks, and rho the map's own d/q. Over images
+//              and channels d = b + phi_c rho (q - b), with a factor of each channel's floor. Told
+//              where b is over five of its standard errors and over kOffset of the largest q, q - b
+//              varies kVaried-fold, and b is most of the least d, which it cannot exceed.
 // map          Where maps are of light that has travelled another way, their colour is another too:
 //              told where the gains of two channels differ by over kGains; as "altitude" where
 //              images have one.
