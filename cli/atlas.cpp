@@ -13,10 +13,10 @@
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
+#include "cli/rig_file.h"
 #include "image/exr.h"
 #include "lightmap/altitude_fit.h"
 #include "lightmap/atlas_export.h"
-#include "rig/rig_reader.h"
 
 #include <fmt/format.h>
 
@@ -153,6 +153,7 @@ struct AtlasCommandOptions {
     AxisTexts axes;
     double tolerance = 0.0;  // 0: every value of the axes
     double model_tolerance = kModelTolerance;
+    bool strict = false;
     std::vector<std::string> exports;
     WorkShare share{};
     LightmapOptions map{.error = 1e-5, .threads = all_cores()};
@@ -384,7 +385,7 @@ MadeAtlas make(const AtlasCommandOptions& options, const Rig& rig, const MapAxes
 ExitStatus make_atlas(AtlasCommandOptions options) {
     options.folder = share_folder(options.folder, options.share).string();
     const auto start = std::chrono::steady_clock::now();
-    const Rig rig = read_rig(options.rig_file);
+    const Rig rig = read_plausible_rig(options.rig_file, options.strict);
     const MapAxes finest = axes_of(options.axes, rig);
     MadeAtlas made = naming(options.rig_file, [&] { return make(options, rig, finest); });
     made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -414,6 +415,7 @@ Action configure_atlas(CLI::App& app) {
         ->check(CLI::IsMember({"bayer", "exponential", "oplab"}))
         ->option_text("bayer,exponential,oplab");
     add_model_tolerance(app, options->model_tolerance);
+    add_strict_option(app, options->strict);
     add_jobs(app, options->map.threads, "Map with N threads");
     add_share(app,
               "--share",

@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/offered.h"
 #include "base/words.h"
 #include "cli/outcome.h"
 #include "image/exr.h"
@@ -23,10 +24,11 @@ double value_on(const char* option,
                 double unit) {
     if (given) return *given * unit;
     if (values.size() == 1) return values.front();
-    throw InputError("{}: found none; allowed: from {:.6g} to {:.6g}, which the atlas covers",
+    constexpr double kRounding = 1e-12;  // a bound of 5 degrees is printed as 5
+    throw InputError("{}: found none; allowed: from {} to {}, which the atlas covers",
                      option,
-                     values.front() / unit,
-                     values.back() / unit);
+                     at_least(values.front() / unit - kRounding, 6),
+                     at_most(values.back() / unit + kRounding, 6));
 }
 
 MapPoint point_of(const LightmapCommandOptions& options, const MapAxes& axes) {

@@ -30,6 +30,7 @@ struct LightmapCommandOptions {
     PreviewOptions preview;
     bool ignore_needs = false;
     double model_tolerance = kModelTolerance;
+    bool strict = false;
     bool json = false;
 };
 

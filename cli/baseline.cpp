@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/navigation_options.h"
 #include "cli/options.h"
+#include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "survey/baseline_run.h"
@@ -38,7 +39,7 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
     options.baseline.baseline = static_cast<Baseline>(name - kBaselineNames.begin());
     const std::filesystem::path& folder = options.baseline.run.folder;
     Survey survey{.files = image_files(options.images, folder), .camera = options.camera};
-    survey.camera = camera_of(survey.camera, survey.files, options.rig);
+    survey.camera = camera_of(survey.camera, survey.files, options.rig, options.strict);
     if (needs_altitude(options.baseline.baseline) && !options.navigation.source.empty()) {
         survey.navigation = read_navigation_with(options.rig, options.navigation, survey.files);
     }

@@ -11,6 +11,7 @@
 #include "cli/model_error.h"
 #include "cli/navigation_options.h"
 #include "cli/options.h"
+#include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
@@ -144,7 +145,7 @@ Task task_of(const CorrectCommandOptions& options) {
         expect_size_of(survey.light, survey.camera);
         return {.survey = std::move(survey)};
     }
-    Rig rig = read_rig(options.rig);
+    Rig rig = read_plausible_rig(options.rig, options.strict);
     survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
     const std::optional<PlaneSize> images = usual_size(survey.files, survey.camera);
     require_whole_view(survey.files, survey.camera, rig.camera);

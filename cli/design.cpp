@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/output_folder.h"
+#include "cli/rig_file.h"
 #include "survey/design_files.h"
 
 #include <fmt/format.h>
@@ -35,6 +36,7 @@ struct DesignCommandOptions {
     std::vector<double> altitude_m;
     std::vector<double> pitch_deg;
     std::vector<double> roll_deg;
+    bool strict = false;
     bool json = false;
 };
 
@@ -93,6 +95,7 @@ void print_design(const Rig& rig, const DesignRequest& request, const DesignResu
 ExitStatus design_rig(const DesignCommandOptions& options) {
     const RigText text{fs::path(options.rig)};
     const Rig rig = text.rig();
+    check_plausible(rig, options.rig, options.strict);
     DesignRequest request = request_of(options, rig);
     naming(options.rig, [&] {  // refused before there is a folder
         return DesignSpace(text, request.freedom, corner_poses(request.envelope));
@@ -170,6 +173,7 @@ Action configure_design(CLI::App& app) {
     DesignRequest& request = options->request;
     request.threads = all_cores();
     add_rig(app, options->rig);
+    add_strict_option(app, options->strict);
     add_output_folder(app, options->folder)->required();
     add_freedom(app, *options);
     add_envelope(app, *options);

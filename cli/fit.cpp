@@ -13,6 +13,7 @@
 #include "cli/navigation_options.h"
 #include "cli/options.h"
 #include "cli/output_folder.h"
+#include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "survey/fit_json.h"
 #include "survey/fit_page.h"
@@ -161,6 +162,7 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     const RigText text(std::filesystem::path(options.rig));
     const Rig rig = text.rig();
     naming(options.rig, [&] { require_bare_floor(rig); });
+    check_plausible(rig, options.rig, options.strict);
     const OutputPlace place(options.folder);
     const RunWatch watch = terminal_watch(options.strict);
     const FitSamples samples = samples_for(options, rig, watch);

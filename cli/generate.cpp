@@ -10,8 +10,8 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
+#include "cli/rig_file.h"
 #include "plugin/render.h"
-#include "rig/rig_reader.h"
 #include "scene_gen/quick_look.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ struct GenerateCommandOptions {
 };
 
 ExitStatus write_quick_look(const GenerateCommandOptions& options) {
-    const Rig rig = read_rig(options.planning.rig_file);
+    const Rig rig = read_plausible_rig(options.planning.rig_file, options.planning.strict);
     write_text_file(options.quick_look,
                     quick_look_sdl(rig, fs::path(options.planning.rig_file).parent_path()));
     fmt::print("{}: what aphotic.inc takes of this rig for a quick look\n", options.quick_look);

@@ -10,6 +10,7 @@
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
+#include "cli/rig_file.h"
 #include "plugin/render.h"
 #include "rig/rig_reader.h"
 #include "scene_gen/reweighting.h"
@@ -32,6 +33,7 @@ struct IntegrateCommandOptions {
     std::string images_folder;
     double tolerance = 1e-3;
     double model_tolerance = kModelTolerance;
+    bool strict = false;
     PreviewOptions preview;
     bool ignore_needs = false;
     bool json = false;
@@ -90,6 +92,8 @@ Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest
 }
 
 ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
+    if (!options.rig_file.empty())
+        check_plausible(read_rig(options.rig_file), options.rig_file, options.strict);
     const fs::path images = images_folder(options);
     require_own_folder(images, options);
     if (!share_folders(options.folder).empty()) {
@@ -131,6 +135,7 @@ Action configure_integrate(CLI::App& app) {
         ->option_text("E")
         ->capture_default_str();
     add_model_tolerance(app, options->model_tolerance);
+    add_strict_option(app, options->strict);
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json);
     add_preview_options(app, options->preview);

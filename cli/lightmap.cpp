@@ -12,6 +12,7 @@
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
+#include "cli/rig_file.h"
 #include "image/exr.h"
 #include "image/preview.h"
 #include "rig/rig_reader.h"
@@ -31,6 +32,7 @@ Rig rig_of(const LightmapCommandOptions& options) {
     if (options.pitch_deg) rig.sled.pitch_rad = *options.pitch_deg * kRadiansPerDegree;
     if (options.roll_deg) rig.sled.roll_rad = *options.roll_deg * kRadiansPerDegree;
     if (options.water_multiple) rig.water.multiple = *options.water_multiple;
+    check_plausible(rig, options.source, options.strict);
     return rig;
 }
 
@@ -151,7 +153,7 @@ ExitStatus make_lightmap(const LightmapCommandOptions& options) {
 }
 
 void refuse_what_needs_a_rig(const CLI::App& app, const LightmapCommandOptions& options) {
-    for (const char* option : {"--per-strobe", "--per-cone", "--error", "--no-veil"}) {
+    for (const char* option : {"--per-strobe", "--per-cone", "--error", "--no-veil", "--strict"}) {
         if (app.count(option) == 0) continue;
         throw InputError(
             "{}: found with the atlas {}; allowed: with a rig", option, options.source);
@@ -219,6 +221,7 @@ Action configure_lightmap(CLI::App& app) {
         [options] { options->map.has_veil = false; },
         "Leave out the light that the water scatters into the view");
     add_model_tolerance(app, options->model_tolerance);
+    add_strict_option(app, options->strict);
     add_jobs(app, options->map.threads, "Map with N threads");
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json);

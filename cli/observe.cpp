@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/navigation_options.h"
 #include "cli/options.h"
+#include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "survey/observation.h"
 
@@ -57,7 +58,7 @@ void print_observation(const Observation& observation, const std::string& map_fi
 
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
     Survey survey{.files = image_files(options.images, options.output), .camera = options.camera};
-    survey.camera = camera_of(survey.camera, survey.files, options.rig);
+    survey.camera = camera_of(survey.camera, survey.files, options.rig, options.strict);
     survey.navigation = read_navigation_with(options.rig, options.navigation, survey.files);
     const Observation observation =
         observe(survey, options.observation, terminal_watch(options.strict));

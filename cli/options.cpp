@@ -2,6 +2,7 @@
 #include "cli/options.h"
 
 #include "base/error.h"
+#include "cli/rig_file.h"
 
 #include <algorithm>
 #include <map>
@@ -85,6 +86,7 @@ void add_wavelength_options(CLI::App& app, PlanningOptions& options) {
     constexpr double kLeastPath_m = 1e-6;
     constexpr double kMostPath_m = 1e6;
     add_rig(app, options.rig_file);
+    add_strict_option(app, options.strict);
     const OptionGroup group(app, kWavelengthOptions);
     auto* tolerance =
         app.add_option(

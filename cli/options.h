@@ -99,6 +99,7 @@ struct PlanningOptions {
     bool ignore_needs = false;
     double stall_timeout_s = kStall_s;
     double model_tolerance = kModelTolerance;
+    bool strict = false;
 };
 
 // Which POV-Ray, and how long it may be silent.

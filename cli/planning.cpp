@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/words.h"
+#include "cli/rig_file.h"
 #include "plugin/probe.h"
 #include "rig/rig_reader.h"
 
@@ -125,7 +126,11 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
 
 PlannedRender plan_rig(const PlanningOptions& options) {
     Rig rig = read_rig(options.rig_file);
-    if (options.sled) rig.sled = *options.sled;
+    if (options.sled) {
+        rig.sled = *options.sled;
+    } else {
+        check_plausible(rig, options.rig_file, options.strict);
+    }
     PlanRequest request = request_of(options);
     const auto start = std::chrono::steady_clock::now();
     request.scene.user_scene = surveyed(rig, options);

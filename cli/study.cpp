@@ -11,8 +11,8 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
+#include "cli/rig_file.h"
 #include "image/exr.h"
-#include "rig/rig_reader.h"
 #include "scene_gen/pov_scene.h"
 #include "scene_gen/scene_set.h"
 #include "validation/study_run.h"
@@ -37,6 +37,7 @@ struct StudyCommandOptions {
     double stall_timeout_s = kStall_s;
     double tolerance = 1e-3;
     bool quick = false;
+    bool strict = false;
     bool json = false;
     bool ignore_needs = false;
 };
@@ -134,7 +135,7 @@ DiskNeeds needs_of_renders(const Rig& rig, const std::vector<StudySetting>& sett
 
 ExitStatus study_rig(const StudyCommandOptions& options) {
     const fs::path folder = options.folder;
-    Rig rig = read_rig(options.rig_file);
+    Rig rig = read_plausible_rig(options.rig_file, options.strict);
     if (!rig.scene.empty()) {
         throw InputError(
             "{}: scene: found {}; allowed: none, for a study is of the rig's own floor, which the "
@@ -183,6 +184,7 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
 Action configure_study(CLI::App& app) {
     const auto options = std::make_shared<StudyCommandOptions>();
     add_rig(app, options->rig_file);
+    add_strict_option(app, options->strict);
     add_output_folder(app, options->folder)->required();
     app.add_option("--tolerance",
                    options->tolerance,

@@ -13,9 +13,9 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
+#include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "plugin/survey_render.h"
-#include "rig/rig_reader.h"
 #include "survey/camera_numbers.h"
 #include "survey/first_look.h"
 #include "survey/navigation_file.h"
@@ -157,7 +157,7 @@ void fly(const SurveyCommandOptions& options, SimulatedSurvey& survey) {
 SimulatedSurvey survey_of(const SurveyCommandOptions& options) {
     const std::string& file = options.planning.rig_file;
     SimulatedSurvey survey{.folder = options.folder,
-                           .rig = read_rig(file),
+                           .rig = read_plausible_rig(file, options.planning.strict),
                            .legs = {},
                            .corners = {},
                            .errors = options.errors,

@@ -5,7 +5,7 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/option_checks.h"
-#include "rig/rig_reader.h"
+#include "cli/rig_file.h"
 #include "survey/camera_of_files.h"
 
 #include <fmt/format.h>
@@ -197,9 +197,10 @@ CameraNumbers camera_of(const CameraNumbers& said,
 
 CameraNumbers camera_of(const CameraNumbers& said,
                         const std::vector<ImageFile>& files,
-                        const std::string& rig) {
+                        const std::string& rig,
+                        bool strict) {
     if (rig.empty()) return camera_of(said, files, nullptr);
-    const Camera camera = read_rig(rig).camera;
+    const Camera camera = read_plausible_rig(rig, strict).camera;
     return camera_of(said, files, &camera);
 }
 
@@ -219,10 +220,6 @@ void print_camera(const CameraNumbers& camera) {
     if (camera.exposure_by != ExposureBy::Nothing)
         words.push_back("brought to " + words_of(camera.reference));
     if (!words.empty()) fmt::print("  camera: {}\n", fmt::join(words, ", "));
-}
-
-void add_strict_option(CLI::App& app, bool& strict) {
-    app.add_flag("--strict", strict, "Treat warnings about the survey as errors");
 }
 
 RunWatch terminal_watch(bool strict) {

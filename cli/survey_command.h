@@ -35,12 +35,11 @@ void add_survey_rig(CLI::App& app, std::string& rig);
                                       const Camera* rig);
 [[nodiscard]] CameraNumbers camera_of(const CameraNumbers& said,
                                       const std::vector<ImageFile>& files,
-                                      const std::string& rig);  // empty: none
+                                      const std::string& rig,  // empty: none
+                                      bool strict);
 
 // "camera: RGGB, black level 64, white level 4095"; nothing where there is nothing to say.
 void print_camera(const CameraNumbers& camera);
-
-void add_strict_option(CLI::App& app, bool& strict);
 
 // A line of progress, a warning of what looks wrong, or when strict an InputError, and each image
 // that is skipped.

@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/offered.h"
 #include "rig/geometry.h"
 #include "rig/lens.h"
 #include "rig/path_range.h"
@@ -339,10 +340,10 @@ std::string DesignSpace::why_not(const std::vector<StrobePlace>& places) const {
                 const double height_m = height_above(floor_plane(pose), end_m);
                 if (height_m >= kRoomOverFloor * pose.altitude_m) continue;
                 return fmt::format(
-                    "strobe '{}': found {:.3g} m over the floor at an altitude of "
+                    "strobe '{}': found {} m over the floor at an altitude of "
                     "{:.4g} m; allowed: at least {} of it, in every pose",
                     strobe.name,
-                    height_m,
+                    at_most(height_m),
                     pose.altitude_m,
                     kRoomOverFloor);
             }

@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/offered.h"
 #include "base/parallel.h"
 #include "image/camera_image.h"
 #include "lightmap/row_light.h"
@@ -460,11 +461,11 @@ void LightmapMaker::require_served(const Sled& sled, bool is_before, bool is_bey
     if (!is_before && (!is_beyond || paths_.has_horizon)) return;
     throw InputError(
         fmt::format("{}: the image sees paths {} "
-                    "than the tables serve; allowed: from {:.6g} to {:.6g} m",
+                    "than the tables serve; allowed: from {} to {} m",
                     in_words(sled),
                     is_before ? "shorter" : "longer",
-                    paths_.shortest_m,
-                    paths_.longest_m));
+                    at_least(paths_.shortest_m, 6),
+                    at_most(paths_.longest_m, 6)));
 }
 
 Lightmap LightmapMaker::map(const Sled& sled) const {

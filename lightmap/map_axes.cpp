@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/offered.h"
 
 #include <fmt/format.h>
 
@@ -51,15 +52,15 @@ struct Place {
 
 Place place_on(const NamedAxis& axis, double value) {
     const std::vector<double>& values = *axis.values;
+    constexpr double kRounding = 1e-3;  // a bound of 5 degrees is printed as 5
     const double room = kSame * std::max(1.0, std::abs(value));
     if (value < values.front() - room || value > values.back() + room || std::isnan(value)) {
         throw InputError(
-            fmt::format("{}: found {:.6g}; allowed: from {:.6g} to {:.6g}, which the "
-                        "atlas covers",
+            fmt::format("{}: found {:.9g}; allowed: from {} to {}, which the atlas covers",
                         axis.name,
                         value * axis.shown,
-                        values.front() * axis.shown,
-                        values.back() * axis.shown));
+                        at_least((values.front() - kRounding * room) * axis.shown, 6),
+                        at_most((values.back() + kRounding * room) * axis.shown, 6)));
     }
     if (values.size() == 1) return {.lower = 0, .share = 0.0};
     const auto above = std::upper_bound(values.begin() + 1, values.end() - 1, value);

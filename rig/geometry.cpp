@@ -2,6 +2,7 @@
 #include "rig/geometry.h"
 
 #include "base/error.h"
+#include "base/offered.h"
 #include "rig/lens.h"
 #include "rig/solid.h"
 
@@ -139,9 +140,9 @@ void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid) {
     const double height_m = height_above(floor, strobe.position_m);
     if (height_m < kLeastDistance_m) {
         throw InputError(fmt::format(
-            "strobe '{}' stands {:.4f} m {} the sea floor; allowed: at least {} m over it",
+            "strobe '{}' stands {} m {} the sea floor; allowed: at least {} m over it",
             strobe.name,
-            std::abs(height_m),
+            height_m < 0.0 ? fmt::format("{:.4f}", -height_m) : at_most_text(height_m, 4),
             height_m < 0.0 ? "under" : "over",
             kLeastDistance_m));
     }

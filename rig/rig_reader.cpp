@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file_beside.h"
 #include "base/nearest.h"
+#include "base/offered.h"
 #include "base/printable.h"
 #include "base/sha256.h"
 #include "image/image_size.h"
@@ -707,10 +708,10 @@ void require_place(const Shape& shape, const std::vector<Strobe>& strobes) {
         const double away_m = distance_m(shape, strobe.position_m);
         if (away_m >= kLeastDistance_m && !holds(shape, strobe.position_m)) continue;
         throw InputError(
-            fmt::format("found strobe '{}' inside the object or {:.3g} m off it; allowed: at "
+            fmt::format("found strobe '{}' inside the object or {} m off it; allowed: at "
                         "least {} m off",
                         strobe.name,
-                        away_m,
+                        at_most(away_m),
                         kLeastDistance_m));
     }
 }

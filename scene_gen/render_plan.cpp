@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/offered.h"
 #include "scene_gen/certificate.h"
 #include "scene_gen/povray_veil.h"
 #include "scene_gen/veil_planes.h"
@@ -12,11 +13,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace aphotic {
 
 namespace {
+
+// Of what the veil and the frames are off by, whatever the wavelengths: the least to try.
+constexpr double kVeilsNext = 1.1;
 
 std::vector<double> wavelengths_of(std::span<const WeightedWavelength> rule) {
     std::vector<double> lambda_nm;
@@ -85,66 +90,71 @@ void share_frames(const Rig& rig,
 
 // The fewest wavelengths that keep the tolerance, and keep it by the certificate too: where only
 // the fit finds them good enough, the fit is asked for more. Where sharing frames behind a port
-// breaks the tolerance, none is shared. False when no such plan is found.
-bool keeps(double tolerance,
-           const Rig& rig,
-           const QuadratureFitter& fitter,
-           const PlanRequest& request,
-           RenderPlan& plan) {
+// breaks the tolerance, none is shared. What is returned is what the plan promises: over the
+// tolerance where no such plan is found.
+double best_promise(double tolerance,
+                    const Rig& rig,
+                    const QuadratureFitter& fitter,
+                    const PlanRequest& request,
+                    RenderPlan& plan) {
     constexpr int kMostTrials = 4;
     constexpr double kStricter = 0.7;
+    const double fixed = plan.frame_error + plan.veil_error;
+    if (plan.veil_error > 0.0 && tolerance <= fixed) return kVeilsNext * fixed;
     PlanTarget target{.tolerance = tolerance - plan.veil_error,
                       .frame_error = plan.frame_error,
                       .step = wavelengths_per_step(rig, request.scene),
                       .most = most_wavelengths(plan.family)};
     plan.tolerance = tolerance;
     plan.scene.bailout = kRayShare * tolerance;
+    double promise = std::numeric_limits<double>::infinity();
     for (int trial = 0; trial < kMostTrials; ++trial) {
-        std::vector<double> lambda_nm;
-        try {
-            lambda_nm =
-                wavelengths_of(plan_wavelengths(fitter, rig.camera.range, target).wavelengths);
-        } catch (const InputError&) {
-            if (trial == 0) throw;
-            return false;
-        }
+        const FittedRule rule = plan_wavelengths(fitter, rig.camera.range, target);
+        const double fitted = rule.promise(plan.frame_error);
+        if (fitted > target.tolerance) return std::min(promise, fitted + plan.veil_error);
+        const std::vector<double> lambda_nm = wavelengths_of(rule.wavelengths);
         plan.scene.pixel_shift = pixel_shift(rig, request.scene);
         share_frames(rig, fitter, lambda_nm, plan);
         if (plan.promise() > tolerance && plan.scene.pixel_shift > 0.0) {
             plan.scene.pixel_shift = 0.0;
             share_frames(rig, fitter, lambda_nm, plan);
         }
-        if (plan.promise() <= tolerance) return true;
+        promise = std::min(promise, plan.promise());
+        if (promise <= tolerance) return promise;
         const double allowed = tolerance - plan.frame_error;
         target.tolerance = plan.frame_error + kStricter * (target.tolerance - plan.frame_error) *
                                                   allowed / (plan.promise() - plan.frame_error);
     }
-    return false;
+    return promise;
 }
 
+// Where it cannot be kept, the message offers a tolerance that was tried: searches are not so even
+// that what is kept here is kept by every larger one.
 void plan_to_tolerance(const Rig& rig,
                        const QuadratureFitter& fitter,
                        const PlanRequest& request,
                        RenderPlan& plan) {
-    const double least = plan.frame_error + plan.veil_error;
-    if (plan.veil_error > 0.0 && request.tolerance <= least) {
-        throw InputError(
-            fmt::format("tolerance: found {}; allowed: over {:.3g}, for the veil is off by {:.2g}, "
-                        "whatever the wavelengths, and half floats by {:.2g}",
-                        request.tolerance,
-                        least,
-                        plan.veil_error,
-                        plan.frame_error));
-    }
-    if (keeps(request.tolerance, rig, fitter, request, plan)) return;
     constexpr double kNext = 1.3;
-    double kept = kNext * request.tolerance;
-    while (kept < 1.0 && !keeps(kept, rig, fitter, request, plan)) kept *= kNext;
+    double promise = best_promise(request.tolerance, rig, fitter, request, plan);
+    if (promise <= request.tolerance) return;
+    const double least = promise;
+    for (double offered = at_least(promise); offered <= 1.0;
+         offered = at_least(std::max(promise, kNext * offered))) {
+        promise = best_promise(offered, rig, fitter, request, plan);
+        if (promise > offered) continue;
+        throw InputError("tolerance: found {}; allowed: {}, which {} wavelengths keep{}",
+                         request.tolerance,
+                         offered,
+                         plan.wavelengths.size(),
+                         plan.veil_error > 0.0
+                             ? fmt::format("; the veil alone is off by {:.2g}", plan.veil_error)
+                             : "");
+    }
     throw InputError(
-        fmt::format("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
-                    request.tolerance,
-                    tolerance_to_ask_for(std::min(kept, 1.0)),
-                    plan.wavelengths.size()));
+        "tolerance: found {}, and no plan for this rig keeps any up to 1: the best found promises "
+        "{:.3g}; allowed: --fitted, which takes what so many wavelengths keep",
+        request.tolerance,
+        least);
 }
 
 // A slipped point in the focal length is the likelier cause of paths that no plan serves: no lens
@@ -157,13 +167,12 @@ void plan_to_tolerance(const Rig& rig,
         0.5 * camera.pixel_pitch_m * std::hypot(camera.width_px, camera.height_px);
     const double view_rad = 2.0 * std::atan(half_m / camera.focal_length_m);
     if (view_rad <= kMostView_rad) throw InputError(why);
-    throw InputError(fmt::format(
-        "camera.focal_length_mm: found {:.6g}, a view of {:.1f} degrees from corner to corner; "
-        "allowed: {:.3g} and more for 150 degrees, or another {}",
+    throw InputError(
+        "{}; or another camera.focal_length_mm: {:.6g} makes a view of {:.1f} degrees from corner "
+        "to corner, and no lens without distortion has over 135",
+        why,
         kMillimetresPerMetre * camera.focal_length_m,
-        view_rad / kRadiansPerDegree,
-        kMillimetresPerMetre * half_m / std::tan(0.5 * kMostView_rad),
-        why));
+        view_rad / kRadiansPerDegree);
 }
 
 // What POV-Ray's samples find of a shadow's edge has no bound.

@@ -2,6 +2,7 @@
 #include "scene_gen/reweighting.h"
 
 #include "base/error.h"
+#include "base/offered.h"
 #include "rig/geometry_signature.h"
 #include "rig/solid.h"
 #include "scene_gen/certificate.h"
@@ -137,9 +138,9 @@ Manifest reintegrate(const Rig& changed, const Manifest& manifest, double tolera
     const double promise = rule.promise(manifest.frame_error);
     if (promise > tolerance) {
         throw InputError(
-            fmt::format("the frames can be this rig's image to {:.3g} only; allowed: {}, the "
+            fmt::format("the frames can be this rig's image to {} only; allowed: {}, the "
                         "tolerance; {}",
-                        promise,
+                        at_least(promise),
                         tolerance,
                         lacking(fitter, changed, frames, manifest.frame_error, tolerance)));
     }

@@ -32,14 +32,11 @@ struct PlanTarget {
 inline constexpr int kCandidates = 64;
 inline constexpr double kFinestStepNm = 0.125;
 
-// Throws InputError when no rule of target.most wavelengths keeps the tolerance; the message says
-// what can be had.
+// Where no rule of up to target.most wavelengths keeps the tolerance, the one that promises most:
+// its promise says so.
 [[nodiscard]] FittedRule plan_wavelengths(const QuadratureFitter& fitter,
                                           WavelengthRange range,
                                           const PlanTarget& target);
-
-// The promise, rounded up to three digits: what is printed can be asked for.
-[[nodiscard]] double tolerance_to_ask_for(double promise);
 
 // The best `count` wavelengths beside those of `given`, whose frames are there already. When a
 // first look finds them far from an error of `budget`, it is left at that.

@@ -102,7 +102,7 @@ void look_first(const Survey& survey,
                                      .jobs = options.run.jobs},
                                     watch);
     std::ranges::move(suspicions_of(survey.navigation), std::back_inserter(report.looks_wrong));
-    std::ranges::move(suspicions(look.images, mosaic_of(look.images)),
+    std::ranges::move(suspicions(look.images, mosaic_of(look.images), survey.light.rig_altitude_m),
                       std::back_inserter(report.looks_wrong));
     report.not_checked = not_checked(look.images);
     report.looks = look.images;

@@ -3,7 +3,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/words.h"
+#include "image/any_image.h"
 #include "image/image_size.h"
+#include "image/raw_file.h"
 
 #include <fmt/format.h>
 
@@ -37,6 +40,25 @@ Lightmap as_signal(Lightmap map) {
     return map;
 }
 
+// Whether the file says that its numbers are to be looked at: a camera's JPEG, or any image whose
+// Exif or profile names sRGB. What tells nothing is linear, as raw images are.
+bool says_srgb(const std::filesystem::path& file) {
+    if (is_raw_name(file)) return false;
+    const std::string extension = lower_case(file.extension().string());
+    if (extension == ".jpg" || extension == ".jpeg") return true;
+    if (extension == ".exr") return false;
+    try {
+        const auto header = header_of_image(file);
+        const auto has = [&](const char* name, std::string_view word) {
+            const auto found = header.find(name);
+            return found != header.end() && found->second.find(word) != std::string::npos;
+        };
+        return has("Exif:ColorSpace", "1") || has("ICCProfile:profile_description", "sRGB");
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
 ImageLook look_at_image(const ImageFile& file, const Survey& survey, double least_light) {
     ImageLook look;
     look.name = file.name.string();
@@ -54,6 +76,8 @@ ImageLook look_at_image(const ImageFile& file, const Survey& survey, double leas
     look.quotient = middle_quotient(taken.raw, map, taken.levels, least_light);
     for (double& quotient : look.quotient) quotient /= taken.exposure;
     look.map_mean = means_of(map);
+    look.frame = frame_look(taken.raw, taken.levels, map);
+    look.says_srgb = says_srgb(file.source);
     if (const auto other =
             survey.light.map_as_radians ? survey.light.map_as_radians(sled) : std::nullopt) {
         look.as_radians = likeness(taken.raw, taken.levels, map, as_signal(*other));

@@ -2,13 +2,20 @@
 #include "survey/image_files.h"
 
 #include "base/error.h"
+#include "base/printable.h"
 #include "base/words.h"
 #include "image/raw_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
+#include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace aphotic {
 
@@ -37,6 +44,56 @@ bool holds_results(const fs::path& folder, const fs::path& output) {
            fs::exists(folder / kBaselineNotes, none);
 }
 
+// "24 .orf, 1 .csv": the most frequent first, of a few kinds.
+std::string kinds_in_words(const std::map<std::string, std::size_t>& kinds) {
+    constexpr std::size_t kMostKinds = 4;
+    std::vector<std::pair<std::size_t, std::string>> by_count;
+    for (const auto& [extension, count] : kinds) by_count.emplace_back(count, extension);
+    std::ranges::stable_sort(
+        by_count, std::greater<>(), &std::pair<std::size_t, std::string>::first);
+    std::string words;
+    for (std::size_t i = 0; i < std::min(kMostKinds, by_count.size()); ++i) {
+        words += fmt::format(
+            "{}{} {}", words.empty() ? "" : ", ", by_count[i].first, printable(by_count[i].second));
+    }
+    return words;
+}
+
+// Of raw files that are not read, what to do with them.
+bool is_other_raw(std::string_view extension) {
+    static constexpr std::array<std::string_view, 14> kRaws{".orf",
+                                                            ".rw2",
+                                                            ".raf",
+                                                            ".cr3",
+                                                            ".pef",
+                                                            ".srw",
+                                                            ".x3f",
+                                                            ".iiq",
+                                                            ".3fr",
+                                                            ".nrw",
+                                                            ".erf",
+                                                            ".kdc",
+                                                            ".dcr",
+                                                            ".raw"};
+    return std::ranges::find(kRaws, extension) != kRaws.end();
+}
+
+[[noreturn]] void refuse_empty(const fs::path& folder,
+                               const std::map<std::string, std::size_t>& others) {
+    std::string found;
+    if (!others.empty()) {
+        found = "; found " + kinds_in_words(others);
+        found += std::ranges::any_of(others, [](const auto& o) { return is_other_raw(o.first); })
+                     ? ", raw files that are not read: convert them to DNG"
+                     : "";
+    }
+    throw InputError(
+        "{}: the folder holds no image{}; allowed: TIFF, PNG, EXR, JPEG, DNG, CR2, NEF, ARW; "
+        "others file by file",
+        folder.string(),
+        found);
+}
+
 void add_folder(const fs::path& folder, const fs::path& output, std::vector<ImageFile>& files) {
     std::error_code none;
     if (fs::equivalent(folder, output, none)) {
@@ -46,6 +103,7 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Imag
             folder.string());
     }
     const auto first = std::ssize(files);
+    std::map<std::string, std::size_t> others;  // by extension
     const auto options = fs::directory_options::follow_directory_symlink;
     for (fs::recursive_directory_iterator it(folder, options), end; it != end; ++it) {
         const fs::path& file = it->path();
@@ -55,14 +113,18 @@ void add_folder(const fs::path& folder, const fs::path& output, std::vector<Imag
             it.disable_recursion_pending();
         }
         const bool is_hidden = file.filename().string().starts_with('.');
-        if (is_folder || is_hidden || !is_image_name(file)) continue;
+        if (is_folder || is_hidden) continue;
+        if (!is_image_name(file)) {
+            constexpr std::size_t kMostBytes = 12;
+            const std::string extension = lower_case(file.extension().string());
+            if (!extension.empty() && extension.size() <= kMostBytes) ++others[extension];
+            continue;
+        }
         // By its own name here, and not by that of a file elsewhere that it may be a link to.
         files.push_back(
             {.source = file, .name = without_extension(file.lexically_relative(folder))});
     }
-    if (std::ssize(files) == first) {
-        throw InputError("{}: the folder holds no image", folder.string());
-    }
+    if (std::ssize(files) == first) refuse_empty(folder, others);
     std::ranges::sort(files.begin() + first, files.end(), {}, &ImageFile::name);
 }
 

@@ -26,6 +26,7 @@ struct LightAt {
     std::string toml{};
     std::string digest;           // of all that the maps depend on, the pose aside
     std::string camera_digest{};  // of its response alone; empty: the camera is not known
+    std::optional<double> rig_altitude_m{};  // its own
     PlaneSize size;
     std::optional<PlaneSize> rig_size{};  // where the rig has another than its images, scaled
     bool is_grey = false;                 // the maps have R, G and B alike: of a mono camera

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/in_order.h"
+#include "base/offered.h"
 #include "image/exr.h"
 #include "survey/first_look.h"
 
@@ -45,7 +46,7 @@ Selection selected(const Survey& survey, const ObservationOptions& options) {
             const double off_m = std::abs(sled.altitude_m - options.altitude_m);
             if (off_m > options.within_m + kRounding_m) {
                 ++selection.outside;
-                selection.nearest_m = std::min(selection.nearest_m, off_m);
+                selection.nearest_m = std::min(selection.nearest_m, off_m - 0.5 * kRounding_m);
             } else {
                 selection.images.push_back({.file = file, .sled = sled});
             }
@@ -154,9 +155,9 @@ Observed average_by_bands(Pass& pass, Selection& selection, const ObservationOpt
 
 void require_images(const Selection& selection, const ObservationOptions& options) {
     if (!selection.images.empty()) return;
-    const std::string others =
-        selection.outside > 0 ? fmt::format("; the nearest is {:.3g} m off", selection.nearest_m)
-                              : "";
+    const std::string others = selection.outside > 0 ? fmt::format("; the nearest is {} m off",
+                                                                   at_least(selection.nearest_m))
+                                                     : "";
     const std::string first = selection.skipped.empty()
                                   ? ""
                                   : fmt::format("; skipped: {}, the first: {}: {}",

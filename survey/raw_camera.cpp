@@ -29,7 +29,7 @@ RawCamera raw_camera_of(const Readout& readout, bool is_mono) {
     camera.shot = shot_of(readout);
     constexpr double kMost = std::numeric_limits<std::uint16_t>::max();
     if (camera.white_dn <= camera.black_dn || camera.white_dn > kMost) {
-        throw InputError("white_level_dn: found {:g}; allowed: over the black level, {:g}, to {:g}",
+        throw InputError("white_level_dn: found {}; allowed: over the black level, {}, to {}",
                          camera.white_dn,
                          camera.black_dn,
                          kMost);

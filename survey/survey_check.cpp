@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -45,6 +46,26 @@ constexpr double kStandardErrors = 5.0;
 constexpr double kGains = 100.0;
 constexpr double kLikeness = 0.5;
 
+constexpr double kOtherUnit = 2.5;
+constexpr double kEncoded = 1.0 / 2.2;
+constexpr double kGamma = 0.13;
+constexpr double kLinear = 0.75;
+constexpr double kFallOff = 0.1;
+constexpr double kEven = 0.2;
+constexpr double kOffset = 0.01;
+constexpr double kVaried = 4.0;
+constexpr double kMostOfDarkest = 0.5;
+constexpr double kBlockNoise = 0.1;  // by which b may exceed what is darkest, of noise
+
+constexpr int kBlocksAcross = 16;
+constexpr int kBlocksDown = 12;
+constexpr std::size_t kBlocks = std::size_t{kBlocksAcross} * kBlocksDown;
+
+std::size_t block_at(const RawImage& raw, int column, int row) {
+    return size_of(row * kBlocksDown / raw.height_px) * size_of(kBlocksAcross) +
+           size_of(column * kBlocksAcross / raw.width_px);
+}
+
 struct Line {
     double slope = 0.0;
     double error = std::numeric_limits<double>::infinity();  // standard, of the slope
@@ -77,6 +98,29 @@ Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
     const double slope = sums.xy / sums.xx;
     const auto freedom = static_cast<double>(x.size() - 2);
     return {slope, std::sqrt(std::max(0.0, sums.yy - slope * sums.xy) / freedom / sums.xx)};
+}
+
+// One slope for all images, each of which counts as its x varies; its error by how the images
+// differ. None of too few images, or where x varies too little over all of them.
+Line line_of_all(std::span<const ImageLook> looks, const auto& likeness_of, double least_spread) {
+    double xx = 0.0;
+    double xy = 0.0;
+    std::size_t count = 0;
+    std::size_t blocks = 0;
+    for (const ImageLook& look : looks) {
+        const Likeness& one = likeness_of(look);
+        xx += one.xx;
+        xy += one.xy;
+        blocks += one.blocks;
+        if (one.xx > 0.0) ++count;
+    }
+    if (count < kEnoughImages || !(xx > least_spread * least_spread * static_cast<double>(blocks)))
+        return {};
+    const double slope = xy / xx;
+    double squares = 0.0;
+    for (const ImageLook& look : looks)
+        squares += std::pow(likeness_of(look).xy - slope * likeness_of(look).xx, 2.0);
+    return {slope, std::sqrt(squares) / xx};
 }
 
 bool has_light(const ImageLook& look) {
@@ -229,6 +273,194 @@ void check_altitude(std::span<const ImageLook> looks, std::vector<Suspicion>& fo
                          line.slope)});
 }
 
+struct AltitudeUnit {
+    std::string_view name;
+    double metres;
+};
+constexpr std::array kAltitudeUnits{AltitudeUnit{"millimetres", 1e-3},
+                                    AltitudeUnit{"centimetres", 1e-2},
+                                    AltitudeUnit{"decimetres", 0.1},
+                                    AltitudeUnit{"feet", 0.3048},
+                                    AltitudeUnit{"fathoms", 1.8288},
+                                    AltitudeUnit{"kilometres", 1e3}};
+
+// Another unit, or another column.
+bool check_unit(std::span<const ImageLook> looks,
+                std::optional<double> rig_altitude_m,
+                std::vector<Suspicion>& found) {
+    if (!rig_altitude_m || looks.empty() || !has_altitudes(looks)) return false;
+    std::vector<float> altitudes_m;
+    for (const ImageLook& look : looks) altitudes_m.push_back(static_cast<float>(*look.altitude_m));
+    const double ratio = double{upper_median(altitudes_m)} / *rig_altitude_m;
+    const auto is_near = [](double r) { return r <= kOtherUnit && r >= 1.0 / kOtherUnit; };
+    if (is_near(ratio)) return false;
+    std::string unit = "; no unit of length makes them alike: another column, or rig?";
+    double nearest = kOtherUnit;
+    for (const AltitudeUnit& one : kAltitudeUnits) {
+        const double other = std::max(ratio * one.metres, 1.0 / (ratio * one.metres));
+        if (!(other < nearest)) continue;
+        nearest = other;
+        unit = fmt::format("; {:.3g} times if they are in {}", ratio * one.metres, one.name);
+    }
+    found.push_back({.about = "altitude",
+                     .what = fmt::format("the images' altitudes, {}, are {:.3g} times the rig's "
+                                         "sled.altitude_m, {:g} m, in the middle; usual: up to "
+                                         "{:g} times either way{}",
+                                         range_of(looks),
+                                         ratio,
+                                         *rig_altitude_m,
+                                         kOtherUnit,
+                                         unit)});
+    return true;
+}
+
+// Of the power that the images' brightness is of the maps': over the images, and within each.
+struct Powers {
+    Line over;
+    Line within;
+};
+Powers powers_of(std::span<const ImageLook> looks, bool has_line) {
+    Powers powers;
+    if (has_line) {
+        const auto [maps, images] = brightness_of(looks, kGreenChannel);
+        powers.over = line_through(maps, images);
+    }
+    powers.within = line_of_all(
+        looks,
+        [](const ImageLook& look) -> const Likeness& { return look.frame.to_map; },
+        kFallOff);
+    return powers;
+}
+
+bool is_known(const Line& line) {
+    return std::isfinite(line.error);
+}
+
+// Surely less than 1, and near to this.
+bool is_near(const Line& line, double power, double within) {
+    return is_known(line) && std::abs(line.slope - power) <= within &&
+           1.0 - line.slope >= kStandardErrors * line.error;
+}
+
+bool check_encoding(std::span<const ImageLook> looks,
+                    const Powers& powers,
+                    std::vector<Suspicion>& found) {
+    const Line& line = is_known(powers.over) ? powers.over : powers.within;
+    const bool is_said = !looks.empty() && std::ranges::all_of(looks, &ImageLook::says_srgb);
+    const auto is_linear = [](const Line& one) { return is_known(one) && one.slope >= kLinear; };
+    const bool is_denied = is_linear(powers.over) || is_linear(powers.within);
+    const bool is_seen = is_near(powers.within, kEncoded, kGamma) && is_known(powers.over) &&
+                         std::abs(powers.over.slope - kEncoded) <= 2.0 * kGamma;
+    if (!is_seen && (!is_said || is_denied)) return false;
+    std::string what = "the images look gamma-encoded, as a camera's JPEG is";
+    if (is_known(line)) {
+        what += fmt::format(
+            ": brightness goes as the light to the power {:.2g}; expected: 1, of "
+            "raw images; 0.45 of sRGB",
+            line.slope);
+    }
+    if (is_said) what += "; their files say that they are sRGB";
+    found.push_back({.about = "encoding", .what = what + ". Pass raw images"});
+    return true;
+}
+
+bool check_corrected(const Powers& powers, std::vector<Suspicion>& found) {
+    const bool is_even_over = !is_known(powers.over) || is_near(powers.over, 0.0, 2 * kEven);
+    if (!is_near(powers.within, 0.0, kEven) || !is_even_over) return false;
+    found.push_back(
+        {.about = "corrected",
+         .what = fmt::format("the images are even where the maps fall off: brightness goes as the "
+                             "light to the power {:.2g} within them; expected: 1. Are they "
+                             "corrected already?",
+                             powers.within.slope)});
+    return true;
+}
+
+// A channel of an image.
+struct Darkness {
+    std::size_t channel = 0;
+    double darkest = 0.0;  // d
+    double median = 0.0;   // q
+    double share = 0.0;    // rho
+};
+
+struct Offset {
+    double b = 0.0;
+    double error = std::numeric_limits<double>::infinity();
+};
+
+// d = b (1 - phi_c rho) + phi_c rho q by least squares, each row over its d, for errors are
+// relative; phi of the factor before b is that of the last step.
+Offset offset_of(const std::vector<Darkness>& all, std::size_t images) {
+    constexpr int kSteps = 4;
+    // Channels of an image show one floor: they are one observation of it.
+    const double freedom = static_cast<double>(images) - 4.0;
+    if (all.empty() || freedom < 1.0) return {};
+    Eigen::Vector4d fit(0.0, 1.0, 1.0, 1.0);
+    Offset offset;
+    for (int step = 0; step < kSteps; ++step) {
+        Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::ssize(all), 4);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const auto& [channel, d, q, rho] = all[i];
+            const auto c = static_cast<Eigen::Index>(1 + channel);
+            const auto row = static_cast<Eigen::Index>(i);
+            rows(row, 0) = (1.0 - fit(c) * rho) / d;
+            rows(row, c) = rho * q / d;
+        }
+        const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.rows());
+        const Eigen::Matrix4d normal = rows.transpose() * rows;
+        // Of a mono camera two channels have no row.
+        const Eigen::Matrix4d inverse = normal.completeOrthogonalDecomposition().pseudoInverse();
+        fit = inverse * (rows.transpose() * ones);
+        offset = {.b = fit(0),
+                  .error = std::sqrt((ones - rows * fit).squaredNorm() / freedom * inverse(0, 0))};
+    }
+    return offset;
+}
+
+bool check_black(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
+    if (looks.size() < kEnoughImages) return false;
+    std::vector<Darkness> all;
+    double least = std::numeric_limits<double>::infinity();
+    double brightest = 0.0;
+    for (const ImageLook& look : looks) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+            const Darkness one{.channel = c,
+                               .darkest = look.frame.darkest[c],
+                               .median = look.frame.median[c],
+                               .share = look.frame.map_share[c]};
+            if (one.median == 0.0) continue;                               // of a mono camera
+            if (!(one.darkest > 0.0) || !(one.share > 0.0)) return false;  // it does fall to black
+            least = std::min(least, one.darkest);
+            brightest = std::max(brightest, one.median);
+            all.push_back(one);
+        }
+    }
+    const auto [b, error] = offset_of(all, looks.size());
+    // Of light that hardly varies anything is an offset.
+    const auto is_varied = [&](std::size_t c) {
+        double dimmest = std::numeric_limits<double>::infinity();
+        double most = 0.0;
+        for (const Darkness& one : all) {
+            if (one.channel != c) continue;
+            dimmest = std::min(dimmest, one.median - b);
+            most = std::max(most, one.median - b);
+        }
+        return most > kVaried * dimmest;
+    };
+    if (!(is_varied(0) || is_varied(1) || is_varied(2)) || !(b >= kStandardErrors * error) ||
+        b < kOffset * brightest || b < kMostOfDarkest * least || b > (1.0 + kBlockNoise) * least) {
+        return false;
+    }
+    found.push_back(
+        {.about = "black-level",
+         .what = fmt::format("no part of any image is darker than {:.3g}, in whatever light: light "
+                             "does not explain about {:.3g} of that. Is the black level left out?",
+                             least,
+                             b)});
+    return true;
+}
+
 void check_gains(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
     if (looks.empty()) return;
     PerChannel gain{};
@@ -254,21 +486,9 @@ void check_gains(std::span<const ImageLook> looks, std::vector<Suspicion>& found
 }
 
 void check_attitude(std::span<const ImageLook> looks, std::vector<Suspicion>& found) {
-    double xx = 0.0;
-    double xy = 0.0;
-    std::size_t count = 0;
-    for (const ImageLook& look : looks) {
-        xx += look.as_radians.xx;
-        xy += look.as_radians.xy;
-        if (look.as_radians.xx > 0.0) ++count;
-    }
-    if (count < kEnoughImages) return;
-    const double slope = xy / xx;
-    double squares = 0.0;
-    for (const ImageLook& look : looks) {
-        squares += std::pow(look.as_radians.xy - slope * look.as_radians.xx, 2.0);
-    }
-    if (slope < std::max(kLikeness, kStandardErrors * std::sqrt(squares) / xx)) return;
+    const auto [slope, error] = line_of_all(
+        looks, [](const ImageLook& look) -> const Likeness& { return look.as_radians; }, kSpread);
+    if (slope < std::max(kLikeness, kStandardErrors * error)) return;
     found.push_back(
         {.about = "attitude",
          .what = fmt::format("pitch and roll are all within {} degrees, and the images match the "
@@ -329,14 +549,12 @@ Likeness likeness(const RawImage& raw,
                   const SensorLevels& levels,
                   const Lightmap& map,
                   const Lightmap& other) {
-    constexpr int kAcross = 16;
-    constexpr int kDown = 12;
     struct Block {
         double image = 0.0;
         double map = 0.0;
         double other = 0.0;
     };
-    std::vector<Block> blocks(size_of(kAcross) * size_of(kDown));
+    std::vector<Block> blocks(kBlocks);
     const std::size_t green = kGreenChannel * raw.pixels();
     const bool is_mosaic = is_bayer(raw.mosaic);
     for (int row = 0; row < raw.height_px; ++row) {
@@ -346,8 +564,7 @@ Likeness likeness(const RawImage& raw,
             const std::size_t pixel = size_of(row) * size_of(raw.width_px) + size_of(column);
             const float sample = raw.samples[raw.planes() == 1 ? pixel : green + pixel];
             if (!is_green || !(sample > levels.black && sample < levels.white)) continue;
-            Block& block = blocks[size_of(row * kDown / raw.height_px) * size_of(kAcross) +
-                                  size_of(column * kAcross / raw.width_px)];
+            Block& block = blocks[block_at(raw, column, row)];
             block.image += static_cast<double>(sample - levels.black);
             block.map += static_cast<double>(map.samples[green + pixel]);
             block.other += static_cast<double>(other.samples[green + pixel]);
@@ -361,8 +578,61 @@ Likeness likeness(const RawImage& raw,
         y.push_back(std::log(block.image / block.map));
     }
     const Sums sums = sums_of(x, y);
-    if (!(sums.xx > kSpread * kSpread * static_cast<double>(x.size()))) return {};
-    return {.xx = sums.xx, .xy = sums.xy};
+    return {.xx = sums.xx, .xy = sums.xy, .blocks = x.size()};
+}
+
+FrameLook frame_look(const RawImage& raw, const SensorLevels& levels, const Lightmap& map) {
+    struct Block {
+        double image = 0.0;
+        double map = 0.0;
+        double samples = 0.0;
+    };
+    std::array<std::vector<Block>, kChannels> blocks;
+    for (auto& of_channel : blocks) of_channel.resize(kBlocks);
+    const bool is_mosaic = raw.planes() == 1;
+    for (int row = 0; row < raw.height_px; ++row) {
+        for (int column = 0; column < raw.width_px; ++column) {
+            const std::size_t pixel = size_of(row) * size_of(raw.width_px) + size_of(column);
+            const std::size_t site =
+                is_bayer(raw.mosaic) ? size_of(channel_at(raw.mosaic, column, row)) : kGreenChannel;
+            for (std::size_t c = 0; c < kChannels; ++c) {
+                if (is_mosaic && c != site) continue;
+                const float sample = raw.samples[is_mosaic ? pixel : c * raw.pixels() + pixel];
+                if (!(sample < levels.white)) continue;
+                Block& block = blocks[c][block_at(raw, column, row)];
+                block.image += static_cast<double>(sample - levels.black);
+                block.map += static_cast<double>(map.samples[c * raw.pixels() + pixel]);
+                block.samples += 1.0;
+            }
+        }
+    }
+    FrameLook look;
+    std::vector<double> x;
+    std::vector<double> y;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        std::vector<float> images;
+        std::vector<float> maps;
+        double darkest = std::numeric_limits<double>::infinity();
+        double map_there = 0.0;
+        for (const Block& block : blocks[c]) {
+            if (block.samples == 0.0) continue;
+            const double image = block.image / block.samples;
+            const double light = block.map / block.samples;
+            images.push_back(static_cast<float>(image));
+            maps.push_back(static_cast<float>(light));
+            if (image < darkest) darkest = image, map_there = light;
+            if (c != kGreenChannel || !(image > 0.0 && light > 0.0)) continue;
+            x.push_back(std::log(light));
+            y.push_back(std::log(image));
+        }
+        if (images.empty()) continue;
+        look.darkest[c] = darkest;
+        look.median[c] = double{upper_median(images)};
+        look.map_share[c] = map_there / double{upper_median(maps)};
+    }
+    const Sums sums = sums_of(x, y);
+    look.to_map = {.xx = sums.xx, .xy = sums.xy, .blocks = x.size()};
+    return look;
 }
 
 std::optional<Suspicion> turned_brightness(std::span<const ImageLook> looks) {
@@ -392,15 +662,22 @@ std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks, Mosaic m
     return Suspicion{.about = "bayer", .what = std::move(what)};
 }
 
-std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic) {
+std::vector<Suspicion> suspicions(std::span<const ImageLook> looks,
+                                  Mosaic mosaic,
+                                  std::optional<double> rig_altitude_m) {
     std::vector<Suspicion> found;
     check_white(looks, found);
     if (is_bayer(mosaic)) check_greens(looks, mosaic, found);
     const std::vector<ImageLook> lit_looks = lit(looks);
     const std::size_t before = found.size();
     const bool has_line = has_altitudes(lit_looks) && !is_one_altitude(lit_looks);
-    if (has_line) check_altitude(lit_looks, found);
-    check_gains(lit_looks, found);
+    const Powers powers = powers_of(lit_looks, has_line);
+    // The first of these explains what the others would say.
+    if (!check_unit(looks, rig_altitude_m, found) && !check_black(lit_looks, found) &&
+        !check_encoding(lit_looks, powers, found) && !check_corrected(powers, found)) {
+        if (has_line) check_altitude(lit_looks, found);
+        check_gains(lit_looks, found);
+    }
     // At other altitudes colours change otherwise, too.
     if (has_line && found.size() == before) {
         if (const auto swapped = red_for_blue(lit_looks, mosaic)) found.push_back(*swapped);

@@ -14,6 +14,20 @@
 // altitude     Over the images, log(image) = s log(map) + const with s = 1 whatever the floor's
 //              mean, in the green channel. Told where s is off by over kSlope and by five of its
 //              standard errors, of kEnoughImages and more at altitudes that differ.
+//              Told first where the images' altitudes, by their median, are over kOtherUnit times
+//              the rig's own or under 1 / kOtherUnit of it: a unit that makes them alike is named.
+// encoding     Numbers that are shown by a gamma of 2.2 have s = 1/2.2, over the images and within
+//              each. Told where s is within kGamma of that within images, and about that over
+//              them; or where the files say that they are sRGB, as a camera's JPEG is, and no s of
+//              kLinear and more denies it.
+// corrected    Of images that are even already, s is 0 within each image, by under kEven, where the
+//              maps vary by over kFallOff (standard deviation of the logarithm), and over the
+//              images too.
+// black level  An offset b that all samples have. Of an image's channel let d be the mean of the
+//              darkest block, q the median of all blocks, and rho the map's own d/q. Over images
+//              and channels d = b + phi_c rho (q - b), with a factor of each channel's floor. Told
+//              where b is over five of its standard errors and over kOffset of the largest q, q - b
+//              varies kVaried-fold, and b is most of the least d, which it cannot exceed.
 // map          Where maps are of light that has travelled another way, their colour is another too:
 //              told where the gains of two channels differ by over kGains; as "altitude" where
 //              images have one.
@@ -58,11 +72,23 @@ struct TopNumber {
 struct Likeness {
     double xx = 0.0;
     double xy = 0.0;
+    std::size_t blocks = 0;
 };
 [[nodiscard]] Likeness likeness(const RawImage& raw,
                                 const SensorLevels& levels,
                                 const Lightmap& map,
                                 const Lightmap& other);
+
+// Of one image, by the same blocks of each channel, of all samples that are not saturated.
+struct FrameLook {
+    Likeness to_map;         // of the green channel: x the map's logarithm
+    PerChannel darkest{};    // the mean over black of the block that is darkest
+    PerChannel median{};     // of all blocks
+    PerChannel map_share{};  // darkest over median, of the map
+};
+[[nodiscard]] FrameLook frame_look(const RawImage& raw,
+                                   const SensorLevels& levels,
+                                   const Lightmap& map);
 
 // What one image tells.
 struct ImageLook {
@@ -76,6 +102,8 @@ struct ImageLook {
     std::optional<double> altitude_m;  // none: one map for all
     PerChannel quotient{};             // middle_quotient()
     PerChannel map_mean{};
+    FrameLook frame;
+    bool says_srgb = false;  // its file
     Likeness as_radians;  // of its map to that of the tilts as radians; 0: surely degrees, or alike
 };
 [[nodiscard]] PerChannel means_of(const Lightmap& map);
@@ -93,10 +121,14 @@ inline constexpr std::size_t kEnoughImages = 12;
 inline constexpr std::string_view kAboutNavigation = "navigation";
 
 struct Suspicion {
-    std::string about;  // "white-level", "bayer", "altitude", "map", "attitude", "navigation"
-    std::string what;   // with the number that shows it
+    // "white-level", "bayer", "altitude", "encoding", "corrected", "black-level", "map", "attitude",
+    // "navigation"
+    std::string about;
+    std::string what;  // with the number that shows it
 };
-[[nodiscard]] std::vector<Suspicion> suspicions(std::span<const ImageLook> looks, Mosaic mosaic);
+[[nodiscard]] std::vector<Suspicion> suspicions(std::span<const ImageLook> looks,
+                                                Mosaic mosaic,
+                                                std::optional<double> rig_altitude_m = {});
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Suspicion>& suspicions);
 
 // Of images at altitudes that differ, in the light of a rig that is about right: what runs the

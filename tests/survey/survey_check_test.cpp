@@ -4,10 +4,12 @@
 // with the square of the altitude and with water, over floors that differ from image to image.
 #include "survey/survey_check.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <random>
@@ -274,6 +276,186 @@ TEST(SurveyCheck, TiltsThatAreRadiansAreTold) {
     };
     EXPECT_EQ(told_of(looks(true)), std::vector<std::string>{"attitude"});
     EXPECT_EQ(told_of(looks(false)), kNothing) << "a sled as steady as that";
+}
+
+// --- Images of whole frames ----------------------------------------------------------------------
+
+constexpr int kWidth_px = 64;
+constexpr int kHeight_px = 48;
+
+// Four lamps' light as a rig has it: it falls off from the middle, less from higher up.
+Lightmap frame_map(double altitude_m, double fall_off) {
+    Lightmap map{.width_px = kWidth_px, .height_px = kHeight_px, .samples = {}};
+    const PerChannel light = light_at(altitude_m);
+    for (const double of_channel : light) {
+        for (int row = 0; row < kHeight_px; ++row) {
+            for (int column = 0; column < kWidth_px; ++column) {
+                const double x = (column + 0.5) / kWidth_px - 0.5;
+                const double y = ((row + 0.5) / kHeight_px - 0.5) * 0.75;
+                const double tan2 = x * x + y * y + 0.05 / altitude_m;
+                map.samples.push_back(
+                    static_cast<float>(of_channel * std::pow(1.0 + tan2, -fall_off)));
+            }
+        }
+    }
+    return map;
+}
+
+// How a survey is flown, and what the camera makes of its light.
+struct Flown {
+    double brightness = 0.3;  // of floors: standard deviations of logarithms
+    double texture = 0.2;
+    double colour = 0.1;
+    double fall_off = 4.0;
+    double lens = 0.0;         // of cos^4, which the rig does not know
+    double altimeter_m = 0.0;  // its offset
+    double exposure = 0.0;     // of an automatic one: standard deviation of its logarithm
+    double black = 0.0;        // that is left out
+    double gamma = 1.0;
+    bool is_corrected = false;
+    bool says_srgb = false;
+    double least_m = 1.3;
+    double most_m = 3.2;
+    std::size_t images = 16;
+};
+
+ImageLook flown_look(std::mt19937& random, const Flown& flown) {
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> altitude(flown.least_m, flown.most_m);
+    constexpr double kElectronsPerNumber = 4.0;
+    constexpr double kFull = 2500.0;  // numbers of the brightest floor
+    const double altitude_m = altitude(random);
+    const Lightmap light = frame_map(altitude_m, flown.fall_off);
+    const Lightmap map = frame_map(altitude_m + flown.altimeter_m, flown.fall_off);
+    const double brightest = light_at(flown.least_m)[2];
+    const double exposure = std::exp(flown.brightness * normal(random)) * kFull / brightest *
+                            std::exp(flown.exposure * normal(random));
+    RawImage raw{
+        .width_px = kWidth_px, .height_px = kHeight_px, .mosaic = Mosaic::None, .samples = {}};
+    std::vector<double> floor;
+    for (int i = 0; i < 12 * 16; ++i) floor.push_back(std::exp(flown.texture * normal(random)));
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double colour = 0.3 * std::exp(flown.colour * normal(random));
+        for (std::size_t i = 0; i < raw.pixels(); ++i) {
+            const std::size_t column = i % kWidth_px;
+            const std::size_t row = i / kWidth_px;
+            const double x = (static_cast<double>(column) + 0.5) / kWidth_px - 0.5;
+            const double y = ((static_cast<double>(row) + 0.5) / kHeight_px - 0.5) * 0.75;
+            const double seen = colour * floor[row / 4 * 16 + column / 4] *
+                                std::pow(1.0 + x * x + y * y, -2.0 * flown.lens);
+            const double lit =
+                flown.is_corrected
+                    ? 1000.0 * seen
+                    : exposure * seen * static_cast<double>(light.samples[c * raw.pixels() + i]);
+            const double noisy =
+                std::max(0.0, lit + std::sqrt(lit / kElectronsPerNumber + 4.0) * normal(random));
+            const double number = flown.gamma == 1.0
+                                      ? noisy + flown.black
+                                      : 255.0 * std::pow(noisy / 4000.0, 1.0 / flown.gamma);
+            raw.samples.push_back(static_cast<float>(std::round(number)));
+        }
+    }
+    const SensorLevels levels{.black = 0.0F, .white = 65535.0F};
+    ImageLook look;
+    look.altitude_m = altitude_m + flown.altimeter_m;
+    look.white = levels.white;
+    look.map_mean = means_of(map);
+    look.quotient = middle_quotient(raw, map, levels, 0.0);
+    look.frame = frame_look(raw, levels, map);
+    look.says_srgb = flown.says_srgb;
+    return look;
+}
+
+std::vector<std::string> told_of_flown(std::uint32_t seed, const Flown& flown) {
+    std::mt19937 random(seed);
+    std::vector<ImageLook> looks;
+    for (std::size_t i = 0; i < flown.images; ++i) looks.push_back(flown_look(random, flown));
+    return told_of(looks);
+}
+
+// APHOTIC_SURVEYS=1000 flies so many of each: docs/surveys.md has what came of that.
+std::uint32_t surveys_to_fly() {
+    const char* told = std::getenv("APHOTIC_SURVEYS");  // NOLINT(concurrency-mt-unsafe)
+    return told == nullptr ? 6 : static_cast<std::uint32_t>(std::strtoul(told, nullptr, 10));
+}
+
+// Of how many is this told, and nothing else.
+double share_told(const Flown& flown, const std::vector<std::string>& about) {
+    std::uint32_t told = 0;
+    for (std::uint32_t seed = 0; seed < surveys_to_fly(); ++seed) {
+        const std::vector<std::string> found = told_of_flown(seed, flown);
+        if (found == about) {
+            ++told;
+        } else if (surveys_to_fly() < 100) {
+            std::string all;
+            for (const std::string& one : found) all += one + " ";
+            ADD_FAILURE() << "seed " << seed << ": " << all;
+        }
+    }
+    return static_cast<double>(told) / surveys_to_fly();
+}
+
+void expect_told(const char* name, const Flown& flown, const std::vector<std::string>& about) {
+    SCOPED_TRACE(name);
+    constexpr double kNearlyAll = 0.99;
+    const double share = share_told(flown, about);
+    EXPECT_GE(share, kNearlyAll);
+    testing::Test::RecordProperty(name, std::to_string(share));
+    if (surveys_to_fly() >= 100) fmt::print("{}: {}\n", name, share);
+}
+
+TEST(SurveyCheck, FramesOfRightSurveysLookRight) {
+    expect_told("as the rig says", {}, kNothing);
+    expect_told("even floors", {.brightness = 0.05, .texture = 0.05, .colour = 0.02}, kNothing);
+    expect_told("rough floors", {.brightness = 0.4, .texture = 0.5, .colour = 0.2}, kNothing);
+    expect_told("an unknown lens", {.lens = 1.0}, kNothing);
+    expect_told("an altimeter that is off", {.altimeter_m = 0.15}, kNothing);
+    expect_told("narrow beams", {.fall_off = 10.0}, kNothing);
+    expect_told("wide beams", {.fall_off = 1.0}, kNothing);
+    expect_told("one altitude", {.least_m = 2.0, .most_m = 2.05}, kNothing);
+    expect_told("JPEG of linear numbers", {.says_srgb = true}, kNothing);
+}
+
+TEST(SurveyCheck, ABlackLevelThatIsLeftOutIsTold) {
+    const std::vector<std::string> black{"black-level"};
+    expect_told("64 of 4095", {.black = 64.0}, black);
+    expect_told("240 of 4095", {.black = 240.0}, black);
+    expect_told("64, narrow beams", {.fall_off = 10.0, .black = 64.0}, black);
+    expect_told("64, automatic exposure", {.exposure = 0.3, .black = 64.0}, black);
+}
+
+TEST(SurveyCheck, GammaEncodedImagesAreTold) {
+    const std::vector<std::string> encoding{"encoding"};
+    expect_told("sRGB", {.gamma = 2.2, .says_srgb = true}, encoding);
+    expect_told("gamma, and no file says so", {.gamma = 2.2}, encoding);
+    expect_told("sRGB, one altitude",
+                {.gamma = 2.2, .says_srgb = true, .least_m = 2.0, .most_m = 2.05},
+                encoding);
+    expect_told("sRGB, few images", {.gamma = 2.2, .says_srgb = true, .images = 4}, encoding);
+}
+
+TEST(SurveyCheck, ImagesThatAreCorrectedAlreadyAreTold) {
+    const std::vector<std::string> corrected{"corrected"};
+    expect_told("corrected", {.is_corrected = true}, corrected);
+    expect_told("corrected, one altitude",
+                {.is_corrected = true, .least_m = 2.0, .most_m = 2.05},
+                corrected);
+}
+
+// Of 24 images between 2.14 and 3.2 m, by a rig at 2 m.
+TEST(SurveyCheck, AltitudesInAnotherUnitThanTheRigsAreTold) {
+    const auto told = [](double factor, double rig_m) {
+        const std::vector<ImageLook> looks = survey(1, 16, [&](double h) { return factor * h; });
+        const std::vector<Suspicion> found = suspicions(looks, Mosaic::None, rig_m);
+        return found.empty() ? "" : found[0].about + ": " + found[0].what;
+    };
+    EXPECT_EQ(told(1.0, 2.0), "");
+    EXPECT_EQ(told(1.0, 1.0), "");
+    EXPECT_NE(told(1.0 / 0.3048, 2.0).find("if they are in feet"), std::string::npos);
+    EXPECT_NE(told(1000.0, 2.0).find("if they are in millimetres"), std::string::npos);
+    EXPECT_NE(told(100.0, 2.0).find("if they are in centimetres"), std::string::npos);
+    EXPECT_NE(told(27.0, 2.0).find("another column"), std::string::npos) << told(27.0, 2.0);
+    EXPECT_NE(told(1.0, 40.0).find("another column, or rig?"), std::string::npos);
 }
 
 }  // namespace

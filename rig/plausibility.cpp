@@ -1,0 +1,664 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rig/plausibility.h"
+
+#include "base/degrees.h"
+#include "base/printable.h"
+#include "rig/geometry.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+#include <variant>
+
+namespace aphotic {
+
+using Eigen::Vector3d;
+
+namespace {
+
+// What one of it is in the key's own unit.
+struct Unit {
+    std::string_view name;  // none: the end of the list
+    double factor = 1.0;
+};
+using Units = std::array<Unit, 3>;
+
+constexpr double kHalfPi = 0.5 * std::numbers::pi;
+constexpr double kMetresPerFoot = 0.3048;
+constexpr double kMillimetresPerInch = 25.4;
+constexpr Units kNoUnits{};
+constexpr Units kOfMetres{{{"millimetres", 1e-3}, {"centimetres", 1e-2}, {"feet", kMetresPerFoot}}};
+constexpr Units kOfAltitude{{{"millimetres", 1e-3}, {"feet", kMetresPerFoot}, {"kilometres", 1e3}}};
+constexpr Units kOfMillimetres{
+    {{"metres", 1e3}, {"micrometres", 1e-3}, {"inches", kMillimetresPerInch}}};
+constexpr Units kOfDegrees{{{"radians", kDegreesPerRadian}}};
+constexpr Units kOfShares{{{"per cent", 1e-2}}};
+
+// Magnitudes count. A 0 is usual where it says that there is none.
+struct Usual {
+    std::string_view key;
+    double least;
+    double most;
+    double typical;  // the unit that brings a number nearest to it is the likely one
+    Units units;
+    std::string_view why;
+    bool is_zero_usual = true;
+};
+
+constexpr std::string_view kSledReach = "sleds and vehicles are a few metres long";
+constexpr std::string_view kHousing = "ports are the size of a lens or a hand";
+constexpr std::string_view kLampSize = "lamps are the size of a hand";
+constexpr std::string_view kCloseBy = "what the camera sees is a few metres away";
+constexpr std::string_view kCameras = "cameras have that";
+constexpr std::string_view kGloss = "the floor's own light is about 1";
+
+// Reasons from: a metre of the clearest water takes 1.5 to 4 % of green and 30 % of red light and
+// more (Pope and Fry 1997), so that less than 1e-4 of the red returns from 15 m; photographic
+// strobes and vehicles' lamps have beams of 10 degrees and more; the sea is -2 to 35 degrees.
+constexpr std::array kUsual{
+    Usual{"sled.altitude_m",
+          0.05,
+          30,
+          2.5,
+          kOfAltitude,
+          "from higher up, water takes the strobes' light",
+          false},
+    Usual{"sled.altitude_offset_m", 0, 20, 1, kOfMetres, kSledReach},
+    Usual{"sled.pitch_deg", 0, 75, 5, kNoUnits, "the camera looks down"},
+    Usual{"sled.roll_deg", 0, 75, 5, kNoUnits, "the camera looks down"},
+    Usual{"camera.position_m", 0, 20, 1, kOfMetres, kSledReach},
+    Usual{"camera.fov_deg", 3, 150, 50, kOfDegrees, "lenses see that"},
+    Usual{
+        "camera.range_nm", 200, 1200, 550, {{{"angstrom", 0.1}}}, "light that water lets through"},
+    Usual{"camera.exposure_ms",
+          0.005,
+          60'000,
+          5,
+          {{{"seconds", 1e3}, {"microseconds", 1e-3}}},
+          "shutters are open so long",
+          false},
+    Usual{"camera.iso", 20, 1e6, 400, kNoUnits, kCameras, false},
+    Usual{"camera.f_number", 0.7, 64, 4, kNoUnits, "lenses have that", false},
+    Usual{"camera.gain_dn_per_e", 1e-3, 1e3, 1, kNoUnits, kCameras, false},
+    Usual{"camera.read_noise_e", 0, 1000, 5, kNoUnits, kCameras},
+    Usual{"camera.saturation_e", 200, 1e7, 2e4, {{{"thousands", 1e3}}}, kCameras, false},
+    Usual{"camera.port.distance_mm", 1, 400, 40, kOfMillimetres, kHousing},
+    Usual{"camera.port.thickness_mm", 1, 100, 12, kOfMillimetres, kHousing},
+    Usual{"camera.port.radius_mm", 10, 500, 80, kOfMillimetres, kHousing},
+    Usual{"camera.port.centre_mm", 0, 500, 10, kOfMillimetres, kHousing},
+    Usual{"water.multiple", 0, 20, 1, kOfShares, "1 is the water of its table"},
+    Usual{"water.uniform_loss_per_m",
+          0,
+          10,
+          0.3,
+          {{{"per kilometre", 1e-3}}},
+          "nothing is seen through a metre of such water"},
+    Usual{"water.chlorophyll_mg_m3", 0, 200, 1, kNoUnits, "blooms have no more"},
+    Usual{"water.cdom_440_per_m",
+          0,
+          30,
+          0.1,
+          {{{"per kilometre", 1e-3}}},
+          "peat waters have no more"},
+    Usual{"seafloor.phong", 0, 10, 0.3, kOfShares, kGloss},
+    Usual{"seafloor.phong_size", 0, 5000, 40, kNoUnits, "a mirror has more"},
+    Usual{"object[].phong", 0, 10, 0.3, kOfShares, kGloss},
+    Usual{"object[].phong_size", 0, 5000, 40, kNoUnits, "a mirror has more"},
+    Usual{"object[].position_m", 0, 50, 1, kOfMetres, kCloseBy},
+    Usual{"object[].centre_m", 0, 50, 1, kOfMetres, kCloseBy},
+    Usual{"object[].from_m", 0, 50, 1, kOfMetres, kCloseBy},
+    Usual{"object[].to_m", 0, 50, 1, kOfMetres, kCloseBy},
+    Usual{"object[].radius_m", 0, 20, 0.2, kOfMetres, kCloseBy},
+    Usual{"beam.*.fwhm_deg", 4, 180, 60, kOfDegrees, "lamps have wider beams", false},
+    Usual{"beam.*.diffuser_mm", 0.5, 500, 50, kOfMillimetres, kLampSize},
+    Usual{"beam.*.focal_length_mm", 1, 1000, 60, kOfMillimetres, kLampSize},
+    Usual{"beam.*.distance_mm", 0.5, 1000, 50, kOfMillimetres, kLampSize},
+    Usual{"beam.*.aperture_mm", 1, 1000, 60, kOfMillimetres, kLampSize},
+    Usual{"strobe[].position_m",
+          0,
+          5,
+          0.5,
+          kOfMetres,
+          "sleds carry strobes within 5 m of the camera"},
+    Usual{"strobe[].emitter_mm", 0.5, 2000, 50, kOfMillimetres, kLampSize},
+    Usual{"strobe[].power", 0, 1e12, 1, kNoUnits, "such a strobe gives no light", false},
+    Usual{"strobe[].luminous_flux_lm",
+          10,
+          1e8,
+          1e4,
+          {{{"kilolumens", 1e3}}},
+          "lamps give so much",
+          false},
+    Usual{"strobe[].radiant_flux_w",
+          0.05,
+          1e6,
+          50,
+          {{{"milliwatts", 1e-3}, {"kilowatts", 1e3}}},
+          "lamps give so much",
+          false},
+    Usual{"strobe[].energy_j",
+          1e-3,
+          1e5,
+          20,
+          {{{"millijoules", 1e-3}, {"kilojoules", 1e3}}},
+          "flashes have so much",
+          false},
+};
+
+// Judged together with others below, or free to be anything that the reader takes.
+constexpr std::array<std::string_view, 24> kElsewhere{
+    "camera.pixel_pitch_um",          // field of view
+    "camera.focal_length_mm",         // field of view
+    "camera.orientation_deg",         // quarter turns in radians
+    "camera.black_level_dn",          // beside the white level
+    "camera.white_level_dn",          // beside the black level
+    "beam.*.turn_deg",                // quarter turns in radians
+    "beam.*.cones[].half_angle_deg",  // all cones of the beam
+    "beam.*.cones[].weight",          // their sum
+    "strobe[].aim.tilt_deg",          // all strobes
+    "strobe[].direction",             // geometry
+    "camera.resolution",              // of whole pixels, and the calibration has it too
+    "camera.vignetting.radial",       // the reader keeps the image bright
+    "camera.port.normal",             // a direction
+    "water.salinity_psu",             // the reader's bounds are the sea's
+    "water.temperature_c",            // the reader's bounds are the sea's, and exclude kelvin
+    "water.particles",                // a share of what is usual
+    "water.phase.henyey_greenstein",  // a mean cosine
+    "water.phase.fournier_forand.backscatter_ratio",
+    "water.phase.fournier_forand.index",
+    "water.phase.fournier_forand.slope",
+    "beam.*.cones[].exponent",
+    "beam.*.cones[].edge_deg",  // any, from a sharp edge up
+    "beam.*.window",            // an index
+    "materials",
+};
+
+// A number of the rig's file, where it stands.
+struct Place {
+    std::string key;      // strobe[1].position_m
+    std::string pattern;  // strobe[].position_m
+    int line = 0;
+};
+
+std::string usual_range(const Usual& usual) {
+    if (usual.least == 0.0) return fmt::format("up to {:g}", usual.most);
+    return fmt::format("{:g} to {:g}", usual.least, usual.most);
+}
+
+std::string in_likely_unit(double value, const Usual& usual) {
+    double nearest = std::numeric_limits<double>::infinity();
+    std::string words;
+    for (const Unit& unit : usual.units) {
+        const double other = std::abs(value) * unit.factor;
+        if (unit.name.empty() || other < usual.least || other > usual.most) continue;
+        const double away = std::abs(std::log(other / usual.typical));
+        if (!(away < nearest)) continue;
+        nearest = away;
+        words = fmt::format("; {:.4g} if that is in {}", value * unit.factor, unit.name);
+    }
+    return words;
+}
+
+std::optional<std::string> doubt_of(double value, const Usual& usual) {
+    const double size = std::abs(value);
+    if (size == 0.0 ? usual.is_zero_usual : size >= usual.least && size <= usual.most)
+        return std::nullopt;
+    if (usual.key == "strobe[].power") return fmt::format("found {:g}: {}", value, usual.why);
+    return fmt::format("found {:g}; usual: {}, as {}{}",
+                       value,
+                       usual_range(usual),
+                       usual.why,
+                       in_likely_unit(value, usual));
+}
+
+const Usual* usual_of(std::string_view pattern) {
+    const auto* const found = std::ranges::find(kUsual, pattern, &Usual::key);
+    return found == kUsual.end() ? nullptr : found;
+}
+
+// Quarter turns and their halves, as radians have them.
+std::optional<std::string> doubt_of_turn(double degrees) {
+    constexpr double kRounding = 2e-3;  // of 1.57 and 1.5708
+    const double eighths = std::abs(degrees) / (0.5 * kHalfPi);
+    if (eighths < 0.5 || eighths > 8.5 ||
+        std::abs(eighths - std::round(eighths)) * 0.5 * kHalfPi > kRounding) {
+        return std::nullopt;
+    }
+    return fmt::format("found {:g}, a part of pi; {:.4g} if that is in radians",
+                       degrees,
+                       degrees * kDegreesPerRadian);
+}
+
+class Doubter {
+  public:
+    explicit Doubter(const Rig& rig) : rig_(rig) {}
+
+    std::vector<Doubt> doubts();
+
+  private:
+    void add(const Place& place, std::string what);
+    void judge(const toml::node& node, const Place& place);
+    void judge_number(double value, const Place& place);
+    void judge_sled(const toml::table& root);
+    void judge_view(const toml::table& root);
+    void judge_levels(const toml::table& root);
+    void judge_tilts();
+    void judge_cones(const toml::table& root);
+    void judge_beam_tables();
+    void judge_absorption(const toml::table& root);
+    void judge_light();
+
+    const Rig& rig_;
+    std::vector<Doubt> doubts_;
+    std::vector<std::set<std::string>> more_;  // of each doubt: the keys that it stands for
+    std::vector<std::string> patterns_;        // of each doubt
+    std::vector<std::pair<Place, double>> tilts_;
+};
+
+int source_line(const toml::node* node) {
+    return node == nullptr ? 0 : static_cast<int>(node->source().begin.line);
+}
+
+void Doubter::add(const Place& place, std::string what) {
+    // Strobes that are written alike are wrong alike: one line tells it.
+    const auto same = std::ranges::find(patterns_, place.pattern);
+    if (same != patterns_.end()) {
+        more_[static_cast<std::size_t>(same - patterns_.begin())].insert(place.key);
+        return;
+    }
+    patterns_.push_back(place.pattern);
+    more_.push_back({place.key});
+    doubts_.push_back({.key = place.key, .line = place.line, .what = std::move(what)});
+}
+
+void Doubter::judge_number(double value, const Place& place) {
+    if (place.pattern == "strobe[].aim.tilt_deg") tilts_.emplace_back(place, value);
+    if (place.pattern == "camera.orientation_deg" || place.pattern == "beam.*.turn_deg") {
+        if (auto what = doubt_of_turn(value)) add(place, std::move(*what));
+    }
+    const Usual* usual = usual_of(place.pattern);
+    if (usual == nullptr || place.pattern == "water.multiple") return;
+    if (auto what = doubt_of(value, *usual)) add(place, std::move(*what));
+}
+
+void Doubter::judge(const toml::node& node, const Place& place) {
+    if (const auto* table = node.as_table()) {
+        const bool is_named = place.pattern == "beam";
+        for (const auto& [key, child] : *table) {
+            const std::string dot = place.key.empty() ? "" : ".";
+            judge(child,
+                  {.key = place.key + dot + printable(key.str()),
+                   .pattern = place.pattern + dot + (is_named ? "*" : std::string(key.str())),
+                   .line = source_line(&child)});
+        }
+    } else if (const auto* array = node.as_array()) {
+        const bool is_of_tables = array->is_array_of_tables();
+        for (std::size_t i = 0; i < array->size(); ++i) {
+            Place at = place;
+            if (is_of_tables) {
+                at.key += fmt::format("[{}]", i);
+                at.pattern += "[]";
+            }
+            judge((*array)[i], at);
+        }
+    } else if (const auto value = node.value<double>(); value && node.is_number()) {
+        if (place.pattern.starts_with("sled.") && place.pattern != "sled.altitude_offset_m") return;
+        judge_number(*value, place);
+    }
+}
+
+void Doubter::judge_sled(const toml::table& root) {
+    const auto judge_as = [&](std::string_view key, double value) {
+        const int line = source_line(root.at_path(key).node());
+        if (auto what = doubt_of(value, *usual_of(key))) {
+            add({.key = std::string(key), .pattern = std::string(key), .line = line},
+                std::move(*what));
+        }
+    };
+    judge_as("sled.altitude_m", rig_.sled.altitude_m);
+    judge_as("sled.pitch_deg", rig_.sled.pitch_rad * kDegreesPerRadian);
+    judge_as("sled.roll_deg", rig_.sled.roll_rad * kDegreesPerRadian);
+    judge_as("water.multiple", rig_.water.multiple);
+}
+
+// From corner to corner.
+double view_rad(const Camera& camera, double focal_length_m, double pixel_pitch_m) {
+    const double half_m = 0.5 * pixel_pitch_m * std::hypot(camera.width_px, camera.height_px);
+    return 2.0 * std::atan(half_m / focal_length_m);
+}
+
+// Of focal length and pitch only the ratio counts, and so only the field of view shows it.
+void Doubter::judge_view(const toml::table& root) {
+    if (root.at_path("camera.fov_deg")) return;
+    constexpr double kLeast_rad = 3.0 * kRadiansPerDegree;
+    constexpr double kMost_rad = 140.0 * kRadiansPerDegree;  // the widest lenses without distortion
+    constexpr double kTypical_rad = 50.0 * kRadiansPerDegree;
+    const Camera& camera = rig_.camera;
+    const double f_m = camera.focal_length_m;
+    const double pitch_m = camera.pixel_pitch_m;
+    const double view = view_rad(camera, f_m, pitch_m);
+    // A fisheye's field of view is not 2 atan(r / f).
+    const double half_of_lens = std::tan(0.5 * view);
+    if (view >= kLeast_rad && (camera.lens ? half_of_lens <= std::numbers::pi : view <= kMost_rad))
+        return;
+    struct Slip {
+        std::string_view key;
+        std::string_view unit;
+        double of_focal;
+        double of_pitch;
+    };
+    constexpr std::array kSlips{Slip{"focal_length_mm", "metres", 1e3, 1.0},
+                                Slip{"focal_length_mm", "centimetres", 10.0, 1.0},
+                                Slip{"focal_length_mm", "inches", kMillimetresPerInch, 1.0},
+                                Slip{"focal_length_mm", "micrometres", 1e-3, 1.0},
+                                Slip{"pixel_pitch_um", "millimetres", 1.0, 1e3},
+                                Slip{"pixel_pitch_um", "nanometres", 1.0, 1e-3}};
+    constexpr double kLeastFocal_m = 1e-3;
+    constexpr double kMostFocal_m = 0.5;
+    constexpr double kLeastSensor_m = 1e-3;
+    constexpr double kMostSensor_m = 0.1;
+    double nearest = std::numeric_limits<double>::infinity();
+    std::string fix;
+    std::string key = "focal_length_mm";
+    for (const Slip& slip : kSlips) {
+        const double focal_m = f_m * slip.of_focal;
+        const double sensor_m = camera.width_px * pitch_m * slip.of_pitch;
+        const double other = view_rad(camera, focal_m, pitch_m * slip.of_pitch);
+        if (camera.lens || other < kLeast_rad || other > kMost_rad || focal_m < kLeastFocal_m ||
+            focal_m > kMostFocal_m || sensor_m < kLeastSensor_m || sensor_m > kMostSensor_m) {
+            continue;
+        }
+        const double away = std::abs(std::log(other / kTypical_rad));
+        if (!(away < nearest)) continue;
+        nearest = away;
+        key = slip.key;
+        fix = fmt::format(
+            "; {:.3g} degrees if {} is in {}", other * kDegreesPerRadian, slip.key, slip.unit);
+    }
+    if (camera.lens) key = "calibration";
+    const std::string path = "camera." + key;
+    add({.key = path, .pattern = path, .line = source_line(root.at_path(path).node())},
+        fmt::format("found a focal length of {:.4g} mm and a pitch of {:.4g} um, a view of {:.4g} "
+                    "degrees from corner to corner; usual: {:g} to {:g}, as lenses see that{}",
+                    1e3 * f_m,
+                    1e6 * pitch_m,
+                    view * kDegreesPerRadian,
+                    kLeast_rad * kDegreesPerRadian,
+                    kMost_rad * kDegreesPerRadian,
+                    fix));
+}
+
+void Doubter::judge_levels(const toml::table& root) {
+    constexpr double kMostShare = 0.5;
+    const Readout& readout = rig_.camera.readout;
+    if (!readout.black_level_dn || !readout.white_level_dn) return;
+    if (*readout.black_level_dn <= kMostShare * *readout.white_level_dn) return;
+    const std::string path = "camera.black_level_dn";
+    add({.key = path, .pattern = path, .line = source_line(root.at_path(path).node())},
+        fmt::format("found {:g}; usual: up to half of white_level_dn, {:g}, as light needs room "
+                    "between them",
+                    *readout.black_level_dn,
+                    *readout.white_level_dn));
+}
+
+// Nobody aims all strobes of a sled a degree inward; in radians that is up to a right angle.
+void Doubter::judge_tilts() {
+    constexpr double kLeast = 5.0 * kRadiansPerDegree;
+    const auto may_be_radians = [](const auto& tilt) {
+        return tilt.second == 0.0 || (tilt.second >= kLeast && tilt.second <= kHalfPi);
+    };
+    const auto is_tilted = [](const auto& tilt) { return tilt.second > 0.0; };
+    if (!std::ranges::all_of(tilts_, may_be_radians)) return;
+    for (const auto& [place, tilt] : tilts_) {
+        if (!is_tilted(std::pair(place, tilt))) continue;
+        add(place,
+            fmt::format("found {:g}; usual: 0, or some degrees to 90; {:.4g} if that is in radians",
+                        tilt,
+                        tilt * kDegreesPerRadian));
+    }
+}
+
+void Doubter::judge_cones(const toml::table& root) {
+    constexpr double kLeastSum = 50.0;  // per cent, of which some part may be left out
+    constexpr double kMostSum = 150.0;
+    std::set<std::string> done;
+    for (const Strobe& strobe : rig_.strobes) {
+        const Beam& beam = strobe.beam;
+        const toml::node* node = root.at_path("beam")[beam.name]["cones"].node();
+        if (beam.cones.empty() || node == nullptr || !done.insert(beam.name).second) continue;
+        const std::string key = fmt::format("beam.{}.cones", printable(beam.name));
+        const double widest_deg =
+            std::ranges::max(beam.cones, {}, &Cone::half_angle_rad).half_angle_rad *
+            kDegreesPerRadian;
+        if (widest_deg <= kHalfPi * 1.001) {
+            add({.key = key, .pattern = "beam.*.cones[].half_angle_deg", .line = source_line(node)},
+                fmt::format("found half angles of {:.4g} degrees at most; usual: 3 and more, as "
+                            "lamps have wider beams; {:.4g} if that is in radians",
+                            widest_deg,
+                            widest_deg * kDegreesPerRadian));
+        }
+        double sum = 0.0;
+        for (const Cone& cone : beam.cones) sum += cone.weight;
+        if (beam.weights == ConeWeights::Flux && sum >= kLeastSum && sum <= kMostSum) {
+            add({.key = key, .pattern = "beam.*.cones[].weight", .line = source_line(node)},
+                fmt::format("found weights that add up to {:.4g}; usual: about 1, as they are "
+                            "shares of the flux; {:.4g} if they are in per cent",
+                            sum,
+                            0.01 * sum));
+        }
+    }
+}
+
+// Files have angles in degrees: a table that ends at pi or pi/2 has them in radians.
+void Doubter::judge_beam_tables() {
+    std::set<std::string> done;
+    for (const Strobe& strobe : rig_.strobes) {
+        const auto* table = std::get_if<BeamTable>(&strobe.beam.pattern);
+        if (table == nullptr || !done.insert(strobe.beam.name).second) continue;
+        const double end_deg =
+            std::max(std::abs(table->vertical_rad.front()), std::abs(table->vertical_rad.back())) *
+            kDegreesPerRadian;
+        if (end_deg > std::numbers::pi * 1.001) continue;
+        add({.key = fmt::format("beam.{}.table", printable(strobe.beam.name)),
+             .pattern = "beam.*.table"},
+            fmt::format("found a table that ends {:.4g} degrees off its axis; usual: 5 and more, "
+                        "as lamps have wider beams; {:.4g} if that is in radians",
+                        end_deg,
+                        end_deg * kDegreesPerRadian));
+    }
+}
+
+// Red, where water itself takes most and what is in it adds little: nothing is clearer than pure
+// water. All must be out of range, as by a unit; one knot may be anything.
+void Doubter::judge_absorption(const toml::table& root) {
+    struct Pure {
+        double lambda_nm;
+        double per_m;  // Pope and Fry 1997
+    };
+    constexpr std::array kPure{Pure{600.0, 0.2224}, Pure{650.0, 0.340}, Pure{700.0, 0.624}};
+    constexpr double kLeast = 0.1;
+    constexpr double kMost = 50.0;
+    constexpr double kTypical = 1.2;
+    constexpr std::array kUnits{Unit{"1/cm", 100.0}, Unit{"1/mm", 1000.0}, Unit{"1/km", 1e-3}};
+    const toml::node* node = root.at_path("water.absorption").node();
+    if (node == nullptr || rig_.water.multiple == 0.0) return;
+    const Spectrum& a = rig_.water.absorption_per_m;
+    const auto ratio_at = [&](const Pure& pure) { return a.at(pure.lambda_nm) / pure.per_m; };
+    std::vector<Pure> asked;
+    std::ranges::copy_if(kPure, std::back_inserter(asked), [&](const Pure& pure) {
+        return a.range().contains(pure.lambda_nm);
+    });
+    const auto is_all = [&](auto is_out) { return std::ranges::all_of(asked, is_out, ratio_at); };
+    if (asked.empty() || !(is_all([](double r) { return r > 0.0 && r < kLeast; }) ||
+                           is_all([](double r) { return r > kMost; }))) {
+        return;
+    }
+    const auto& [lambda_nm, pure_per_m] = asked.front();
+    const double per_m = a.at(lambda_nm);
+    double nearest = std::numeric_limits<double>::infinity();
+    std::string fix;
+    for (const Unit& unit : kUnits) {
+        const double ratio = ratio_at(asked.front()) * unit.factor;
+        const double away = std::abs(std::log(ratio / kTypical));
+        if (ratio < kLeast || ratio > kMost || !(away < nearest)) continue;
+        nearest = away;
+        fix = fmt::format("; {:.4g}/m if the table is in {}", per_m * unit.factor, unit.name);
+    }
+    add({.key = "water.absorption", .pattern = "water.absorption", .line = source_line(node)},
+        fmt::format("found {:.4g}/m at {:g} nm; usual: {:.3g} and more, which pure water has, to "
+                    "{:.3g}{}",
+                    per_m,
+                    lambda_nm,
+                    pure_per_m,
+                    kMost * pure_per_m,
+                    fix));
+}
+
+// What a strobe does to the floor in view.
+struct StrobeView {
+    bool has_light = false;
+    double nearest_rad = std::numbers::pi;  // from its axis to the view
+};
+
+constexpr std::size_t kSideOfView = 33;
+
+// How far apart, seen from the strobe, neighbours of the grid are.
+double spacing_rad(const std::vector<std::optional<FloorSample>>& samples,
+                   std::size_t i,
+                   const Vector3d& from_m) {
+    const std::size_t column = i % kSideOfView;
+    const std::size_t row = i / kSideOfView;
+    double widest = 0.0;
+    const auto ask = [&](bool is_there, std::size_t other) {
+        if (!is_there) return;
+        if (!samples[other]) {
+            widest = kHalfPi;  // to the horizon
+            return;
+        }
+        widest = std::max(
+            widest, angle_between(samples[i]->point_m - from_m, samples[other]->point_m - from_m));
+    };
+    ask(column > 0, i - 1);
+    ask(column + 1 < kSideOfView, i + 1);
+    ask(row > 0, i - kSideOfView);
+    ask(row + 1 < kSideOfView, i + kSideOfView);
+    return widest;
+}
+
+StrobeView view_of_strobe(const Strobe& strobe,
+                          const std::vector<std::optional<FloorSample>>& samples) {
+    StrobeView view;
+    const BeamFrame frame = frame_about(strobe.axis);
+    const double least = kNoLight * most_intensity(strobe.beam);
+    const double reach_m = emitter_reach_m(strobe);
+    for (const auto& sample : samples) {
+        if (!sample) continue;
+        const Vector3d towards = sample->point_m - strobe.position_m;
+        view.nearest_rad = std::min(view.nearest_rad, angle_between(strobe.axis, towards));
+        if (intensity_towards(strobe.beam, frame, towards) > least) view.has_light = true;
+    }
+    // A narrow beam may fall between the points.
+    for (std::size_t i = 0; i < samples.size() && !view.has_light; ++i) {
+        if (!samples[i]) continue;
+        const Vector3d towards = samples[i]->point_m - strobe.position_m;
+        const double within = spacing_rad(samples, i, strobe.position_m) +
+                              std::atan2(reach_m, std::max(reach_m, towards.norm() - reach_m));
+        view.has_light = most_intensity(strobe.beam, frame, towards, within) > least;
+    }
+    return view;
+}
+
+void Doubter::judge_light() {
+    if (!rig_.scene.empty()) return;
+    const std::vector<std::optional<FloorSample>> samples = floor_samples(rig_, kSideOfView);
+    const bool sees_floor =
+        std::ranges::any_of(samples, [](const auto& sample) { return sample.has_value(); });
+    if (!sees_floor && rig_.objects.empty()) {
+        add({.key = "sled", .pattern = "sled"},
+            fmt::format("the camera sees no sea floor, at a pitch of {:.4g} and a roll of {:.4g} "
+                        "degrees",
+                        rig_.sled.pitch_rad * kDegreesPerRadian,
+                        rig_.sled.roll_rad * kDegreesPerRadian));
+        return;
+    }
+    const Vector3d down = -floor_plane(rig_.sled).normal;
+    std::size_t dark = 0;
+    for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
+        const Strobe& strobe = rig_.strobes[s];
+        if (strobe.power == 0.0 || is_dark(strobe.beam)) {
+            ++dark;
+            continue;
+        }
+        const double above_deg =
+            std::asin(std::clamp(-strobe.axis.dot(down), -1.0, 1.0)) * kDegreesPerRadian;
+        const StrobeView view = view_of_strobe(strobe, samples);
+        // Objects are beyond this: they may stand in any light.
+        if (!rig_.objects.empty() || (view.has_light && above_deg <= 0.0)) continue;
+        if (!view.has_light) ++dark;
+        const std::string seen = view.has_light ? "" : ", and lights nothing that the camera sees";
+        const std::string what =
+            above_deg > 0.0
+                ? fmt::format("'{}' is aimed {:.3g} degrees above the horizon{}; z points down",
+                              printable(strobe.name),
+                              above_deg,
+                              seen)
+                : fmt::format(
+                      "'{}' lights nothing that the camera sees: the view begins {:.3g} "
+                      "degrees off its axis",
+                      printable(strobe.name),
+                      view.nearest_rad * kDegreesPerRadian);
+        add({.key = fmt::format("strobe[{}]", s), .pattern = "strobe[]"}, what);
+    }
+    if (dark == 0 || dark < rig_.strobes.size()) return;
+    add({.key = "strobe", .pattern = "strobe"},
+        "no strobe lights anything that the camera sees: its images are black");
+}
+
+std::vector<Doubt> Doubter::doubts() {
+    const toml::table root = toml::parse(rig_.toml);
+    judge(root, {});
+    judge_sled(root);
+    judge_view(root);
+    judge_levels(root);
+    judge_tilts();
+    judge_cones(root);
+    judge_beam_tables();
+    judge_absorption(root);
+    judge_light();
+    for (std::size_t i = 0; i < doubts_.size(); ++i) {
+        if (more_[i].size() > 1)
+            doubts_[i].what += fmt::format(" (and {} more like it)", more_[i].size() - 1);
+    }
+    std::ranges::stable_sort(doubts_, {}, [&](const Doubt& doubt) {
+        return doubt.line == 0 ? std::numeric_limits<int>::max() : doubt.line;
+    });
+    return std::move(doubts_);
+}
+
+}  // namespace
+
+std::vector<Doubt> doubts_of(const Rig& rig) {
+    return Doubter(rig).doubts();
+}
+
+std::string in_words(const Doubt& doubt, std::string_view rig_file) {
+    const std::string line = doubt.line > 0 ? fmt::format(":{}", doubt.line) : "";
+    return fmt::format("{}{}: {}: {}", rig_file, line, doubt.key, doubt.what);
+}
+
+bool is_judged(std::string_view key) {
+    return usual_of(key) != nullptr || std::ranges::find(kElsewhere, key) != kElsewhere.end();
+}
+
+}  // namespace aphotic

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A rig is written as a user would, and one number of it spoilt as by a wrong unit: the doubt must
+// name the key and the number that was meant, which the test knows beforehand.
+#include "rig/plausibility.h"
+
+#include "base/atomic_file.h"
+#include "rig/geometry.h"
+#include "rig/rig_reader.h"
+#include "support/random_rig.h"
+#include "support/temp_folder.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace aphotic::plausibility_test {
+namespace {
+
+constexpr std::string_view kUsualRig = R"(
+[sled]
+altitude_m = 2.0
+pitch_deg = 5.0
+[camera]
+resolution = [1360, 1024]
+pixel_pitch_um = 6.45
+focal_length_mm = 12.0
+range_nm = [420, 700]
+response = "nikon-d5100"
+[camera.port]
+shape = "flat"
+distance_mm = 40
+thickness_mm = 12
+glass = "bk7"
+[water]
+multiple = 1.0
+[seafloor]
+[beam.wide]
+fwhm_deg = 100
+[beam.cones]
+cones = [{ part = "a", half_angle_deg = 10, weight = 0.3 },
+         { part = "b", half_angle_deg = 90, weight = 0.7 }]
+[beam.lens]
+diffuser_mm = [60, 30]
+focal_length_mm = 65
+distance_mm = 50
+aperture_mm = 65
+[[strobe]]
+name = "fore"
+position_m = [0.5, 0, 0]
+aim = { tilt_deg = 20, toward = "axis" }
+beam = "wide"
+emitter_mm = [60, 30]
+luminous_flux_lm = 20000
+[[strobe]]
+name = "aft"
+position_m = [-0.5, 0, 0]
+aim = { tilt_deg = 26, toward = "axis" }
+beam = "cones"
+[[strobe]]
+name = "port"
+position_m = [0, -0.5, 0]
+direction = [0, 0.4, 1]
+beam = "lens"
+)";
+
+// Text in place of other text, wherever that stands.
+std::string with(std::string rig, std::string_view from, std::string_view to) {
+    std::size_t at = rig.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    for (; at != std::string::npos; at = rig.find(from, at + to.size()))
+        rig.replace(at, from.size(), to);
+    return rig;
+}
+
+std::vector<Doubt> doubts_of_text(const std::string& text, const std::filesystem::path& folder) {
+    return doubts_of(parse_rig(text, "rig.toml", folder));
+}
+
+std::string words_of(const std::vector<Doubt>& doubts) {
+    std::string words;
+    for (const Doubt& doubt : doubts) words += in_words(doubt, "rig.toml") + "\n";
+    return words;
+}
+
+struct Mistake {
+    std::string_view from;
+    std::string_view to;
+    std::string_view key;
+    std::string_view fix;  // what the doubt must say
+};
+
+TEST(Plausibility, EveryNumberInAnotherUnitIsDoubtedAndTheUnitTold) {
+    const std::vector<Mistake> mistakes{
+        {"altitude_m = 2.0", "altitude_m = 2000", "sled.altitude_m", "2 if that is in millimetres"},
+        {"altitude_m = 2.0", "altitude_m = 60", "sled.altitude_m", "18.29 if that is in feet"},
+        {"pitch_deg = 5.0",
+         "pitch_deg = 5.0\naltitude_offset_m = 350",
+         "sled.altitude_offset_m",
+         "0.35 if that is in millimetres"},
+        {"focal_length_mm = 12.0",
+         "focal_length_mm = 0.012",
+         "camera.focal_length_mm",
+         "49.2 degrees if focal_length_mm is in metres"},
+        {"focal_length_mm = 12.0",
+         "focal_length_mm = 0.4724",
+         "camera.focal_length_mm",
+         "49.2 degrees if focal_length_mm is in inches"},
+        {"focal_length_mm = 12.0",
+         "focal_length_mm = 12000",
+         "camera.focal_length_mm",
+         "49.2 degrees if focal_length_mm is in micrometres"},
+        {"pixel_pitch_um = 6.45",
+         "pixel_pitch_um = 6450",
+         "camera.pixel_pitch_um",
+         "49.2 degrees if pixel_pitch_um is in nanometres"},
+        {"pixel_pitch_um = 6.45\nfocal_length_mm = 12.0",
+         "fov_deg = 0.7",
+         "camera.fov_deg",
+         "40.11 if that is in radians"},
+        {"response =",
+         "position_m = [400, 0, 900]\nresponse =",
+         "camera.position_m",
+         "0.4 if that is in millimetres"},
+        {"response =",
+         "orientation_deg = [0, 0, 1.5708]\nresponse =",
+         "camera.orientation_deg",
+         "90 if that is in radians"},
+        {"response =",
+         "exposure_ms = 0.002\nresponse =",
+         "camera.exposure_ms",
+         "2 if that is in seconds"},
+        {"response =",
+         "black_level_dn = 4000\nwhite_level_dn = 4095\nresponse =",
+         "camera.black_level_dn",
+         "up to half of white_level_dn, 4095"},
+        {"thickness_mm = 12", "thickness_mm = 900", "camera.port.thickness_mm", "usual: 1 to 100"},
+        {"distance_mm = 40",
+         "distance_mm = 9000",
+         "camera.port.distance_mm",
+         "9 if that is in micrometres"},
+        {"multiple = 1.0", "multiple = 100", "water.multiple", "1 if that is in per cent"},
+        {"fwhm_deg = 100", "fwhm_deg = 1.745", "beam.wide.fwhm_deg", "99.98 if that is in radians"},
+        {"diffuser_mm = [60, 30]",
+         "diffuser_mm = [0.06, 0.03]",
+         "beam.lens.diffuser_mm",
+         "60 if that is in metres"},
+        {"half_angle_deg = 10, weight = 0.3 },\n         { part = \"b\", half_angle_deg = 90",
+         "half_angle_deg = 0.17, weight = 0.3 },\n         { part = \"b\", half_angle_deg = 1.57",
+         "beam.cones.cones",
+         "89.95 if that is in radians"},
+        {"weight = 0.3 },\n         { part = \"b\", half_angle_deg = 90, weight = 0.7",
+         "weight = 30 },\n         { part = \"b\", half_angle_deg = 90, weight = 70",
+         "beam.cones.cones",
+         "1 if they are in per cent"},
+        {"tilt_deg = 20, toward = \"axis\" }", "tilt_deg = 0.35, toward = \"axis\" }", "", ""},
+        {"position_m = [0.5, 0, 0]",
+         "position_m = [500, 0, 0]",
+         "strobe[0].position_m",
+         "0.5 if that is in millimetres"},
+        {"position_m = [-0.5, 0, 0]",
+         "position_m = [0, -50, 0]",
+         "strobe[1].position_m",
+         "-0.5 if that is in centimetres"},
+        {"emitter_mm = [60, 30]",
+         "emitter_mm = [0.06, 0.03]",
+         "strobe[0].emitter_mm",
+         "60 if that is in metres"},
+        {"luminous_flux_lm = 20000",
+         "luminous_flux_lm = 2",
+         "strobe[0].luminous_flux_lm",
+         "2000 if that is in kilolumens"},
+        {"luminous_flux_lm = 20000", "power = 0", "strobe[0].power", "gives no light"}};
+    for (const Mistake& mistake : mistakes) {
+        const std::vector<Doubt> doubts =
+            doubts_of_text(with(std::string(kUsualRig), mistake.from, mistake.to), "");
+        const auto found = std::ranges::find(doubts, mistake.key, &Doubt::key);
+        if (mistake.key.empty()) {  // one strobe that points down by half a degree is one
+            EXPECT_TRUE(doubts.empty()) << words_of(doubts);
+            continue;
+        }
+        ASSERT_NE(found, doubts.end()) << mistake.to << "\n" << words_of(doubts);
+        EXPECT_NE(found->what.find(mistake.fix), std::string::npos) << words_of(doubts);
+        EXPECT_GT(found->line, 0) << mistake.key;
+    }
+}
+
+TEST(Plausibility, TiltsOfAllStrobesInRadiansAreDoubted) {
+    std::string rig = with(std::string(kUsualRig), "tilt_deg = 20", "tilt_deg = 0.35");
+    rig = with(rig, "tilt_deg = 26", "tilt_deg = 0.45");
+    const std::vector<Doubt> doubts = doubts_of_text(rig, "");
+    ASSERT_EQ(doubts.size(), 1U) << words_of(doubts);
+    EXPECT_EQ(doubts[0].key, "strobe[0].aim.tilt_deg");
+    EXPECT_NE(doubts[0].what.find("20.05 if that is in radians"), std::string::npos);
+    EXPECT_NE(doubts[0].what.find("1 more like it"), std::string::npos);
+}
+
+// Of curves from a file: absorption per centimetre, and a beam's table over angles in radians.
+TEST(Plausibility, TablesInOtherUnitsAreDoubted) {
+    const TempFolder folder;
+    write_file(folder.path() / "a.csv",
+               "wavelength_nm,absorption_per_m\n400,0.0001\n600,0.0023\n700,0.0065\n");
+    write_file(folder.path() / "beam.csv", "theta_deg,intensity\n0,1\n0.7854,0.5\n1.5708,0\n");
+    const std::string absorption =
+        with(std::string(kUsualRig), "[water]", "[water]\nabsorption = \"a.csv\"");
+    const std::vector<Doubt> of_water = doubts_of_text(absorption, folder.path());
+    ASSERT_EQ(of_water.size(), 1U) << words_of(of_water);
+    EXPECT_NE(of_water[0].what.find("0.23/m if the table is in 1/cm"), std::string::npos)
+        << words_of(of_water);
+    const std::string table =
+        with(std::string(kUsualRig), "fwhm_deg = 100", "table = \"beam.csv\"");
+    const std::vector<Doubt> of_beam = doubts_of_text(table, folder.path());
+    ASSERT_FALSE(of_beam.empty());
+    EXPECT_EQ(of_beam[0].key, "beam.wide.table") << words_of(of_beam);
+    EXPECT_NE(of_beam[0].what.find("90 if that is in radians"), std::string::npos);
+}
+
+TEST(Plausibility, StrobesThatLightNothingInViewAreDoubted) {
+    // The sled is pitched by 5 degrees: what points straight away from the floor in the sled's
+    // frame is 85 degrees above the horizon.
+    const std::string up =
+        with(std::string(kUsualRig), "direction = [0, 0.4, 1]", "direction = [0, 0, -1]");
+    const std::vector<Doubt> of_up = doubts_of_text(up, "");
+    ASSERT_EQ(of_up.size(), 1U) << words_of(of_up);
+    EXPECT_EQ(of_up[0].key, "strobe[2]");
+    EXPECT_NE(
+        of_up[0].what.find("'port' is aimed 85 degrees above the horizon, and lights nothing"),
+        std::string::npos)
+        << words_of(of_up);
+    // A spot of 5 degrees, 70 degrees outward: the view's edge is some 80 degrees off.
+    std::string spot = with(std::string(kUsualRig), "fwhm_deg = 100", "fwhm_deg = 10");
+    spot = with(spot, "aim = { tilt_deg = 20, toward = \"axis\" }", "direction = [2.7, 0, 1]");
+    const std::vector<Doubt> of_spot = doubts_of_text(spot, "");
+    ASSERT_EQ(of_spot.size(), 1U) << words_of(of_spot);
+    EXPECT_NE(of_spot[0].what.find("'fore' lights nothing that the camera sees"),
+              std::string::npos);
+    // All of them: the image is black.
+    std::string black =
+        with(up, "aim = { tilt_deg = 20, toward = \"axis\" }", "direction = [0,0,-1]");
+    black = with(black, "aim = { tilt_deg = 26, toward = \"axis\" }", "direction = [0,0,-1]");
+    const std::vector<Doubt> of_black = doubts_of_text(black, "");
+    ASSERT_EQ(of_black.size(), 2U) << words_of(of_black);
+    EXPECT_NE(of_black[1].what.find("images are black"), std::string::npos);
+}
+
+// As set by a command, such as lightmap --altitude 2000.
+TEST(Plausibility, ThePoseThatCountsIsJudgedNotTheFiles) {
+    Rig rig = parse_rig(kUsualRig, "rig.toml", "");
+    EXPECT_TRUE(doubts_of(rig).empty()) << words_of(doubts_of(rig));
+    rig.sled.altitude_m = 2000.0;
+    ASSERT_FALSE(doubts_of(rig).empty());
+    EXPECT_EQ(doubts_of(rig)[0].key, "sled.altitude_m");
+}
+
+TEST(Plausibility, NoShippedRigIsDoubted) {
+    std::size_t rigs = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(APHOTIC_SOURCE_DIR "/scenes")) {
+        if (entry.path().extension() != ".toml") continue;
+        const std::vector<Doubt> doubts = doubts_of(read_rig(entry.path()));
+        EXPECT_TRUE(doubts.empty()) << entry.path() << "\n" << words_of(doubts);
+        ++rigs;
+    }
+    EXPECT_GT(rigs, 5U);
+}
+
+// Each key with a range of numbers in the manual's tables of keys has an entry, or a reason to have
+// none.
+TEST(Plausibility, EveryNumberOfARigIsJudged) {
+    const std::map<std::string, std::string> kPrefixes{{"`[sled]`", "sled."},
+                                                       {"`[camera]`", "camera."},
+                                                       {"`[camera.port]`", "camera.port."},
+                                                       {"`[water]`", "water."},
+                                                       {"`[seafloor]`", "seafloor."},
+                                                       {"`[beam.NAME]`", "beam.*."},
+                                                       {"`[[strobe]]`", "strobe[]."},
+                                                       {"`[[object]]`", "object[]."}};
+    std::istringstream manual(read_text_file(APHOTIC_SOURCE_DIR "/docs/rig.md"));
+    std::string line;
+    std::string prefix;
+    std::size_t keys = 0;
+    while (std::getline(manual, line)) {
+        if (line.starts_with("### ")) {
+            const auto found = kPrefixes.find(line.substr(4));
+            prefix = found == kPrefixes.end() ? "" : found->second;
+        }
+        if (line.starts_with("## ")) prefix.clear();
+        const bool is_number =
+            line.find(" to ") != std::string::npos && line.find("CSV") == std::string::npos;
+        if (prefix.empty() || !line.starts_with("| `") || !is_number) continue;
+        const std::string names = line.substr(2, line.find(" | ", 2) - 2);
+        for (std::size_t at = names.find('`'); at != std::string::npos; at = names.find('`', at)) {
+            const std::size_t end = names.find('`', at + 1);
+            const std::string name = names.substr(at + 1, end - at - 1);
+            const bool is_of_cone =
+                prefix == "beam.*." && (name == "half_angle_deg" || name == "weight" ||
+                                        name == "exponent" || name == "edge_deg");
+            const std::string key =
+                prefix + (is_of_cone ? "cones[]." : "") + (name == "aim" ? "aim.tilt_deg" : name);
+            EXPECT_TRUE(is_judged(key)) << key;
+            ++keys;
+            at = end + 1;
+        }
+    }
+    EXPECT_GT(keys, 40U);
+}
+
+// As people build them: from tanks to vehicles 12 m up, from spots to bare bulbs, aimed at what the
+// camera sees or some degrees beside it.
+std::string ordinary_rig(std::uint64_t seed) {
+    Dice dice(seed);
+    const double altitude_m = dice.over_octaves(0.3, 12.0);
+    const int width_px = dice.whole(320, 6000);
+    const double pitch_um = dice.over_octaves(1.4, 10.0) * (width_px < 800 ? 4.0 : 1.0);
+    std::string text = fmt::format(
+        "[sled]\naltitude_m = {}\npitch_deg = {}\nroll_deg = {}\n[camera]\nresolution = [{}, {}]\n"
+        "range_nm = [440, 690]\nresponse = \"nikon-d5100\"\n",
+        altitude_m,
+        dice.between(-25.0, 25.0),
+        dice.between(-25.0, 25.0),
+        width_px,
+        static_cast<int>(width_px * dice.between(0.5, 1.0)));
+    if (dice.chance(0.3)) {
+        text += fmt::format("fov_deg = {}\n", dice.between(15.0, 100.0));
+    } else {
+        const double half = 0.5 * width_px * pitch_um * 1e-3;
+        text += fmt::format("pixel_pitch_um = {}\nfocal_length_mm = {}\n",
+                            pitch_um,
+                            half / std::tan(0.5 * dice.between(15.0, 100.0) * kDegree));
+    }
+    if (dice.chance(0.3)) {
+        text += fmt::format(
+            "[camera.port]\nshape = \"flat\"\ndistance_mm = {}\nthickness_mm = {}\nglass = "
+            "\"bk7\"\n",
+            dice.over_octaves(5.0, 200.0),
+            dice.over_octaves(3.0, 40.0));
+    } else if (dice.chance(0.3)) {
+        text += fmt::format(
+            "[camera.port]\nshape = \"dome\"\nradius_mm = {}\nthickness_mm = {}\nglass = \"bk7\"\n",
+            dice.over_octaves(25.0, 150.0),
+            dice.over_octaves(3.0, 15.0));
+    }
+    text += "[water]\n";
+    if (dice.chance(0.3)) text += fmt::format("multiple = {}\n", dice.between(0.0, 5.0));
+    if (dice.chance(0.3)) text += fmt::format("uniform_loss_per_m = {}\n", dice.between(0.0, 1.0));
+    text += "[seafloor]\n[beam.b]\n";
+    if (dice.chance(0.4)) {
+        text += fmt::format("fwhm_deg = {}\n", dice.over_octaves(8.0, 140.0));
+    } else if (dice.chance(0.5)) {
+        text += fmt::format("cones = [{{ part = \"a\", half_angle_deg = {}, weight = {} }}]\n",
+                            dice.over_octaves(5.0, 90.0),
+                            dice.over_octaves(0.1, 10.0));
+    } else {
+        const double size_mm = dice.over_octaves(3.0, 100.0);
+        text += fmt::format(
+            "diffuser_mm = [{}, {}]\nfocal_length_mm = {}\ndistance_mm = {}\naperture_mm = {}\n",
+            size_mm,
+            size_mm * dice.between(0.3, 1.0),
+            size_mm * dice.between(0.7, 2.0),
+            size_mm * dice.between(0.3, 0.7),
+            size_mm * dice.between(1.0, 2.0));
+    }
+    return text;
+}
+
+// With strobes that are aimed at some point in view of the camera.
+std::string with_strobes(std::string text, std::uint64_t seed) {
+    Dice dice(~seed);
+    const std::string first =
+        "[[strobe]]\nname = \"0\"\nposition_m = [0.4, 0, 0]\ndirection = [0, 0, 1]\nbeam = \"b\"\n";
+    const Rig rig = parse_rig(text + first, "rig.toml", "");
+    const int strobes = dice.whole(1, 8);
+    for (int s = 0; s < strobes; ++s) {
+        const Eigen::Vector3d place_m = random_position_m(dice, rig.sled);
+        const Eigen::Vector3d axis = random_aim_m(dice, rig) - place_m;
+        text += fmt::format(
+            "[[strobe]]\nname = \"{}\"\nposition_m = [{}]\ndirection = [{}]\nbeam = \"b\"\n",
+            s,
+            fmt::join(place_m, ", "),
+            fmt::join(axis, ", "));
+        if (dice.chance(0.5))
+            text += fmt::format("luminous_flux_lm = {}\n", dice.over_octaves(300.0, 3e6));
+        if (dice.chance(0.3))
+            text += fmt::format("emitter_mm = [{}, 20]\n", dice.over_octaves(2.0, 400.0));
+    }
+    return text;
+}
+
+// APHOTIC_RIGS=1000 tries so many; 1000 of each kind were tried when this was written.
+std::uint64_t rigs_to_try() {
+    const char* told = std::getenv("APHOTIC_RIGS");  // NOLINT(concurrency-mt-unsafe)
+    return told == nullptr ? 40 : std::strtoull(told, nullptr, 10);
+}
+
+TEST(Plausibility, OrdinaryRigsAreNotDoubted) {
+    for (std::uint64_t seed = 0; seed < rigs_to_try(); ++seed) {
+        const std::string text = with_strobes(ordinary_rig(seed), seed);
+        const std::vector<Doubt> doubts = doubts_of_text(text, "");
+        EXPECT_TRUE(doubts.empty()) << seed << "\n" << words_of(doubts);
+        const std::vector<Doubt> of_random = doubts_of(random_rig(seed));
+        EXPECT_TRUE(of_random.empty()) << "random_rig " << seed << "\n" << words_of(of_random);
+    }
+}
+
+}  // namespace
+}  // namespace aphotic::plausibility_test
