@@ -34,11 +34,10 @@ constexpr double kTableShare = 0.5;
 void require_bare_floor(const Rig& rig) {
     constexpr auto kAllowed = "allowed: the bare floor, which is all that a lightmap is of";
     if (!rig.objects.empty()) {
-        throw InputError(
-            fmt::format("found the object '{}'; {}", rig.objects.front().name, kAllowed));
+        throw InputError("found the object '{}'; {}", rig.objects.front().name, kAllowed);
     }
     if (!rig.scene.empty()) {
-        throw InputError(fmt::format("found the scene {}; {}", rig.scene.string(), kAllowed));
+        throw InputError("found the scene {}; {}", rig.scene.string(), kAllowed);
     }
 }
 
@@ -75,12 +74,12 @@ LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
     const LampGrid grid = lamp_grid(rig, strobe, 0.0);
     if (static_cast<double>(grid.across) * grid.along > kMostLamps) {
         throw InputError(
-            fmt::format("strobe '{}': found an emitter that takes {} x {} lamps so low over the "
-                        "floor; allowed: up to {} of them",
-                        strobe.name,
-                        grid.across,
-                        grid.along,
-                        kMostLamps));
+            "strobe '{}': found an emitter that takes {} x {} lamps so low over the "
+            "floor; allowed: up to {} of them",
+            strobe.name,
+            grid.across,
+            grid.along,
+            kMostLamps);
     }
     return grid;
 }
@@ -248,7 +247,7 @@ void require_over_floor(const Rig& rig, const Sled& sled) {
             require_over_floor(sled, strobe, grid_of_lamps(flown, strobe));
         }
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", in_words(sled), error.what()));
+        throw InputError("{}: {}", in_words(sled), error.what());
     }
 }
 
@@ -390,12 +389,12 @@ LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
 void LightmapMaker::require_served(const Sled& sled, bool is_before, bool is_beyond) const {
     if (!is_before && (!is_beyond || paths_.has_horizon)) return;
     throw InputError(
-        fmt::format("{}: the image sees paths {} "
-                    "than the tables serve; allowed: from {:.6g} to {:.6g} m",
-                    in_words(sled),
-                    is_before ? "shorter" : "longer",
-                    paths_.shortest_m,
-                    paths_.longest_m));
+        "{}: the image sees paths {} "
+        "than the tables serve; allowed: from {:.6g} to {:.6g} m",
+        in_words(sled),
+        is_before ? "shorter" : "longer",
+        paths_.shortest_m,
+        paths_.longest_m);
 }
 
 Lightmap LightmapMaker::map(const Sled& sled) const {

@@ -54,12 +54,12 @@ Place place_on(const NamedAxis& axis, double value) {
     const double room = kSame * std::max(1.0, std::abs(value));
     if (value < values.front() - room || value > values.back() + room || std::isnan(value)) {
         throw InputError(
-            fmt::format("{}: found {:.6g}; allowed: from {:.6g} to {:.6g}, which the "
-                        "atlas covers",
-                        axis.name,
-                        value * axis.shown,
-                        values.front() * axis.shown,
-                        values.back() * axis.shown));
+            "{}: found {:.6g}; allowed: from {:.6g} to {:.6g}, which the "
+            "atlas covers",
+            axis.name,
+            value * axis.shown,
+            values.front() * axis.shown,
+            values.back() * axis.shown);
     }
     if (values.size() == 1) return {.lower = 0, .share = 0.0};
     const auto above = std::upper_bound(values.begin() + 1, values.end() - 1, value);

@@ -138,19 +138,18 @@ void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid) {
     const Plane floor = floor_plane(sled);
     const double height_m = height_above(floor, strobe.position_m);
     if (height_m < kLeastDistance_m) {
-        throw InputError(fmt::format(
+        throw InputError(
             "strobe '{}' stands {:.4f} m {} the sea floor; allowed: at least {} m over it",
             strobe.name,
             std::abs(height_m),
             height_m < 0.0 ? "under" : "over",
-            kLeastDistance_m));
+            kLeastDistance_m);
     }
     for (const Vector3d& lamp_m : lamp_positions_m(strobe, grid)) {
         if (height_above(floor, lamp_m) > 0.0) continue;
-        throw InputError(
-            fmt::format("strobe '{}' has a lamp at or under the sea floor, {:.4f} m below it",
-                        strobe.name,
-                        -height_above(floor, lamp_m)));
+        throw InputError("strobe '{}' has a lamp at or under the sea floor, {:.4f} m below it",
+                         strobe.name,
+                         -height_above(floor, lamp_m));
     }
 }
 

@@ -129,22 +129,21 @@ void plan_to_tolerance(const Rig& rig,
     const double least = plan.frame_error + plan.veil_error;
     if (plan.veil_error > 0.0 && request.tolerance <= least) {
         throw InputError(
-            fmt::format("tolerance: found {}; allowed: over {:.3g}, for the veil is off by {:.2g}, "
-                        "whatever the wavelengths, and half floats by {:.2g}",
-                        request.tolerance,
-                        least,
-                        plan.veil_error,
-                        plan.frame_error));
+            "tolerance: found {}; allowed: over {:.3g}, for the veil is off by {:.2g}, "
+            "whatever the wavelengths, and half floats by {:.2g}",
+            request.tolerance,
+            least,
+            plan.veil_error,
+            plan.frame_error);
     }
     if (keeps(request.tolerance, rig, fitter, request, plan)) return;
     constexpr double kNext = 1.3;
     double kept = kNext * request.tolerance;
     while (kept < 1.0 && !keeps(kept, rig, fitter, request, plan)) kept *= kNext;
-    throw InputError(
-        fmt::format("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
-                    request.tolerance,
-                    tolerance_to_ask_for(std::min(kept, 1.0)),
-                    plan.wavelengths.size()));
+    throw InputError("tolerance: found {}; allowed: {:.3g} and more, which {} wavelengths keep",
+                     request.tolerance,
+                     tolerance_to_ask_for(std::min(kept, 1.0)),
+                     plan.wavelengths.size());
 }
 
 // A slipped point in the focal length is the likelier cause of paths that no plan serves: no lens
@@ -157,13 +156,13 @@ void plan_to_tolerance(const Rig& rig,
         0.5 * camera.pixel_pitch_m * std::hypot(camera.width_px, camera.height_px);
     const double view_rad = 2.0 * std::atan(half_m / camera.focal_length_m);
     if (view_rad <= kMostView_rad) throw InputError(why);
-    throw InputError(fmt::format(
+    throw InputError(
         "camera.focal_length_mm: found {:.6g}, a view of {:.1f} degrees from corner to corner; "
         "allowed: {:.3g} and more for 150 degrees, or another {}",
         kMillimetresPerMetre * camera.focal_length_m,
         view_rad / kRadiansPerDegree,
         kMillimetresPerMetre * half_m / std::tan(0.5 * kMostView_rad),
-        why));
+        why);
 }
 
 // What POV-Ray's samples find of a shadow's edge has no bound.

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/nearest.h"
+#include "base/printable.h"
 #include "base/words.h"
 
 #include <fmt/format.h>
@@ -190,7 +191,7 @@ NavigationColumns navigation_columns(const std::string& file,
         const std::string_view name = header[*place];
         columns->names.at(field) = std::string(name);
         if (std::ranges::count(header, name) > 1)
-            fail_at_line(file, line, "the column '{}' stands twice", name);
+            fail_at_line(file, line, "the column '{}' stands twice", excerpt(name));
     }
     return *columns;
 }

@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/printable.h"
 #include "survey/navigation_cell.h"
 #include "survey/time_text.h"
 
@@ -106,7 +107,7 @@ void add_time(NavigationRow& row, const NavigationColumns& columns, const Fields
     row.pose.fault = fmt::format(
         "{}: found '{}'; allowed: seconds since 1970, or a time such as 2024-03-09 12:34:56.789",
         columns.name(Time),
-        text);
+        excerpt(text));
 }
 
 }  // namespace
