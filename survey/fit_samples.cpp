@@ -4,13 +4,13 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/in_order.h"
+#include "base/number.h"
 #include "image/exr.h"
 #include "survey/first_look.h"
 #include "survey/survey_image.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -92,17 +92,16 @@ void average(const RawImage& raw, float white, int block_px, FitImage& image) {
 
 double number_of(const ExrReader& reader, const std::string& name, const std::string& map) {
     const std::string text = reader.attribute(name);
-    double value = 0.0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (fault != std::errc{} || !std::isfinite(value)) {
+    const auto value = read_number<double>(text);
+    if (!value || !std::isfinite(*value)) {
         throw InputError(
             "{}: {}: found '{}'; allowed: a number, as `aphotic observe` writes where "
             "the navigation tells it",
             map,
             name,
-            text);
+            excerpt(text));
     }
-    return value;
+    return *value;
 }
 
 // A mosaic's map has its red at a quarter of the pixels alone.
