@@ -140,6 +140,7 @@ Task task_of(const CorrectCommandOptions& options) {
     require_whole_view(survey.files, survey.camera, rig.camera);
     const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
     NavigationOptions navigation = options.navigation;
+    navigation.jobs = static_cast<std::size_t>(all_cores());
     if (!altitudes_m.empty()) {
         navigation.least_altitude_m = altitudes_m[0];
         navigation.most_altitude_m = altitudes_m[1];

@@ -97,7 +97,7 @@ ExitStatus generate_scenes(const GenerateCommandOptions& options) {
     require_place_for_scenes(options.folder, scenes);
     require_room(needs_of_scenes(scenes), options.folder, options.planning.ignore_needs);
     const FolderLock lock = claim_folder(options.folder);
-    show(Generated{generate(options.folder, scenes), options.folder, scenes.scene_file},
+    show(Generated{generate(options.folder, scenes, all_cores()), options.folder, scenes.scene_file},
          options.json);
     return kDone;
 }

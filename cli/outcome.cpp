@@ -5,13 +5,13 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/model_error.h"
+#include "cli/options.h"
 #include "image/exr.h"
 #include "spectral/integrator.h"
 
 #include <algorithm>
 #include <chrono>
 #include <numeric>
-#include <thread>
 
 namespace aphotic::cli {
 
@@ -71,7 +71,7 @@ Integration integrate_folder(const fs::path& folder,
                              const fs::path& images) {
     const auto start = std::chrono::steady_clock::now();
     const InterruptionHold hold;
-    set_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+    set_exr_threads(all_cores());
     ProgressLine line;
     const auto report = [&](double share) {
         throw_if_interrupted();
