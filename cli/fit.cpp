@@ -155,6 +155,7 @@ void print_result(const std::string& title,
 }
 
 ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
+    silence_fit_log();
     require_one_source(app);
     require_use(app, options);
     require_other_rig(options);
