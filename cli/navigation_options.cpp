@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "cli/option_checks.h"
 #include "cli/options.h"
-#include "cli/options.h"
+#include "cli/terminal.h"
 #include "rig/rig_reader.h"
 #include "survey/image_time.h"
 
@@ -143,7 +143,7 @@ Navigation read_navigation_with(const std::string& rig,
 
 void print_navigation(const std::optional<Navigation>& navigation) {
     if (!navigation || !navigation->notes()) return;
-    fmt::print("  navigation: {}\n", words_of(*navigation->notes()));
+    say("  navigation: {}\n", words_of(*navigation->notes()));
 }
 
 }  // namespace aphotic::cli

@@ -2,6 +2,7 @@
 //
 // aphotic survey RIG -o DIR: raw images as the rig's camera writes them, with noise, navigation
 // with errors, and the truth beside both.
+#include "cli/terminal.h"
 #include "survey/simulated_survey.h"
 
 #include "base/error.h"
@@ -70,8 +71,7 @@ void print(const MadeSurvey& made) {
     const auto& [survey, model] = made;
     const RawCamera& camera = survey.camera;
     const std::string folder = survey.folder.string();
-    fmt::print(
-        "{}: {} in {}\n"
+    say("{}: {} in {}\n"
         "  camera: {}, black level {:g}, white level {:g}, {:.4g} numbers an electron\n"
         "  {}, as instruments tell it {}\n",
         survey.rig.title,

@@ -7,10 +7,23 @@
 #include "image/any_image_part.h"
 
 namespace aphotic {
+namespace {
+
+// OpenImageIO cuts a path at its question mark, and takes the rest for options.
+void require_plain_path(const std::filesystem::path& file) {
+    if (file.string().find('?') == std::string::npos) return;
+    throw InputError(
+        "{}: found a question mark in the path; allowed: none, for OpenImageIO takes what follows "
+        "it for options",
+        file.string());
+}
+
+}  // namespace
 
 AnyImage open_any_image(const std::filesystem::path& file) {
     using Open = void (*)(const std::filesystem::path&, AnyImage&);
     AnyImage image;
+    require_plain_path(file);
     from_part<Open>("aphotic_open_any_image")(file, image);
     return image;
 }
@@ -18,12 +31,14 @@ AnyImage open_any_image(const std::filesystem::path& file) {
 std::map<std::string, std::string> header_of_image(const std::filesystem::path& file) {
     using Read = void (*)(const std::filesystem::path&, std::map<std::string, std::string>&);
     std::map<std::string, std::string> tags;
+    require_plain_path(file);
     from_part<Read>("aphotic_header_of_image")(file, tags);
     return tags;
 }
 
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image) {
     using Write = void (*)(const std::filesystem::path&, const WrittenImage&);
+    require_plain_path(file);
     AtomicFile destination(file);
     from_part<Write>("aphotic_write_any_image")(destination.temporary(), image);
     if (image.tags) add_image_tags(destination.temporary(), *image.tags);
