@@ -3,12 +3,18 @@
 
 #include "base/error.h"
 #include "base/interruption.h"
+#include "base/number.h"
+#include "base/sha256.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/magic.h>
 #include <signal.h>  // kill
+#include <sys/statfs.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -27,21 +33,77 @@ fs::path folder_of(const fs::path& file) {
     return file.has_parent_path() ? file.parent_path() : ".";
 }
 
+// What a temporary's name says of its file's: all of it, where the longest name that file systems
+// allow has room.
+std::string told_of(const fs::path& file) {
+    constexpr std::size_t kLongestName = 255;
+    constexpr std::size_t kOurs = 48;  // dots, boot, numbers, process and "part"
+    constexpr std::size_t kDigest = 16;
+    const std::string stem = file.stem().string();
+    const std::size_t taken = kOurs + file.extension().string().size();
+    if (stem.size() + taken <= kLongestName || taken + kDigest > kLongestName) return stem;
+    return stem.substr(0, kLongestName - taken - kDigest) + sha256_of_text(stem).substr(0, kDigest);
+}
+
 bool is_gone(pid_t process) {
     return ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-// Temporaries whose name, less that of their process, is allowed.
+// Where a process number means something: the first digits of the kernel's boot_id, and the inode
+// of the space of process numbers. Empty where /proc does not tell.
+struct ProcessSpace {
+    std::string boot{};
+    std::string numbers{};
+};
+
+ProcessSpace our_space() {
+    constexpr std::size_t kDigits = 8;
+    ProcessSpace space;
+    std::ifstream("/proc/sys/kernel/random/boot_id") >> space.boot;
+    space.boot.resize(std::min(space.boot.size(), kDigits));
+    std::error_code error;
+    const std::string link = fs::read_symlink("/proc/self/ns/pid", error).string();  // pid:[123]
+    const std::size_t digits = std::min(link.find_first_of("0123456789"), link.size());
+    const auto inode =
+        read_number<std::uint64_t>(std::string_view(link).substr(digits, link.find(']') - digits));
+    if (inode) space.numbers = fmt::format("{:x}", *inode);
+    return space;
+}
+
+// A file system of which one kernel at a time has the files: that of a disk, or in memory.
+bool is_of_this_machine(const fs::path& folder) {
+    constexpr unsigned kXfs = 0x58465342;
+    constexpr unsigned kZfs = 0x2FC12FC1;
+    constexpr std::array<unsigned, 8> kLocal{EXT4_SUPER_MAGIC,
+                                             BTRFS_SUPER_MAGIC,
+                                             kXfs,
+                                             kZfs,
+                                             F2FS_SUPER_MAGIC,
+                                             TMPFS_MAGIC,
+                                             OVERLAYFS_SUPER_MAGIC,
+                                             RAMFS_MAGIC};
+    struct statfs system {};
+    return ::statfs(folder.c_str(), &system) == 0 &&
+           std::ranges::find(kLocal, static_cast<unsigned>(system.f_type)) != kLocal.end();
+}
+
+// Temporaries whose file's name is allowed.
 template <typename IsAllowed>
 void remove_abandoned(const fs::path& folder, IsAllowed is_allowed) {
-    static const std::regex kTemporary(R"(\.(.*)\.(\d{1,9})\.part(\..*)?)");
+    static const std::regex kTemporary(
+        R"(\.(.*)\.([0-9a-f]{8})-([0-9a-f]{1,16})-(\d{1,9})\.part(\..*)?)");
+    static const ProcessSpace ours = our_space();
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
         std::smatch found;
         if (!std::regex_match(name, found, kTemporary)) continue;
-        if (!is_allowed(found.str(1) + found.str(3)) || !is_gone(std::stoi(found[2]))) continue;
-        fs::remove(entry.path(), ignored);
+        if (!is_allowed(found.str(1) + found.str(5))) continue;
+        const bool is_abandoned =
+            found.str(2) == ours.boot
+                ? found.str(3) == ours.numbers && is_gone(*read_number<pid_t>(found.str(4)))
+                : !ours.boot.empty() && is_of_this_machine(folder);
+        if (is_abandoned) fs::remove(entry.path(), ignored);
     }
 }
 
@@ -61,17 +123,21 @@ bool is_synced(const fs::path& path) {
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path)) {
+    static const ProcessSpace ours = our_space();
     // The extension stays last: some writers choose their format by it.
     temporary_ = final_path_;
-    temporary_.replace_filename(fmt::format(".{}.{}.part{}",
-                                            final_path_.stem().string(),
+    temporary_.replace_filename(fmt::format(".{}.{}-{}-{}.part{}",
+                                            told_of(final_path_),
+                                            ours.boot,
+                                            ours.numbers,
                                             ::getpid(),
                                             final_path_.extension().string()));
+    removed_by_signal_.emplace(temporary_);
 }
 
 AtomicFile::~AtomicFile() {
     std::error_code ignored;
-    if (!committed_) fs::remove(temporary_, ignored);
+    if (removed_by_signal_) fs::remove(temporary_, ignored);
 }
 
 void AtomicFile::commit() {
@@ -83,7 +149,7 @@ void AtomicFile::commit() {
     std::error_code error;
     fs::rename(temporary_, final_path_, error);
     if (error) fail(error.value());
-    committed_ = true;
+    removed_by_signal_.reset();
     if (!is_synced(folder_of(final_path_))) fail(errno);
 }
 
@@ -93,7 +159,9 @@ void remove_abandoned_files(const fs::path& folder) {
 
 void remove_abandoned_of(const fs::path& file) {
     remove_abandoned(folder_of(file),
-                     [&](const std::string& name) { return name == file.filename(); });
+                     [name = told_of(file) + file.extension().string()](const std::string& told) {
+                         return told == name;
+                     });
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {

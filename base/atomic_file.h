@@ -8,11 +8,31 @@
 //
 // commit() puts the file's bytes on the disk (fsync) before its new name, and then the name, so
 // that a power cut too leaves the file of before or the new one, whole. Without commit() nothing is
-// left behind. A failed write, sync or rename is a RunError that names the file.
+// left behind, also when SIGINT, SIGTERM or SIGHUP ends us (base/interruption.h). A failed write,
+// sync or rename is a RunError that names the file.
+//
+// Only what cannot clean up, SIGKILL or a machine that goes down, leaves a temporary:
+//
+//   .image.5f3a9c01-f000003c-1234.part.exr
+//
+// It names the boot of the kernel, its space of process numbers (a container's differ) and the
+// process. Others may write to the same folder from other machines and containers, where our
+// process numbers mean nothing, so the next run removes a temporary only where it is certain that
+// nobody writes it:
+//
+//   - same boot, same space of numbers: no such process is left
+//   - another boot: the file system is a disk or memory of this machine, so that boot is over
+//
+// Others stay, such as those of a container that was killed or of a machine that went down while
+// it wrote to a network folder. So do those of versions up to 0.2, which name the process alone.
 #pragma once
+
+#include "base/interruption.h"
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,12 +52,11 @@ class AtomicFile {
   private:
     std::filesystem::path final_path_;
     std::filesystem::path temporary_;
-    bool committed_ = false;
+    std::optional<RemovedBySignal> removed_by_signal_;  // until it is committed
 };
 
-// Takes away what AtomicFiles of processes that are no more left in this folder: killed ones, for
-// all others tidy up themselves. The second takes those of one file alone, in a folder that is not
-// ours.
+// Removes the temporaries that killed processes left in this folder. The second removes those of
+// one file alone, in a folder that is not ours.
 void remove_abandoned_files(const std::filesystem::path& folder);
 void remove_abandoned_of(const std::filesystem::path& file);
 

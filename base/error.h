@@ -8,23 +8,28 @@
 //             Exit status 3.
 #pragma once
 
+#include "base/printable.h"
+
 #include <fmt/core.h>
 
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace aphotic {
 
-// Made of a message, or of what fmt::format() makes one of.
+// Made of a message, or of what fmt::format() makes one of. Names and values in it may come from
+// anybody: what() has none of their control characters, and an end (base/printable.h).
 class Failure : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    explicit Failure(std::string_view message) : runtime_error(whole_message(message)) {}
     template <typename First, typename... Rest>
-    explicit Failure(fmt::format_string<First, Rest...> text, First&& first, Rest&&... rest)
-        : runtime_error(
-              fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...)) {}
+    explicit Failure(fmt::format_string<First, Rest...> text,
+                     const First& first,
+                     const Rest&... rest)
+        : Failure(fmt::format(fmt::runtime(text), shown_value(first), shown_value(rest)...)) {}
 };
 
 class InputError : public Failure {

@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <string.h>  // strsignal
+#include <time.h>
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
+#include <cerrno>
 #include <cstddef>
 #include <mutex>
 
@@ -16,31 +17,88 @@ namespace {
 
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 
+// What the handler reads. It may touch nothing else.
 std::atomic<int> noted_signal = 0;
-static_assert(std::atomic<int>::is_always_lock_free, "a signal's handler may touch nothing else");
+std::atomic<int> holds = 0;
+std::atomic<bool> is_ending = false;
+constexpr std::size_t kMostTemporaries = 4096;
+std::array<std::atomic<const char*>, kMostTemporaries> temporaries{};
+std::array<std::atomic<bool>, kSignals.size()> has_host_handler{};
+static_assert(std::atomic<int>::is_always_lock_free &&
+              std::atomic<const char*>::is_always_lock_free);
+
 std::atomic<bool> is_told = false;  // Interrupted is on its way up
 
-std::mutex holds_mutex;
-int holds = 0;
+std::mutex uses_mutex;
+int uses = 0;  // holds and temporaries
 std::array<struct sigaction, kSignals.size()> previous_actions{};
 
-extern "C" void note_signal(int signal) {
-    noted_signal = signal;
-}
-
-void start_noting() {
-    struct sigaction noting {};
-    noting.sa_handler = note_signal;
-    noting.sa_flags = SA_RESTART;
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        ::sigaction(kSignals[i], nullptr, &previous_actions[i]);
-        if (previous_actions[i].sa_handler != SIG_IGN) ::sigaction(kSignals[i], &noting, nullptr);
+// A thread that made the file's name known may not have made the file yet, and would after it was
+// removed: such a file is waited for. An open file that has no name any more is gone with us.
+void remove_temporaries() {
+    constexpr int kMostWaits = 50;
+    constexpr timespec kWait{.tv_sec = 0, .tv_nsec = 2'000'000};
+    for (int wait = 0; wait < kMostWaits; ++wait) {
+        bool is_one_to_come = false;
+        for (auto& place : temporaries) {
+            const char* const file = place;
+            if (file == nullptr) continue;
+            if (::unlink(file) == 0 || errno != ENOENT) {
+                place = nullptr;
+            } else {
+                is_one_to_come = true;
+            }
+        }
+        if (!is_one_to_come) return;
+        ::nanosleep(&kWait, nullptr);
     }
 }
 
-void stop_noting() {
+// A thread that comes here while the process ends must not free what the handler reads, nor begin
+// another file.
+void wait_if_ending() {
+    while (is_ending) ::pause();
+}
+
+extern "C" void on_signal(int signal) {
+    const int error = errno;
+    bool is_noted = holds > 0;
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+        is_noted |= kSignals[i] == signal && has_host_handler[i];
+    if (is_noted) {
+        noted_signal = signal;
+        errno = error;
+        return;
+    }
+    if (is_ending.exchange(true)) return;  // another thread has the first of two signals
+    remove_temporaries();
+    end_by_signal(signal);
+}
+
+void begin_use() {
+    const std::scoped_lock lock(uses_mutex);
+    if (uses++ > 0) return;
+    struct sigaction ours {};
+    ours.sa_handler = on_signal;
+    ours.sa_flags = SA_RESTART | SA_NODEFER;  // so that the handler can end us by the signal
     for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        ::sigaction(kSignals[i], &previous_actions[i], nullptr);
+        ::sigaction(kSignals[i], nullptr, &previous_actions[i]);
+        const auto handler = previous_actions[i].sa_handler;
+        if (handler == SIG_IGN) continue;
+        has_host_handler[i] = handler != SIG_DFL;
+        ::sigaction(kSignals[i], &ours, nullptr);
+    }
+}
+
+// A signal that was noted for a hold does not wait for the files of other threads.
+void end_use(bool is_hold) {
+    const std::scoped_lock lock(uses_mutex);
+    const bool is_last_hold = is_hold && --holds == 0;
+    if (--uses == 0) {
+        for (std::size_t i = 0; i < kSignals.size(); ++i)
+            ::sigaction(kSignals[i], &previous_actions[i], nullptr);
+    } else if (!is_last_hold) {
+        return;
     }
     const int signal = noted_signal.exchange(0);
     if (signal != 0 && !is_told.exchange(false)) ::raise(signal);
@@ -52,13 +110,29 @@ Interrupted::Interrupted(int signal)
     : std::runtime_error(fmt::format("interrupted ({})", ::strsignal(signal))), signal_(signal) {}
 
 InterruptionHold::InterruptionHold() {
-    const std::scoped_lock lock(holds_mutex);
-    if (holds++ == 0) start_noting();
+    ++holds;
+    begin_use();
 }
 
 InterruptionHold::~InterruptionHold() {
-    const std::scoped_lock lock(holds_mutex);
-    if (--holds == 0) stop_noting();
+    end_use(true);
+}
+
+RemovedBySignal::RemovedBySignal(const std::filesystem::path& file) : file_(file.string()) {
+    begin_use();
+    wait_if_ending();
+    for (auto& place : temporaries) {
+        const char* nothing = nullptr;
+        if (!place.compare_exchange_strong(nothing, file_.c_str())) continue;
+        place_ = &place;
+        return;
+    }
+}
+
+RemovedBySignal::~RemovedBySignal() {
+    if (place_ != nullptr) *place_ = nullptr;
+    wait_if_ending();
+    end_use(false);
 }
 
 void throw_if_interrupted() {

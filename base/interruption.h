@@ -6,13 +6,21 @@
 //   const InterruptionHold hold;
 //   while (...) { throw_if_interrupted(); ... }
 //
-// While a hold lives these signals are noted instead of ending us; without one they end us at once,
-// as ever. Interrupted then unwinds the stack, and so puts things in order; whoever catches it ends
-// by end_by_signal(), so that a shell or a scheduler sees which signal it was. A signal that
-// nobody asked about ends us when the last hold goes. Signals that are ignored (nohup) stay so.
+// While a hold lives these signals are noted instead of ending us. Interrupted then unwinds the
+// stack, and so puts things in order; whoever catches it ends by end_by_signal(), so that a shell
+// or a scheduler sees which signal it was. A signal that nobody asked about ends us when the last
+// hold goes.
+//
+// Without a hold they end us at once, as ever, but for one thing: the files that a
+// RemovedBySignal names are removed first. Where the host of our libraries has a handler of its
+// own, the signal is noted, and raised again when the last of these objects goes. Signals that are
+// ignored (nohup) stay so.
 #pragma once
 
+#include <atomic>
+#include <filesystem>
 #include <stdexcept>
+#include <string>
 
 namespace aphotic {
 
@@ -32,6 +40,20 @@ class InterruptionHold {
     ~InterruptionHold();
     InterruptionHold(const InterruptionHold&) = delete;
     InterruptionHold& operator=(const InterruptionHold&) = delete;
+};
+
+// A file that a signal which ends us is to remove, while this lives. It need not be there yet.
+// Beyond 4096 at a time the file stays, and the next run removes it (base/atomic_file.h).
+class RemovedBySignal {
+  public:
+    explicit RemovedBySignal(const std::filesystem::path& file);
+    ~RemovedBySignal();
+    RemovedBySignal(const RemovedBySignal&) = delete;
+    RemovedBySignal& operator=(const RemovedBySignal&) = delete;
+
+  private:
+    std::string file_;
+    std::atomic<const char*>* place_ = nullptr;
 };
 
 // Throws Interrupted when a signal was noted.

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/printable.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -78,13 +79,28 @@ nlohmann::json parse_json(std::string_view text, const std::string& what) {
     KeysOnce keys;
     nlohmann::json::sax_parse(text, &keys);
     if (!keys.twice.empty())
-        throw InputError("{}: '{}' stands twice in an object", what, printable(keys.twice));
+        throw InputError("{}: '{}' stands twice in an object", what, excerpt(keys.twice));
     return json;
 }
 
 std::string json_text(const nlohmann::ordered_json& json) {
     constexpr int kIndent = 2;
-    return json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    const std::string dumped =
+        json.dump(kIndent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    // What JSON lets stand as it is and a terminal obeys: U+007F, and U+0080 to U+009F.
+    std::string text;
+    for (std::size_t i = 0; i < dumped.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(dumped[i]);
+        const auto next = static_cast<unsigned char>(i + 1 < dumped.size() ? dumped[i + 1] : ' ');
+        const bool is_upper = byte == 0xC2 && next < 0xA0;
+        if (byte != 0x7F && !is_upper) {
+            text += dumped[i];
+            continue;
+        }
+        text += fmt::format("\\u00{:02x}", is_upper ? next : byte);
+        if (is_upper) ++i;
+    }
+    return text;
 }
 
 bool is_whole_number(const nlohmann::json& value, std::int64_t least, std::int64_t most) {
@@ -101,7 +117,7 @@ std::int64_t whole_number_at(const nlohmann::json& object,
     if (is_whole_number(value, least, most)) return value.get<std::int64_t>();
     throw InputError("{}: found {}; allowed: a whole number from {} to {}",
                      key,
-                     printable(value.dump()),
+                     excerpt(value.dump()),
                      least,
                      most);
 }

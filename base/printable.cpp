@@ -17,6 +17,24 @@ std::size_t control_length(std::string_view text) {
     return byte == 0xC2 && next >= 0x80 && next < 0xA0 ? 2 : 0;
 }
 
+// Where a text may be cut at `place` or just before it, between characters of UTF-8.
+std::size_t boundary_before(std::string_view text, std::size_t place) {
+    constexpr std::size_t kMostBehindFirst = 3;
+    for (std::size_t back = 0; back <= kMostBehindFirst && back < place; ++back) {
+        if ((static_cast<unsigned char>(text[place - back]) & 0xC0U) != 0x80U) return place - back;
+    }
+    return place;
+}
+
+// Beginning and end of a longer text, so much of each that both take `most` bytes.
+std::string without_middle(std::string_view text, std::size_t most) {
+    if (text.size() <= most) return std::string(text);
+    const std::size_t head = boundary_before(text, most / 2);
+    const std::size_t tail = boundary_before(text, text.size() - most / 2);
+    return fmt::format(
+        "{} ... [{} bytes] ... {}", text.substr(0, head), tail - head, text.substr(tail));
+}
+
 }  // namespace
 
 std::string printable(std::string_view text, std::string_view keep) {
@@ -39,6 +57,20 @@ bool has_control_characters(std::string_view text) {
         if (control_length(text) > 0) return true;
     }
     return false;
+}
+
+std::string excerpt(std::string_view text) {
+    if (text.size() <= kMostQuoted_bytes) return printable(text);
+    return printable(text.substr(0, boundary_before(text, kMostQuoted_bytes))) + "...";
+}
+
+std::string shown_text(std::string_view text) {
+    return without_middle(printable(without_middle(text, kMostText_bytes)), kMostText_bytes);
+}
+
+std::string whole_message(std::string_view text) {
+    return without_middle(printable(without_middle(text, kMostMessage_bytes), "\n\t"),
+                          kMostMessage_bytes);
 }
 
 }  // namespace aphotic

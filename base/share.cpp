@@ -2,13 +2,12 @@
 #include "base/share.h"
 
 #include "base/error.h"
+#include "base/number.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <functional>
-#include <optional>
 #include <regex>
 #include <system_error>
 
@@ -16,21 +15,10 @@ namespace aphotic {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-std::optional<std::size_t> whole_number_of(std::string_view text) {
-    std::size_t number = 0;
-    const char* const last = text.data() + text.size();
-    const auto [end, fault] = std::from_chars(text.data(), last, number);
-    return fault == std::errc{} && end == last ? std::optional(number) : std::nullopt;
-}
-
-}  // namespace
-
 WorkShare parse_share(std::string_view text) {
     const std::size_t slash = std::min(text.find('/'), text.size());
-    const auto number = whole_number_of(text.substr(0, slash));
-    const auto of = whole_number_of(text.substr(std::min(slash + 1, text.size())));
+    const auto number = read_number<std::size_t>(text.substr(0, slash));
+    const auto of = read_number<std::size_t>(text.substr(std::min(slash + 1, text.size())));
     if (number && of && *number >= 1 && *number <= *of && *of <= kMostShares) return {*number, *of};
     throw InputError("found {}; allowed: I/N, such as 2/4, with I from 1 to N and N up to {}",
                      text,

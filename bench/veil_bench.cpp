@@ -50,7 +50,7 @@ void veil_beside_frames(benchmark::State& state, const std::string& name) {
         run_frames(povray, folder, manifest.frames, manifest.width_px, manifest.height_px, {});
         frames_s = std::min(frames_s, processor_s(RUSAGE_CHILDREN) - children_s);
         const double own_s = processor_s(RUSAGE_SELF);
-        write_veil(folder, rig, manifest);
+        write_veil(folder, rig, manifest, 1);
         veil_s = std::min(veil_s, processor_s(RUSAGE_SELF) - own_s);
     }
     fs::remove_all(folder);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/allowed_skips.h"
 
+#include "base/number.h"
 #include "base/words.h"
+#include "cli/terminal.h"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <system_error>
@@ -25,11 +26,10 @@ std::optional<AllowedSkips> allowed_skips_in(std::string_view text) {
     constexpr double kMostImages = 1e9;
     const bool is_percent = text.ends_with('%');
     if (is_percent) text.remove_suffix(1);
-    double number = 0.0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    const bool is_share = is_percent || number != std::floor(number);
-    if (is_percent) number *= kPercent;
+    const auto read = read_number<double>(text);
+    if (!read) return std::nullopt;
+    const bool is_share = is_percent || *read != std::floor(*read);
+    const double number = is_percent ? kPercent * *read : *read;
     const bool is_allowed = number >= 0.0 && number <= (is_share ? 1.0 : kMostImages);
     return is_allowed ? std::optional(AllowedSkips{number, is_share}) : std::nullopt;
 }
@@ -54,11 +54,8 @@ void add_allow_skipped(CLI::App& app, AllowedSkips& allowed) {
 ExitStatus status_of_skips(std::size_t skipped, std::size_t images, const AllowedSkips& allowed) {
     if (skipped == 0) return kDone;
     const std::size_t most = allowed.of(images);
-    fmt::print(stderr,
-               "aphotic: {} of {} skipped; allowed: {} (--allow-skipped)\n",
-               skipped,
-               counted(images, "image"),
-               most);
+    warn(
+        "{} of {} skipped; allowed: {} (--allow-skipped)", skipped, counted(images, "image"), most);
     return skipped <= most ? kDone : kAnswerIsNo;
 }
 

@@ -6,6 +6,7 @@
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
@@ -14,6 +15,7 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/rig_file.h"
+#include "cli/terminal.h"
 #include "image/exr.h"
 #include "lightmap/altitude_fit.h"
 #include "lightmap/atlas_export.h"
@@ -67,13 +69,10 @@ std::vector<double> axis_of(const std::string& option, const std::string& text, 
     std::vector<double> parts;
     std::istringstream in(text);
     for (std::string part; std::getline(in, part, ':');) {
-        std::size_t used = 0;
-        try {
-            parts.push_back(std::stod(part, &used));
-        } catch (const std::exception&) {
-            fail();
-        }
-        if (used != part.size()) fail();
+        const std::size_t sign = part.starts_with('+') ? 1 : 0;
+        const auto number = read_number<double>(std::string_view(part).substr(sign));
+        if (!number) fail();
+        parts.push_back(*number);
     }
     const bool is_one = parts.size() == 1;
     if (!is_one && parts.size() != 3) fail();
@@ -235,13 +234,13 @@ void announce(const AtlasCommandOptions& options,
     }
     const DiskNeeds needs = atlas_needs(work);
     if (!options.json) {
-        fmt::print("{} of {} x {} pixels: up to {} to write to {}\n",
-                   counted(all, "bin"),
-                   work.size.width_px,
-                   work.size.height_px,
-                   bytes_in_words(needs.folder_bytes),
-                   options.folder);
-        std::fflush(stdout);
+        say("{} of {} x {} pixels: up to {} to write to {}\n",
+            counted(all, "bin"),
+            work.size.width_px,
+            work.size.height_px,
+            bytes_in_words(needs.folder_bytes),
+            options.folder);
+        flush_said();
     }
     require_room(needs, options.folder, options.ignore_needs);
 }
@@ -295,23 +294,20 @@ nlohmann::ordered_json to_json(const MadeAtlas& made) {
 void print(const MadeAtlas& made) {
     constexpr double kPercent = 100.0;
     const InterpolationError& error = made.chosen.interpolation;
-    fmt::print("{}: {}, {} of them computed, in {:.1f} s\n",
-               made.rig.title,
-               counted(bins_of(made.share, made.chosen.axes), "bin"),
-               made.computed,
-               made.seconds);
+    say("{}: {}, {} of them computed, in {:.1f} s\n",
+        made.rig.title,
+        counted(bins_of(made.share, made.chosen.axes), "bin"),
+        made.computed,
+        made.seconds);
     if (!made.share.is_whole()) {
-        fmt::print("  {}: join the shares by the same command without --share\n",
-                   made.folder.string());
+        say("  {}: join the shares by the same command without --share\n", made.folder.string());
         return;
     }
-    fmt::print(
-        "  measured between bins, light without the beams' edges is off by up to {:.2g}, {:.2g} "
+    say("  measured between bins, light without the beams' edges is off by up to {:.2g}, {:.2g} "
         "rms\n",
         error.worst,
         error.rms);
-    fmt::print(
-        "  whole maps are off by {:.2g} rms, {:.1f} % of their samples by over {:.2g} (in {}): "
+    say("  whole maps are off by {:.2g} rms, {:.1f} % of their samples by over {:.2g} (in {}): "
         "edges cross\n  {:.1f} % of the pixels on the way from bin to bin, and step there\n",
         error.whole_rms,
         kPercent * error.whole_over,
@@ -320,19 +316,18 @@ void print(const MadeAtlas& made) {
         kPercent * error.crossed_share);
     print_model_error(made.model);
     if (!made.exports.bayer.empty()) {
-        fmt::print("  {}  RGGB mosaics of {}\n",
-                   made.mosaics().string(),
-                   counted(made.exports.bayer.size(), "altitude"));
+        say("  {}  RGGB mosaics of {}\n",
+            made.mosaics().string(),
+            counted(made.exports.bayer.size(), "altitude"));
     }
     if (const auto& fit = made.exports.exponential) {
-        fmt::print("  {}  a exp(b h) + c, off by {:.2g} of a pixel's mean rms, {:.2g} at most\n",
-                   made.fits().string(),
-                   fit->rms,
-                   fit->worst);
+        say("  {}  a exp(b h) + c, off by {:.2g} of a pixel's mean rms, {:.2g} at most\n",
+            made.fits().string(),
+            fit->rms,
+            fit->worst);
     }
     if (const auto& fit = made.exports.oplab) {
-        fmt::print(
-            "  {}  parameters for oplab's correct_images, off by {:.2g} of a pixel's mean rms, "
+        say("  {}  parameters for oplab's correct_images, off by {:.2g} of a pixel's mean rms, "
             "{:.2g} at "
             "most;\n  {:.1f} % of all light by over {:.0f} %\n",
             (made.folder / fit->folder).string(),
@@ -341,10 +336,10 @@ void print(const MadeAtlas& made) {
             kPercent * fit->share_off,
             kPercent * kOplabOff);
     }
-    fmt::print("  {}/atlas.json\n", made.folder.string());
+    say("  {}/atlas.json\n", made.folder.string());
     if (!made.holds()) {
-        fmt::print("  not within the tolerance of {:.2g}: the steps allow no finer bins\n",
-                   made.tolerance);
+        say("  not within the tolerance of {:.2g}: the steps allow no finer bins\n",
+            made.tolerance);
     }
 }
 

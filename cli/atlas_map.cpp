@@ -6,6 +6,7 @@
 #include "base/offered.h"
 #include "base/words.h"
 #include "cli/outcome.h"
+#include "cli/terminal.h"
 #include "image/exr.h"
 #include "lightmap/atlas.h"
 #include "lightmap/planes.h"
@@ -92,31 +93,30 @@ nlohmann::ordered_json to_json(const BlendedMap& blended) {
 }
 
 void print(const BlendedMap& blended) {
-    fmt::print("{}: {} x {} pixels, {}\n",
-               blended.manifest.title,
-               blended.map.width_px,
-               blended.map.height_px,
-               blended.bins == 1 ? "a bin of the atlas"
-                                 : fmt::format("blended from {}", counted(blended.bins, "bin")));
+    say("{}: {} x {} pixels, {}\n",
+        blended.manifest.title,
+        blended.map.width_px,
+        blended.map.height_px,
+        blended.bins == 1 ? "a bin of the atlas"
+                          : fmt::format("blended from {}", counted(blended.bins, "bin")));
     if (blended.bins > 1) {
-        fmt::print(
-            "  measured over the atlas, blending is off by up to {:.2g} for light without the "
+        say("  measured over the atlas, blending is off by up to {:.2g} for light without the "
             "beams' edges,\n  {:.2g} rms for whole maps\n",
             blended.manifest.interpolation.worst,
             blended.manifest.interpolation.whole_rms);
     }
     print_peaks(blended.peaks, blended.options.normalised);
-    fmt::print("  {}\n", blended.options.file);
+    say("  {}\n", blended.options.file);
 }
 
 }  // namespace
 
 void print_peaks(const std::array<float, kChannels>& peaks, bool is_normalised) {
-    fmt::print("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
-               peaks[0],
-               peaks[1],
-               peaks[2],
-               is_normalised ? ", each channel divided by its own" : "");
+    say("  peaks {:.6g} (R), {:.6g} (G), {:.6g} (B){}\n",
+        peaks[0],
+        peaks[1],
+        peaks[2],
+        is_normalised ? ", each channel divided by its own" : "");
 }
 
 ExitStatus write_atlas_map(const LightmapCommandOptions& options) {

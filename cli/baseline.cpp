@@ -9,6 +9,7 @@
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
+#include "cli/terminal.h"
 #include "image/exr.h"
 #include "survey/baseline_run.h"
 
@@ -48,14 +49,14 @@ ExitStatus correct_by_baseline(BaselineCommandOptions options) {
         aphotic::correct_by_baseline(survey, options.baseline, terminal_watch(options.strict));
     const RunOutcome& run = *report.run;
     if (options.json) {
-        fmt::print("{}", json_text(to_json(report)));
+        say_text(json_text(to_json(report)));
     } else {
-        fmt::print("{}: {} corrected by {}, {}{} skipped\n",
-                   folder.string(),
-                   counted(run.corrected, "image"),
-                   options.name,
-                   run.kept > 0 ? fmt::format("{} kept as they were, ", run.kept) : "",
-                   run.skipped.size());
+        say("{}: {} corrected by {}, {}{} skipped\n",
+            folder.string(),
+            counted(run.corrected, "image"),
+            options.name,
+            run.kept > 0 ? fmt::format("{} kept as they were, ", run.kept) : "",
+            run.skipped.size());
         print_camera(survey.camera);
         print_navigation(survey.navigation);
         if (report.srgb) print_srgb(*report.srgb, folder);

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "cli/command.h"
 #include "cli/options.h"
+#include "cli/terminal.h"
 #include "report/plot.h"
 #include "rig/beam_figures.h"
 #include "rig/cone_fit.h"
@@ -60,7 +61,7 @@ struct ShownBeam {
 void take_file(const std::string& file, ShownBeam& shown) {
     const PhotometricFile read = read_photometric_file(file);
     if (largest_intensity(read.table) == 0.0) {
-        throw InputError(fmt::format("{}: found no light in it; allowed: some", file));
+        throw InputError("{}: found no light in it; allowed: some", file);
     }
     shown.beam = scaled_to_flux({.name = file, .cones = {}, .pattern = normalised(read.table)});
     const bool is_candela = !file.ends_with(".csv");
@@ -86,8 +87,8 @@ void take_beam_of_rig(const std::string& file, const std::string& name, ShownBea
     if (!shown.users.empty()) return;
     std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
-    throw InputError(fmt::format(
-        "{}: found no strobe with the beam '{}'; allowed: {}", file, name, fmt::join(names, ", ")));
+    throw InputError(
+        "{}: found no strobe with the beam '{}'; allowed: {}", file, name, fmt::join(names, ", "));
 }
 
 std::string kind_of(const Beam& beam) {
@@ -141,39 +142,39 @@ nlohmann::ordered_json to_json(const ShownBeam& shown) {
 
 void print(const ShownBeam& shown) {
     const auto& [options, beam, users, stated_lm, figures, fit, export_error] = shown;
-    fmt::print("{}: {}\n", beam.name, kind_of(beam));
-    fmt::print("  flux                {:.6g} of the lamp's\n", figures.flux);
-    fmt::print("  largest intensity   {:.6g} per sr\n", figures.largest_per_sr);
-    fmt::print("  width at half       {:.2f} degrees along, {:.2f} across\n",
-               figures.fwhm_along_rad * kDegreesPerRadian,
-               figures.fwhm_across_rad * kDegreesPerRadian);
-    fmt::print("  light               up to {:.1f} degrees off the axis\n",
-               figures.widest_rad * kDegreesPerRadian);
+    say("{}: {}\n", beam.name, kind_of(beam));
+    say("  flux                {:.6g} of the lamp's\n", figures.flux);
+    say("  largest intensity   {:.6g} per sr\n", figures.largest_per_sr);
+    say("  width at half       {:.2f} degrees along, {:.2f} across\n",
+        figures.fwhm_along_rad * kDegreesPerRadian,
+        figures.fwhm_across_rad * kDegreesPerRadian);
+    say("  light               up to {:.1f} degrees off the axis\n",
+        figures.widest_rad * kDegreesPerRadian);
     for (const BeamUser& user : users) {
         if (!user.luminous_flux_lm) continue;
-        fmt::print("  {:<19} {:.6g} lm, {:.6g} cd at most\n",
-                   user.name,
-                   *user.luminous_flux_lm,
-                   *user.luminous_flux_lm * figures.largest_per_sr);
+        say("  {:<19} {:.6g} lm, {:.6g} cd at most\n",
+            user.name,
+            *user.luminous_flux_lm,
+            *user.luminous_flux_lm * figures.largest_per_sr);
     }
-    if (stated_lm) fmt::print("  the file states     {:.6g} lm\n", *stated_lm);
+    if (stated_lm) say("  the file states     {:.6g} lm\n", *stated_lm);
     if (fit) {
-        fmt::print("  {} sharp cone{} err by {:.1f} % rms:\ncones = [\n",
-                   fit->cones.size(),
-                   fit->cones.size() == 1 ? "" : "s",
-                   100.0 * fit->error);
+        say("  {} sharp cone{} err by {:.1f} % rms:\ncones = [\n",
+            fit->cones.size(),
+            fit->cones.size() == 1 ? "" : "s",
+            100.0 * fit->error);
         for (const Cone& cone : fit->cones) {
-            fmt::print("  {{ part = \"{}\", half_angle_deg = {:g}, weight = {:.6g} }},\n",
-                       cone.part,
-                       cone.half_angle_rad * kDegreesPerRadian,
-                       cone.weight);
+            say("  {{ part = \"{}\", half_angle_deg = {:g}, weight = {:.6g} }},\n",
+                cone.part,
+                cone.half_angle_rad * kDegreesPerRadian,
+                cone.weight);
         }
-        fmt::print("]\n");
+        say("]\n");
     }
     if (export_error) {
-        fmt::print("  {}: between its nodes within {:.2g} of the largest intensity\n",
-                   options.export_file,
-                   *export_error);
+        say("  {}: between its nodes within {:.2g} of the largest intensity\n",
+            options.export_file,
+            *export_error);
     }
 }
 
@@ -230,9 +231,9 @@ ExitStatus show_beam(const BeamCommandOptions& options) {
     } else if (colon != std::string::npos) {
         take_beam_of_rig(options.name.substr(0, colon), options.name.substr(colon + 1), shown);
     } else {
-        throw InputError(fmt::format("found '{}'; allowed: RIG:NAME, a beam of a rig, or a {} file",
-                                     options.name,
-                                     kPhotometricEndings));
+        throw InputError("found '{}'; allowed: RIG:NAME, a beam of a rig, or a {} file",
+                         options.name,
+                         kPhotometricEndings);
     }
     shown.figures = figures_of(shown.beam);
     if (options.cones > 0) shown.fit = fit_cones(shown.beam, options.cones);
@@ -243,7 +244,7 @@ ExitStatus show_beam(const BeamCommandOptions& options) {
         shown.export_error = file.error;
     }
     if (options.json) {
-        fmt::print("{}\n", to_json(shown).dump(2));
+        say_text(json_text(to_json(shown)));
     } else {
         print(shown);
     }

@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
+#include "cli/terminal.h"
 #include "validation/image_comparison.h"
 #include "validation/patch_score.h"
 
@@ -85,20 +86,20 @@ void print_channel(const ComparedChannel& channel, bool scaled) {
     if (c.unobserved > 0) notes += fmt::format("  {} not observed", c.unobserved);
     if (c.not_finite > 0) notes += fmt::format("  {} not finite", c.not_finite);
     if (!c.holds()) notes += "  <-- out of bounds";
-    fmt::print("{:>18}  {:9.2e}  {:9.2e}  {:9.2e}  {:9.1e}  {}, {}{}\n",
-               c.name,
-               c.max_error,
-               c.percentile_999,
-               c.rms_error,
-               c.mean_error,
-               c.column,
-               c.row,
-               notes);
+    say("{:>18}  {:9.2e}  {:9.2e}  {:9.2e}  {:9.1e}  {}, {}{}\n",
+        c.name,
+        c.max_error,
+        c.percentile_999,
+        c.rms_error,
+        c.mean_error,
+        c.column,
+        c.row,
+        notes);
 }
 
 void print_unpaired(const ComparedImages& images) {
     const auto print = [](const std::vector<std::string>& channels, const std::string& words) {
-        if (!channels.empty()) fmt::print("{}: {}\n", words, fmt::join(channels, " "));
+        if (!channels.empty()) say("{}: {}\n", words, fmt::join(channels, " "));
     };
     print(images.only_in_image, "only in " + images.image);
     print(images.only_in_reference, "only in " + images.reference);
@@ -110,52 +111,51 @@ std::string figure(const std::optional<double>& value) {
 }
 
 void print_patches(const PatchScores& scores) {
-    fmt::print("{:>18}  {:>9}  {:>9}  {:>9}  {:>9}  {:>9}\n",
-               "patch",
-               "R",
-               "G",
-               "B",
-               "deg grey",
-               "dE 2000");
+    say("{:>18}  {:>9}  {:>9}  {:>9}  {:>9}  {:>9}\n",
+        "patch",
+        "R",
+        "G",
+        "B",
+        "deg grey",
+        "dE 2000");
     for (const PatchScore& patch : scores.patches) {
-        fmt::print("{:>18}  {:>9.4g}  {:>9.4g}  {:>9.4g}  {:>9}  {:>9}\n",
-                   patch.name,
-                   patch.signal[0],
-                   patch.signal[1],
-                   patch.signal[2],
-                   figure(patch.degrees),
-                   figure(patch.difference));
+        say("{:>18}  {:>9.4g}  {:>9.4g}  {:>9.4g}  {:>9}  {:>9}\n",
+            patch.name,
+            patch.signal[0],
+            patch.signal[1],
+            patch.signal[2],
+            figure(patch.degrees),
+            figure(patch.difference));
     }
     const auto print_both = [](const char* what,
                                const std::optional<double>& mean,
                                const std::optional<double>& median) {
-        if (mean) fmt::print("{}: mean {:.3f}, median {:.3f}\n", what, *mean, *median);
+        if (mean) say("{}: mean {:.3f}, median {:.3f}\n", what, *mean, *median);
     };
     print_both("degrees from grey", scores.mean_degrees, scores.median_degrees);
     print_both("CIEDE2000", scores.mean_difference, scores.median_difference);
-    fmt::print("unevenness: {:.3f} % rms\n", 100.0 * scores.unevenness);
+    say("unevenness: {:.3f} % rms\n", 100.0 * scores.unevenness);
 }
 
 void print_images(const Compared& compared) {
     const ComparedImages& images = *compared.images;
-    fmt::print("{:>18}  {:>9}  {:>9}  {:>9}  {:>9}  worst pixel{}\n",
-               "",
-               "max |e|",
-               "99.9 %",
-               "rms",
-               "mean",
-               images.scaled ? "  / scale" : "");
+    say("{:>18}  {:>9}  {:>9}  {:>9}  {:>9}  worst pixel{}\n",
+        "",
+        "max |e|",
+        "99.9 %",
+        "rms",
+        "mean",
+        images.scaled ? "  / scale" : "");
     for (const ComparedChannel& channel : images.channels) print_channel(channel, images.scaled);
     print_unpaired(images);
-    fmt::print("{} is {} {:.3g} of {}{}\n",
-               images.image,
-               images.are_within() ? "within" : "NOT within",
-               compared.bound,
-               images.reference,
-               images.scaled ? ", but for its scale" : "");
+    say("{} is {} {:.3g} of {}{}\n",
+        images.image,
+        images.are_within() ? "within" : "NOT within",
+        compared.bound,
+        images.reference,
+        images.scaled ? ", but for its scale" : "");
     if (images.unpaired() > 0) {
-        fmt::print(
-            "but {} WITHOUT a partner in the other image; --channels names those to compare\n",
+        say("but {} WITHOUT a partner in the other image; --channels names those to compare\n",
             counted(images.unpaired(), "channel"));
     }
 }

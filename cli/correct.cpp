@@ -13,6 +13,7 @@
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
+#include "cli/terminal.h"
 #include "image/exr.h"
 #include "rig/rig_reader.h"
 #include "survey/camera_of_files.h"
@@ -50,11 +51,11 @@ struct CorrectCommandOptions {
 
 void print_scale(const LightAt& light) {
     if (!light.rig_size) return;
-    fmt::print("  rig of {} x {} pixels scaled to {} x {}\n",
-               light.rig_size->width_px,
-               light.rig_size->height_px,
-               light.size.width_px,
-               light.size.height_px);
+    say("  rig of {} x {} pixels scaled to {} x {}\n",
+        light.rig_size->width_px,
+        light.rig_size->height_px,
+        light.size.width_px,
+        light.size.height_px);
 }
 
 // One number where all channels have it, as of a mono camera.
@@ -67,11 +68,11 @@ void print_report(const CorrectionReport& report,
                   const Survey& survey,
                   const std::filesystem::path& folder,
                   bool has_page) {
-    fmt::print("{} corrected in {:.1f} s, {} kept as they were, {} skipped\n",
-               counted(report.run->corrected, "image"),
-               report.seconds,
-               report.run->kept,
-               report.run->skipped.size());
+    say("{} corrected in {:.1f} s, {} kept as they were, {} skipped\n",
+        counted(report.run->corrected, "image"),
+        report.seconds,
+        report.run->kept,
+        report.run->skipped.size());
     print_camera(survey.camera);
     print_scale(survey.light);
     std::string from;
@@ -79,14 +80,14 @@ void print_report(const CorrectionReport& report,
         from = ", taken from " + counted(report.gain.images.size(), "image");
     }
     if (!report.gain.folder.empty()) from = ", that of " + report.gain.folder;
-    fmt::print("  gain {}{}\n", gain_words(report.gain.gain), from);
+    say("  gain {}{}\n", gain_words(report.gain.gain), from);
     if (report.srgb) print_srgb(*report.srgb, folder);
     print_doubts(*report.run);
-    if (!report.not_checked.empty()) fmt::print("  not checked: {}\n", report.not_checked);
-    fmt::print("  {}\n", (folder / kCorrectionNotes).string());
-    if (has_page) fmt::print("  {}\n", (folder / kReportPage).string());
+    if (!report.not_checked.empty()) say("  not checked: {}\n", report.not_checked);
+    say("  {}\n", (folder / kCorrectionNotes).string());
+    if (has_page) say("  {}\n", (folder / kReportPage).string());
     for (const Skipped& one : report.run->skipped) {
-        fmt::print("  skipped: {}: {}\n", one.image, one.why);
+        say("  skipped: {}: {}\n", one.image, one.why);
     }
 }
 
@@ -151,6 +152,7 @@ Task task_of(const CorrectCommandOptions& options) {
     require_whole_view(survey.files, survey.camera, rig.camera);
     const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
     NavigationOptions navigation = options.navigation;
+    navigation.jobs = static_cast<std::size_t>(all_cores());
     if (!altitudes_m.empty()) {
         navigation.least_altitude_m = altitudes_m[0];
         navigation.most_altitude_m = altitudes_m[1];
@@ -192,9 +194,9 @@ void write_ifdo(const IfdoTask& task,
     if (!options.rig.empty()) rig = read_rig(options.rig);
     const IfdoResults made = write_ifdo_of_results(
         task.of_raw, task.place, survey, options.correction, report, rig ? &*rig : nullptr);
-    if (!options.json) fmt::print("  {}: {}\n", made.file.string(), counted(made.images, "image"));
+    if (!options.json) say("  {}: {}\n", made.file.string(), counted(made.images, "image"));
     for (const std::string& image : made.without_item)
-        fmt::print(stderr, "warning: {}: has no item of its own for {}\n", options.ifdo, image);
+        warn("{}: has no item of its own for {}", options.ifdo, image);
 }
 
 ExitStatus correct(CorrectCommandOptions options) {
@@ -212,7 +214,7 @@ ExitStatus correct(CorrectCommandOptions options) {
     if (options.json) {
         nlohmann::ordered_json json = to_json(report);
         put_model_error(json, model);
-        fmt::print("{}", json_text(json));
+        say_text(json_text(json));
     } else {
         print_report(report, survey, options.correction.run.folder, options.correction.report);
         print_navigation(survey.navigation);

@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
+#include "cli/terminal.h"
 #include "report/plot.h"
 #include "report/svg.h"
 #include "spectral/curve_loader.h"
@@ -132,9 +133,9 @@ void print_aligned(const std::vector<std::vector<std::string>>& lines) {
     }
     for (const auto& line : lines) {
         for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-            fmt::print("{:<{}}  ", line[i], widths[i]);
+            say("{:<{}}  ", line[i], widths[i]);
         }
-        fmt::print("{}\n", line.back());
+        say("{}\n", line.back());
     }
 }
 
@@ -168,7 +169,7 @@ void print(const Entry& entry) {
         }
     }
     print_aligned(lines);
-    fmt::print("\n");
+    say("\n");
     std::vector<std::vector<std::string>> values{table.columns};
     for (const TableRow& row : table.rows) {
         values.emplace_back();
@@ -284,28 +285,26 @@ void write_all(const std::vector<NewTable>& tables) {
 
 void note_what_differs(const SplineFile& found, const std::string& file) {
     for (const std::size_t line : found.anonymous_lines) {
-        fmt::print(stderr, "aphotic: {}:{}: passed over a spline without a name\n", file, line);
+        warn("{}:{}: passed over a spline without a name", file, line);
     }
     for (const SplineSpectrum& spectrum : found.spectra) {
         if (spectrum.is_linear()) continue;
-        fmt::print(
-            stderr,
-            "aphotic: {}:{}: {} is a {}: its knots are taken, and joined by straight lines\n",
-            file,
-            spectrum.line,
-            spectrum.identifier,
-            spectrum.form);
+        warn("{}:{}: {} is a {}: its knots are taken, and joined by straight lines",
+             file,
+             spectrum.line,
+             spectrum.identifier,
+             spectrum.form);
     }
 }
 
 void print(const std::vector<NewTable>& tables) {
     for (const NewTable& table : tables) {
-        fmt::print("wrote {}: {}, {} to {} nm, {} rows\n",
-                   table.path.string(),
-                   table.spectrum.identifier,
-                   table.first_nm(),
-                   table.last_nm(),
-                   table.spectrum.knots.size());
+        say("wrote {}: {}, {} to {} nm, {} rows\n",
+            table.path.string(),
+            table.spectrum.identifier,
+            table.first_nm(),
+            table.last_nm(),
+            table.spectrum.knots.size());
     }
 }
 
@@ -348,11 +347,11 @@ ExitStatus show_data(const DataCommandOptions& options) {
                                                             : builtin_table(options.name));
     if (!options.plot_file.empty()) write_plots(std::array{plot_of(entry)}, options.plot_file);
     if (options.csv) {
-        fmt::print("{}", csv_of(entry.table));
+        say_text(csv_of(entry.table));
     } else if (options.json || options.plot_file.empty()) {
         show(entry, options.json);
     } else {
-        fmt::print("wrote {}\n", options.plot_file);
+        say("wrote {}\n", options.plot_file);
     }
     return kDone;
 }

@@ -12,6 +12,7 @@
 #include "cli/options.h"
 #include "cli/output_folder.h"
 #include "cli/rig_file.h"
+#include "cli/terminal.h"
 #include "survey/design_files.h"
 
 #include <fmt/format.h>
@@ -65,31 +66,31 @@ DesignRequest request_of(const DesignCommandOptions& options, const Rig& rig) {
 void print_design(const Rig& rig, const DesignRequest& request, const DesignResult& result) {
     const LightFigures& start = result.start.figures;
     const LightFigures& best = result.best.figures;
-    fmt::print("{}: {}, {} looked at; the worst of {}\n",
-               rig.title,
-               counted(result.numbers, "free number"),
-               counted(static_cast<std::size_t>(result.evaluations), "design"),
-               counted(result.best.poses.size(), "pose"));
-    if (!result.is_better) fmt::print("  nothing better than the start was found\n");
+    say("{}: {}, {} looked at; the worst of {}\n",
+        rig.title,
+        counted(result.numbers, "free number"),
+        counted(static_cast<std::size_t>(result.evaluations), "design"),
+        counted(result.best.poses.size(), "pose"));
+    if (!result.is_better) say("  nothing better than the start was found\n");
     const auto line = [](const std::string& name, double before, double after) {
         constexpr double kPercent = 100.0;
-        fmt::print("  {:<34} {:>8.4f} {:>8.4f} {:>+7.1f} %\n",
-                   name,
-                   before,
-                   after,
-                   kPercent * (after / before - 1.0));
+        say("  {:<34} {:>8.4f} {:>8.4f} {:>+7.1f} %\n",
+            name,
+            before,
+            after,
+            kPercent * (after / before - 1.0));
     };
-    fmt::print("  {:<34} {:>8} {:>8} {:>9}\n", "", "start", "design", "gain");
+    say("  {:<34} {:>8} {:>8} {:>9}\n", "", "start", "design", "gain");
     line("evenness, least over mean", start.evenness, best.evenness);
     line("signal to noise, of the start's", 1.0, best.signal_to_noise / start.signal_to_noise);
     line(fmt::format("coverage, over {:g} of the brightest", request.level),
          start.coverage,
          best.coverage);
-    fmt::print("  the trade, signal to noise (of the start's) and evenness:\n");
+    say("  the trade, signal to noise (of the start's) and evenness:\n");
     for (const Design& one : result.front)
-        fmt::print("    {:>8.4f} {:>8.4f}\n",
-                   one.figures.signal_to_noise / start.signal_to_noise,
-                   one.figures.evenness);
+        say("    {:>8.4f} {:>8.4f}\n",
+            one.figures.signal_to_noise / start.signal_to_noise,
+            one.figures.evenness);
 }
 
 ExitStatus design_rig(const DesignCommandOptions& options) {
@@ -110,12 +111,12 @@ ExitStatus design_rig(const DesignCommandOptions& options) {
     }();
     write_design(text, request, result, options.folder);
     if (options.json) {
-        fmt::print("{}", json_text(design_json(rig, request, result)));
+        say_text(json_text(design_json(rig, request, result)));
         return kDone;
     }
     print_design(rig, request, result);
     for (const char* file : {kDesignedRig, kDesignNumbers, kDesignPage})
-        fmt::print("  {}\n", (options.folder / file).string());
+        say("  {}\n", (options.folder / file).string());
     return kDone;
 }
 

@@ -15,6 +15,7 @@
 #include "cli/output_folder.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
+#include "cli/terminal.h"
 #include "survey/fit_json.h"
 #include "survey/fit_page.h"
 #include "survey/fit_samples.h"
@@ -121,41 +122,41 @@ void print_confounded(const std::vector<Confounded>& pairs) {
     const std::size_t shown = pairs.size() <= kShown + 1 ? pairs.size() : kShown;
     for (std::size_t i = 0; i < shown; ++i) {
         const Confounded& pair = pairs[i];
-        fmt::print("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
+        say("confounded: {} and {} ({:+.2f})\n", pair.one, pair.other, pair.correlation);
     }
     if (shown < pairs.size())
-        fmt::print("confounded: {} pairs more, in {}\n", pairs.size() - shown, kFitNumbers);
+        say("confounded: {} pairs more, in {}\n", pairs.size() - shown, kFitNumbers);
 }
 
 void print_result(const std::string& title,
                   const FitResult& result,
                   const std::filesystem::path& folder) {
-    fmt::print("{}: {}\n", title, words_of(result));
+    say("{}: {}\n", title, words_of(result));
     for (const FittedNumber& one : result.numbers) {
-        fmt::print("  {:<34} {:>10.4g} +- {:.2g}{}\n",
-                   one.key,
-                   one.value,
-                   one.error,
-                   one.is_at_bound ? "  at the end of its range" : "");
+        say("  {:<34} {:>10.4g} +- {:.2g}{}\n",
+            one.key,
+            one.value,
+            one.error,
+            one.is_at_bound ? "  at the end of its range" : "");
     }
-    for (const NotTold& one : result.held) fmt::print("held: {}\n", words_of(one));
+    for (const NotTold& one : result.held) say("held: {}\n", words_of(one));
     if (!result.fixed.empty())
-        fmt::print("not fitted, as the rig has them: {}\n", fmt::join(result.fixed, ", "));
+        say("not fitted, as the rig has them: {}\n", fmt::join(result.fixed, ", "));
     print_confounded(result.confounded);
     for (const Suspicion& one : result.looks_wrong)
-        fmt::print("looks wrong: {}: {}\n", one.about, one.what);
-    fmt::print(
-        "{} are off by {:.2g} of the signal, rms, of which {:.2g} stays in place from image to "
+        say("looks wrong: {}: {}\n", one.about, one.what);
+    say("{} are off by {:.2g} of the signal, rms, of which {:.2g} stays in place from image to "
         "image\n",
         counted(result.blocks, "block"),
         result.left.residual,
         result.left.pattern);
-    fmt::print("  {}  the rig\n", (folder / kFittedRig).string());
-    fmt::print("  {}  errors and covariance\n", (folder / kFitNumbers).string());
-    fmt::print("  {}  to look at\n", (folder / kFitPage).string());
+    say("  {}  the rig\n", (folder / kFittedRig).string());
+    say("  {}  errors and covariance\n", (folder / kFitNumbers).string());
+    say("  {}  to look at\n", (folder / kFitPage).string());
 }
 
 ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
+    silence_fit_log();
     require_one_source(app);
     require_use(app, options);
     require_other_rig(options);
@@ -175,7 +176,7 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     write_text_file(options.folder / kFitNumbers, json_text(json));
     write_fit_page(options.folder / kFitPage, text, samples, result);
     if (options.json) {
-        fmt::print("{}", json_text(json));
+        say_text(json_text(json));
     } else {
         print_result(rig.title, result, options.folder);
     }

@@ -11,6 +11,7 @@
 #include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/rig_file.h"
+#include "cli/terminal.h"
 #include "plugin/render.h"
 #include "scene_gen/quick_look.h"
 
@@ -35,7 +36,7 @@ ExitStatus write_quick_look(const GenerateCommandOptions& options) {
     const Rig rig = read_plausible_rig(options.planning.rig_file, options.planning.strict);
     write_text_file(options.quick_look,
                     quick_look_sdl(rig, fs::path(options.planning.rig_file).parent_path()));
-    fmt::print("{}: what aphotic.inc takes of this rig for a quick look\n", options.quick_look);
+    say("{}: what aphotic.inc takes of this rig for a quick look\n", options.quick_look);
     return kDone;
 }
 
@@ -72,8 +73,7 @@ std::string povray_loop(const Generated& made) {
 
 void print(const Generated& made) {
     const bool is_own = !made.own_scene.empty();
-    fmt::print(
-        "{}: {} for {}{} in {}/povray\n"
+    say("{}: {} for {}{} in {}/povray\n"
         "Render them {}, for example with\n"
         "  {}\n"
         "then run\n"
@@ -97,8 +97,9 @@ ExitStatus generate_scenes(const GenerateCommandOptions& options) {
     require_place_for_scenes(options.folder, scenes);
     require_room(needs_of_scenes(scenes), options.folder, options.planning.ignore_needs);
     const FolderLock lock = claim_folder(options.folder);
-    show(Generated{generate(options.folder, scenes), options.folder, scenes.scene_file},
-         options.json);
+    show(
+        Generated{generate(options.folder, scenes, all_cores()), options.folder, scenes.scene_file},
+        options.json);
     return kDone;
 }
 

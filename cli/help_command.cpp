@@ -3,6 +3,7 @@
 // aphotic help [COMMAND]: what --help prints, of the command.
 #include "base/error.h"
 #include "cli/command.h"
+#include "cli/terminal.h"
 #include "cli/unknown_word.h"
 
 #include <fmt/format.h>
@@ -15,13 +16,12 @@ namespace {
 
 ExitStatus print_help(const CLI::App& all, const std::string& name) {
     if (name.empty()) {
-        fmt::print(
-            "{}", all.get_formatter()->make_help(&all, all.get_name(), CLI::AppFormatMode::Normal));
+        say_text(all.get_formatter()->make_help(&all, all.get_name(), CLI::AppFormatMode::Normal));
         return kDone;
     }
     for (const CLI::App* command : all.get_subcommands({})) {
         if (command->get_name() != name) continue;
-        fmt::print("{}", command->help(all.get_name()));
+        say_text(command->help(all.get_name()));
         return kDone;
     }
     throw InputError("help: found {}; no such command{}", name, nearest_command(all, name));

@@ -105,7 +105,8 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     const std::vector<FolderLock> locks = claim_folders(images, options.folder);
     Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
     if (!options.rig_file.empty()) {
-        manifest.veil = write_veil_of_signals(images, read_rig(options.rig_file), manifest);
+        manifest.veil =
+            write_veil_of_signals(images, read_rig(options.rig_file), manifest, all_cores());
     }
     const Integration integration =
         integrate_folder(options.folder, manifest, options.preview, images);

@@ -2,6 +2,7 @@
 //
 // aphotic lightmap RIG -o FILE.exr: the camera's signal on the rig's bare flat floor, at once; or
 // of an atlas, from its bins (atlas_map.h).
+#include "cli/terminal.h"
 #include "lightmap/lightmap_file.h"
 
 #include "base/degrees.h"
@@ -94,8 +95,7 @@ nlohmann::ordered_json to_json(const MadeLightmap& made) {
 void print(const MadeLightmap& made) {
     constexpr double kMilli = 1e3;
     const auto& [options, rig, written, promise, model] = made;
-    fmt::print(
-        "{}: {} x {} pixels in {:.0f} ms,\n"
+    say("{}: {} x {} pixels in {:.0f} ms,\n"
         "  {};\n"
         "  {:.0f} ms more for {} of the paths from {:.4g} to {:.4g} m, of {}\n",
         rig.title,
@@ -110,8 +110,8 @@ void print(const MadeLightmap& made) {
         counted(written.grid_size, "wavelength"));
     print_model_error(model);
     print_peaks(written.peaks, options.normalised);
-    if (!written.map.veil.empty()) fmt::print("  {}\n", veil_in_words(veil_share_of(written.map)));
-    fmt::print("  {}  {}\n", options.file, counted(written.channels.size(), "channel"));
+    if (!written.map.veil.empty()) say("  {}\n", veil_in_words(veil_share_of(written.map)));
+    say("  {}  {}\n", options.file, counted(written.channels.size(), "channel"));
 }
 
 WrittenLightmap write_map(const LightmapCommandOptions& options,

@@ -9,6 +9,7 @@
 #include "cli/completion.h"
 #include "cli/help.h"
 #include "cli/option_checks.h"
+#include "cli/terminal.h"
 #include "cli/unknown_word.h"
 
 #include <fmt/format.h>
@@ -20,7 +21,6 @@
 #include <memory>
 #include <new>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace {
@@ -33,32 +33,27 @@ constexpr std::array kCommands{&kRender, &kPlan,   &kGenerate, &kIntegrate, &kTr
                                &kSurvey, &kSweep,  &kValidate, &kStudy,     &kStress, &kCompare,
                                &kBeam,   &kData,   &kHelp};
 
-// A message quotes what it found: nothing in it may steer the terminal.
-void say(std::string_view message) {
-    fmt::print(stderr, "aphotic: {}\n", aphotic::printable(message, "\n\t"));
-}
-
 ExitStatus run(const Action& action) {
     try {
         const ExitStatus status = action();
-        // What was said must have arrived: a full disk behind a redirection is a failure.
-        if (std::fflush(stdout) != 0)
-            throw aphotic::RunError("standard output: cannot be written to");
+        flush_said();
         return status;
     } catch (const aphotic::Interrupted& interrupted) {
-        fmt::print(stderr,
-                   "aphotic: {}; finished work is kept: run the same command again to continue\n",
-                   interrupted.what());
+        warn("{}; finished work is kept: run the same command again to continue",
+             interrupted.what());
         aphotic::end_by_signal(interrupted.signal());
     } catch (const aphotic::InputError& error) {
-        say(error.what());
+        warn_text(error.what());
         return kBadInput;
+    } catch (const aphotic::RunError& error) {
+        warn_text(error.what());
+        return kRunFailed;
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "aphotic: out of memory\n");
+        warn("out of memory");
         return kRunFailed;
     } catch (const std::exception& error) {
-        // A RunError, or the file system's own words.
-        say(error.what());
+        // The standard library's own words, around a name that may hold anything.
+        warn_text(aphotic::shown_text(error.what()));
         return kRunFailed;
     }
 }
@@ -69,7 +64,7 @@ void add_completion(CLI::App& app, Action& chosen) {
            "--completion",
            [&app, &chosen](const std::string& shell) {
                chosen = [&app, shell] {
-                   fmt::print("{}", completion_script(app, shell));
+                   say_text(completion_script(app, shell));
                    return kDone;
                };
                throw CLI::Success();
@@ -81,7 +76,10 @@ void add_completion(CLI::App& app, Action& chosen) {
 
 std::string words_of_failure(const CLI::App* app, const CLI::Error& error) {
     const std::string unknown = unknown_words(*app);
-    return unknown.empty() ? CLI::FailureMessage::simple(app, error) : unknown;
+    if (!unknown.empty()) return unknown;
+    return fmt::format("{}\nRun with {} for more information.\n",
+                       aphotic::shown_text(error.what()),
+                       app->get_help_ptr()->get_name());
 }
 
 }  // namespace

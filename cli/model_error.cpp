@@ -5,6 +5,7 @@
 #include "base/progress.h"
 #include "cli/option_checks.h"
 #include "cli/options.h"
+#include "cli/terminal.h"
 
 #include <fmt/format.h>
 
@@ -50,8 +51,7 @@ std::optional<ManifestModel> model_error(const Rig& rig,
 
 void print_model_error(const std::optional<ManifestModel>& model) {
     if (!model) return;
-    fmt::print(
-        "  what the model of scattering leaves out is estimated at {:.2g} (R), {:.2g} (G), {:.2g} "
+    say("  what the model of scattering leaves out is estimated at {:.2g} (R), {:.2g} (G), {:.2g} "
         "(B), rms\n",
         model->error[0],
         model->error[1],

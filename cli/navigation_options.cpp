@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "cli/option_checks.h"
 #include "cli/options.h"
+#include "cli/terminal.h"
 #include "rig/rig_reader.h"
 #include "survey/image_time.h"
 
@@ -132,8 +133,9 @@ CLI::Option* add_navigation_options(CLI::App& app, NavigationOptions& options) {
 }
 
 Navigation read_navigation_with(const std::string& rig,
-                                const NavigationOptions& options,
+                                NavigationOptions options,
                                 const std::vector<ImageFile>& files) {
+    options.jobs = static_cast<std::size_t>(all_cores());
     if (rig.empty()) return read_navigation(options, files, nullptr);
     const Rig read = read_rig(rig);
     return read_navigation(options, files, &read);
@@ -141,7 +143,7 @@ Navigation read_navigation_with(const std::string& rig,
 
 void print_navigation(const std::optional<Navigation>& navigation) {
     if (!navigation || !navigation->notes()) return;
-    fmt::print("  navigation: {}\n", words_of(*navigation->notes()));
+    say("  navigation: {}\n", words_of(*navigation->notes()));
 }
 
 }  // namespace aphotic::cli

@@ -19,7 +19,7 @@ CLI::Option* add_navigation_options(CLI::App& app, NavigationOptions& options);
 
 // rig: of commands that need no other; its name, and an empty one is none.
 [[nodiscard]] Navigation read_navigation_with(const std::string& rig,
-                                              const NavigationOptions& options,
+                                              NavigationOptions options,
                                               const std::vector<ImageFile>& files);
 
 void print_navigation(const std::optional<Navigation>& navigation);

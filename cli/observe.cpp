@@ -10,6 +10,7 @@
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
+#include "cli/terminal.h"
 #include "survey/observation.h"
 
 #include <fmt/format.h>
@@ -40,8 +41,7 @@ std::string angle_words(double radians) {
 }
 
 void print_observation(const Observation& observation, const std::string& map_file) {
-    fmt::print(
-        "{}: the {} of {} at {:.3f} m, pitch {}, roll {} on average\n",
+    say("{}: the {} of {} at {:.3f} m, pitch {}, roll {} on average\n",
         map_file,
         observation.average == Average::Trimmed ? "trimmed mean" : name_of(observation.average),
         counted(observation.images, "image"),
@@ -49,11 +49,11 @@ void print_observation(const Observation& observation, const std::string& map_fi
         angle_words(observation.sled.pitch_rad),
         angle_words(observation.sled.roll_rad));
     if (std::isfinite(observation.relative_error)) {
-        fmt::print("standard error: {:.2g} of the map's mean (rms)\n", observation.relative_error);
+        say("standard error: {:.2g} of the map's mean (rms)\n", observation.relative_error);
     }
-    fmt::print("{} at other altitudes, {} skipped\n",
-               counted(observation.outside, "image"),
-               observation.skipped.size());
+    say("{} at other altitudes, {} skipped\n",
+        counted(observation.outside, "image"),
+        observation.skipped.size());
 }
 
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
@@ -67,7 +67,7 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
         nlohmann::ordered_json json = to_json(observation, options.output);
         json["camera"] = to_json(survey.camera);
         if (survey.navigation->notes()) json["navigation"] = to_json(*survey.navigation->notes());
-        fmt::print("{}", json_text(json));
+        say_text(json_text(json));
     } else {
         print_observation(observation, options.output);
         print_camera(survey.camera);

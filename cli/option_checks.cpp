@@ -41,10 +41,8 @@ bool takes_place_of(const fs::path& file, const fs::path& named) {
 
 // What is no number the parser says itself.
 std::optional<double> number_in(const std::string& text) {
-    char* end = nullptr;
-    const double number = std::strtod(text.c_str(), &end);
-    if (end == text.c_str()) return std::nullopt;
-    return number;
+    double number = 0.0;
+    return CLI::detail::lexical_cast(text, number) ? std::optional(number) : std::nullopt;
 }
 
 CLI::Validator number_that(std::function<bool(double)> is_allowed, const std::string& allowed) {

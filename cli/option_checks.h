@@ -31,7 +31,7 @@ template <class Value>
                     for (const auto& word : words) allowed.push_back(word.first);
                     return fmt::format("found {}; allowed: {}", text, fmt::join(allowed, ", "));
                 }
-                text = std::to_string(static_cast<int>(found->second));
+                text = fmt::to_string(static_cast<int>(found->second));
                 return std::string();
             },
             ""};

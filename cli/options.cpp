@@ -15,10 +15,17 @@ constexpr const char* kWavelengthOptions = "Wavelengths";
 constexpr const char* kSceneOptions = "A POV-Ray scene of your own";
 constexpr const char* kPovRayOptions = "POV-Ray";
 
+int most_cores = 0;  // 0: --jobs was not said
+
 }  // namespace
 
 int all_cores() {
-    return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    return most_cores > 0 ? std::min(cores, most_cores) : cores;
+}
+
+void take_no_more_cores_than(int jobs) {
+    most_cores = jobs;
 }
 
 void add_rig(CLI::App& app, std::string& file) {

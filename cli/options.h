@@ -4,6 +4,7 @@
 // that --help shows; the others are those of version 0.1.
 #pragma once
 
+#include "base/number.h"
 #include "base/share.h"
 #include "cli/model_error.h"
 #include "cli/option_checks.h"
@@ -31,7 +32,9 @@ inline constexpr double kLeastAltitude_m = 0.001;
 inline constexpr double kMostAltitude_m = 10000.0;
 inline constexpr double kMostTilt_deg = 89.9;
 
+// Threads that the command may take: one for each core, or fewer by --jobs once that is parsed.
 [[nodiscard]] int all_cores();
+void take_no_more_cores_than(int jobs);
 
 // Options that are added while it lives stand under this heading of --help.
 class OptionGroup {
@@ -59,7 +62,10 @@ template <typename Count>
 void add_jobs(CLI::App& app, Count& jobs, const std::string& words) {
     constexpr int kMostJobs = 1024;
     app.add_option("--jobs,--threads", jobs, words + "; by default one per core")
-        ->check(in_range(1, kMostJobs));
+        ->check(in_range(1, kMostJobs))
+        ->each([](const std::string& text) {
+            if (const auto most = read_number<int>(text)) take_no_more_cores_than(*most);
+        });
 }
 
 // I/N, of work that other machines share.

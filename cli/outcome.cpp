@@ -5,13 +5,14 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/model_error.h"
+#include "cli/options.h"
+#include "cli/terminal.h"
 #include "image/exr.h"
 #include "spectral/integrator.h"
 
 #include <algorithm>
 #include <chrono>
 #include <numeric>
-#include <thread>
 
 namespace aphotic::cli {
 
@@ -50,18 +51,17 @@ Json to_json(const MadeImages& made) {
 void print(const MadeImages& made) {
     for (std::size_t c = 0; c < kChannels; ++c) {
         const MadeImages::Signal& signal = made.signals[c];
-        fmt::print("  {}  {:.6g} to {:.6g}, mean {:.6g}\n",
-                   kChannelNames[c],
-                   signal.least,
-                   signal.most,
-                   signal.mean);
+        say("  {}  {:.6g} to {:.6g}, mean {:.6g}\n",
+            kChannelNames[c],
+            signal.least,
+            signal.most,
+            signal.mean);
     }
-    fmt::print(
-        "  {0}/preview.png   to look at\n"
+    say("  {0}/preview.png   to look at\n"
         "  {0}/image.exr     the camera's signal, linear R, G, B\n",
         made.folder.string());
     if (made.has_spectral) {
-        fmt::print("  {}/spectral.exr  the radiance at each wavelength\n", made.folder.string());
+        say("  {}/spectral.exr  the radiance at each wavelength\n", made.folder.string());
     }
 }
 
@@ -71,7 +71,7 @@ Integration integrate_folder(const fs::path& folder,
                              const fs::path& images) {
     const auto start = std::chrono::steady_clock::now();
     const InterruptionHold hold;
-    set_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+    set_exr_threads(all_cores());
     ProgressLine line;
     const auto report = [&](double share) {
         throw_if_interrupted();
@@ -119,21 +119,20 @@ Json to_json(const Integration& integration) {
 
 void print(const Integration& integration) {
     const Manifest& manifest = integration.manifest;
-    fmt::print("{}: {} x {} pixels from {} in {}, integrated in {:.1f} s\n",
-               manifest.rig_title,
-               integration.images.width_px,
-               integration.images.height_px,
-               counted(manifest.wavelengths.size(), "wavelength"),
-               counted(manifest.frames.size(), "frame"),
-               integration.seconds);
+    say("{}: {} x {} pixels from {} in {}, integrated in {:.1f} s\n",
+        manifest.rig_title,
+        integration.images.width_px,
+        integration.images.height_px,
+        counted(manifest.wavelengths.size(), "wavelength"),
+        counted(manifest.frames.size(), "frame"),
+        integration.seconds);
     if (manifest.has_promise()) {
-        fmt::print("  off the full spectrum by at most {:.3g} (R), {:.3g} (G), {:.3g} (B)\n",
-                   manifest.promise(0),
-                   manifest.promise(1),
-                   manifest.promise(2));
+        say("  off the full spectrum by at most {:.3g} (R), {:.3g} (G), {:.3g} (B)\n",
+            manifest.promise(0),
+            manifest.promise(1),
+            manifest.promise(2));
         if (manifest.png) {
-            fmt::print(
-                "  relative to the pixel, or to {:.2g} of the brightest if that is more: frames "
+            say("  relative to the pixel, or to {:.2g} of the brightest if that is more: frames "
                 "were PNG\n",
                 share_with_digits(integration));
         }
@@ -141,7 +140,7 @@ void print(const Integration& integration) {
         print_no_promise(manifest.no_promise);
     }
     print_model_error(manifest.model);
-    fmt::print("{}", povray_veil_in_words(manifest));
+    say_text(povray_veil_in_words(manifest));
     print(integration.images);
 }
 
@@ -178,8 +177,8 @@ std::string povray_veil_in_words(const Manifest& manifest) {
 }
 
 void print_no_promise(const std::vector<std::string>& reasons) {
-    fmt::print("  no bound on the error against the full spectrum:\n");
-    for (const std::string& reason : reasons) fmt::print("    {}\n", reason);
+    say("  no bound on the error against the full spectrum:\n");
+    for (const std::string& reason : reasons) say("    {}\n", reason);
 }
 
 }  // namespace aphotic::cli

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/json_text.h"
+#include "cli/terminal.h"
 #include "image/preview.h"
 #include "spectral/manifest.h"
 
@@ -21,7 +22,7 @@ namespace aphotic::cli {
 template <typename Result>
 void show(const Result& result, bool as_json) {
     if (as_json) {
-        fmt::print("{}", json_text(to_json(result)));
+        say_text(json_text(to_json(result)));
     } else {
         print(result);
     }

@@ -6,6 +6,7 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
+#include "cli/terminal.h"
 #include "report/plot.h"
 #include "report/svg.h"
 
@@ -94,8 +95,7 @@ Json json_of(const PlannedNeeds& needs) {
 
 void print_needs(const PlannedNeeds& needs, std::size_t frames) {
     const auto words = [](std::uint64_t bytes) { return bytes_in_words(bytes); };
-    fmt::print(
-        "\nIt will take at most, with {}:\n"
+    say("\nIt will take at most, with {}:\n"
         "  {} of disk: {} of {} each, spectral.exr {}, image.exr {}, preview.png {}\n",
         counted(static_cast<std::size_t>(needs.jobs), "job"),
         words(needs.render.folder_bytes),
@@ -105,8 +105,7 @@ void print_needs(const PlannedNeeds& needs, std::size_t frames) {
         words(needs.files.image_bytes),
         words(needs.files.preview_bytes));
     if (needs.render.temporary_bytes > 0) {
-        fmt::print("  {} of disk in /tmp, while POV-Ray renders\n",
-                   words(needs.render.temporary_bytes));
+        say("  {} of disk in /tmp, while POV-Ray renders\n", words(needs.render.temporary_bytes));
     }
 }
 
@@ -150,53 +149,50 @@ Json to_json(const Planned& made) {
 void print_promise(const RenderPlan& plan) {
     if (!plan.no_promise.empty()) {
         print_no_promise(plan.no_promise);
-        fmt::print("\n");
+        say("\n");
         return;
     }
-    fmt::print("{:>9}  {:>12}  {:>13}  {:>8}\n", "channel", "error", "amplification", "promise");
+    say("{:>9}  {:>12}  {:>13}  {:>8}\n", "channel", "error", "amplification", "promise");
     for (std::size_t c = 0; c < kChannels; ++c) {
         const RuleQuality& q = plan.quality[c];
-        fmt::print("{:>9}  {:12.2g}  {:13.3f}  {:8.3g}\n",
-                   kChannelNames[c],
-                   q.error,
-                   q.amplification,
-                   q.promise(plan.frame_error));
+        say("{:>9}  {:12.2g}  {:13.3f}  {:8.3g}\n",
+            kChannelNames[c],
+            q.error,
+            q.amplification,
+            q.promise(plan.frame_error));
     }
     if (plan.scene.povray_veil) {
-        fmt::print(
-            "No pixel's signal should be off the full spectrum by more than the promise, for which "
+        say("No pixel's signal should be off the full spectrum by more than the promise, for which "
             "the\nveil was measured.\n");
         return;
     }
-    fmt::print(
-        "No pixel's signal will be off the full spectrum by more than the promise, which is the\n"
+    say("No pixel's signal will be off the full spectrum by more than the promise, which is the\n"
         "error of the wavelengths and their weights plus the frames' own {:.3g}, amplified.\n\n",
         plan.frame_error);
 }
 
 void print_wavelengths(const Manifest& manifest) {
-    fmt::print("{:>12}  {:>12} {:>12} {:>12}  {:>8}  frame\n",
-               "lambda (nm)",
-               "weight R",
-               "weight G",
-               "weight B",
-               "exposure");
+    say("{:>12}  {:>12} {:>12} {:>12}  {:>8}  frame\n",
+        "lambda (nm)",
+        "weight R",
+        "weight G",
+        "weight B",
+        "exposure");
     for (const PlannedWavelength& w : manifest.wavelengths) {
-        fmt::print("{:12.3f}  {:12.6g} {:12.6g} {:12.6g}  {:>8}  {} {}\n",
-                   w.lambda_nm,
-                   w.weight[0],
-                   w.weight[1],
-                   w.weight[2],
-                   fmt::format("2^{}", w.exposure_log2),
-                   manifest.frames[w.frame].name,
-                   kChannelNames[w.channel]);
+        say("{:12.3f}  {:12.6g} {:12.6g} {:12.6g}  {:>8}  {} {}\n",
+            w.lambda_nm,
+            w.weight[0],
+            w.weight[1],
+            w.weight[2],
+            fmt::format("2^{}", w.exposure_log2),
+            manifest.frames[w.frame].name,
+            kChannelNames[w.channel]);
     }
 }
 
 void print_port(const PlannedRender& planned) {
     const PortCost cost = port_cost(planned);
-    fmt::print(
-        "\nThe port spreads these wavelengths over {:.3g} pixels at the image's corner. {} instead "
+    say("\nThe port spreads these wavelengths over {:.3g} pixels at the image's corner. {} instead "
         "of\n{} keep those of one frame within {:.3g} of each other.\n",
         cost.spread_px,
         counted(planned.plan.frames(), "frame"),
@@ -208,40 +204,38 @@ void print(const Planned& made) {
     const auto& [planned, scenes] = made;
     const Manifest& manifest = scenes.manifest;
     const RenderPlan& plan = planned.plan;
-    fmt::print("{}: {} x {} pixels, {} in {}, {}\n",
-               manifest.rig_title,
-               manifest.width_px,
-               manifest.height_px,
-               counted(manifest.wavelengths.size(), "wavelength"),
-               counted(manifest.frames.size(), "frame"),
-               plan.tolerance > 0.0 ? fmt::format("fitted to a tolerance of {}", plan.tolerance)
-                                    : manifest.method);
+    say("{}: {} x {} pixels, {} in {}, {}\n",
+        manifest.rig_title,
+        manifest.width_px,
+        manifest.height_px,
+        counted(manifest.wavelengths.size(), "wavelength"),
+        counted(manifest.frames.size(), "frame"),
+        plan.tolerance > 0.0 ? fmt::format("fitted to a tolerance of {}", plan.tolerance)
+                             : manifest.method);
     if (const UserScene* scene = plan.scene.user_scene.get()) {
         std::vector<std::string> names;
         for (const NamedSpectrum& material : scene->materials) names.push_back(material.name);
-        fmt::print(
-            "The scene {} uses {}; its paths were measured on it\n",
+        say("The scene {} uses {}; its paths were measured on it\n",
             scene->file.string(),
             names.empty() ? "no spectrum by name" : fmt::format("{}", fmt::join(names, ", ")));
     }
-    fmt::print("{} of light, on paths of {:.3g} to {:.3g} m from lamp to floor to camera\n\n",
-               counted(plan.family.sources.size(), "kind"),
-               plan.family.shortest_path_m,
-               plan.family.longest_path_m);
+    say("{} of light, on paths of {:.3g} to {:.3g} m from lamp to floor to camera\n\n",
+        counted(plan.family.sources.size(), "kind"),
+        plan.family.shortest_path_m,
+        plan.family.longest_path_m);
     print_promise(plan);
     if (planned.model) {
         print_model_error(planned.model);
-        fmt::print("\n");
+        say("\n");
     }
-    if (const std::string veil = povray_veil_in_words(manifest); !veil.empty())
-        fmt::print("{}\n", veil);
+    if (const std::string veil = povray_veil_in_words(manifest); !veil.empty()) say("{}\n", veil);
     print_wavelengths(manifest);
     if (planned.rig.camera.port) print_port(planned);
     print_needs(planned_needs(scenes), manifest.frames.size());
     if (plan.omissions.empty()) return;
-    fmt::print("\nLeft out:\n");
+    say("\nLeft out:\n");
     for (const Omission& omission : plan.omissions) {
-        fmt::print("  {}: {}\n", omission.what, omission.reason);
+        say("  {}: {}\n", omission.what, omission.reason);
     }
 }
 

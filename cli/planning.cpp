@@ -5,6 +5,7 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/rig_file.h"
+#include "cli/terminal.h"
 #include "plugin/probe.h"
 #include "rig/rig_reader.h"
 
@@ -117,7 +118,7 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
                       .ini_lines = std::move(ini_lines),
                       .unchecked = options.unchecked}));
     for (const std::string& reason : surveyed_scene->no_promise) {
-        fmt::print(stderr, "aphotic: {}: no promise: {}\n", scene.string(), reason);
+        warn("{}: no promise: {}", scene.string(), reason);
     }
     return surveyed_scene;
 }

@@ -11,6 +11,7 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
+#include "cli/terminal.h"
 
 #include <fmt/format.h>
 
@@ -58,8 +59,7 @@ nlohmann::ordered_json to_json(const Rendered& rendered) {
 }
 
 void print(const Rendered& rendered) {
-    fmt::print(
-        "POV-Ray {}: {} rendered, {} kept, in {:.1f} s with {}{}\n",
+    say("POV-Ray {}: {} rendered, {} kept, in {:.1f} s with {}{}\n",
         rendered.povray_version,
         counted(rendered.frames_rendered, "frame"),
         rendered.frames_kept,
@@ -85,8 +85,7 @@ nlohmann::ordered_json to_json(const RenderedShare& rendered) {
 }
 
 void print(const RenderedShare& rendered) {
-    fmt::print(
-        "POV-Ray {}: {} rendered, {} kept, in {:.1f} s\n"
+    say("POV-Ray {}: {} rendered, {} kept, in {:.1f} s\n"
         "  {}: join the shares by `aphotic integrate`\n",
         rendered.povray_version,
         counted(rendered.result.rendered, "frame"),

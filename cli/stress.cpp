@@ -10,6 +10,7 @@
 #include "cli/options.h"
 #include "cli/output_folder.h"
 #include "cli/rendered_images.h"
+#include "cli/terminal.h"
 #include "plugin/render.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
@@ -55,16 +56,16 @@ void print_found(const std::vector<StressFound>& found, const std::string& folde
         std::ranges::count_if(found, [](const StressFound& one) { return !one.as_expected(); });
     for (const StressFound& one : found) {
         if (one.as_expected()) continue;
-        fmt::print("  {}: {}: {}: expected: {}; found: {}{}\n",
-                   one.asked.name,
-                   one.asked.extreme,
-                   one.asked.value,
-                   answer_word(one.asked.expected),
-                   answer_word(one.answer),
-                   one.said.empty() ? "" : " (" + one.said + ")");
+        say("  {}: {}: {}: expected: {}; found: {}{}\n",
+            one.asked.name,
+            one.asked.extreme,
+            one.asked.value,
+            answer_word(one.asked.expected),
+            answer_word(one.answer),
+            one.said.empty() ? "" : " (" + one.said + ")");
     }
-    fmt::print("{}, {} not as expected\n", counted(found.size(), "case"), surprises);
-    fmt::print("  {0}/stress.md    to read\n  {0}/stress.json  for programs\n", folder);
+    say("{}, {} not as expected\n", counted(found.size(), "case"), surprises);
+    say("  {0}/stress.md    to read\n  {0}/stress.json  for programs\n", folder);
 }
 
 ExitStatus stress(const StressCommandOptions& options) {
@@ -89,7 +90,7 @@ ExitStatus stress(const StressCommandOptions& options) {
     line.wipe();
     write_stress(found, options.folder);
     if (options.json) {
-        fmt::print("{}", stress_json(found));
+        say_text(stress_json(found));
     } else {
         print_found(found, options.folder);
     }

@@ -12,6 +12,7 @@
 #include "cli/output_folder.h"
 #include "cli/planning.h"
 #include "cli/rig_file.h"
+#include "cli/terminal.h"
 #include "image/exr.h"
 #include "scene_gen/pov_scene.h"
 #include "scene_gen/scene_set.h"
@@ -82,38 +83,38 @@ StudyFrames render_setting(const PovRay& povray,
 
 void print_study(const Study& study, const fs::path& folder) {
     const std::vector<bool> front = pareto_front(study.measures);
-    fmt::print("{}: {} x {} pixels, {} on {}\n",
-               study.rig_title,
-               study.width_px,
-               study.height_px,
-               counted(study.measures.size(), "setting"),
-               counted(static_cast<std::size_t>(study.cores), "core"));
-    fmt::print("  {:<48} {:>6} {:>8} {:>10} {:>10} {:>10}\n",
-               "",
-               "frames",
-               "time (s)",
-               "max |e|",
-               "off edges",
-               "on edges");
+    say("{}: {} x {} pixels, {} on {}\n",
+        study.rig_title,
+        study.width_px,
+        study.height_px,
+        counted(study.measures.size(), "setting"),
+        counted(static_cast<std::size_t>(study.cores), "core"));
+    say("  {:<48} {:>6} {:>8} {:>10} {:>10} {:>10}\n",
+        "",
+        "frames",
+        "time (s)",
+        "max |e|",
+        "off edges",
+        "on edges");
     for (std::size_t i = 0; i < study.measures.size(); ++i) {
         const StudyMeasure& m = study.measures[i];
-        fmt::print("{} {:<48} {:6} {:8.2f} {:10.2e} {:10.2e} {:10.2e}\n",
-                   front[i] ? "*" : " ",
-                   m.setting.words,
-                   m.frames,
-                   m.total_s(),
-                   m.max_error(),
-                   m.max_error_off_edges(),
-                   m.max_error_on_edges());
+        say("{} {:<48} {:6} {:8.2f} {:10.2e} {:10.2e} {:10.2e}\n",
+            front[i] ? "*" : " ",
+            m.setting.words,
+            m.frames,
+            m.total_s(),
+            m.max_error(),
+            m.max_error_off_edges(),
+            m.max_error_on_edges());
     }
-    fmt::print("  * on the Pareto front: no other is as fast and as right\n");
+    say("  * on the Pareto front: no other is as fast and as right\n");
     const auto best = recommended(study.measures, study.tolerance);
     if (best) {
-        fmt::print("  for {}: {}\n", study.tolerance, study.measures[*best].setting.words);
+        say("  for {}: {}\n", study.tolerance, study.measures[*best].setting.words);
     } else {
-        fmt::print("  for {}: none of these\n", study.tolerance);
+        say("  for {}: none of these\n", study.tolerance);
     }
-    fmt::print("  {}/study.html, study.csv, study.json\n", folder.string());
+    say("  {}/study.html, study.csv, study.json\n", folder.string());
 }
 
 // Of the setting that has most. Behind a port each wavelength may take a frame of its own.
@@ -168,13 +169,13 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
     };
     hands.begins = [&](const StudySetting& setting, std::size_t index) {
         line.reset();
-        fmt::print(stderr, "{} of {}: {}\n", index + 1, settings.size(), setting.words);
+        warn("{} of {}: {}", index + 1, settings.size(), setting.words);
     };
     run_study(study, rig, settings, folder, hands);
     line.reset();
     write_study(study, folder);
     if (options.json) {
-        fmt::print("{}", read_text_file(folder / "study.json"));
+        say_text(read_text_file(folder / "study.json"));
     } else {
         print_study(study, folder);
     }

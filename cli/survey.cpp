@@ -2,6 +2,7 @@
 //
 // aphotic survey RIG -o DIR: raw images as the rig's camera writes them, with noise, navigation
 // with errors, and the truth beside both.
+#include "cli/terminal.h"
 #include "survey/simulated_survey.h"
 
 #include "base/error.h"
@@ -72,8 +73,7 @@ void print(const MadeSurvey& made) {
     const auto& [survey, model] = made;
     const RawCamera& camera = survey.camera;
     const std::string folder = survey.folder.string();
-    fmt::print(
-        "{}: {} in {}\n"
+    say("{}: {} in {}\n"
         "  camera: {}, black level {:g}, white level {:g}, {:.4g} numbers an electron\n"
         "  {}, as instruments tell it {}\n",
         survey.rig.title,
@@ -204,10 +204,20 @@ std::vector<SurveyPicture> pictures_of(const SimulatedSurvey& survey) {
     return pictures;
 }
 
-void make_truth_by_povray(const SurveyCommandOptions& options, const SimulatedSurvey& survey) {
-    const std::vector<SurveyPicture> pictures = pictures_of(survey);
-    if (std::ranges::all_of(pictures, [](const auto& p) { return fs::exists(p.image); })) return;
-    const PovRay povray = find_povray(options.planning.povray);
+// None where no picture is missing that it would render.
+std::optional<PovRay> povray_for(const SurveyCommandOptions& options,
+                                 const SimulatedSurvey& survey) {
+    const auto is_there = [](const SurveyPicture& picture) { return fs::exists(picture.image); };
+    if (!is_by_povray(options, survey.rig) || std::ranges::all_of(pictures_of(survey), is_there))
+        return std::nullopt;
+    PovRay povray = find_povray(options.planning.povray);
+    require_format(povray, options.planning.format);
+    return povray;
+}
+
+void make_truth_by_povray(const SurveyCommandOptions& options,
+                          const SimulatedSurvey& survey,
+                          const PovRay& povray) {
     PlanningOptions planning = options.planning;
     // The lowest, level: the brightest, from which the exposure is taken.
     planning.sled = {.altitude_m =
@@ -230,22 +240,23 @@ void make_truth_by_povray(const SurveyCommandOptions& options, const SimulatedSu
                     {.rig = std::move(planned.rig),
                      .plan = std::move(planned.plan),
                      .declared = options.declared},
-                    pictures,
+                    pictures_of(survey),
                     run);
 }
 
 ExitStatus make_survey(const SurveyCommandOptions& options) {
     SimulatedSurvey survey = survey_of(options);
     const std::optional<ManifestModel> model = model_of(survey, options.planning);
+    const std::optional<PovRay> povray = povray_for(options, survey);
     require_room(
         {.folder_bytes = missing_bytes(survey)}, survey.folder, options.planning.ignore_needs);
     const FolderLock lock = claim_tree(survey.folder);
     begin_survey(survey);
     ProgressLine line;
     survey.progress = [&](double share) { line.show("images", share); };
-    if (is_by_povray(options, survey.rig)) {
-        make_truth_by_povray(options, survey);
-    } else {
+    if (povray) {
+        make_truth_by_povray(options, survey, *povray);
+    } else if (!is_by_povray(options, survey.rig)) {
         naming(options.planning.rig_file, [&] { make_truth_by_lightmaps(survey); });
     }
     finish_survey(survey);

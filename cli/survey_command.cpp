@@ -6,6 +6,8 @@
 #include "base/words.h"
 #include "cli/option_checks.h"
 #include "cli/rig_file.h"
+#include "cli/terminal.h"
+#include "rig/rig_reader.h"
 #include "survey/camera_of_files.h"
 
 #include <fmt/format.h>
@@ -219,55 +221,54 @@ void print_camera(const CameraNumbers& camera) {
     if (camera.white_level) words.push_back(fmt::format("white level {:g}", *camera.white_level));
     if (camera.exposure_by != ExposureBy::Nothing)
         words.push_back("brought to " + words_of(camera.reference));
-    if (!words.empty()) fmt::print("  camera: {}\n", fmt::join(words, ", "));
+    if (!words.empty()) say("  camera: {}\n", fmt::join(words, ", "));
 }
 
 RunWatch terminal_watch(bool strict) {
     const auto line = std::make_shared<ProgressOfParts>();
-    return {
-        .progress = [line](std::string_view what, double share) { line->show(what, share); },
-        .skipped =
-            [line](const Skipped& one) {
-                line->wipe();
-                fmt::print(stderr, "aphotic: {}: {}; skipped\n", one.image, one.why);
-            },
-        .looks_wrong =
-            [line, strict](const std::vector<Suspicion>& found) {
-                line->wipe();
-                std::string all;
-                for (const Suspicion& one : found) {
-                    if (!strict) {
-                        fmt::print(stderr, "aphotic: looks wrong: {}: {}\n", one.about, one.what);
+    return {.progress = [line](std::string_view what, double share) { line->show(what, share); },
+            .skipped =
+                [line](const Skipped& one) {
+                    line->wipe();
+                    warn("{}: {}; skipped", one.image, one.why);
+                },
+            .looks_wrong =
+                [line, strict](const std::vector<Suspicion>& found) {
+                    line->wipe();
+                    std::string all;
+                    for (const Suspicion& one : found) {
+                        if (!strict) {
+                            warn("looks wrong: {}: {}", one.about, one.what);
+                        }
+                        all +=
+                            fmt::format("{}{}: {}", all.empty() ? "" : "; ", one.about, one.what);
                     }
-                    all += fmt::format("{}{}: {}", all.empty() ? "" : "; ", one.about, one.what);
-                }
-                if (strict && !all.empty()) {
-                    throw InputError("--strict: suspicious survey: " + all);
-                }
-            }};
+                    if (strict && !all.empty()) {
+                        throw InputError("--strict: suspicious survey: " + all);
+                    }
+                }};
 }
 
 void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folder) {
-    fmt::print(
-        "  sRGB in {}: exposure {:.4g}, ", (folder / kSrgbFolder).string(), encoding.exposure);
+    say("  sRGB in {}: exposure {:.4g}, ", (folder / kSrgbFolder).string(), encoding.exposure);
     if (encoding.camera) {
-        fmt::print("colours within {:.1f} CIELAB units in the mean of {}, {:.1f} at most ({})\n",
-                   encoding.camera->mean_delta_e(),
-                   counted(encoding.camera->surfaces.size(), "surface"),
-                   encoding.camera->worst().delta_e,
-                   encoding.camera->worst().name);
+        say("colours within {:.1f} CIELAB units in the mean of {}, {:.1f} at most ({})\n",
+            encoding.camera->mean_delta_e(),
+            counted(encoding.camera->surfaces.size(), "surface"),
+            encoding.camera->worst().delta_e,
+            encoding.camera->worst().name);
     } else {
-        fmt::print("channels shown as sRGB's own\n");
+        say("channels shown as sRGB's own\n");
     }
 }
 
 void print_doubts(const RunOutcome& outcome) {
     constexpr double kPercent = 100.0;
-    fmt::print("  doubtful pixels:");
+    say("  doubtful pixels:");
     for (const auto& [name, bit] : kDoubts) {
-        fmt::print(" {} {:.3g} %", name, kPercent * outcome.doubtful_share(name));
+        say(" {} {:.3g} %", name, kPercent * outcome.doubtful_share(name));
     }
-    fmt::print("\n");
+    say("\n");
 }
 
 }  // namespace aphotic::cli

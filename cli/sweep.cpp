@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
+#include "cli/terminal.h"
 #include "cli/unknown_word.h"
 #include "sweep/collection.h"
 #include "sweep/task_run.h"
@@ -56,8 +57,7 @@ nlohmann::ordered_json to_json(const WrittenSweep& written) {
 void print(const WrittenSweep& written) {
     const auto& [sweep] = written;
     const std::string folder = shell_word(sweep.folder.string());
-    fmt::print(
-        "{} of aphotic {} in {}: run them by one of\n"
+    say("{} of aphotic {} in {}: run them by one of\n"
         "  parallel -j 4 < {}/tasks.txt\n"
         "  sbatch {}/array.sbatch\n"
         "  snakemake --cores 4 --keep-going -s {}/Snakefile\n"
@@ -100,18 +100,18 @@ nlohmann::ordered_json to_json(const SweepStatus& status) {
 }
 
 void print(const SweepStatus& status) {
-    fmt::print("{}:", counted(status.standings.size(), "task"));
+    say("{}:", counted(status.standings.size(), "task"));
     for (std::size_t s = kTaskStates.size(); s-- > 0;)
-        fmt::print(" {} {}{}",
-                   count_of(status.standings, static_cast<TaskState>(s)),
-                   kTaskStates[s],
-                   s > 0 ? "," : "\n");
+        say(" {} {}{}",
+            count_of(status.standings, static_cast<TaskState>(s)),
+            kTaskStates[s],
+            s > 0 ? "," : "\n");
     for (std::size_t i = 0; i < status.standings.size(); ++i) {
         const auto& [state, result] = status.standings[i];
-        if (state == TaskState::Failed) fmt::print("  task {} failed: {}\n", i + 1, result.error);
+        if (state == TaskState::Failed) say("  task {} failed: {}\n", i + 1, result.error);
     }
-    if (!status.is_whole()) fmt::print("  not done: {}\n", numbers_not_done(status.standings));
-    for (const std::string& file : status.files) fmt::print("  {}\n", file);
+    if (!status.is_whole()) say("  not done: {}\n", numbers_not_done(status.standings));
+    for (const std::string& file : status.files) say("  {}\n", file);
 }
 
 // As the command that it ran, but for an answer of no: what was asked of the task is done.
@@ -121,7 +121,7 @@ ExitStatus run_one(const SweepCommandOptions& options) {
         throw InputError("--task: found {}; allowed: 1 to {}", options.task, sweep.tasks());
     const TaskStanding standing = run_task(sweep, options.task, this_program());
     if (standing.result.is_done()) return kDone;
-    fmt::print(stderr, "aphotic: task {}: {}\n", options.task, standing.result.error);
+    warn("task {}: {}", options.task, standing.result.error);
     return standing.result.exit_status == kBadInput ? kBadInput : kRunFailed;
 }
 

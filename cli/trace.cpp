@@ -10,6 +10,7 @@
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
+#include "cli/terminal.h"
 #include "image/exr.h"
 #include "spectral/manifest.h"
 #include "validation/traced_images.h"
@@ -80,8 +81,7 @@ nlohmann::ordered_json to_json(const Traced& traced) {
 }
 
 void print(const Traced& traced) {
-    fmt::print(
-        "{}: {} x {} pixels traced over {} wavelengths, exact to {:.0e} of a signal off the edges, "
+    say("{}: {} x {} pixels traced over {} wavelengths, exact to {:.0e} of a signal off the edges, "
         "in {:.1f} s\n",
         traced.title,
         traced.images.width_px,
@@ -90,15 +90,14 @@ void print(const Traced& traced) {
         kSpectralError,
         traced.seconds);
     for (const TracedEmitter& emitter : traced.emitters) {
-        fmt::print("  strobe '{}' is traced as {} x {} lamps, exact to {:.0e} of its light\n",
-                   emitter.strobe,
-                   emitter.lamps.across,
-                   emitter.lamps.along,
-                   kEmitterError);
+        say("  strobe '{}' is traced as {} x {} lamps, exact to {:.0e} of its light\n",
+            emitter.strobe,
+            emitter.lamps.across,
+            emitter.lamps.along,
+            kEmitterError);
     }
     if (traced.on_edges > 0) {
-        fmt::print(
-            "  {} on the edge of a cone, shadow, object or penumbra, or where a port disperses "
+        say("  {} on the edge of a cone, shadow, object or penumbra, or where a port disperses "
             "one: no such bound there\n",
             counted(traced.on_edges, "pixel"));
     }
@@ -118,9 +117,8 @@ std::vector<TracedEmitter> traced_emitters(const Tracer& tracer) {
 ExitStatus trace_rig(const TraceCommandOptions& options) {
     const PlannedRender planned = plan_rig(options.planning);
     if (!planned.rig.scene.empty()) {
-        fmt::print(stderr,
-                   "aphotic: tracing the rig's floor and objects; only POV-Ray can read {}\n",
-                   planned.rig.scene.string());
+        warn("tracing the rig's floor and objects; only POV-Ray can read {}",
+             planned.rig.scene.string());
     }
     const Camera& camera = planned.rig.camera;
     TraceOptions request{.signals = true, .planes_nm = {}, .threads = options.threads};

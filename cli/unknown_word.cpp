@@ -27,10 +27,8 @@ std::string unknown_option(const CLI::App& command,
                            const std::string& word) {
     if (!word.starts_with("--")) return "";
     const std::string option = word.substr(0, word.find('='));
-    return fmt::format("{}: found {}; no such option{}\n",
-                       name,
-                       printable(option),
-                       nearest_option(command, option));
+    return fmt::format(
+        "{}: found {}; no such option{}\n", name, excerpt(option), nearest_option(command, option));
 }
 
 }  // namespace
@@ -50,7 +48,7 @@ std::string unknown_words(const CLI::App& app) {
             // What follows it is its own.
             return lines + fmt::format("{}: found {}; no such command{}\n",
                                        app.get_name(),
-                                       printable(word),
+                                       excerpt(word),
                                        nearest_command(app, word));
         }
         lines += unknown_option(app, app.get_name(), word);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic validate RIG -o DIR: the rig through POV-Ray and through the reference, compared.
+#include "cli/terminal.h"
 #include "validation/validation.h"
 
 #include "base/error.h"
@@ -80,27 +81,27 @@ void print_model(const ModelCheck& model) {
         return fmt::format(
             "{:.4f} +- {:.4f}", of_model / truth.mean, truth.standard_error / truth.mean);
     };
-    fmt::print("  The reference over light of all orders, {} paths a place:\n", model.paths);
-    fmt::print("  {:>3}  {:>6}  {:>14}  {:>6}  {:>18}  {:>18}  {:>18}\n",
-               "",
-               "nm",
-               "column, row",
-               "veil",
-               "floor",
-               "veil",
-               "sum");
+    say("  The reference over light of all orders, {} paths a place:\n", model.paths);
+    say("  {:>3}  {:>6}  {:>14}  {:>6}  {:>18}  {:>18}  {:>18}\n",
+        "",
+        "nm",
+        "column, row",
+        "veil",
+        "floor",
+        "veil",
+        "sum");
     for (const ModelPlace& place : model.places) {
-        fmt::print("  {:>3}  {:6.1f}  {:>14}  {:6.3f}  {:>18}  {:>18}  {:>18}\n",
-                   kChannelNames[place.channel],
-                   place.lambda_nm,
-                   fmt::format("{}, {}", place.column, place.row),
-                   place.veil / (place.floor + place.veil),
-                   ratio(place.floor, place.truth.floor),
-                   ratio(place.veil, place.truth.veil),
-                   ratio(place.floor + place.veil, place.truth.sum));
+        say("  {:>3}  {:6.1f}  {:>14}  {:6.3f}  {:>18}  {:>18}  {:>18}\n",
+            kChannelNames[place.channel],
+            place.lambda_nm,
+            fmt::format("{}, {}", place.column, place.row),
+            place.veil / (place.floor + place.veil),
+            ratio(place.floor, place.truth.floor),
+            ratio(place.veil, place.truth.veil),
+            ratio(place.floor + place.veil, place.truth.sum));
     }
     const auto rms = model.rms();
-    fmt::print("  off by {:.2g} (R), {:.2g} (G), {:.2g} (B), rms\n", rms[0], rms[1], rms[2]);
+    say("  off by {:.2g} (R), {:.2g} (G), {:.2g} (B), rms\n", rms[0], rms[1], rms[2]);
 }
 
 // Of the largest share of pixels that one comparison leaves to its edges, and the largest error
@@ -127,44 +128,43 @@ std::string edges_in_words(const ValidationReport& report) {
 
 void print_verdict(const ValidationReport& report, const std::string& folder) {
     const Comparison& worst = report.worst();
-    fmt::print("{}: {}; {}\n",
-               report.rig.title,
-               report.holds() ? "POV-Ray and the reference agree within their bounds"
-                              : "POV-Ray and the reference DISAGREE",
-               edges_in_words(report));
-    fmt::print("  {:>10}  {:>9}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n",
-               "",
-               "max |e|",
-               "99.9 %",
-               "rms",
-               "mean",
-               "bound",
-               "on edges");
+    say("{}: {}; {}\n",
+        report.rig.title,
+        report.holds() ? "POV-Ray and the reference agree within their bounds"
+                       : "POV-Ray and the reference DISAGREE",
+        edges_in_words(report));
+    say("  {:>10}  {:>9}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n",
+        "",
+        "max |e|",
+        "99.9 %",
+        "rms",
+        "mean",
+        "bound",
+        "on edges");
     const auto print_row = [](const Comparison& c) {
-        fmt::print("  {:>10}  {:9.2e}  {:9.2e}  {:9.2e}  {:9.1e}  {:9.2e}  {}{}\n",
-                   c.name,
-                   c.max_error,
-                   c.percentile_999,
-                   c.rms_error,
-                   c.mean_error,
-                   c.bound,
-                   c.on_edges,
-                   c.holds() ? "" : "  <-- out of bounds");
+        say("  {:>10}  {:9.2e}  {:9.2e}  {:9.2e}  {:9.1e}  {:9.2e}  {}{}\n",
+            c.name,
+            c.max_error,
+            c.percentile_999,
+            c.rms_error,
+            c.mean_error,
+            c.bound,
+            c.on_edges,
+            c.holds() ? "" : "  <-- out of bounds");
     };
     for (const Comparison& channel : report.channels) print_row(channel);
     Comparison wavelengths =
         *std::ranges::max_element(report.wavelengths, {}, &Comparison::max_error);
     print_row(wavelengths);
-    fmt::print("  worst against its bound: {} at column {}, row {}: {:.3g} of {:.3g}\n",
-               worst.name,
-               worst.column,
-               worst.row,
-               worst.max_error,
-               worst.bound);
-    if (report.has_veil()) fmt::print("  {}\n", veil_in_words(report.veil_share));
+    say("  worst against its bound: {} at column {}, row {}: {:.3g} of {:.3g}\n",
+        worst.name,
+        worst.column,
+        worst.row,
+        worst.max_error,
+        worst.bound);
+    if (report.has_veil()) say("  {}\n", veil_in_words(report.veil_share));
     print_model(report.model);
-    fmt::print(
-        "  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);
+    say("  {}/report.html      to read\n  {}/validation.json  for programs\n", folder, folder);
 }
 
 ExitStatus validate_rig(const ValidateCommandOptions& options) {
@@ -190,10 +190,9 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
     if (is_rendered) {
         rendering.manifest = rendered_manifest(options.rendered_folder, planned.rig);
         if (rendering.manifest.rig_sha256 != planned.rig.digest) {
-            fmt::print(stderr,
-                       "aphotic: {} was rendered from another rig file than {}; continuing\n",
-                       options.rendered_folder,
-                       options.planning.rig_file);
+            warn("{} was rendered from another rig file than {}; continuing",
+                 options.rendered_folder,
+                 options.planning.rig_file);
         }
     } else {
         rendering = render_here(options, povray, scenes_of(planned, options.planning));
@@ -201,9 +200,8 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
     const fs::path images = is_rendered ? options.rendered_folder : options.folder;
 
     if (rendering.manifest.scene) {
-        fmt::print(stderr,
-                   "aphotic: the reference traces the rig's floor and objects, not {}\n",
-                   rendering.manifest.scene->file);
+        warn("the reference traces the rig's floor and objects, not {}",
+             rendering.manifest.scene->file);
     }
     ValidationReport report = [&] {
         ProgressLine line;
@@ -231,7 +229,7 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
     write_validation_json(report, folder / "validation.json");
     write_validation_html(report, folder / "report.html");
     if (options.json) {
-        fmt::print("{}", validation_json(report));
+        say_text(validation_json(report));
     } else {
         print_verdict(report, options.folder);
     }

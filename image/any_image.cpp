@@ -10,6 +10,18 @@
 #include <fmt/ranges.h>
 
 namespace aphotic {
+namespace {
+
+// OpenImageIO cuts a path at its question mark, and takes the rest for options.
+void require_plain_path(const std::filesystem::path& file) {
+    if (file.string().find('?') == std::string::npos) return;
+    throw InputError(
+        "{}: found a question mark in the path; allowed: none, for OpenImageIO takes what follows "
+        "it for options",
+        file.string());
+}
+
+}  // namespace
 
 std::string names_of(const std::vector<std::string>& channels) {
     constexpr std::size_t kFew = 20;
@@ -21,6 +33,7 @@ std::string names_of(const std::vector<std::string>& channels) {
 AnyImage open_any_image(const std::filesystem::path& file) {
     using Open = void (*)(const std::filesystem::path&, AnyImage&);
     AnyImage image;
+    require_plain_path(file);
     from_part<Open>("aphotic_open_any_image")(file, image);
     return image;
 }
@@ -28,12 +41,14 @@ AnyImage open_any_image(const std::filesystem::path& file) {
 std::map<std::string, std::string> header_of_image(const std::filesystem::path& file) {
     using Read = void (*)(const std::filesystem::path&, std::map<std::string, std::string>&);
     std::map<std::string, std::string> tags;
+    require_plain_path(file);
     from_part<Read>("aphotic_header_of_image")(file, tags);
     return tags;
 }
 
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image) {
     using Write = std::string (*)(const std::filesystem::path&, const WrittenImage&);
+    require_plain_path(file);
     AtomicFile destination(file);
     const std::string fault =
         from_part<Write>("aphotic_write_any_image")(destination.temporary(), image);

@@ -28,20 +28,20 @@ AltitudeFitter::AltitudeFitter(std::vector<double> altitude_m)
     : altitude_m_(std::move(altitude_m)) {
     constexpr std::size_t kLeast = 4;
     if (altitude_m_.size() < kLeast) {
-        throw InputError(fmt::format("a fit over altitude: found {} altitudes; allowed: {} or more",
-                                     altitude_m_.size(),
-                                     kLeast));
+        throw InputError("a fit over altitude: found {} altitudes; allowed: {} or more",
+                         altitude_m_.size(),
+                         kLeast);
     }
     const double span_m = altitude_m_.back() - altitude_m_.front();
     const double slowest_per_m = kSlowest / span_m;
     const double fastest_per_m = std::min(kFastest / span_m, kMostExponent / altitude_m_.back());
     if (fastest_per_m <= slowest_per_m) {
-        throw InputError(fmt::format(
+        throw InputError(
             "a fit over altitude: found altitudes from {:.6g} to {:.6g} m; allowed: over "
             "{:.3g} m or more",
             altitude_m_.front(),
             altitude_m_.back(),
-            kSlowest / kMostExponent * altitude_m_.back()));
+            kSlowest / kMostExponent * altitude_m_.back());
     }
     for (int i = -kRates; i < kRates; ++i) {
         const double step = (i < 0 ? -i - 1 : i) / (kRates - 1.0);

@@ -145,8 +145,7 @@ void require_axis(const std::vector<double>& values) {
 }
 
 AtlasManifest manifest_of(const Json& json) {
-    if (json.at("format") != kFormat)
-        throw InputError(fmt::format("its format is not {}", kFormat));
+    if (json.at("format") != kFormat) throw InputError("its format is not {}", kFormat);
     const Json& axes = json.at("axes");
     using Values = std::vector<double>;
     AtlasManifest manifest{
@@ -208,12 +207,12 @@ void write_bin(const fs::path& file, const ExrAttributes& attributes, const Ligh
 Lightmap read_bin(const fs::path& file, const AtlasManifest& manifest) {
     ExrReader reader(file);
     if (reader.width_px() != manifest.width_px || reader.height_px() != manifest.height_px) {
-        throw RunError(fmt::format("{}: is {} x {} pixels; the atlas is of {} x {}",
-                                   file.string(),
-                                   reader.width_px(),
-                                   reader.height_px(),
-                                   manifest.width_px,
-                                   manifest.height_px));
+        throw RunError("{}: is {} x {} pixels; the atlas is of {} x {}",
+                       file.string(),
+                       reader.width_px(),
+                       reader.height_px(),
+                       manifest.width_px,
+                       manifest.height_px);
     }
     Lightmap map{.width_px = manifest.width_px, .height_px = manifest.height_px, .samples = {}};
     map.samples = reader.planes(plane_names("", false));
@@ -318,9 +317,9 @@ AtlasManifest parse_atlas(std::string_view text, const std::string& name) {
     try {
         return manifest_of(json);
     } catch (const Json::exception& error) {
-        throw InputError(fmt::format("{}: is no atlas: {}", name, printable(error.what())));
+        throw InputError("{}: is no atlas: {}", name, printable(error.what()));
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", name, error.what()));
+        throw InputError("{}: {}", name, error.what());
     }
 }
 
@@ -400,11 +399,11 @@ Atlas::Atlas(const fs::path& folder)
     const auto missing = std::ranges::count(manifest_.checksums, std::string());
     if (missing > 0) {
         throw InputError(
-            fmt::format("{}: {} of {} bins are not there yet; the command that began "
-                        "it goes on where it stopped",
-                        folder.string(),
-                        missing,
-                        points_.size()));
+            "{}: {} of {} bins are not there yet; the command that began "
+            "it goes on where it stopped",
+            folder.string(),
+            missing,
+            points_.size());
     }
 }
 

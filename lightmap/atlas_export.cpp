@@ -2,6 +2,7 @@
 #include "lightmap/atlas_export.h"
 
 #include "base/atomic_file.h"
+#include "base/number.h"
 #include "base/parallel.h"
 #include "image/exr.h"
 #include "lightmap/altitude_fit.h"
@@ -35,7 +36,7 @@ int digits_of(const std::vector<double>& altitude_m) {
     constexpr int kMost = 9;  // as finely as axes are read
     int digits = kLeast;
     for (const double h_m : altitude_m) {
-        while (digits < kMost && std::stod(fmt::format("{:.{}f}", h_m, digits)) != h_m) {
+        while (digits < kMost && read_number<double>(fmt::format("{:.{}f}", h_m, digits)) != h_m) {
             ++digits;
         }
     }

@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/offered.h"
 #include "rig/geometry.h"
 #include "rig/lens.h"
@@ -14,12 +15,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace aphotic {
@@ -43,10 +42,8 @@ std::vector<std::string> split_at(std::string_view text, char mark) {
 }
 
 std::optional<double> metres_of(std::string_view text) {
-    double value = 0.0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool is_number = fault == std::errc{} && end == text.data() + text.size();
-    return is_number && std::isfinite(value) ? std::optional(value) : std::nullopt;
+    const auto value = read_number<double>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 // One number, or two with a colon between, the smaller first.
@@ -112,7 +109,7 @@ void brighten(RigText& text, const std::string& strobe, double factor) {
         std::ranges::find_if(kPowers, [&](const char* key) { return text.has(strobe + key); });
     const std::string key = strobe + (said == kPowers.end() ? "power" : *said);
     const double power = factor * text.number(key).value_or(1.0);
-    text.set(key, std::stod(fmt::format("{:.{}g}", power, DesignSpace::kDigitsOfPower)));
+    text.set(key, rounded_to_digits(power, DesignSpace::kDigitsOfPower));
 }
 
 Strobe placed(Strobe strobe, const StrobePlace& place) {

@@ -36,11 +36,10 @@ constexpr double kTableShare = 0.5;
 void require_bare_floor(const Rig& rig) {
     constexpr auto kAllowed = "allowed: the bare floor, which is all that a lightmap is of";
     if (!rig.objects.empty()) {
-        throw InputError(
-            fmt::format("found the object '{}'; {}", rig.objects.front().name, kAllowed));
+        throw InputError("found the object '{}'; {}", rig.objects.front().name, kAllowed);
     }
     if (!rig.scene.empty()) {
-        throw InputError(fmt::format("found the scene {}; {}", rig.scene.string(), kAllowed));
+        throw InputError("found the scene {}; {}", rig.scene.string(), kAllowed);
     }
 }
 
@@ -114,12 +113,12 @@ LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
     const LampGrid grid = lamp_grid(rig, strobe, 0.0);
     if (static_cast<double>(grid.across) * grid.along > kMostLamps) {
         throw InputError(
-            fmt::format("strobe '{}': found an emitter that takes {} x {} lamps so low over the "
-                        "floor; allowed: up to {} of them",
-                        strobe.name,
-                        grid.across,
-                        grid.along,
-                        kMostLamps));
+            "strobe '{}': found an emitter that takes {} x {} lamps so low over the "
+            "floor; allowed: up to {} of them",
+            strobe.name,
+            grid.across,
+            grid.along,
+            kMostLamps);
     }
     return grid;
 }
@@ -305,7 +304,7 @@ void require_over_floor(const Rig& rig, const Sled& sled) {
             require_over_floor(sled, strobe, grid_of_lamps(flown, strobe));
         }
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", in_words(sled), error.what()));
+        throw InputError("{}: {}", in_words(sled), error.what());
     }
 }
 

@@ -52,9 +52,9 @@ void require_different_names(const std::vector<RigPart>& parts) {
     for (const RigPart& part : parts) {
         if (names.insert(part.name).second) continue;
         throw InputError(
-            fmt::format("strobes: found two parts of the light that would be named {}, of a strobe "
-                        "and of a cone, or of two cones; allowed: names that differ",
-                        part.name));
+            "strobes: found two parts of the light that would be named {}, of a strobe "
+            "and of a cone, or of two cones; allowed: names that differ",
+            part.name);
     }
 }
 

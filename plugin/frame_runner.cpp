@@ -117,8 +117,11 @@ double reported_share(const fs::path& log) {
 void require_success(const Running& run, const ProcessEnd& end) {
     if (end.succeeded()) return;
     const std::string said = error_in_log(read_log(run.log));
-    throw RunError(
-        "{}{}{}\nIts log: {}", end.words(), said.empty() ? "" : ":\n", said, run.log.string());
+    throw RunError("{}{}{}\nIts log: {}",
+                   end.words(),
+                   said.empty() ? "" : ":\n",
+                   said.c_str(),
+                   run.log.string());
 }
 
 // The end of a frame's run, when it has come.
@@ -131,7 +134,7 @@ std::optional<ProcessEnd> poll(Running& run, const fs::path& folder) {
         throw RunError("POV-Ray failed on {}: {}{}",
                        scene_path(folder, run.frame).string(),
                        error.what(),
-                       words_of_full_disk(folder));
+                       words_of_full_disk(folder).c_str());
     }
 }
 
@@ -150,7 +153,7 @@ void check(const Running& run,
                        scene_path(folder, run.frame).string(),
                        error.what(),
                        run.log.string(),
-                       words_of_full_disk(folder));
+                       words_of_full_disk(folder).c_str());
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/disk_space.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "plugin/povray_log.h"
 #include "plugin/process.h"
 #include "plugin/scratch_folder.h"
@@ -65,7 +66,8 @@ std::optional<Version> introduced_version(const std::string& printed) {
         R"(POV-Ray ((\d{1,9})\.(\d{1,9})(?!\d)[^ \t\r\n]{0,80})(?=[ \t\r\n]|$))");
     std::smatch found;
     if (!std::regex_search(printed, found, kIntroduction)) return std::nullopt;
-    return Version{.number = {std::stoi(found[2]), std::stoi(found[3])}, .words = found[1]};
+    return Version{.number = {*read_number<int>(found.str(2)), *read_number<int>(found.str(3))},
+                   .words = found[1]};
 }
 
 // A line "Supported image formats: ... openexr ...".
@@ -141,7 +143,7 @@ PovRay find_povray(const std::string& named) {
         throw RunError("POV-Ray: {}: {}{}",
                        executable.string(),
                        error.what(),
-                       words_of_full_disk(scratch.path()));
+                       words_of_full_disk(scratch.path()).c_str());
     }
 }
 

@@ -2,13 +2,12 @@
 #include "plugin/povray_log.h"
 
 #include "base/error.h"
+#include "base/number.h"
 #include "plugin/process.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <sstream>
-#include <system_error>
 
 namespace aphotic {
 
@@ -59,12 +58,10 @@ double share_in_log(std::string_view log) {
     double share = 0.0;
     for (auto at = log.find(kBefore); at != std::string_view::npos; at = log.find(kBefore, at)) {
         at += kBefore.size();
-        int percent = 0;
-        const auto [end, error] =
-            std::from_chars(log.data() + at, log.data() + log.size(), percent);
-        const auto digits = static_cast<std::size_t>(end - (log.data() + at));
-        if (error != std::errc() || !log.substr(at + digits).starts_with(kBehind)) continue;
-        if (percent >= 0 && percent <= kWhole) share = static_cast<double>(percent) / kWhole;
+        std::string_view rest = log.substr(at);
+        const auto percent = read_leading_number<int>(rest);
+        if (!percent || !rest.starts_with(kBehind)) continue;
+        if (*percent >= 0 && *percent <= kWhole) share = static_cast<double>(*percent) / kWhole;
     }
     return share;
 }

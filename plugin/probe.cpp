@@ -5,6 +5,7 @@
 #include "base/disk_space.h"
 #include "base/error.h"
 #include "base/interruption.h"
+#include "base/number.h"
 #include "base/sha256.h"
 #include "image/exr.h"
 #include "plugin/library_paths.h"
@@ -229,14 +230,17 @@ class Survey {
         if (end.succeeded()) return;
         const std::string said =
             in_users_files(error_in_log(read_log(file_of(task, ".log"))), task);
-        const std::string message = fmt::format("POV-Ray cannot read {} ({}){}{}",
-                                                scene_.file.string(),
-                                                end.words(),
-                                                said.empty() ? "" : ":\n",
-                                                said);
+        const auto fail = [&]<typename Error>(const std::string& more) {
+            throw Error("POV-Ray cannot read {} ({}){}{}{}",
+                        scene_.file.string(),
+                        end.words(),
+                        said.empty() ? "" : ":\n",
+                        said.c_str(),
+                        more.c_str());
+        };
         // The scene's fault when the parser says so, POV-Ray's otherwise.
-        if (said.find("Parse Error") != std::string::npos) throw InputError(message);
-        throw RunError(message + words_of_full_disk(folder_.path()));
+        if (said.find("Parse Error") != std::string::npos) fail.operator()<InputError>("");
+        fail.operator()<RunError>(words_of_full_disk(folder_.path()));
     }
 
     [[nodiscard]] std::optional<ProcessEnd> poll(Running& running) const {
@@ -318,7 +322,10 @@ class Survey {
                 const std::size_t first = said.find('"');
                 return said.substr(first + 1, said.rfind('"') - first - 1);
             };
-            const auto number = [&] { return std::atoi(said.substr(said.rfind(' ') + 1).c_str()); };
+            const auto number = [&] {
+                return read_number<int>(std::string_view(said).substr(said.rfind(' ') + 1))
+                    .value_or(0);
+            };
             if (said.starts_with("aphotic: reflectance \"")) asked.reflectances.insert(quoted());
             if (said.starts_with("aphotic: lamp \"")) asked.lamps.insert(quoted());
             if (said == "aphotic: water") asked.has_water = true;
@@ -330,7 +337,10 @@ class Survey {
             if (said.starts_with("aphotic: lights ")) asked.lights = number();
             if (said.starts_with("Light Sources: ")) asked.all_lights = number();
             const auto counts = [&](std::string_view what) {
-                return said.starts_with(what) && std::atoll(said.c_str() + what.size()) > 0;
+                if (!said.starts_with(what)) return false;
+                std::string_view rest = std::string_view(said).substr(what.size());
+                rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+                return read_leading_number<long long>(rest).value_or(0) > 0;
             };
             asked.has_radiosity |= counts("Radiosity samples calculated:");
             asked.has_photons |= counts("Number of photons shot:");

@@ -193,10 +193,11 @@ enum class Frames { ToBeRendered, Done };
 
 // Of the bare floor it is known beforehand; else when the frames are there, of which one tells how
 // far each pixel sees.
-void note_veil(const fs::path& folder, const SceneSet& set, Frames frames, Manifest& manifest) {
+void note_veil(
+    const fs::path& folder, const SceneSet& set, Frames frames, int threads, Manifest& manifest) {
     if (!set.scattering) return;
     if ((manifest.veil->fog_m > 0.0) != (frames == Frames::Done)) return;
-    manifest.veil = write_veil(folder, *set.scattering, manifest);
+    manifest.veil = write_veil(folder, *set.scattering, manifest, threads);
 }
 
 }  // namespace
@@ -224,7 +225,7 @@ RenderResult render(const PovRay& povray,
     take_away_what_is_past(folder, earlier, result.manifest);
     for (const ManifestFrame& frame : missing) take_away(image_path(folder, frame));
     write_scenes_and_note(folder, set);
-    note_veil(folder, set, Frames::ToBeRendered, result.manifest);
+    note_veil(folder, set, Frames::ToBeRendered, options.jobs, result.manifest);
     write_manifest(folder, result.manifest);
 
     run_noted(povray,
@@ -235,7 +236,7 @@ RenderResult render(const PovRay& povray,
                .is_alone = set.scene_writes_files},
               options,
               result.manifest);
-    note_veil(folder, set, Frames::Done, result.manifest);
+    note_veil(folder, set, Frames::Done, options.jobs, result.manifest);
     write_manifest(folder, result.manifest);
     return result;
 }
@@ -305,7 +306,7 @@ std::size_t join_frames(const fs::path& folder) {
     return count;
 }
 
-Manifest generate(const fs::path& folder, const SceneSet& set) {
+Manifest generate(const fs::path& folder, const SceneSet& set, int threads) {
     require_place_for_scenes(folder, set);
     make_folder(folder);
     Manifest manifest = set.manifest;
@@ -324,7 +325,7 @@ Manifest generate(const fs::path& folder, const SceneSet& set) {
     }
     take_away_what_is_past(folder, earlier, manifest);
     write_scenes_and_note(folder, set);
-    note_veil(folder, set, Frames::ToBeRendered, manifest);
+    note_veil(folder, set, Frames::ToBeRendered, threads, manifest);
     write_manifest(folder, manifest);
     return manifest;
 }

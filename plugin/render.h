@@ -52,6 +52,6 @@ std::size_t join_frames(const std::filesystem::path& folder);
 
 // Writes scenes and manifest without rendering. Images of earlier scenes, and the reference
 // tracer's, are taken away, so that they cannot be taken for images of these.
-Manifest generate(const std::filesystem::path& folder, const SceneSet& set);
+Manifest generate(const std::filesystem::path& folder, const SceneSet& set, int threads = 1);
 
 }  // namespace aphotic

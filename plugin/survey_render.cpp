@@ -63,12 +63,12 @@ PictureUnderWay begun(const fs::path& folder,
 
 // Whatever interrupts this leaves the frames, or the image and some of the frames: never half of
 // one.
-void integrate_picture(const fs::path& folder, PictureUnderWay& picture) {
+void integrate_picture(const fs::path& folder, int threads, PictureUnderWay& picture) {
     const fs::path made = folder / (picture.image.stem().string() + ".made");
     Manifest& manifest = picture.scenes.manifest;
     make_folder(made);
     if (picture.scenes.scattering) {
-        manifest.veil = write_veil(folder, *picture.scenes.scattering, manifest);
+        manifest.veil = write_veil(folder, *picture.scenes.scattering, manifest, threads);
         make_folder(veil_path(made).parent_path());
         fs::rename(veil_path(folder), veil_path(made));
     }
@@ -166,7 +166,7 @@ void render_pictures(const PovRay& povray,
     };
     run.arrived = [&](const ManifestFrame& frame) {
         PictureUnderWay& picture = *under_way.at(frame.name);
-        if (--picture.frames_left == 0) integrate_picture(folder, picture);
+        if (--picture.frames_left == 0) integrate_picture(folder, options.jobs, picture);
     };
     run_frames(povray,
                folder,

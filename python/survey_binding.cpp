@@ -2,6 +2,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/printable.h"
 #include "lightmap/cone_edge.h"
 #include "python/bindings.h"
 #include "survey/camera_of_files.h"
@@ -12,9 +13,11 @@
 #include "survey/light_at.h"
 #include "survey/navigation_file.h"
 
+#include <fmt/format.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 #include <nlohmann/json.hpp>
@@ -23,6 +26,9 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace aphotic::python {
 namespace {
@@ -199,7 +205,17 @@ void bind_correction(nb::module_& module) {
 struct Fitted {
     RigText rig;
     FitResult result;
+    std::vector<Skipped> skipped;
 };
+
+// As the command says it on standard error.
+void warn_of(const Fitted& fitted) {
+    const nb::object warn = nb::module_::import_("warnings").attr("warn");
+    for (const Skipped& one : fitted.skipped)
+        warn(shown_text(fmt::format("{}: {}; skipped", one.image, one.why)));
+    for (const Suspicion& one : fitted.result.looks_wrong)
+        warn(shown_text(fmt::format("looks wrong: {}: {}", one.about, one.what)));
+}
 
 FitBeamKind beam_named(const std::string& name) {
     if (name == "table") return FitBeamKind::Table;
@@ -217,7 +233,8 @@ FitSamples image_samples(const Rig& rig,
                          std::size_t jobs) {
     Survey survey{.files = image_files(images, {}), .camera = camera};
     survey.camera = with_rig(survey.camera, rig.camera);
-    survey.navigation = read_navigation({.source = navigation.string()}, survey.files, &rig);
+    survey.navigation =
+        read_navigation({.source = navigation.string(), .jobs = jobs}, survey.files, &rig);
     return samples_of_images(
         survey, {rig.camera.width_px, rig.camera.height_px}, blocks, jobs, RunWatch{});
 }
@@ -252,15 +269,22 @@ Fitted fit_rig(const TextRig& rig,
                              .threads = threads_of(threads)};
     CameraNumbers camera{.black_level = black_level, .white_level = white_level};
     if (bayer) camera.mosaic = mosaic_of(*bayer);
-    const FitSamples samples = images.empty()
-                                   ? samples_of_maps(maps, rig.rig.camera, blocks)
-                                   : image_samples(rig.rig,
-                                                   images,
-                                                   *navigation,
-                                                   camera,
-                                                   blocks,
-                                                   static_cast<std::size_t>(options.threads));
-    return {.rig = rig.text, .result = fit(rig.text, samples, options, RunWatch{})};
+    Fitted fitted = [&]() -> Fitted {
+        const nb::gil_scoped_release without_lock;
+        const FitSamples samples = images.empty()
+                                       ? samples_of_maps(maps, rig.rig.camera, blocks)
+                                       : image_samples(rig.rig,
+                                                       images,
+                                                       *navigation,
+                                                       camera,
+                                                       blocks,
+                                                       static_cast<std::size_t>(options.threads));
+        return {.rig = rig.text,
+                .result = fit(rig.text, samples, options, RunWatch{}),
+                .skipped = samples.skipped};
+    }();
+    warn_of(fitted);
+    return fitted;
 }
 
 TextRig save_fit(const Fitted& fitted, const fs::path& folder) {
@@ -275,6 +299,20 @@ std::vector<std::string> words_of_held(const Fitted& fitted) {
     return words;
 }
 
+using Pairs = std::vector<std::pair<std::string, std::string>>;
+
+Pairs pairs_skipped(const Fitted& fitted) {
+    Pairs pairs;
+    for (const Skipped& one : fitted.skipped) pairs.emplace_back(one.image, one.why);
+    return pairs;
+}
+
+Pairs pairs_wrong(const Fitted& fitted) {
+    Pairs pairs;
+    for (const Suspicion& one : fitted.result.looks_wrong) pairs.emplace_back(one.about, one.what);
+    return pairs;
+}
+
 void bind_fit(nb::module_& module) {
     nb::class_<FittedNumber>(module, "FittedNumber", "A number with its standard error.")
         .def_ro("key", &FittedNumber::key)
@@ -285,6 +323,8 @@ void bind_fit(nb::module_& module) {
     nb::class_<Fitted>(module, "Fit", "The rig that explains a survey.")
         .def_prop_ro("numbers", [](const Fitted& fitted) { return fitted.result.numbers; })
         .def_prop_ro("held", words_of_held, "What the images cannot tell, and why.")
+        .def_prop_ro("skipped", pairs_skipped, "Images that could not be used, and why.")
+        .def_prop_ro("looks_wrong", pairs_wrong, "What looks wrong, and why.")
         .def_prop_ro("residual", [](const Fitted& fitted) { return fitted.result.left.residual; })
         .def_prop_ro(
             "json",
@@ -311,9 +351,8 @@ void bind_fit(nb::module_& module) {
                nb::arg("attitude_error_deg") = 0.5,
                nb::arg("blocks") = kBlocksAcross,
                nb::arg("threads") = 0,
-               nb::call_guard<nb::gil_scoped_release>(),
                "Find the rig that explains a survey, from files of observed maps, or of images "
-               "with their navigation.");
+               "with their navigation. Warns of images that are skipped and of what looks wrong.");
 }
 
 }  // namespace

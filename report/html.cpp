@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/html.h"
 
+#include "base/number.h"
 #include "report/page_style.h"
 
 #include <fmt/format.h>
@@ -83,11 +84,17 @@ std::string scientific(double value) {
     // Through text, so that 9.999e-5 is rounded to 1.00e-4 before the exponent is read.
     const std::string text = fmt::format("{:.2e}", value);
     const std::size_t split = text.find('e');
-    const int exponent = std::stoi(text.substr(split + 1));
+    const int exponent = exponent_of(text);
     if (exponent >= -2 && exponent < 3)
         return with_minus(fmt::format("{:.{}f}", value, 2 - exponent));
     return fmt::format(
         "{}{}10{}", with_minus(text.substr(0, split)), kTimes, superscript(exponent));
+}
+
+int exponent_of(std::string_view text) {
+    std::string_view digits = text.substr(text.find('e') + 1);
+    if (digits.starts_with('+')) digits.remove_prefix(1);
+    return read_number<int>(digits).value();
 }
 
 std::string power_label(double factor, int exponent) {
@@ -99,7 +106,7 @@ std::string plain(double value) {
     return with_minus(fmt::format("{:.6g}", value == 0.0 ? 0.0 : value));
 }
 
-std::string counted(std::size_t count, std::string_view noun) {
+std::string grouped_count(std::size_t count, std::string_view noun) {
     return fmt::format("{} {}{}", grouped(count), noun, count == 1 ? "" : "s");
 }
 

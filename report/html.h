@@ -26,14 +26,17 @@ namespace aphotic {
 // Three significant digits; 0, ∞ and "not a number" in words. 0.01 up to 1000 without a power.
 [[nodiscard]] std::string scientific(double value);
 
+// That of a number in fmt's {:e}: 3 of "1.5e+03".
+[[nodiscard]] int exponent_of(std::string_view text);
+
 // factor × 10^exponent; a factor of 1 is left out.
 [[nodiscard]] std::string power_label(double factor, int exponent);
 
 // At most six significant digits, trailing zeros dropped.
 [[nodiscard]] std::string plain(double value);
 
-// "1" and the noun, or the number and the noun with an s; thousands set apart.
-[[nodiscard]] std::string counted(std::size_t count, std::string_view noun);
+// "1 frame", "2 frames", as counted() of base/words.h, with thousands set apart.
+[[nodiscard]] std::string grouped_count(std::size_t count, std::string_view noun);
 
 // 1 392 640, with narrow blanks that do not break.
 [[nodiscard]] std::string grouped(std::size_t count);

@@ -65,8 +65,7 @@ SvgPanel panel_of(const Plot& plot) {
             y.include(curve.y[i]);
         }
     }
-    if (x.is_empty())
-        throw InputError(fmt::format("plot '{}': found no point that can be drawn", plot.title));
+    if (x.is_empty()) throw InputError("plot '{}': found no point that can be drawn", plot.title);
     SvgPanel panel{
         .left = kAxisWidth,
         .width = kPanelWidth,
@@ -109,14 +108,13 @@ std::string drawing_of(const Plot& plot, double top) {
 void write_plots(std::span<const Plot> panels, const std::filesystem::path& file) {
     if (file.extension() != ".svg") {
         throw InputError(
-            fmt::format("{}: found a plot file that ends in '{}'; allowed: .svg, of which a "
-                        "browser or rsvg-convert makes a PNG",
-                        file.string(),
-                        file.extension().string()));
+            "{}: found a plot file that ends in '{}'; allowed: .svg, of which a "
+            "browser or rsvg-convert makes a PNG",
+            file.string(),
+            file.extension().string());
     }
     if (panels.empty()) {
-        throw InputError(
-            fmt::format("{}: found no panel to draw; allowed: one or more", file.string()));
+        throw InputError("{}: found no panel to draw; allowed: one or more", file.string());
     }
     std::string svg =
         fmt::format("<style>{}svg {{ font-family: sans-serif; }}</style>\n", kSvgStyle);

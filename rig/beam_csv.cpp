@@ -151,8 +151,7 @@ PhotometricFile parse_beam_csv(const std::string& file_name, std::string_view te
 std::string beam_csv_text(const PhotometricFile& photometry, const std::string& file_name) {
     const BeamTable& table = photometry.table;
     if (table.angles != TableAngles::TypeC) {
-        throw InputError(
-            fmt::format("{}: found a table of type A or B; allowed in .csv: type C", file_name));
+        throw InputError("{}: found a table of type A or B; allowed in .csv: type C", file_name);
     }
     const bool is_round = table.horizontal_rad.size() == 1;
     std::string text;

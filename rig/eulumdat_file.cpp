@@ -281,16 +281,14 @@ PhotometricFile parse_eulumdat(const std::string& file_name, std::string_view by
 std::string eulumdat_text(const PhotometricFile& photometry, const std::string& file_name) {
     const BeamTable& table = photometry.table;
     if (table.angles != TableAngles::TypeC) {
-        throw InputError(
-            fmt::format("{}: found a table of type A or B; allowed in .ldt: type C", file_name));
+        throw InputError("{}: found a table of type A or B; allowed in .ldt: type C", file_name);
     }
     const bool states_flux = !photometry.is_absolute && photometry.luminous_flux_lm.has_value();
     const double emitted_lm = table_flux(table);
     const double flux_lm = states_flux ? *photometry.luminous_flux_lm : emitted_lm;
     if (!(emitted_lm > 0.0 && flux_lm > 0.0)) {
         throw InputError(
-            fmt::format("{}: found a table without light; allowed in .ldt: intensities per 1000 lm",
-                        file_name));
+            "{}: found a table without light; allowed in .ldt: intensities per 1000 lm", file_name);
     }
     const bool is_round = table.horizontal_rad.size() == 1;
     std::vector<double> turn = table.horizontal_rad;

@@ -144,14 +144,13 @@ void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid) {
             strobe.name,
             height_m < 0.0 ? fmt::format("{:.4f}", -height_m) : at_most_text(height_m, 4),
             height_m < 0.0 ? "under" : "over",
-            kLeastDistance_m));
+            kLeastDistance_m);
     }
     for (const Vector3d& lamp_m : lamp_positions_m(strobe, grid)) {
         if (height_above(floor, lamp_m) > 0.0) continue;
-        throw InputError(
-            fmt::format("strobe '{}' has a lamp at or under the sea floor, {:.4f} m below it",
-                        strobe.name,
-                        -height_above(floor, lamp_m)));
+        throw InputError("strobe '{}' has a lamp at or under the sea floor, {:.4f} m below it",
+                         strobe.name,
+                         -height_above(floor, lamp_m));
     }
 }
 

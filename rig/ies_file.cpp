@@ -109,7 +109,7 @@ std::optional<int> edition_in(const std::string& file, std::size_t number, std::
     const bool names_standard = skip("lm63");
     constexpr std::array kYears{1986, 1991, 1995, 2002, 2019};
     for (const int known : kYears) {
-        const std::string digits = std::to_string(known);
+        const std::string digits = fmt::to_string(known);
         if (year == digits || year == digits.substr(2)) return known;
     }
     if (!names_standard) return std::nullopt;
@@ -425,10 +425,10 @@ std::vector<std::string> degrees_texts(const std::vector<double>& angles_rad) {
 void check_sides(const BeamTable& table, const std::string& file_name) {
     if (table.angles == TableAngles::TypeC) return;
     if (table.vertical_rad.front() != 0.0 && table.horizontal_rad.front() != 0.0) return;
-    throw InputError(fmt::format(
+    throw InputError(
         "{}: found a table of type A or B that begins at 0; allowed in .ies: one that begins below "
         "0, for what begins there is half of a symmetric one",
-        file_name));
+        file_name);
 }
 
 std::string number_text(double number) {

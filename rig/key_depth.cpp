@@ -43,11 +43,11 @@ void require_shallow_keys(std::string_view toml, const std::string& file_name) {
         if (kBetweenKeys.find(c) != std::string_view::npos) parts = 1;
         if (c != '.' || ++parts <= kMostKeyParts) continue;
         throw InputError(
-            fmt::format("{0}:{1}: found a key of more than {2} parts with dots between "
-                        "them; allowed: up to {2}",
-                        file_name,
-                        1 + std::ranges::count(toml.substr(0, at), '\n'),
-                        kMostKeyParts));
+            "{0}:{1}: found a key of more than {2} parts with dots between "
+            "them; allowed: up to {2}",
+            file_name,
+            1 + std::ranges::count(toml.substr(0, at), '\n'),
+            kMostKeyParts);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "rig/mesh_reader.h"
 
 #include "base/error.h"
+#include "base/number.h"
 #include "base/printable.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -48,23 +48,17 @@ std::string shown(const std::vector<std::string_view>& words) {
 }
 
 std::optional<double> finite_number(std::string_view word) {
-    double value = 0.0;
     if (word.starts_with('+')) word.remove_prefix(1);
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool is_whole = error == std::errc() && end == word.data() + word.size();
-    return is_whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+    const auto value = read_number<double>(word);
+    return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 // The vertex, from 0, of a face's corner such as "3", "3/1" or "-1//2", whose texture and normal do
 // not count. None where no vertex above it has that number.
 std::optional<int> vertex_of(std::string_view corner, int vertices) {
-    const std::string_view word = corner.substr(0, corner.find('/'));
-    int index = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
-    const bool is_there = error == std::errc() && end == word.data() + word.size() && index != 0 &&
-                          index <= vertices && index >= -vertices;
-    if (!is_there) return std::nullopt;
-    return index > 0 ? index - 1 : vertices + index;
+    const auto index = read_number<int>(corner.substr(0, corner.find('/')));
+    if (!index || *index == 0 || *index > vertices || *index < -vertices) return std::nullopt;
+    return *index > 0 ? *index - 1 : vertices + *index;
 }
 
 // volatile: where GCC 12 turns several of these into vector instructions, it leaves out the
@@ -96,8 +90,8 @@ Faces read_lines(const std::string& text,
         const std::vector<std::string_view> words = words_of(line);
         if (words.empty()) continue;
         const auto refuse = [&](std::string_view allowed) {
-            throw InputError(fmt::format(
-                "{}:{}: found {}; allowed: {}", file_name, number, shown(words), allowed));
+            throw InputError(
+                "{}:{}: found {}; allowed: {}", file_name, number, shown(words), allowed);
         };
         const std::span values = std::span(words).subspan(1);
         if (words[0] == "v") {
@@ -130,11 +124,10 @@ Faces read_lines(const std::string& text,
 // Before any polygon is cut: that takes the longer the more there are.
 void require_room(std::size_t triangles, const std::string& file_name) {
     if (triangles > 0 && triangles <= kMostTriangles) return;
-    throw InputError(
-        fmt::format("{}: found {}; allowed: 1 to {} triangles",
-                    file_name,
-                    triangles == 0 ? "no faces" : fmt::format("{} triangles", triangles),
-                    kMostTriangles));
+    throw InputError("{}: found {}; allowed: 1 to {} triangles",
+                     file_name,
+                     triangles == 0 ? "no faces" : fmt::format("{} triangles", triangles),
+                     kMostTriangles);
 }
 
 bool has_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
@@ -183,13 +176,13 @@ Triangle checked_triangle(const Mesh& mesh,
         return mesh.vertices_m[static_cast<std::size_t>(corners[i])];
     };
     if (has_area(at(0), at(1), at(2))) return {corners[0], corners[1], corners[2]};
-    throw InputError(fmt::format(
+    throw InputError(
         "{}: found a triangle without area, of the vertices {}, {} and {}, counted from "
         "1; allowed: three corners that do not lie on one line",
         file_name,
         corners[0] + 1,
         corners[1] + 1,
-        corners[2] + 1));
+        corners[2] + 1);
 }
 
 }  // namespace
@@ -205,11 +198,11 @@ Mesh parse_mesh(const std::string& file_name, const std::string& obj, const Vect
         }
         const std::vector<Triangle> triangles = cut(mesh, corners);
         if (triangles.empty()) {
-            throw InputError(fmt::format(
+            throw InputError(
                 "{}:{}: found a polygon that cannot be cut into triangles from one of its corners; "
                 "allowed: one with a corner that sees all others, or triangles in its place",
                 file_name,
-                line));
+                line);
         }
         mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
     }

@@ -32,10 +32,10 @@ std::optional<Format> format_by_ending(std::string_view name) {
 Format format_of(const std::string& file_name) {
     if (const auto format = format_by_ending(file_name)) return *format;
     throw InputError(
-        fmt::format("{}: found a name that ends otherwise; allowed for a measured "
-                    "beam: {}",
-                    printable(file_name),
-                    kPhotometricEndings));
+        "{}: found a name that ends otherwise; allowed for a measured "
+        "beam: {}",
+        printable(file_name),
+        kPhotometricEndings);
 }
 
 PhotometricFile parse_by_ending(const std::string& file_name,

@@ -3,13 +3,13 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/printable.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -86,11 +86,8 @@ std::string shown_word(std::string_view word) {
 
 std::optional<double> finite_decimal(std::string_view word) {
     if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-    double number = 0.0;
-    const char* end = word.data() + word.size();
-    const auto [stop, error] = std::from_chars(word.data(), end, number);
-    const bool is_number = error == std::errc() && stop == end && std::isfinite(number);
-    return is_number ? std::optional(number) : std::nullopt;
+    const auto number = read_number<double>(word);
+    return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 FileNumber number_of(const std::string& file,

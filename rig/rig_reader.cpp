@@ -486,9 +486,9 @@ BeamTable RigReader::read_beam_table(Section& section) {
         if (file.tilt &&
             std::ranges::any_of(file.tilt->factor, [](double f) { return f != 1.0; })) {
             throw InputError(
-                fmt::format("{}: found a lamp whose light changes as it is tilted (TILT); allowed: "
-                            "factors of 1",
-                            name));
+                "{}: found a lamp whose light changes as it is tilted (TILT); allowed: "
+                "factors of 1",
+                name);
         }
         return normalised(file.table);
     });
@@ -856,8 +856,8 @@ Rig parse_rig(std::string_view toml, const std::string& file_name, const fs::pat
     try {
         table = toml::parse(toml, file_name);
     } catch (const toml::parse_error& error) {
-        throw InputError(fmt::format(
-            "{}:{}: {}", file_name, error.source().begin.line, printable(error.description())));
+        throw InputError(
+            "{}:{}: {}", file_name, error.source().begin.line, printable(error.description()));
     }
     Rig rig = RigReader(toml, folder).read(Section(table, "", file_name));
     if (rig.title.empty()) rig.title = fs::path(file_name).stem().string();

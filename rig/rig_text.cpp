@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "rig/rig_reader.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <charconv>
 #include <sstream>
 #include <utility>
 
@@ -34,10 +34,8 @@ const toml::node* element(const toml::array& array, const std::string& step) {
             if ((*table)["name"].value_or(std::string{}) == step) return table;
         }
     }
-    std::size_t number = 0;
-    const auto [end, fault] = std::from_chars(step.data(), step.data() + step.size(), number);
-    const bool is_number = fault == std::errc{} && end == step.data() + step.size();
-    return is_number && number < array.size() ? &array[number] : nullptr;
+    const auto number = read_number<std::size_t>(step);
+    return number && *number < array.size() ? &array[*number] : nullptr;
 }
 
 const toml::node* child(const toml::node& node, const std::string& step) {

@@ -21,7 +21,7 @@ std::string shown(const toml::node& node) {
     if (const auto real = node.value_exact<double>()) return fmt::format("{}", *real);
     std::ostringstream text;
     node.visit([&](const auto& leaf) { text << leaf; });
-    return text.str();
+    return excerpt(text.str());
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ std::string allowed_number(Bounds bounds) {
 }
 
 void Section::fail(const toml::node& node, std::string_view key, const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}: {}", file_, line(node), name_of(key), what));
+    throw InputError("{}:{}: {}: {}", file_, line(node), name_of(key), what);
 }
 
 void Section::found_but(std::string_view key, const std::string& allowed) const {
@@ -152,8 +152,7 @@ void Section::require_one_line(const toml::node& node,
     if (has_control_characters(text)) {
         fail(node,
              key,
-             fmt::format("found '{}'; allowed: a text without control characters",
-                         printable(text.substr(0, kMostTextBytes))));
+             fmt::format("found '{}'; allowed: a text without control characters", excerpt(text)));
     }
     if (text.size() > kMostTextBytes) {
         fail(node,

@@ -77,7 +77,7 @@ const std::string& name_of(const Spectrum& spectrum, std::span<const NamedSpectr
             return named.name;
         }
     }
-    throw InputError(fmt::format("{}: has no name in the scene", spectrum.name()));
+    throw InputError("{}: has no name in the scene", spectrum.name());
 }
 
 std::string band_sdl(const Band& band) {

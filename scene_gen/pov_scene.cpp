@@ -119,13 +119,13 @@ Eigen::AlignedBox3d housing(const Camera& camera) {
 
 [[noreturn]] void refuse_in_housing(const std::string& what, const Eigen::AlignedBox3d& block) {
     throw InputError(
-        fmt::format("{} the camera's housing, which reaches {:.3f} m to the side, {:.3f} m fore "
-                    "and aft, and from {:.3f} m above the pupil to {:.3f} m below it",
-                    what,
-                    block.max().y(),
-                    block.max().x(),
-                    -block.min().z(),
-                    block.max().z()));
+        "{} the camera's housing, which reaches {:.3f} m to the side, {:.3f} m fore "
+        "and aft, and from {:.3f} m above the pupil to {:.3f} m below it",
+        what,
+        block.max().y(),
+        block.max().x(),
+        -block.min().z(),
+        block.max().z());
 }
 
 // Half the angle that an emitter spans, seen from the floor below it.
@@ -149,12 +149,12 @@ void require_few_enough_lights(const Rig& rig, std::span<const LampGrid> lamps) 
     const std::size_t most = rig.water.is_clear() ? kMostLights : std::size_t{kMostLightsInMedia};
     if (lights <= most) return;
     throw InputError(
-        fmt::format("strobes: {} lights, one for every cone of every lamp; allowed: {}, "
-                    "which is what POV-Ray takes in {}. Fewer lamps stand for an "
-                    "emitter with --emitter-lamps",
-                    lights,
-                    most,
-                    rig.water.is_clear() ? "clear water" : "water"));
+        "strobes: {} lights, one for every cone of every lamp; allowed: {}, "
+        "which is what POV-Ray takes in {}. Fewer lamps stand for an "
+        "emitter with --emitter-lamps",
+        lights,
+        most,
+        rig.water.is_clear() ? "clear water" : "water");
 }
 
 struct PlacedLamp {
@@ -180,12 +180,12 @@ double least_way_to_shell_m(const Rig& rig, std::span<const LampGrid> grids) {
             const double apart_m = (a.at_m - b.at_m).norm();
             least_m = std::min(least_m, apart_m);
             if (apart_m > kOnePlace_m) continue;
-            throw InputError(fmt::format(
+            throw InputError(
                 "strobes '{}' and '{}' have lamps in one place, and the beam '{}' is no "
                 "sum of cones in water; allowed: lamps a micrometre apart",
                 a.strobe->name,
                 b.strobe->name,
-                a.strobe->beam.name));
+                a.strobe->beam.name);
         }
     }
     return least_m;

@@ -30,8 +30,8 @@ void require_same_signature(const Rig& changed, const Manifest& manifest) {
     for (const auto& [key, text] : found) {
         const std::string& frames = allowed.try_emplace(key, "none").first->second;
         if (text == frames) continue;
-        throw InputError(fmt::format(
-            "{}: found {}; allowed: {}, as the frames were rendered", key, text, frames));
+        throw InputError(
+            "{}: found {}; allowed: {}, as the frames were rendered", key, text, frames);
     }
 }
 
@@ -45,12 +45,12 @@ std::vector<FrameLight> light_in(const Manifest& manifest,
         const auto& [attenuation_per_m, flux, reflectances] = w.light;
         if (flux.size() != changed.strobes.size() || reflectances.size() != materials) {
             throw InputError(
-                fmt::format("found {} strobes and {} further materials; allowed: {} and {}, as "
-                            "the frames were rendered",
-                            changed.strobes.size(),
-                            materials - 1,
-                            flux.size(),
-                            static_cast<int>(reflectances.size()) - 1));
+                "found {} strobes and {} further materials; allowed: {} and {}, as "
+                "the frames were rendered",
+                changed.strobes.size(),
+                materials - 1,
+                flux.size(),
+                static_cast<int>(reflectances.size()) - 1);
         }
         FrameLight frame{.lambda_nm = w.lambda_nm,
                          .attenuation_per_m = attenuation_per_m,
@@ -60,9 +60,9 @@ std::vector<FrameLight> light_in(const Manifest& manifest,
             const Strobe& strobe = changed.strobes[s];
             if (strobe.power == 0.0) {
                 if (flux[s] == 0.0) continue;
-                throw InputError(fmt::format(
+                throw InputError(
                     "strobe '{}': found power 0; allowed: more, for the frames hold its light",
-                    strobe.name));
+                    strobe.name);
             }
             for (const double reflectance : reflectances) {
                 frame.sources.push_back(flux[s] / strobe.power * reflectance);

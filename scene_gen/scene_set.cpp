@@ -46,14 +46,14 @@ void require_light_that_counts(std::span<const PlannedWavelength> wavelengths,
             continue;
         for (const PlannedWavelength& w : wavelengths) {
             if (!counts(w) || peak_log2(w) >= held) continue;
-            throw InputError(fmt::format(
+            throw InputError(
                 "found light of at most {:.1e} at {} nm, fainter than frames hold, which counts in "
                 "{} by a weight of {:.1e}; allowed: wavelengths that frames hold, or that count "
                 "for nothing",
                 w.radiance_bound,
                 w.lambda_nm,
                 kChannelNames[c],
-                w.weight[c]));
+                w.weight[c]);
         }
     }
 }
@@ -163,10 +163,10 @@ namespace {
 // POV-Ray takes what follows a '[' in the name of its settings for a section of them.
 void require_no_bracket(const std::filesystem::path& folder) {
     if (std::filesystem::absolute(folder).string().find('[') == std::string::npos) return;
-    throw InputError(fmt::format(
+    throw InputError(
         "{}: found a '[' in the folder's path; allowed: none, for POV-Ray cannot read its settings "
         "there",
-        folder.string()));
+        folder.string());
 }
 
 // A setting ends with its line, and a path in it with the next quotation mark.
@@ -174,9 +174,9 @@ void require_place_in_settings(const std::string& path) {
     const auto is_plain = [](unsigned char c) { return c >= ' ' && c < 0x7F && c != '"'; };
     if (std::ranges::all_of(path, is_plain)) return;
     throw InputError(
-        fmt::format("{}: found a path with letters beyond ASCII, a quotation mark or a line's end; "
-                    "allowed: none, for POV-Ray cannot read them",
-                    path));
+        "{}: found a path with letters beyond ASCII, a quotation mark or a line's end; "
+        "allowed: none, for POV-Ray cannot read them",
+        path);
 }
 
 // As the settings name it that stand there, seen from the user's scene's folder.

@@ -70,10 +70,10 @@ void require_known(const std::string& name, const Rig& rig) {
     known.erase(std::unique(known.begin(), known.end()), known.end());
     const std::string nearest = nearest_name(name, known);
     throw InputError(
-        fmt::format("is no known reflectance{}; allowed: {}, or a .csv file beside the "
-                    "scene",
-                    nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest),
-                    fmt::join(known, ", ")));
+        "is no known reflectance{}; allowed: {}, or a .csv file beside the "
+        "scene",
+        nearest.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", nearest),
+        fmt::join(known, ", "));
 }
 
 }  // namespace
@@ -96,8 +96,8 @@ std::vector<NamedSpectrum> scene_materials(std::span<const std::string> names,
             require_cover({&curve, 1}, rig.camera.range);
             materials.push_back({.name = name, .spectrum = std::move(*spectrum)});
         } catch (const InputError& error) {
-            throw InputError(fmt::format(
-                "{}: Aphotic_Pigment (\"{}\"): {}", scene_file.string(), name, error.what()));
+            throw InputError(
+                "{}: Aphotic_Pigment (\"{}\"): {}", scene_file.string(), name, error.what());
         }
     }
     return materials;
@@ -168,11 +168,11 @@ bool opens_to_write(const fs::path& scene_file) {
 
 void require_unchanged(const fs::path& scene_file, const std::string& files_digest) {
     if (digest_of_scene(scene_file) == files_digest) return;
-    throw RunError(fmt::format(
+    throw RunError(
         "{}: it, or a file that it names, was changed while it was worked on; run the "
         "same command again, for the scene as it is now{}",
         scene_file.string(),
-        opens_to_write(scene_file) ? ". What it writes itself must be the same each time" : ""));
+        opens_to_write(scene_file) ? ". What it writes itself must be the same each time" : "");
 }
 
 Rig rig_of_scene(Rig rig, const UserScene& scene) {

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <numeric>
 #include <span>
-#include <thread>
 #include <vector>
 
 namespace aphotic {
@@ -55,19 +54,16 @@ std::vector<VeilMap> maps_of(const Rig& rig, const Manifest& manifest, bool may_
     return maps;
 }
 
-int threads_here() {
-    return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-}
-
 // Over the bare floor, interpolated. The room is for the planes of one map.
 void block_of_cells(const std::vector<VeilMap>& maps,
                     const Rig& rig,
                     VeilMap::Rows rows,
+                    int threads,
                     std::vector<float>& room,
                     std::vector<float>& block) {
     block.clear();
     for (const VeilMap& map : maps) {
-        map.rows_into(rig.sled, rows, {}, threads_here(), room);
+        map.rows_into(rig.sled, rows, {}, threads, room);
         if (maps.size() == 1)
             block.swap(room);
         else
@@ -96,14 +92,15 @@ std::vector<double> distances(const std::filesystem::path& folder,
 std::vector<float> block_of_pixels(const std::vector<VeilMap>& maps,
                                    const Rig& rig,
                                    VeilMap::Rows rows,
-                                   const std::vector<double>& distance_m) {
+                                   const std::vector<double>& distance_m,
+                                   int threads) {
     constexpr double kHalfFloat = 0x1p-11;
     const auto width = static_cast<std::size_t>(rig.camera.width_px);
     const std::size_t plane = distance_m.size();
     std::size_t planes = 0;
     for (const VeilMap& map : maps) planes += map.planes();
     std::vector<float> block(planes * plane);
-    std::vector<VeilNodes> rooms(static_cast<std::size_t>(threads_here()));
+    std::vector<VeilNodes> rooms(static_cast<std::size_t>(threads));
     const double middle_nm = std::midpoint(rig.camera.range.first_nm, rig.camera.range.last_nm);
     parallel_for(static_cast<std::size_t>(rows.count),
                  rooms.size(),
@@ -153,7 +150,8 @@ std::array<RuleQuality, kChannels> with_veil(std::array<RuleQuality, kChannels> 
 
 std::optional<ManifestVeil> write_veil(const std::filesystem::path& folder,
                                        const Rig& rig,
-                                       const Manifest& manifest) {
+                                       const Manifest& manifest,
+                                       int threads) {
     if (!rig.water.scatters()) return std::nullopt;
     ManifestVeil veil = manifest.veil.value_or(ManifestVeil{});
     const std::filesystem::path file = veil_path(folder);
@@ -171,9 +169,9 @@ std::optional<ManifestVeil> write_veil(const std::filesystem::path& folder,
         const VeilMap::Rows rows = maps.front().rows_for(
             {.first = row, .count = std::min(kBlockRows, manifest.height_px - row)});
         if (veil.fog_m > 0.0)
-            block = block_of_pixels(maps, rig, rows, distances(folder, manifest, rows));
+            block = block_of_pixels(maps, rig, rows, distances(folder, manifest, rows), threads);
         else
-            block_of_cells(maps, rig, rows, room, block);
+            block_of_cells(maps, rig, rows, threads, room, block);
         writer.write_rows(rows.count, block);
         row = rows.first + rows.count;
     }
@@ -184,11 +182,12 @@ std::optional<ManifestVeil> write_veil(const std::filesystem::path& folder,
 
 std::optional<ManifestVeil> write_veil_of_signals(const std::filesystem::path& folder,
                                                   const Rig& rig,
-                                                  const Manifest& manifest) {
+                                                  const Manifest& manifest,
+                                                  int threads) {
     Manifest signals = manifest;
     signals.wavelengths.clear();
     signals.veil.reset();
-    return write_veil(folder, rig, signals);
+    return write_veil(folder, rig, signals, threads);
 }
 
 }  // namespace aphotic

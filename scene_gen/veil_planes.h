@@ -36,15 +36,17 @@ void require_bare_floor_under_veil(const Rig& rig);
 [[nodiscard]] std::array<RuleQuality, kChannels> with_veil(
     std::array<RuleQuality, kChannels> quality, double veil_error);
 
-// Writes veil_path(folder) for the manifest's wavelengths, in blocks of rows; returns what a
-// manifest notes of it: nothing, and no file, where the water does not scatter.
+// Writes veil_path(folder) for the manifest's wavelengths, in blocks of rows, by as many threads;
+// returns what a manifest notes of it: nothing, and no file, where the water does not scatter.
 std::optional<ManifestVeil> write_veil(const std::filesystem::path& folder,
                                        const Rig& rig,
-                                       const Manifest& manifest);
+                                       const Manifest& manifest,
+                                       int threads);
 
 // The same of R, G and B alone.
 std::optional<ManifestVeil> write_veil_of_signals(const std::filesystem::path& folder,
                                                   const Rig& rig,
-                                                  const Manifest& manifest);
+                                                  const Manifest& manifest,
+                                                  int threads);
 
 }  // namespace aphotic

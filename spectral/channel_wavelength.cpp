@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "spectral/channel_wavelength.h"
 
+#include "base/number.h"
+
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -40,14 +41,13 @@ std::optional<double> wavelength_nm(std::string_view part) {
     std::string text(part);
     std::ranges::replace(text, ',', '.');
     if (text.empty() || text.find_first_of("0123456789.") != 0) return std::nullopt;
-    double number = 0.0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || number == 0.0) return std::nullopt;
-    const std::string_view prefix(stop, static_cast<std::size_t>(&text[text.size()] - stop));
+    std::string_view prefix(text);
+    const auto number = read_leading_number<double>(prefix);
+    if (!number || *number == 0.0) return std::nullopt;
     const auto found =
         std::ranges::find(kPrefixes, prefix, &std::pair<std::string_view, int>::first);
     if (found == kPrefixes.end()) return std::nullopt;
-    const double value = number * std::pow(10.0, found->second);
+    const double value = *number * std::pow(10.0, found->second);
     return is_frequency ? kLight_nm_per_s / value : kNanometresPerMetre * value;
 }
 

@@ -45,14 +45,14 @@ double luminous_flux_lm(const Spectrum& lamp) {
     const double unseen = 1.0 - integral(curves, common, efficiency) /
                                     integral({&curves[1], 1}, V.range(), efficiency);
     if (unseen > kMostUnseen) {
-        throw InputError(fmt::format(
+        throw InputError(
             "{}: found a range of {:g} to {:g} nm, which leaves out {:.1f} % of what the eye "
             "sees; allowed: up to {:.1f} %",
             lamp.name(),
             lamp.range().first_nm,
             lamp.range().last_nm,
             100.0 * unseen,
-            100.0 * kMostUnseen));
+            100.0 * kMostUnseen);
     }
     return kLumensPerWatt *
            integral(curves, common, [&](double nm) { return lamp.at(nm) * V.at(nm); });

@@ -4,6 +4,7 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/printable.h"
 #include "base/sha256.h"
 #include "image/image_size.h"
 
@@ -167,7 +168,7 @@ class Reader {
         throw InputError("{}: {}: found {}; allowed: {}",
                          where_,
                          key.empty() ? "value" : key,
-                         found.substr(0, 80),
+                         excerpt(found),
                          allowed);
     }
 

@@ -2,6 +2,7 @@
 #include "spectral/refractive_index.h"
 
 #include "base/error.h"
+#include "base/number.h"
 #include "spectral/curve_loader.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 namespace aphotic {
@@ -38,11 +38,7 @@ std::array<double, kQuanFryTerms> read_quan_fry() {
 
 // The number that text begins with; text is left at what follows.
 double take_number(std::string_view& text) {
-    double number = 0.0;
-    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (parsed.ec != std::errc()) return std::nan("");
-    text.remove_prefix(static_cast<std::size_t>(parsed.ptr - text.data()));
-    return number;
+    return read_leading_number<double>(text).value_or(std::nan(""));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/printable.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -118,11 +118,10 @@ class Lexer {
 
     // One out of range is not a number: it may stand where nobody asks for it.
     Token number() {
-        double value = 0.0;
-        const auto [stop, error] =
-            std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-        Token token = cut(Token::Kind::Number, static_cast<std::size_t>(stop - rest_.data()));
-        token.number = error == std::errc() ? value : std::numeric_limits<double>::quiet_NaN();
+        std::string_view behind = rest_;
+        const auto value = read_leading_number<double>(behind);
+        Token token = cut(Token::Kind::Number, rest_.size() - behind.size());
+        token.number = value.value_or(std::numeric_limits<double>::quiet_NaN());
         return token;
     }
 

@@ -4,6 +4,8 @@
 #include "base/atomic_file.h"
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/number.h"
+#include "base/printable.h"
 #include "base/sha256.h"
 #include "base/words.h"
 
@@ -13,7 +15,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -84,14 +85,15 @@ double parse_field(const Table& table,
                    std::size_t line,
                    const std::string& column,
                    std::string_view field) {
-    double number = 0.0;
-    const char* end = field.data() + field.size();
-    const auto [stop, error] = std::from_chars(field.data(), end, number);
-    if (error != std::errc() || stop != end || !std::isfinite(number)) {
-        fail_at_line(
-            table.name, line, "{}: found '{}'; allowed: a finite decimal number", column, field);
+    const auto number = read_number<double>(field);
+    if (!number || !std::isfinite(*number)) {
+        fail_at_line(table.name,
+                     line,
+                     "{}: found '{}'; allowed: a finite decimal number",
+                     column,
+                     excerpt(field));
     }
-    return number;
+    return *number;
 }
 
 void take_comment(Table& table, std::string_view comment) {
@@ -114,10 +116,10 @@ void take_header(Table& table, std::size_t line, const std::vector<std::string_v
                 table.name,
                 line,
                 "found '{}' where a header row such as wavelength_nm,reflectance is expected",
-                column);
+                excerpt(column));
         }
         if (!seen.insert(column).second) {
-            fail_at_line(table.name, line, "the column '{}' stands twice", column);
+            fail_at_line(table.name, line, "the column '{}' stands twice", excerpt(column));
         }
     }
 }
@@ -203,8 +205,8 @@ void refuse_daylights_loss(const Table& table, const RoleRule& rule) {
                      table.header_line,
                      "found the {} '{}' over the column {}; allowed: {}. {}",
                      key,
-                     words,
-                     table.columns.back(),
+                     excerpt(words),
+                     excerpt(table.columns.back()),
                      rule.name,
                      kDaylightsLoss);
     }

@@ -2,12 +2,12 @@
 #include "survey/camera_numbers.h"
 
 #include "base/error.h"
+#include "base/number.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <system_error>
@@ -101,16 +101,18 @@ double relative_exposure(const ShotExposure& shot, const CameraNumbers& camera) 
 
 std::optional<Crop> crop_named(const std::string& text) {
     std::array<int, 4> numbers{};
-    const char* at = text.data();
-    const char* const end = at + text.size();
+    std::string_view rest = text;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
-        const auto [next, error] = std::from_chars(at, end, numbers[i]);
-        if (error != std::errc()) return std::nullopt;
-        at = next;
+        if (i > 0) {
+            if (!rest.starts_with(',')) return std::nullopt;
+            rest.remove_prefix(1);
+        }
+        const auto number = read_leading_number<int>(rest);
+        if (!number) return std::nullopt;
+        numbers[i] = *number;
     }
     const auto [left, top, width, height] = numbers;
-    if (at != end || left < 0 || top < 0 || width < 1 || height < 1) return std::nullopt;
+    if (!rest.empty() || left < 0 || top < 0 || width < 1 || height < 1) return std::nullopt;
     return Crop{.left_px = left, .top_px = top, .width_px = width, .height_px = height};
 }
 

@@ -38,9 +38,10 @@ std::string verdict(const CorrectionReport& report) {
     const RunOutcome& run = *report.run;
     const std::size_t done = run.corrected + run.kept;
     const bool is_good = run.skipped.empty() && report.looks_wrong.empty();
-    std::string words = counted(done, "image") + " corrected";
+    std::string words = grouped_count(done, "image") + " corrected";
     if (!run.skipped.empty()) words += fmt::format(", {} skipped", grouped(run.skipped.size()));
-    if (!report.looks_wrong.empty()) words += ", " + counted(report.looks_wrong.size(), "warning");
+    if (!report.looks_wrong.empty())
+        words += ", " + grouped_count(report.looks_wrong.size(), "warning");
     return html_verdict(
         is_good,
         words,
@@ -167,7 +168,7 @@ std::string light_over_altitude(std::span<const ImageLook> looks) {
                 "{} that were looked at before the run: the mean light of each one’s map, scaled "
                 "to the images, and the light of the image by its median pixel. Where the rig is "
                 "right, the images scatter about the lines.",
-                counted(light.altitude_m.size(), "image"))));
+                grouped_count(light.altitude_m.size(), "image"))));
 }
 
 // Numbers.
@@ -180,7 +181,7 @@ std::string gain_section(const CorrectionReport& report) {
         items.emplace_back("taken from",
                            report.gain.images.empty()
                                ? "the command line"
-                               : counted(report.gain.images.size(), "image"));
+                               : grouped_count(report.gain.images.size(), "image"));
     }
     items.emplace_back("the survey’s middle becomes", per_channel(report.gain.middle));
     if (report.srgb) {
@@ -190,7 +191,7 @@ std::string gain_section(const CorrectionReport& report) {
                                fmt::format("{:.1f} CIELAB units off in the mean of {}, {:.1f} at "
                                            "most ({})",
                                            camera->mean_delta_e(),
-                                           counted(camera->surfaces.size(), "surface"),
+                                           grouped_count(camera->surfaces.size(), "surface"),
                                            camera->worst().delta_e,
                                            escaped(camera->worst().name)));
         }

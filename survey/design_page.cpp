@@ -50,13 +50,14 @@ std::string design_verdict(const DesignResult& result) {
                           start.evenness,
                           gain_of(start.signal_to_noise, best.signal_to_noise))
             : "Nothing better than the start was found";
-    return html_verdict(result.is_better,
-                        word,
-                        html_paragraph(fmt::format(
-                            "The worst of {}; {}, {} looked at.",
-                            counted(result.best.poses.size(), "pose"),
-                            counted(result.numbers, "free number"),
-                            counted(static_cast<std::size_t>(result.evaluations), "design"))));
+    return html_verdict(
+        result.is_better,
+        word,
+        html_paragraph(
+            fmt::format("The worst of {}; {}, {} looked at.",
+                        grouped_count(result.best.poses.size(), "pose"),
+                        grouped_count(result.numbers, "free number"),
+                        grouped_count(static_cast<std::size_t>(result.evaluations), "design"))));
 }
 
 std::string figures_section(const DesignRequest& request, const DesignResult& result) {

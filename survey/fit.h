@@ -94,6 +94,10 @@ struct FitResult {
 // An InputError for a rig whose floor a fit does not know: with objects, a scene, or a gloss.
 void require_bare_floor(const Rig& rig);
 
+// Of the solver, for the whole process: what went wrong is in what fit() throws. The log is glog's,
+// and the host of our libraries may have set its level for itself: the command alone calls this.
+void silence_fit_log();
+
 [[nodiscard]] FitResult fit(const RigText& rig,
                             const FitSamples& samples,
                             const FitOptions& options,

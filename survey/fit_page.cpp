@@ -35,15 +35,16 @@ std::string altitudes_of(const FitSamples& samples) {
 
 std::string verdict(const FitSamples& samples, const FitResult& result) {
     std::string words = words_of(result);
-    if (!result.held.empty()) words += ", " + counted(result.held.size(), "number") + " held";
-    if (!result.looks_wrong.empty()) words += ", " + counted(result.looks_wrong.size(), "warning");
+    if (!result.held.empty()) words += ", " + grouped_count(result.held.size(), "number") + " held";
+    if (!result.looks_wrong.empty())
+        words += ", " + grouped_count(result.looks_wrong.size(), "warning");
     return html_verdict(
         result.looks_wrong.empty(),
         words,
         html_paragraph(fmt::format(
             "Of {} at {} m it leaves {} (rms, relative), of which {} stays in place from image to "
             "image: what the model lacks.",
-            counted(result.blocks, "block"),
+            grouped_count(result.blocks, "block"),
             altitudes_of(samples),
             number_text(result.left.residual),
             number_text(result.left.pattern))));

@@ -192,8 +192,10 @@ void add_strobes(const Rig& rig,
                  .per_unit = kDegreesPerRadian,
                  .group = "aim"});
         }
+        // One that is off is no reference for the others.
+        if (state.power[s] <= 0.0) continue;
         const bool is_first = seen.insert(state.beam_of[s]).second;
-        if (is_first || !is_asked(options, "power") || state.power[s] <= 0.0) continue;
+        if (is_first || !is_asked(options, "power")) continue;
         free.push_back({.number = {FitPart::Power, s, 0},
                         .key = fmt::format("strobe.{}.power", name),
                         .plausible = 0.5 * state.power[s],

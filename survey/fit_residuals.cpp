@@ -98,6 +98,7 @@ FitResiduals fit_residuals(const FitEquations& equations,
             count += 1.0;
             const Index next = row + kChannels;
             if (next >= found.residual.size() || !std::isfinite(found.residual(next)) ||
+                found.signal(next) < kDim * most ||
                 !are_side_by_side(static_cast<std::size_t>(row) / kChannels))
                 continue;
             products += off * found.residual(next) / found.signal(next);

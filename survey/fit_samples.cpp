@@ -4,13 +4,13 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/in_order.h"
+#include "base/number.h"
 #include "image/exr.h"
 #include "survey/first_look.h"
 #include "survey/survey_image.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -92,17 +92,16 @@ void average(const RawImage& raw, float white, int block_px, FitImage& image) {
 
 double number_of(const ExrReader& reader, const std::string& name, const std::string& map) {
     const std::string text = reader.attribute(name);
-    double value = 0.0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (fault != std::errc{} || !std::isfinite(value)) {
+    const auto value = read_number<double>(text);
+    if (!value || !std::isfinite(*value)) {
         throw InputError(
             "{}: {}: found '{}'; allowed: a number, as `aphotic observe` writes where "
             "the navigation tells it",
             map,
             name,
-            text);
+            excerpt(text));
     }
-    return value;
+    return *value;
 }
 
 // A mosaic's map has its red at a quarter of the pixels alone.
@@ -183,8 +182,7 @@ FitSamples samples_of_images(const Survey& survey,
     if (!numbers.expected) numbers.expected.emplace();
     numbers.expected->image = size;
     numbers.expected->as = "as the rig's camera has";
-    samples.looks_wrong =
-        suspicions_of(survey.files, numbers, survey.navigation, jobs, watch);
+    samples.looks_wrong = suspicions_of(survey.files, numbers, survey.navigation, jobs, watch);
     const auto skip = [&](std::size_t i, const std::string& why) {
         samples.skipped.push_back({.image = survey.files[i].source.string(), .why = why});
         watch.skipped(samples.skipped.back());

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/non_negative_fit.h"
+#include "survey/fit.h"
 #include "survey/fit_told.h"
 
 #include <ceres/ceres.h>
@@ -139,7 +140,6 @@ int search(const FitBench& bench, FitProblem& problem, int most_steps) {
         if (std::isfinite(one.most))
             minimised.SetParameterUpperBound(x.data(), at, one.most / one.plausible);
     }
-    FLAGS_minloglevel = google::GLOG_FATAL;  // what it has to say is in the summary
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
     options.max_num_iterations = most_steps;
@@ -164,6 +164,10 @@ void start_effects(FitBench& bench, const FitProblem& problem, const EffectVaria
 }
 
 }  // namespace
+
+void silence_fit_log() {
+    FLAGS_minloglevel = google::GLOG_FATAL;
+}
 
 FitBench::FitBench(const RigText& text, const FitSamples& samples, int threads)
     : rig(text),

@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/degrees.h"
+#include "base/number.h"
 #include "rig/beam_csv.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,8 @@ namespace fs = std::filesystem;
 
 // To as many digits as any fit tells, and not 120.00000000000001.
 double rounded(double value) {
-    return std::stod(fmt::format("{:.12g}", value));
+    constexpr int kDigits = 12;
+    return rounded_to_digits(value, kDigits);
 }
 
 // A beam of its own, for the rig's may be another strobe's too.

@@ -4,13 +4,13 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/number.h"
 #include "base/printable.h"
 
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -20,14 +20,6 @@ namespace {
 
 constexpr const char* kSetHeader = "image-set-header";
 constexpr const char* kSetItems = "image-set-items";
-
-template <typename Number>
-std::optional<Number> ifdo_number_in(std::string_view text) {
-    Number number{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return number;
-}
 
 IfdoJson plain_scalar(const std::string& text) {
     static constexpr std::array<std::string_view, 5> kNull{"", "~", "null", "Null", "NULL"};
@@ -46,9 +38,8 @@ IfdoJson plain_scalar(const std::string& text) {
     const bool is_padded = digits.size() > first + 1 && digits[first] == '0' &&
                            digits[first + 1] >= '0' && digits[first + 1] <= '9';
     if (is_padded) return text;
-    if (const auto whole = ifdo_number_in<std::int64_t>(digits)) return *whole;
-    if (const auto real = ifdo_number_in<double>(digits); real && std::isfinite(*real))
-        return *real;
+    if (const auto whole = read_number<std::int64_t>(digits)) return *whole;
+    if (const auto real = read_number<double>(digits); real && std::isfinite(*real)) return *real;
     return text;
 }
 
@@ -75,7 +66,7 @@ class Converter {
                     const YAML::Node& key = entry.first;
                     if (!key.IsScalar()) fail(key, "a key is not a word");
                     if (object.contains(key.Scalar()))
-                        fail(key, fmt::format("'{}' stands twice", printable(key.Scalar())));
+                        fail(key, fmt::format("'{}' stands twice", excerpt(key.Scalar())));
                     object[key.Scalar()] = json_of(entry.second, depth + 1);
                 }
                 return object;
@@ -126,7 +117,7 @@ void require_version(const Ifdo& ifdo) {
     if (words.starts_with("v2.") || words.starts_with("2.")) return;
     throw InputError("{}: image-set-ifdo-version: found {}; allowed: v2.0.0 and later, below v3",
                      ifdo.source,
-                     printable(words));
+                     excerpt(words));
 }
 
 void emit(YAML::Emitter& out, const IfdoJson& value) {

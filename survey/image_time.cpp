@@ -3,6 +3,7 @@
 
 #include "base/csv.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/printable.h"
 #include "image/any_image.h"
 #include "survey/image_files.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <regex>
 
 namespace aphotic {
@@ -38,9 +38,7 @@ std::optional<int> part_in(std::string_view name, std::string_view mask, std::st
     if (name.size() < at + letters.size()) return std::nullopt;
     const std::string_view digits = name.substr(at, letters.size());
     if (digits.find_first_not_of("0123456789") != std::string_view::npos) return std::nullopt;
-    int value = 0;
-    std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    return value;
+    return read_number<int>(digits);
 }
 
 std::string tag(const std::map<std::string, std::string>& tags, const std::string& name) {

@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/printable.h"
 #include "survey/vehicle_pose.h"
 
 #include <fmt/format.h>
@@ -73,7 +74,7 @@ Navigation::Navigation(std::string source,
         if (is_new) continue;
         first->second.fault =
             fmt::format("the image '{}' stands twice{}",
-                        key,
+                        excerpt(key),
                         pose.line > 0 ? fmt::format(", also on line {}", pose.line) : "");
     }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/navigation_cell.h"
 
+#include "base/number.h"
+#include "base/printable.h"
 #include "base/words.h"
 #include "rig/photometric_text.h"
 
@@ -8,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 
 namespace aphotic {
@@ -34,10 +35,7 @@ double number_in(ImagePose& pose, std::string_view column, std::string_view fiel
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     if (is_unknown(field)) return kNone;
     const std::string_view digits = field.starts_with('+') ? field.substr(1) : field;
-    double number = 0.0;
-    const char* end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, number);
-    if (error == std::errc() && stop == end) return number;
+    if (const auto number = read_number<double>(digits)) return *number;
     if (pose.fault.empty()) {
         pose.fault = fmt::format("{}: found {}; allowed: a number{}",
                                  column,

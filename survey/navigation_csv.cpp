@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/printable.h"
 #include "rig/photometric_text.h"
 #include "survey/navigation_acfr.h"
 #include "survey/navigation_cell.h"

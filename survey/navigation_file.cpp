@@ -43,18 +43,19 @@ bool is_of_use(const Sled& sled, const Mounting& mounting, const NavigationOptio
 // A pose for each image, by read(pose), from several threads: files are opened, be it over a
 // network. What it finds wrong is the pose's fault.
 template <typename Read>
-std::vector<ImagePose> poses_of(const std::vector<ImageFile>& files, const Read& read) {
+std::vector<ImagePose> poses_of(const std::vector<ImageFile>& files,
+                                std::size_t jobs,
+                                const Read& read) {
     std::vector<ImagePose> poses(files.size());
-    parallel_for(
-        files.size(), std::max(1U, std::thread::hardware_concurrency()), [&](auto i, auto) {
-            ImagePose& pose = poses[i];
-            pose.image = files[i].source.string();
-            try {
-                read(files[i].source, pose);
-            } catch (const InputError& error) {
-                pose.fault = error.what();
-            }
-        });
+    parallel_for(files.size(), jobs, [&](auto i, auto) {
+        ImagePose& pose = poses[i];
+        pose.image = files[i].source.string();
+        try {
+            read(files[i].source, pose);
+        } catch (const InputError& error) {
+            pose.fault = error.what();
+        }
+    });
     return poses;
 }
 
@@ -89,7 +90,7 @@ Navigation navigation_in_tags(const NavigationOptions& options,
         read_tags(pose, description->second, names, options.angles_in);
     };
     Navigation navigation(std::string(kNavigationInTags),
-                          poses_of(files, read),
+                          poses_of(files, options.jobs, read),
                           {.pitch = true, .roll = true},
                           ImagesKnownBy::Path);
     navigation.note({.format = "HabCam's tags",
@@ -133,7 +134,8 @@ Navigation navigation_by_time(const NavigationTable& table,
         if (time.lacks_zone) ++without_zone;
         pose.sled = track.at(time.time_s + options.clock_offset_s);
     };
-    Navigation navigation(options.source, poses_of(files, read), told, ImagesKnownBy::Path);
+    Navigation navigation(
+        options.source, poses_of(files, options.jobs, read), told, ImagesKnownBy::Path);
     navigation.note(std::move(notes));
     if (without_zone > 0) {
         navigation.warn(fmt::format(

@@ -19,11 +19,13 @@
 #include "survey/navigation_columns.h"
 #include "survey/track.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 namespace aphotic {
@@ -42,6 +44,7 @@ struct NavigationOptions {
     std::optional<double> altitude_offset_m{};  // none: as the rig has it
     double least_altitude_m = 0.0;              // of the camera
     double most_altitude_m = std::numeric_limits<double>::infinity();
+    std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());  // files read at a time
 };
 
 // What else is known of the sled: a rig, or null. An InputError when the source as a whole cannot

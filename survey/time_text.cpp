@@ -2,10 +2,10 @@
 #include "survey/time_text.h"
 
 #include "base/csv.h"
+#include "base/number.h"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
 #include <cmath>
 
@@ -53,9 +53,7 @@ class Reader {
         if (digits == 0) return std::nullopt;
         const std::string text = "0." + std::string(rest_.substr(0, digits));
         rest_.remove_prefix(digits);
-        double value = 0.0;
-        std::from_chars(text.data(), text.data() + text.size(), value);
-        return value;
+        return read_number<double>(text);
     }
 
   private:
@@ -123,11 +121,8 @@ std::optional<double> calendar_time_s(Reader text) {
 
 std::optional<double> seconds_in(std::string_view text) {
     constexpr double kMost_s = 1e11;  // more are milliseconds
-    double seconds = 0.0;
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, seconds);
-    if (error != std::errc() || stop != end || !(std::abs(seconds) < kMost_s)) return std::nullopt;
-    return seconds;
+    const auto seconds = read_number<double>(text);
+    return seconds && std::abs(*seconds) < kMost_s ? seconds : std::nullopt;
 }
 
 }  // namespace

@@ -70,15 +70,15 @@ Columns answer_of(const Sweep& sweep, std::size_t number) {
 
 Columns own_columns(const Sweep& sweep, std::size_t number, const TaskStanding& standing) {
     const SweepTask task = task_of(sweep, number);
-    Columns columns{{"task", std::to_string(number)}};
+    Columns columns{{"task", fmt::to_string(number)}};
     const SweepPoint& point = sweep.points[task.point];
     for (std::size_t k = 0; k < point.size(); ++k)
         columns.emplace_back(sweep.file.vary[k].key, words_of(point[k]));
-    if (sweep.file.shares > 1) columns.emplace_back("share", std::to_string(task.share + 1));
+    if (sweep.file.shares > 1) columns.emplace_back("share", fmt::to_string(task.share + 1));
     columns.emplace_back("state", name_of(standing.state));
     const bool has_ended = !standing.result.digest.empty();
     columns.emplace_back("exit_status",
-                         has_ended ? std::to_string(standing.result.exit_status) : "");
+                         has_ended ? fmt::to_string(standing.result.exit_status) : "");
     columns.emplace_back("task_seconds",
                          has_ended ? fmt::format("{:.3f}", standing.result.seconds) : "");
     columns.emplace_back("message", standing.result.error);
@@ -140,7 +140,7 @@ std::string verdict_of(std::span<const TaskStanding> standings) {
     const std::size_t done = count_of(standings, TaskState::Done);
     const bool is_whole = done == standings.size();
     return html_verdict(is_whole,
-                        fmt::format("{} of {} done", done, counted(standings.size(), "task")),
+                        fmt::format("{} of {} done", done, grouped_count(standings.size(), "task")),
                         html_paragraph("Each preview has an exposure of its own: compare their "
                                        "evenness, and signals in results.csv."));
 }
@@ -167,7 +167,7 @@ std::string numbers_not_done(std::span<const TaskStanding> standings) {
         if (is_done(i)) continue;
         const std::size_t first = i;
         while (!is_done(i + 1)) ++i;
-        ranges.push_back(first == i ? std::to_string(i + 1)
+        ranges.push_back(first == i ? fmt::to_string(i + 1)
                                     : fmt::format("{}-{}", first + 1, i + 1));
     }
     return fmt::format("{}", fmt::join(ranges, ","));

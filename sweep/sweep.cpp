@@ -141,7 +141,7 @@ std::vector<std::string> command_line(const Sweep& sweep,
     }
     if (!sweep.scene.empty()) add({"--scene", sweep.scene.string()});
     arguments.insert(arguments.end(), own.begin(), own.end());
-    add({"--jobs", std::to_string(file.cores), "--json"});
+    add({"--jobs", fmt::to_string(file.cores), "--json"});
     return arguments;
 }
 

@@ -2,6 +2,7 @@
 #include "sweep/sweep_file.h"
 
 #include "base/error.h"
+#include "base/number.h"
 #include "base/printable.h"
 #include "rig/key_depth.h"
 #include "rig/section.h"
@@ -72,7 +73,8 @@ std::vector<SweepValue> list_of(Section& section) {
 // 0.1 + 2 x 0.1 is to be 0.3, and -0.3 + 3 x 0.1 to be 0: what is left of a sum's rounding goes.
 double tidy(double value, double step) {
     constexpr double kNothing = 1e-9;  // of a step
-    return std::abs(value) < kNothing * step ? 0.0 : std::stod(fmt::format("{:.12g}", value));
+    constexpr int kDigits = 12;
+    return std::abs(value) < kNothing * step ? 0.0 : rounded_to_digits(value, kDigits);
 }
 
 std::vector<SweepValue> range_of(Section& section) {
@@ -105,7 +107,7 @@ SweptKey read_key(Section section) {
     if (const int found = has_list + has_range + has_ends; found != 1) {
         section.fail_at("key",
                         fmt::format("found {} of values, range and between; allowed: one",
-                                    found == 0 ? "none" : std::to_string(found)));
+                                    found == 0 ? "none" : fmt::to_string(found)));
     }
     if (has_list) swept.values = list_of(section);
     if (has_range) swept.values = range_of(section);

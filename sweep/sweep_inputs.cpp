@@ -60,8 +60,11 @@ void add_scene(const fs::path& folder,
 std::string state_of(const SweepInputs& inputs) {
     std::string state;
     for (const std::string& argument : inputs.images) state += stamps_of_images(argument, inputs);
-    for (const std::string& argument : inputs.arguments)
+    for (const std::string& argument : inputs.arguments) {
         state += stamp_of(inputs.home / argument, inputs.home);
+        const std::size_t value = argument.find('=') + 1;  // of --nav=FILE
+        if (value > 0) state += stamp_of(inputs.home / argument.substr(value), inputs.home);
+    }
     std::set<fs::path> seen;
     add_scene(inputs.scene.parent_path(), inputs.scene.filename(), seen, state);
     return state;

@@ -30,8 +30,8 @@ void write_wrappers(const WrappedSweep& sweep) {
         replace_all(text, "@PLAIN_FOLDER@", folder);
         replace_all(text, "@SLURM_FOLDER@", slurm_folder);
         replace_all(text, "@FOLDER@", shell_word(folder));
-        replace_all(text, "@TASKS@", std::to_string(sweep.tasks));
-        replace_all(text, "@CORES@", std::to_string(sweep.cores));
+        replace_all(text, "@TASKS@", fmt::to_string(sweep.tasks));
+        replace_all(text, "@CORES@", fmt::to_string(sweep.cores));
         const fs::path file = sweep.folder / wrapper.name;
         write_text_file(file, text);
         if (text.starts_with("#!"))

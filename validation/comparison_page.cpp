@@ -98,7 +98,8 @@ std::string differences(const ComparedChannel& channel, const ComparedImages& im
          .width_px = images.width_px,
          .least_side = side,
          .image_name = "the image",
-         .set_apart = c.unobserved > 0 ? "not observed: " + counted(c.unobserved, "sample") : "",
+         .set_apart =
+             c.unobserved > 0 ? "not observed: " + grouped_count(c.unobserved, "sample") : "",
          .bar_id = "colour-bar-" + escaped(c.name)});
 }
 
@@ -157,7 +158,7 @@ std::string verdict(const ComparedImages& images) {
         images.unpaired() == 0
             ? ""
             : html_paragraph(fmt::format("But {} without a partner in the other image.",
-                                         counted(images.unpaired(), "channel")));
+                                         grouped_count(images.unpaired(), "channel")));
     return html_verdict(images.holds(),
                         fmt::format("{} is {} {} of {}{}.",
                                     user_text(images.image),

@@ -53,8 +53,8 @@ std::string map_legend(const MappedErrors& mapped, double end) {
         key(1.0, fmt::format("+{}: {} is brighter", scientific(end), mapped.image_name));
     if (!mapped.set_apart.empty()) legend += swatch(kEdgeColour, mapped.set_apart);
     if (comparison.not_finite > 0) {
-        legend +=
-            swatch(kNotFiniteColour, "not finite: " + counted(comparison.not_finite, "sample"));
+        legend += swatch(kNotFiniteColour,
+                         "not finite: " + grouped_count(comparison.not_finite, "sample"));
     }
     if (comparison.max_error > 0.0) {
         legend += html_key("◯",
@@ -72,7 +72,7 @@ std::string map_in_words(const MappedErrors& mapped, const ErrorMap& map, double
     std::string words = fmt::format("The colours run from −{0} to +{0}", scientific(end));
     words += beyond == 0 ? "; no pixel is beyond."
                          : fmt::format("; {} beyond, shown in the end’s colour.",
-                                       counted(static_cast<std::size_t>(beyond), "pixel"));
+                                       grouped_count(static_cast<std::size_t>(beyond), "pixel"));
     if (map.side > 1) {
         words += fmt::format(
             " Each point of the map shows the largest |e| of {0} × {0} pixels, with its sign.",

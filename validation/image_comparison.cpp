@@ -113,9 +113,9 @@ ChannelPairs named_channels(const std::string& names,
     if (name.empty() && !pairs.compared.empty()) return pairs;
     std::vector<std::string> allowed;
     for (const ChannelPair& pair : all) allowed.push_back(pair.image);
-    throw InputError(fmt::format("--channels: found {}; allowed: those of both images, {}",
-                                 name.empty() ? "none" : name,
-                                 fmt::join(allowed, ", ")));
+    throw InputError("--channels: found {}; allowed: those of both images, {}",
+                     name.empty() ? "none" : name,
+                     fmt::join(allowed, ", "));
 }
 
 // The comparison.
@@ -173,12 +173,12 @@ std::vector<double> scales_of(const AnyImage& a,
         scales.push_back(scalings[std::min(c, scalings.size() - 1)].scale());
         if (!(scales.back() > 0.0)) {
             throw InputError(
-                fmt::format("{}: channel {} is {:.3g} times that of {}; --scale "
-                            "needs a positive factor",
-                            request.image,
-                            channels[c].image,
-                            scales.back(),
-                            request.reference));
+                "{}: channel {} is {:.3g} times that of {}; --scale "
+                "needs a positive factor",
+                request.image,
+                channels[c].image,
+                scales.back(),
+                request.reference);
         }
     }
     return scales;
@@ -219,13 +219,13 @@ ComparedImages compare_images(const ComparisonRequest& request) {
     const AnyImage a = open_any_image(request.image);
     const AnyImage b = open_any_image(request.reference);
     if (a.width_px != b.width_px || a.height_px != b.height_px) {
-        throw InputError(fmt::format("{}: found {} x {} pixels; allowed: {} x {}, as in {}",
-                                     request.image,
-                                     a.width_px,
-                                     a.height_px,
-                                     b.width_px,
-                                     b.height_px,
-                                     request.reference));
+        throw InputError("{}: found {} x {} pixels; allowed: {} x {}, as in {}",
+                         request.image,
+                         a.width_px,
+                         a.height_px,
+                         b.width_px,
+                         b.height_px,
+                         request.reference);
     }
     const ChannelPairs pairs = channels_of(a, b, request);
     const std::vector<ChannelPair>& channels = pairs.compared;

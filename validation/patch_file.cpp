@@ -4,13 +4,14 @@
 #include "base/csv.h"
 #include "base/error.h"
 #include "base/nearest.h"
+#include "base/number.h"
+#include "base/printable.h"
 #include "spectral/colour_chart.h"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 namespace aphotic {
@@ -40,19 +41,11 @@ PatchLayout layout_of(const std::string& name,
     return layout;
 }
 
-template <typename Number>
-std::optional<Number> number_in(std::string_view text) {
-    Number number{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return number;
-}
-
 std::vector<double> numbers_in(std::string_view text) {
     std::vector<double> numbers;
     while (!(text = trimmed(text)).empty()) {
         const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
-        const auto number = number_in<double>(text.substr(0, end));
+        const auto number = read_number<double>(text.substr(0, end));
         if (!number || !std::isfinite(*number)) return {};
         numbers.push_back(*number);
         text.remove_prefix(end);
@@ -95,7 +88,7 @@ bool take_reference(Patch& patch) {
         patch.line,
         "reference: found '{}'{}; allowed: grey, a reflectance up to 1, L a b, or a chart's "
         "patch such as light-skin",
-        patch.reference,
+        excerpt(patch.reference),
         near.empty() ? "" : fmt::format(" (is it '{}'?)", near));
 }
 
@@ -112,13 +105,13 @@ Patch patch_in(const std::string& name,
     const std::array<int*, 4> sizes{&patch.x_px, &patch.y_px, &patch.width_px, &patch.height_px};
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         const int least = i < 2 ? 0 : 1;
-        const auto pixels = number_in<int>(field(1 + i));
+        const auto pixels = read_number<int>(field(1 + i));
         if (!pixels || *pixels < least || *pixels > kMost_px) {
             fail_at_line(name,
                          line,
                          "{}: found '{}'; allowed: whole pixels, {} or more",
                          kPatchColumns[1 + i],
-                         field(1 + i),
+                         excerpt(field(1 + i)),
                          least);
         }
         *sizes[i] = *pixels;

@@ -40,7 +40,7 @@ std::string worst_in_words(const ValidationReport& report) {
     if (worst.not_finite > 0) {
         return fmt::format("Worst is <strong>{}</strong>: {} {} not finite.",
                            name,
-                           counted(worst.not_finite, "sample"),
+                           grouped_count(worst.not_finite, "sample"),
                            worst.not_finite == 1 ? "is" : "are");
     }
     return fmt::format(
@@ -88,10 +88,10 @@ std::string verdict(const ValidationReport& report) {
     const auto held = static_cast<std::size_t>(std::ranges::count_if(all, &Comparison::holds));
     const std::string summary =
         report.holds() ? fmt::format("POV-Ray’s images agree with the reference in all {}.",
-                                     counted(all.size(), "comparison"))
+                                     grouped_count(all.size(), "comparison"))
                        : fmt::format("POV-Ray’s images and the reference disagree in {} of {}.",
                                      grouped(all.size() - held),
-                                     counted(all.size(), "comparison"));
+                                     grouped_count(all.size(), "comparison"));
     return html_verdict(
         report.holds(),
         report.holds() ? "✓ Holds" : "✗ Does not hold",
@@ -127,11 +127,11 @@ std::string images(const ValidationReport& report) {
         figure(block_means(report.rendered, side),
                "image through POV-Ray",
                fmt::format("<strong>POV-Ray</strong>, integrated from {}",
-                           counted(report.wavelengths.size(), "wavelength"))),
+                           grouped_count(report.wavelengths.size(), "wavelength"))),
         figure(traced,
                "image by the reference tracer",
                fmt::format("<strong>Reference</strong>, over {}",
-                           counted(report.grid_size, "wavelength"))),
+                           grouped_count(report.grid_size, "wavelength"))),
         html_paragraph(fmt::format(
             "The camera’s signals at the same exposure and white: the lamps’ "
             "own light is "
@@ -156,7 +156,7 @@ std::string map_section(const ValidationReport& report) {
                         .reference = plane(report.traced.samples, c),
                         .width_px = report.traced.width_px,
                         .image_name = "POV-Ray",
-                        .set_apart = "on edges: " + counted(channel.on_edges, "pixel"),
+                        .set_apart = "on edges: " + grouped_count(channel.on_edges, "pixel"),
                         .bar_id = "colour-bar"}));
 }
 
@@ -336,14 +336,14 @@ std::string made_with(const ValidationReport& report) {
          {"POV-Ray", escaped(report.povray_version)},
          {"Rendering",
           fmt::format("{} for {}, {} at once: {}",
-                      counted(report.frames, "frame"),
-                      counted(report.wavelengths.size(), "wavelength"),
+                      grouped_count(report.frames, "frame"),
+                      grouped_count(report.wavelengths.size(), "wavelength"),
                       report.jobs,
                       seconds(report.render_s))},
          {"Integrating", seconds(report.integrate_s)},
          {"Tracing",
           fmt::format("the reference, over {}: {}",
-                      counted(report.grid_size, "wavelength"),
+                      grouped_count(report.grid_size, "wavelength"),
                       seconds(report.trace_s))}}};
     return html_list("programs", items);
 }

@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/parallel.h"
 #include "image/frame_check.h"
 #include "rig/rig_reader.h"
@@ -49,7 +50,7 @@ void put(toml::node& at, std::string_view key, const toml::node& value) {
     const std::size_t dot = key.find('.');
     const std::string_view first = key.substr(0, dot);
     if (auto* array = at.as_array()) {
-        put(array->at(std::stoul(std::string(first))), key.substr(dot + 1), value);
+        put(array->at(read_number<std::size_t>(first).value()), key.substr(dot + 1), value);
     } else if (dot == std::string_view::npos) {
         at.as_table()->insert_or_assign(first, value);
     } else {

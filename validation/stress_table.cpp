@@ -28,8 +28,8 @@ std::string reason(const StressFound& found) {
         const std::size_t start = said.rfind(' ', at) + 1;  // npos + 1: the beginning
         said.erase(start, at + found.asked.name.size() + 1 - start);
     }
-    // Nor the number of its process, which a file has while it is written.
-    said = std::regex_replace(said, std::regex(R"(\.[0-9]+\.part)"), ".part");
+    // Nor the boot and the process, which a file's name has while it is written.
+    said = std::regex_replace(said, std::regex(R"(\.[0-9a-f]{8}-[0-9a-f]+-[0-9]+\.part)"), ".part");
     std::string escaped;
     for (const char c : said) {
         if (c == '|') escaped += '\\';

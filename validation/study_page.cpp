@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The page is well-formed XML too, as report.html is.
+#include "base/number.h"
 #include "report/html.h"
 #include "validation/error_view.h"
 #include "validation/study_plot.h"
@@ -45,7 +46,8 @@ std::string tolerance_in_words(double tolerance) {
     if (tolerance >= kReadAsItIs || !(tolerance > 0.0)) return plain(tolerance);
     const std::string text = fmt::format("{:.2e}", tolerance);
     const std::size_t split = text.find('e');
-    return power_label(std::stod(text.substr(0, split)), std::stoi(text.substr(split + 1)));
+    const auto factor = read_number<double>(std::string_view(text).substr(0, split));
+    return power_label(*factor, exponent_of(text));
 }
 
 // The recommendation.
@@ -103,14 +105,14 @@ std::string what_was_measured(const Study& study) {
         "{} of {}, {} × {} pixels, with Aphotic {} and POV-Ray {} on {}: the wall time of each, "
         "and how far its image is from the reference tracer’s over {}, which takes {} "
         "itself.{}",
-        counted(study.measures.size(), "setting"),
+        grouped_count(study.measures.size(), "setting"),
         user_text(title_of(study)),
         study.width_px,
         study.height_px,
         escaped(study.aphotic_version),
         escaped(study.povray_version),
-        counted(static_cast<std::size_t>(study.cores), "core"),
-        counted(study.grid_size, "wavelength"),
+        grouped_count(static_cast<std::size_t>(study.cores), "core"),
+        grouped_count(study.grid_size, "wavelength"),
         seconds(study.trace_s),
         study.quick ? " A quick study: few settings, and few pixels over the rig’s field of view."
                     : ""));
@@ -146,7 +148,7 @@ std::string left_out(const Study& study) {
     if (missing == 0) return "";
     return html_paragraph(
         fmt::format("{} not drawn: the error is 0 or not finite.",
-                    counted(missing, "setting") + (missing == 1 ? " is" : " are")));
+                    grouped_count(missing, "setting") + (missing == 1 ? " is" : " are")));
 }
 
 std::string plot(const Study& study) {

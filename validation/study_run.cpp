@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/sha256.h"
 #include "image/any_image.h"
 #include "image/exr.h"
@@ -62,11 +63,10 @@ std::optional<std::pair<CameraImage, double>> kept_trace(const fs::path& file,
     try {
         const ExrReader traced(file);
         if (traced.attribute("aphotic:key") != key) return std::nullopt;
-        const std::string trace_s = traced.attribute("aphotic:trace_s");
-        return std::pair(read_signals(file), std::stod(trace_s));
+        const auto trace_s = read_number<double>(traced.attribute("aphotic:trace_s"));
+        if (!trace_s) return std::nullopt;
+        return std::pair(read_signals(file), *trace_s);
     } catch (const RunError&) {
-        return std::nullopt;
-    } catch (const std::logic_error&) {  // of stod
         return std::nullopt;
     }
 }

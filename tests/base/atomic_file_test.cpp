@@ -2,10 +2,14 @@
 #include "base/atomic_file.h"
 
 #include "base/error.h"
+#include "tests/support/abandoned_file.h"
 #include "tests/support/temp_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <linux/magic.h>
 #include <sys/stat.h>
+#include <sys/statfs.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,11 +17,15 @@
 #include <fcntl.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace aphotic::atomic_file_test {
@@ -26,6 +34,7 @@ namespace {
 // What the calls that follow were made on, in their order, and what fsync fails with.
 std::vector<std::string> disk_calls;
 int fsync_error = 0;
+long file_system = 0;  // what statfs tells; 0: the truth
 
 }  // namespace
 }  // namespace aphotic::atomic_file_test
@@ -45,6 +54,13 @@ extern "C" int fsync(int descriptor) {
 extern "C" int rename(const char* from, const char* to) noexcept {
     aphotic::atomic_file_test::disk_calls.push_back("rename " + std::string(from));
     return static_cast<int>(::syscall(SYS_renameat, AT_FDCWD, from, AT_FDCWD, to));
+}
+
+extern "C" int statfs(const char* path, struct statfs* system) noexcept {
+    const auto status = static_cast<int>(::syscall(SYS_statfs, path, system));
+    const long told = aphotic::atomic_file_test::file_system;
+    if (told != 0) system->f_type = static_cast<decltype(system->f_type)>(told);
+    return status;
 }
 
 namespace aphotic::atomic_file_test {
@@ -214,6 +230,106 @@ TEST(AtomicFile, OfAKilledProcessIsTakenAwayByTheNameOfItsFile) {
     const auto left = names_in(folder.path());
     ASSERT_EQ(left.size(), 1U);
     EXPECT_TRUE(left.front().ends_with(".png")) << left.front();
+}
+
+// As one of another boot or container is named, whose process has the number of one that is gone.
+fs::path named_otherwise(const fs::path& ours, bool other_boot) {
+    const std::string name = ours.filename().string();
+    const std::size_t boot = name.find_last_of('.', name.find(".part") - 1) + 1;
+    const std::size_t numbers = name.find('-', boot) + 1;
+    std::string other = name;
+    char& digit = other[other_boot ? boot : numbers];
+    digit = digit == '0' ? '1' : '0';
+    return ours.parent_path() / other;
+}
+
+// Process numbers of elsewhere mean nothing here: the one that writes may live.
+TEST(AtomicFile, OfAnotherMachineOrContainerIsKept) {
+    const TempFolder folder;
+    const fs::path ours = abandon(folder.path() / "image.exr");
+    const fs::path of_container = named_otherwise(ours, false);
+    const fs::path of_machine = named_otherwise(ours, true);
+    const fs::path of_version_0_2 = folder.path() / ".image.999999999.part.exr";
+    for (const fs::path& file : {of_container, of_machine, of_version_0_2}) write_file(file, "");
+    for (const long network : {long{NFS_SUPER_MAGIC}, long{CIFS_SUPER_MAGIC}, long{0x0BD00BD0}}) {
+        file_system = network;
+        remove_abandoned_files(folder.path());
+        remove_abandoned_of(folder.path() / "image.exr");
+        for (const fs::path& file : {of_container, of_machine, of_version_0_2})
+            EXPECT_TRUE(fs::exists(file)) << file << " on " << network;
+    }
+    EXPECT_FALSE(fs::exists(ours));
+    // No other machine has this one's disk: the boot is over, and all its processes.
+    file_system = EXT4_SUPER_MAGIC;
+    remove_abandoned_files(folder.path());
+    file_system = 0;
+    EXPECT_FALSE(fs::exists(of_machine));
+    EXPECT_TRUE(fs::exists(of_container));
+}
+
+TEST(AtomicFile, MayHaveTheLongestName) {
+    constexpr std::size_t kLongest = 255;
+    const TempFolder folder;
+    const std::string same(kLongest - 5, 'a');
+    const fs::path one = folder.path() / (same + "1.exr");
+    const fs::path two = folder.path() / (same + "2.exr");
+    EXPECT_NE(AtomicFile(one).temporary(), AtomicFile(two).temporary());
+    EXPECT_NO_THROW(write_text_file(one, "whole"));
+    EXPECT_EQ(read_text_file(one), "whole");
+    const fs::path left = abandon(two);
+    EXPECT_TRUE(fs::exists(left));
+    remove_abandoned_of(two);
+    EXPECT_FALSE(fs::exists(left));
+}
+
+// Struck while four threads begin, write and commit files, as correct does: whole ones stay alone.
+TEST(AtomicFile, OfAProcessThatASignalEndsIsRemoved) {
+    constexpr int kThreads = 4;
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGTERM, SIGINT, SIGHUP}) {
+        const TempFolder folder;
+        const pid_t child = ::fork();
+        if (child == 0) {
+            std::vector<std::jthread> threads;
+            for (int thread = 0; thread < kThreads; ++thread) {
+                threads.emplace_back([&, thread] {
+                    for (int i = 0;; ++i) {
+                        AtomicFile file(folder.path() / fmt::format("{}-{}.txt", thread, i));
+                        std::ofstream(file.temporary()) << "whole";
+                        std::error_code error;
+                        // Not synced, which would take nearly all of the time.
+                        if (i % 2 == 0) fs::rename(file.temporary(), file.final_path(), error);
+                    }
+                });
+            }
+            threads.clear();
+        }
+        while (names_in(folder.path()).size() < 20) std::this_thread::yield();
+        ::kill(child, signal);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFSIGNALED(status));
+        EXPECT_EQ(WTERMSIG(status), signal);
+        for (const std::string& name : names_in(folder.path()))
+            EXPECT_FALSE(name.starts_with('.')) << name;
+    }
+}
+
+// A handler of the host's is left to decide, and the file becomes whole.
+TEST(AtomicFile, WaitsForTheHostsHandlerOfASignal) {
+    const TempFolder folder;
+    static std::atomic<int> handled = 0;
+    handled = 0;
+    const auto before = ::signal(SIGINT, [](int) { ++handled; });
+    {
+        AtomicFile file(folder.path() / "out.txt");
+        write_file(file.temporary(), "whole");
+        ::raise(SIGINT);
+        EXPECT_EQ(handled, 0);
+        file.commit();
+        EXPECT_EQ(handled, 1);
+    }
+    ::signal(SIGINT, before);
+    EXPECT_EQ(read_text_file(folder.path() / "out.txt"), "whole");
 }
 
 TEST(TextFile, ComesBackByteForByte) {

@@ -115,5 +115,14 @@ TEST(ParseJson, TakesAMillionKeys) {
     EXPECT_EQ(json.at(std::to_string(kKeys - 1)), kKeys - 1);
 }
 
+// As it is printed: a title may hold what a terminal obeys.
+TEST(JsonText, SteersNoTerminal) {
+    const std::string title = "\x1b[2J \x7f \xC2\x9B K\xC3\xB6ln \xC2\xA0";
+    const std::string text = json_text({{"title", title}});
+    EXPECT_FALSE(has_control_characters(text.substr(0, text.find('\n')))) << text;
+    EXPECT_NE(text.find("\\u007f \\u009b K\xC3\xB6ln \xC2\xA0"), std::string::npos) << text;
+    EXPECT_EQ(parse_json(text, "text").at("title"), title);
+}
+
 }  // namespace
 }  // namespace aphotic::json_text_test

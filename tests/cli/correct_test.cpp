@@ -2,6 +2,7 @@
 //
 // The correction of surveys as a user runs it. The images are made of the reference tracer's light,
 // which shares no geometry and no light with the maps that they are divided by.
+#include "support/abandoned_file.h"
 #include "survey/light_at.h"
 
 #include "base/sha256.h"
@@ -941,7 +942,7 @@ TEST_F(CorrectCommand, KilledAnywhereItGoesOnToTheSameImages) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
     }  // killed
-    write_file(path("out/.more07.999999999.part.tif"), "left by one that was killed");
+    abandon(path("out/more07.tif"));
     const CommandResult again = correct([&] {
         std::vector<std::string> more = settings;
         more.emplace_back("--json");

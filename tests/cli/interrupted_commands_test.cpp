@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every command that writes, but for render and correct, which have tests of their own, struck at
-// random moments by SIGINT, SIGTERM and SIGKILL. Nothing is left half written or running, and the
+// Every command that writes, but for render, which has tests of its own, struck at random moments
+// by SIGINT, SIGTERM and SIGKILL. Nothing is left half written or running, and the
 // same command given again ends in the same files.
 #include "base/sha256.h"
 #include "support/command_under_way.h"
@@ -36,6 +36,7 @@ void PrintTo(const Struck& struck, std::ostream* out) {
 const std::vector<Struck> kCommands{
     {"Atlas", {"atlas", "rig.toml", "--altitude", "1:3:0.5", "--pitch", "-2:2:2", "-o", "out"}},
     {"Baseline", {"baseline", "local-equalisation", "raw", "-o", "out"}},
+    {"Correct", {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.eic", "-o", "out"}},
     {"Compare", {"compare", "raw/0.exr", "raw/1.exr", "--report", "out/page.html"}},
     {"Generate", {"generate", "rig.toml", "-o", "out", "--bands", "30"}},
     {"Integrate", {"integrate", "render", "-o", "out"}},
@@ -43,6 +44,7 @@ const std::vector<Struck> kCommands{
     {"Observe", {"observe", "raw", "--nav", "nav.eic", "--altitude", "2", "-o", "out/map.exr"}},
     {"Plan", {"plan", "rig.toml", "--plot", "out/plan.svg"}},
     {"Stress", {"stress", "-o", "out", "--width", "6", "--only", "roll-degrees-45"}},
+    {"Survey", {"survey", "rig.toml", "--images", "8", "-o", "out"}},
     {"Study", {"study", "rig.toml", "-o", "out", "--quick"}},
     {"Trace", {"trace", "rig.toml", "-o", "out"}},
     {"Validate", {"validate", "rig.toml", "-o", "out", "--bands", "6"}}};
@@ -51,6 +53,7 @@ const std::vector<Struck> kCommands{
 // earlier run had done.
 bool tells_the_time(const fs::path& file) {
     constexpr std::array kNames{"baseline.json",
+                                "correction.json",
                                 "corrected.jsonl",
                                 "manifest.json",
                                 "validation.json",
@@ -83,7 +86,9 @@ class InterruptedCommand : public testing::TestWithParam<Struck> {
                    small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
         const std::string& command = GetParam().arguments.front();
         if (command == "integrate") well({"render", "rig.toml", "-o", "render", "--bands", "3"});
-        if (command == "observe" || command == "baseline" || command == "compare") take_images();
+        if (command == "observe" || command == "baseline" || command == "compare" ||
+            command == "correct")
+            take_images();
         clear("tmp");
         clear("out");
     }
@@ -121,6 +126,7 @@ class InterruptedCommand : public testing::TestWithParam<Struck> {
         expect_no_process_in(home_);
         if (status != 128 + SIGKILL) {
             EXPECT_TRUE(fs::is_empty(home_ / "tmp")) << "left in TMPDIR";
+            expect_no_leftovers(home_ / "out", fmt::format("-{}", command.pid()));
         }
         clear("tmp");
         if (status == 0) clear("out");  // it came too late: the next begins afresh

@@ -207,7 +207,12 @@ class Sabotage : public testing::Test {
     // what spoils it, must pass.
     using VeilMaker = std::function<std::optional<ManifestVeil>(
         const std::filesystem::path& folder, const Rig& rig, const Manifest& manifest)>;
-    void expect_no_when_the_veil_is(const VeilMaker& spoil, const VeilMaker& redo = write_veil) {
+    static std::optional<ManifestVeil> honest_veil(const std::filesystem::path& folder,
+                                                   const Rig& rig,
+                                                   const Manifest& manifest) {
+        return write_veil(folder, rig, manifest, 1);
+    }
+    void expect_no_when_the_veil_is(const VeilMaker& spoil, const VeilMaker& redo = honest_veil) {
         write_file(folder_.path() / "b.csv", "wavelength_nm,scattering_per_m\n400,0.3\n720,0.3\n");
         write_file(folder_.path() / "rig.toml", rig_in_scattering_water());
         render("rig.toml", "spoilt", kWavelengths);
@@ -230,7 +235,7 @@ class Sabotage : public testing::Test {
     static VeilMaker veil_of(const std::function<void(Rig&)>& spoil) {
         return [spoil](const std::filesystem::path& folder, Rig rig, const Manifest& manifest) {
             spoil(rig);
-            return write_veil(folder, rig, manifest);
+            return honest_veil(folder, rig, manifest);
         };
     }
 

@@ -342,5 +342,14 @@ TEST_F(SurveyCommand, RefusesWhatMakesNoSurvey) {
     refused({"--flight", "rig.toml", "--images", "3"}, "--images");
 }
 
+// It looks for POV-Ray before it writes: the folder is not even made.
+TEST_F(SurveyCommand, WithoutPovRayWritesNothing) {
+    const CommandResult result =
+        run({"survey", "rig.toml", "--by-povray", "--povray", "nowhere/povray", "-o", "out"});
+    EXPECT_EQ(result.status, 3) << result.err;
+    EXPECT_NE(result.err.find("nowhere/povray"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(path("out")));
+}
+
 }  // namespace
 }  // namespace aphotic::survey_test

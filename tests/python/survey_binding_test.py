@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 import json
+import locale
+import subprocess
 
 import numpy as np
 import OpenEXR
@@ -113,6 +115,50 @@ def test_a_fit_is_the_commands(rig_file, tmp_path, command):
     assert [one.key for one in fit.numbers] == [one["key"] for one in json.loads(said)["numbers"]]
     saved = fit.save(tmp_path / "by-python")
     assert saved.text == (tmp_path / "fitted/fitted.toml").read_text()
+
+
+def test_a_fit_tells_what_it_skips(rig_file, tmp_path, command):
+    command("survey", rig_file, "--images", 12, "-o", "survey")
+    nav = tmp_path / "survey/navigation-measured.txt"
+    lines = nav.read_text().splitlines()
+    lines[-1] = "000012.tif,none,0,0"
+    nav.write_text("\n".join(lines) + "\n")
+    with pytest.warns(UserWarning, match="000012.tif: .*; skipped"):
+        fit = aphotic.fit(
+            aphotic.Rig.load(rig_file),
+            images=[str(tmp_path / "survey/raw")],
+            nav=nav,
+            **LEVELS,
+            free=["power", "gain"],
+            blocks=12,
+        )
+    assert [image for image, _ in fit.skipped] == [str(tmp_path / "survey/raw/000012.tif")]
+    assert all(why for _, why in fit.skipped + fit.looks_wrong)
+
+
+def test_no_locale_of_the_host_changes_a_number(rig_file, tmp_path, monkeypatch):
+    made = subprocess.run(
+        ["localedef", "-i", "de_DE", "-f", "UTF-8", tmp_path / "de_DE.UTF-8"],
+        capture_output=True,
+        check=False,
+    )
+    if made.returncode != 0:
+        pytest.skip("no locale with decimal commas can be made here")
+    expected = aphotic.Rig.load(rig_file).replace(**{"sled.altitude_m": 2.5})
+    monkeypatch.setenv("LOCPATH", str(tmp_path))
+    before = locale.setlocale(locale.LC_ALL)
+    locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+    try:
+        assert locale.str(2.5) == "2,5"
+        rig = aphotic.Rig.load(rig_file).replace(**{"sled.altitude_m": 2.5})
+        assert rig.text == expected.text
+        assert rig.digest == expected.digest
+        assert rig.altitude_m == 2.5
+        np.testing.assert_array_equal(
+            aphotic.lightmap(rig).floor, aphotic.lightmap(expected).floor
+        )
+    finally:
+        locale.setlocale(locale.LC_ALL, before)
 
 
 def test_a_fit_says_what_it_needs(rig_file):

@@ -49,8 +49,8 @@ TEST(Plain, DropsWhatRoundingLeft) {
 }
 
 TEST(Counted, SetsThousandsApart) {
-    EXPECT_EQ(counted(1, "frame"), "1 frame");
-    EXPECT_EQ(counted(0, "frame"), "0 frames");
+    EXPECT_EQ(grouped_count(1, "frame"), "1 frame");
+    EXPECT_EQ(grouped_count(0, "frame"), "0 frames");
     EXPECT_EQ(grouped(999), "999");
     EXPECT_EQ(grouped(1392640),
               "1\xE2\x80\xAF"

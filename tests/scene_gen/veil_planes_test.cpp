@@ -13,12 +13,34 @@
 #include "scene_gen/scene_set.h"
 #include "support/temp_folder.h"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <vector>
+
+namespace aphotic::veil_planes_test {
+namespace {
+
+std::atomic<int> threads_begun = 0;
+
+}  // namespace
+}  // namespace aphotic::veil_planes_test
+
+// In place of the C library's, which all of this program calls.
+extern "C" int pthread_create(pthread_t* thread,
+                              const pthread_attr_t* attributes,
+                              void* (*work)(void*),
+                              void* argument) noexcept {
+    ++aphotic::veil_planes_test::threads_begun;
+    static const auto create =
+        reinterpret_cast<decltype(&pthread_create)>(::dlsym(RTLD_NEXT, "pthread_create"));
+    return create(thread, attributes, work, argument);
+}
 
 namespace aphotic::veil_planes_test {
 namespace {
@@ -75,7 +97,7 @@ TEST(VeilPlanes, AreTheVeilOfEachPixel) {
     const Rig rig = coast(68, 51);
     const Manifest manifest = manifest_of(rig);
     const TempFolder folder;
-    ASSERT_TRUE(write_veil(folder.path(), rig, manifest));
+    ASSERT_TRUE(write_veil(folder.path(), rig, manifest, 2));
     ExrReader reader(veil_path(folder.path()));
     const std::vector<float> planes = reader.planes(veil_channels(manifest));
     const std::size_t plane = planes.size() / (kChannels + manifest.wavelengths.size());
@@ -104,7 +126,7 @@ TEST(VeilPlanes, BlocksOfRowsJoin) {
     const TempFolder folder;
     Manifest manifest = manifest_of(rig);
     manifest.wavelengths.clear();
-    ASSERT_TRUE(write_veil(folder.path(), rig, manifest));
+    ASSERT_TRUE(write_veil(folder.path(), rig, manifest, 2));
     ExrReader reader(veil_path(folder.path()));
     const std::vector<float> planes = reader.planes(veil_channels(manifest));
     const Veil veil(rig, 2 * kVeilPoints);
@@ -120,7 +142,7 @@ TEST(VeilPlanes, ClearWaterHasNone) {
     Rig rig = coast(68, 51);
     rig.water.scatterers.clear();
     const TempFolder folder;
-    EXPECT_FALSE(write_veil(folder.path(), rig, manifest_of(rig)));
+    EXPECT_FALSE(write_veil(folder.path(), rig, manifest_of(rig), 2));
     EXPECT_FALSE(std::filesystem::exists(veil_path(folder.path())));
 }
 
@@ -145,6 +167,20 @@ TEST(VeilPlanes, TheirErrorIsPartOfThePromise) {
     EXPECT_GE(plan.veil_error, kVeilOfSignal);
     for (const RuleQuality& quality : plan.quality) EXPECT_GE(quality.error, plan.veil_error);
     EXPECT_LE(plan.promise(), plan.tolerance);
+}
+
+TEST(VeilPlanes, TakeAsManyThreadsAsTheyMay) {
+    const Rig rig = coast(24, 64);
+    Manifest manifest = manifest_of(rig);
+    manifest.wavelengths.clear();
+    const TempFolder folder;
+    const auto begun_by = [&](int threads) {
+        threads_begun = 0;
+        EXPECT_TRUE(write_veil(folder.path(), rig, manifest, threads));
+        return threads_begun.load();
+    };
+    EXPECT_EQ(begun_by(1), 0);
+    EXPECT_GT(begun_by(2), 0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "support/fit_rig.h"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,8 +56,13 @@ std::size_t told_parts(const Rig& truth, double noise) {
     return with_told_parts(guess, samples, options, angles, {}).state.beams.at(0).parts();
 }
 
+// The host's level of glog, by which Ceres logs, is the host's.
 TEST(FitParts, AreFewOfASmoothBeam) {
+    auto* const level = static_cast<int*>(::dlsym(RTLD_DEFAULT, "_ZN3fLI17FLAGS_minloglevelE"));
+    ASSERT_NE(level, nullptr) << "glog's FLAGS_minloglevel";
+    const int before = *level;
     EXPECT_LE(told_parts(fit_rig(small()).rig(), kLoud), kFew);
+    EXPECT_EQ(*level, before);
 }
 
 TEST(FitParts, AreManyOfABeamWithAnEdge) {

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "support/fit_rig.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -107,6 +108,23 @@ TEST(FitProblem, NamesWhatIsAsTheRigHasIt) {
     options.free.reset();
     EXPECT_EQ(words_fixed_in(fit_problem(fit_rig({}), options, angles)),
               (std::vector<std::string>{"floor", "altitude", "attitude", "gain"}));
+}
+
+// The first strobe of a beam that shines has the power that the others are told by.
+TEST(FitProblem, AStrobeThatIsOffIsNoReference) {
+    FitOptions options;
+    options.free = {{"power"}};
+    const auto powers = [&](const char* off) {
+        RigText rig = fit_rig({});
+        if (*off != '\0') rig.set(fmt::format("strobe.{}.power", off), 0.0);
+        std::vector<std::string> keys;
+        for (const FreeNumber& one : fit_problem(rig, options, {.widest_rad = 1.0}).free)
+            if (one.group == "power") keys.push_back(one.key);
+        return keys;
+    };
+    EXPECT_EQ(powers(""), std::vector<std::string>{"strobe.aft.power"});
+    EXPECT_EQ(powers("fore"), std::vector<std::string>{});
+    EXPECT_EQ(powers("aft"), std::vector<std::string>{});
 }
 
 }  // namespace

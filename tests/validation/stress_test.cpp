@@ -166,8 +166,9 @@ TEST_F(Stress, TablesSayWhatWasFoundAndWhatWasExpected) {
     StressFound refused;
     refused.asked = case_of(cases_, "altitude-m-100000");
     refused.answer = StressAnswer::Refused;
-    refused.said = "/some/where/" + refused.asked.name +
-                   "/rig.toml:2: sled.altitude_m: found no | yes, .frame.123.part.exr";
+    refused.said =
+        "/some/where/" + refused.asked.name +
+        "/rig.toml:2: sled.altitude_m: found no | yes, .frame.5f3a9c01-f000003c-123.part.exr";
     StressFound surprise;
     surprise.asked = case_of(cases_, "altitude-m-1");
     surprise.answer = StressAnswer::Grows;

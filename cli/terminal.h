@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the command says: results on standard output, messages on standard error. Nothing else
+// prints (scripts/banned), so no name of a file, no cell of a table and nothing that another
+// program said can steer the terminal or feign a line of ours: see base/printable.h.
+#pragma once
+
+#include "base/printable.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace aphotic::cli {
+
+// A text of several lines, as it is but for control characters.
+void say_text(std::string_view text);
+
+// As fmt::print(), with strings among the values on one line.
+template <typename... Values>
+void say(fmt::format_string<Values...> text, const Values&... values) {
+    say_text(fmt::format(fmt::runtime(text), shown_value(values)...));
+}
+
+// A line on standard error, "aphotic: " and the message, whose own lines it keeps.
+void warn_text(std::string_view message);
+
+template <typename... Values>
+void warn(fmt::format_string<Values...> text, const Values&... values) {
+    warn_text(fmt::format(fmt::runtime(text), shown_value(values)...));
+}
+
+// What was said must have arrived: a full disk behind a redirection is a RunError.
+void flush_said();
+
+}  // namespace aphotic::cli
