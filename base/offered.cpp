@@ -1,30 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/offered.h"
 
+#include "base/number.h"
+
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 namespace aphotic {
 namespace {
 
-// Whatever the locale.
-double read_back(const std::string& text) {
-    double value = 0.0;
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    return value;
+double rounded(double value, int digits) {
+    return read_number<double>(fmt::format("{:.{}e}", value, digits - 1)).value();
 }
 
 }  // namespace
 
 double at_least(double value, int digits) {
     if (!std::isfinite(value) || value == 0.0) return value;
-    const double nearest = read_back(fmt::format("{:.{}e}", value, digits - 1));
+    const double nearest = rounded(value, digits);
     if (nearest >= value) return nearest;
     // It was rounded down: by less than a step, so a step more is enough.
     const double step = std::pow(10.0, std::floor(std::log10(std::abs(nearest))) - digits + 1);
-    return read_back(fmt::format("{:.{}e}", nearest + step, digits - 1));
+    return rounded(nearest + step, digits);
 }
 
 double at_most(double value, int digits) {

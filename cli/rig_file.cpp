@@ -2,10 +2,9 @@
 #include "cli/rig_file.h"
 
 #include "base/error.h"
+#include "cli/terminal.h"
 #include "rig/plausibility.h"
 #include "rig/rig_reader.h"
-
-#include <fmt/format.h>
 
 #include <vector>
 
@@ -19,7 +18,7 @@ void check_plausible(const Rig& rig, const std::string& file, bool strict) {
     std::string all;
     for (const Doubt& doubt : doubts_of(rig)) {
         const std::string words = in_words(doubt, file);
-        if (!strict) fmt::print(stderr, "aphotic: looks wrong: {}\n", words);
+        if (!strict) warn("looks wrong: {}", words);
         all += (all.empty() ? "" : "; ") + words;
     }
     if (strict && !all.empty()) throw InputError("--strict: looks wrong: " + all);
