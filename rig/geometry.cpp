@@ -139,7 +139,7 @@ void require_over_floor(const Sled& sled, const Strobe& strobe, LampGrid grid) {
     const Plane floor = floor_plane(sled);
     const double height_m = height_above(floor, strobe.position_m);
     if (height_m < kLeastDistance_m) {
-        throw InputError(fmt::format(
+        throw InputError(
             "strobe '{}' stands {} m {} the sea floor; allowed: at least {} m over it",
             strobe.name,
             height_m < 0.0 ? fmt::format("{:.4f}", -height_m) : at_most_text(height_m, 4),
