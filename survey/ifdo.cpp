@@ -94,11 +94,27 @@ void require_utf8(const std::string& name, std::string_view text) {
     }
 }
 
+// Before any is built.
+void require_few_values(const std::string& name, std::string_view text) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool is_item = text[i] == '-' && text.substr(i + 1).starts_with(' ');
+        if (is_item || std::string_view("\n\r,[{").find(text[i]) != std::string_view::npos) ++count;
+    }
+    if (count <= kMostYamlValues) return;
+    throw InputError(
+        "{}: found {} lines and values of YAML; allowed: up to {}; an iFDO in JSON may have more",
+        name,
+        count,
+        kMostYamlValues);
+}
+
 IfdoJson json_of_yaml(const std::string& name, std::string_view text) {
     // Without aliases a value takes two letters or more. Few of them are much longer than what
     // they stand for.
     constexpr std::size_t kMostValuesOfLetter = 4;
     constexpr std::size_t kAnyway = 1000;
+    require_few_values(name, text);
     require_utf8(name, text);
     try {
         return Converter(name, kAnyway + kMostValuesOfLetter * text.size())

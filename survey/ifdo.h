@@ -27,6 +27,8 @@ namespace aphotic {
 using IfdoJson = nlohmann::json;  // sorted: a set may have a hundred thousand items
 
 inline constexpr std::size_t kMostIfdo_bytes = std::size_t{256} << 20U;
+// Lines, and values within them: yaml-cpp takes about a kilobyte for each.
+inline constexpr std::size_t kMostYamlValues = 800'000;
 
 struct Ifdo {
     std::string source;  // stands in messages
@@ -43,7 +45,8 @@ struct Ifdo {
 [[nodiscard]] bool is_ifdo(std::string_view text);
 
 // name stands in messages. What is none, nested deeper than kMostJsonDepth, longer than
-// kMostIfdo_bytes, or longer than that could be when aliases are written out, is an InputError.
+// kMostIfdo_bytes, of more than kMostYamlValues in YAML, or longer than that could be when aliases
+// are written out, is an InputError.
 [[nodiscard]] Ifdo parse_ifdo(const std::string& name, std::string_view text);
 
 // The object of a still image, given its item: the item itself or the only one of its list; null

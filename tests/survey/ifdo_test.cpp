@@ -128,6 +128,16 @@ TEST(Ifdo, RefusesAliasesThatStandForTooMuch) {
     EXPECT_NE(fault_of("image-set-header: &a {b: *a}\nimage-set-items: {}\n"), "none") << "itself";
 }
 
+// A text of 110 MB took 8.5 GB.
+TEST(Ifdo, RefusesMoreYamlThanMemoryHolds) {
+    std::string text = "image-set-header: {}\nimage-set-items:\n a: [";
+    for (std::size_t i = 0; i < kMostYamlValues; ++i) text += "0,";
+    EXPECT_EQ(
+        fault_of(text + "0]\n"),
+        "set.yaml: found 800005 lines and values of YAML; allowed: up to 800000; an iFDO in "
+        "JSON may have more");
+}
+
 TEST(Ifdo, RefusesDepth) {
     const std::string yaml = "image-set-header: " + std::string(100, '[') + std::string(100, ']');
     EXPECT_EQ(fault_of(yaml), "set.yaml:1: it is nested too deeply");
