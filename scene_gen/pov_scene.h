@@ -81,8 +81,8 @@ struct SceneOptions {
 // The scene of each frame: those of the direct light, then by lobe those of a veil that POV-Ray
 // makes, and of a user's scene what shines in them without the water's, to be taken off. Or the one
 // of fog. Sets how each of the wavelengths is exposed. Throws InputError when a
-// strobe stands where it cannot light from (at or under the floor, inside the camera's housing), or
-// when there are more lights than POV-Ray takes in water.
+// strobe stands where it cannot light from (at or under the floor, inside the camera's housing),
+// when POV-Ray cannot find a port's surfaces, or when there are more lights than it takes in water.
 [[nodiscard]] std::vector<FrameScene> make_scenes(const Rig& rig,
                                                   std::span<const LampGrid> lamps,
                                                   const SceneOptions& options,
@@ -90,8 +90,9 @@ struct SceneOptions {
 
 // Metres in one unit of the rig's scene: 1, or the power of two at or under the least distance that
 // counts (lamp to what it lights, pupil to the floor, the largest side of an object) where that is
-// under kLeastInMetres_m. POV-Ray's tolerances are fixed numbers of its units: it takes no light
-// from the last 1e-3 before a lamp and passes over what shades from within 1e-3, for instance.
+// under kLeastInMetres_m; and under a thousand times a port's glass and its distance from the
+// pupil. POV-Ray's tolerances are fixed numbers of its units: it takes no light from the last 1e-3
+// before a lamp and passes over what shades from within 1e-3, for instance.
 [[nodiscard]] double scene_unit_m(const Rig& rig);
 inline constexpr double kLeastInMetres_m = 0x1p-6;
 

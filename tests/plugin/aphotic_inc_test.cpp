@@ -714,6 +714,9 @@ const std::vector<Misuse> kMisuses{
     {"DomeBehindThePupil",
      "Aphotic_Camera (1, 1) Aphotic_Dome_Port (z, 1, 0.1, \"bk7\")",
      "Aphotic_Dome_Port: Thickness must be over 0, and the pupil within Radius"},
+    {"FadeDistanceOfNothing",
+     "#declare Aphotic_Fade_Distance = 0;\nAphotic_Cone (0, z, 90, 1, \"arc\", 1)",
+     "Aphotic_Cone: found Aphotic_Fade_Distance 0.000000; allowed: over 0"},
     {"PortTooThin",
      "Aphotic_Camera (1, 1) Aphotic_Port (0.1, 0.0004, \"bk7\")",
      "Aphotic_Port: found 0.100000 units from the pupil to the glass, and glass of 0.000400; "
