@@ -196,11 +196,24 @@ std::shared_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
     return input;
 }
 
-// Of a TIFF whose strips are higher than the image OpenImageIO 2.4 counts strips and bytes beyond
-// what its integers hold.
+// Of a TIFF whose strips are said to be higher than the image, OpenImageIO 2.4 counts rows and
+// bytes beyond what its integers hold, and never ends.
 bool is_read_by_rows(const OIIO::ImageSpec& spec, std::string_view format) {
     const int rows = spec.get_int_attribute("tiff:RowsPerStrip", 0);
     return format == "tiff" && spec.tile_width == 0 && (rows <= 0 || rows > spec.height);
+}
+
+bool read_by_rows(OIIO::ImageInput& input, int first, int end, float* to) {
+    const OIIO::ImageSpec& spec = input.spec();
+    const auto channels = static_cast<std::size_t>(spec.nchannels);
+    std::vector<float> row(channels * static_cast<std::size_t>(spec.width));
+    for (int y = 0; y < spec.height; ++y) {
+        if (!input.read_scanline(spec.y + y, 0, OIIO::TypeDesc::FLOAT, row.data())) return false;
+        for (auto pixel = row.begin(); pixel != row.end(); pixel += spec.nchannels) {
+            to = std::copy(pixel + first, pixel + end, to);
+        }
+    }
+    return true;
 }
 
 // The channels from `first` up to, and without, `end`. OpenImageIO takes what it can get of a file
@@ -215,20 +228,11 @@ std::vector<float> pixels_in(OIIO::ImageInput& input,
         return aphotic::png_pixels(file, {spec.width, spec.height, spec.nchannels, first, end});
     }
     if (format == "tiff") aphotic::require_sound_streams(file);
-    const std::size_t row =
-        static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(end - first);
-    std::vector<float> pixels(row * static_cast<std::size_t>(spec.height));
-    const auto read = [&](int from, int to) {
-        float* const at = pixels.data() + row * static_cast<std::size_t>(from);
-        return input.read_scanlines(
-            0, 0, spec.y + from, spec.y + to, 0, first, end, OIIO::TypeDesc::FLOAT, at);
-    };
-    bool is_read = true;
-    if (is_read_by_rows(spec, format)) {
-        for (int y = 0; y < spec.height && is_read; ++y) is_read = read(y, y + 1);
-    } else {
-        is_read = input.read_image(0, 0, first, end, OIIO::TypeDesc::FLOAT, pixels.data());
-    }
+    std::vector<float> pixels(spec.image_pixels() * static_cast<std::size_t>(end - first));
+    const bool is_read =
+        is_read_by_rows(spec, format)
+            ? read_by_rows(input, first, end, pixels.data())
+            : input.read_image(0, 0, first, end, OIIO::TypeDesc::FLOAT, pixels.data());
     const std::string fault = input.geterror();
     if (!is_read || !fault.empty()) throw aphotic::InputError(fault);
     return pixels;
