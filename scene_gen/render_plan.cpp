@@ -111,7 +111,8 @@ double best_promise(double tolerance,
     for (int trial = 0; trial < kMostTrials; ++trial) {
         const FittedRule rule = plan_wavelengths(fitter, rig.camera.range, target);
         const double fitted = rule.promise(plan.frame_error);
-        if (fitted > target.tolerance) return std::min(promise, fitted + plan.veil_error);
+        // Of what the fit alone finds too bad there is no plan, whatever it promises.
+        if (fitted > target.tolerance) return trial == 0 ? fitted + plan.veil_error : promise;
         const std::vector<double> lambda_nm = wavelengths_of(rule.wavelengths);
         plan.scene.pixel_shift = pixel_shift(rig, request.scene);
         share_frames(rig, fitter, lambda_nm, plan);

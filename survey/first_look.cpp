@@ -107,7 +107,10 @@ std::vector<Choice> chosen(std::size_t files, const LookRequest& request) {
 }  // namespace
 
 SurveyLook look_at(const Survey& survey, const LookRequest& request, const RunWatch& watch) {
-    const std::vector<Choice> choices = chosen(survey.files.size(), request);
+    LookRequest wanted = request;
+    // Floors' patterns hide the tilts of a few images.
+    if (survey.light.map_as_radians) wanted.most_images *= 2;
+    const std::vector<Choice> choices = chosen(survey.files.size(), wanted);
     std::vector<std::optional<ImageLook>> looks(choices.size());
     std::vector<std::string> whys(choices.size());
     std::size_t count = 0;

@@ -35,7 +35,7 @@
 //              radians, differ from those of degrees, b = sum x y / sum x x is 1 or 0: over blocks
 //              of pixels, x the logarithm of one map over the other, y that of the image over the
 //              map of degrees, both less their means in each image. Told where b is over kLikeness
-//              and five of its standard errors from 0.
+//              and three of its standard errors from 0, and as near to 1.
 //
 // Slopes are least squares over the images, with the standard error that their residuals give:
 // floors that differ from image to image widen it. Of maps that are alike there is no slope.

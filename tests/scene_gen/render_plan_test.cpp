@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/render_plan.h"
 
+#include "support/random_rig.h"
+
 #include "base/error.h"
 #include "rig/rig_reader.h"
 #include "spectral/curve_loader.h"
@@ -544,6 +546,21 @@ TEST(RenderPlan, RefusesATooSmallToleranceAndNamesOneThatItKeeps) {
     request.tolerance = std::stod(message.substr(start.size()));
     EXPECT_GE(request.tolerance, kFrameError) << message;
     EXPECT_LE(plan_render(habcam(), request).promise(), request.tolerance) << message;
+}
+
+// Of rigs that nobody chose: a search is not so even that what one tolerance keeps, a little larger
+// one keeps too, so what is offered is what was tried.
+TEST(RenderPlan, KeepsWhatItOffersOfRandomRigs) {
+    constexpr std::string_view kStart = "tolerance: found 1e-05; allowed: ";
+    for (const std::uint64_t seed : {2U, 5U, 11U}) {
+        const Rig rig = random_rig(seed);
+        PlanRequest request;
+        request.tolerance = 1e-5;
+        const std::string message = error_of(rig, request);
+        ASSERT_TRUE(message.starts_with(kStart)) << seed << ": " << message;
+        request.tolerance = std::stod(message.substr(kStart.size()));
+        EXPECT_LE(plan_render(rig, request).promise(), request.tolerance) << seed << message;
+    }
 }
 
 // What three wavelengths keep is not given to more, however near it is to the frames' own error.

@@ -442,6 +442,39 @@ TEST(SurveyCheck, ImagesThatAreCorrectedAlreadyAreTold) {
                 corrected);
 }
 
+// Floors whose patterns are as wide as the frame hide tilts of some degrees: sums as of 192 blocks
+// with x of that spread, and y with a slope of the truth and a pattern of the floor, 0.2 wide,
+// whose share along x is that of a few independent patterns.
+double share_of_tilts_told(double truth) {
+    constexpr int kPatterns = 12;
+    constexpr double kFloor = 0.14;  // as simulated floors of 25 % contrast have it
+    std::uint32_t told = 0;
+    const std::uint32_t surveys = 50 * surveys_to_fly();
+    for (std::uint32_t seed = 0; seed < surveys; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal;
+        std::vector<ImageLook> looks(24);
+        for (ImageLook& look : looks) {
+            const double spread = 0.035 * std::abs(normal(random));
+            const double x = spread * std::sqrt(192.0);
+            const double along = kFloor * std::sqrt(192.0 / kPatterns) * normal(random);
+            look.as_radians = {.xx = x * x, .xy = x * (truth * x + along), .blocks = 192};
+        }
+        if (!told_of(looks).empty()) ++told;
+    }
+    return static_cast<double>(told) / surveys;
+}
+
+TEST(SurveyCheck, TiltsInRadiansAreToldOfTwentyFourImages) {
+    constexpr double kFewFalse = 0.01;
+    constexpr double kMost = 0.75;
+    const double right = share_of_tilts_told(0.0);
+    const double wrong = share_of_tilts_told(1.0);
+    EXPECT_LE(right, kFewFalse);
+    EXPECT_GE(wrong, kMost);
+    if (surveys_to_fly() >= 100) fmt::print("degrees {}, radians {}\n", right, wrong);
+}
+
 // Of 24 images between 2.14 and 3.2 m, by a rig at 2 m.
 TEST(SurveyCheck, AltitudesInAnotherUnitThanTheRigsAreTold) {
     const auto told = [](double factor, double rig_m) {
