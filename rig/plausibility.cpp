@@ -3,6 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/printable.h"
+#include "rig/calibration_doubts.h"
 #include "rig/geometry.h"
 
 #include <fmt/format.h>
@@ -341,17 +342,23 @@ double view_rad(const Camera& camera, double focal_length_m, double pixel_pitch_
 // Of focal length and pitch only the ratio counts, and so only the field of view shows it.
 void Doubter::judge_view(const toml::table& root) {
     if (root.at_path("camera.fov_deg")) return;
+    const Camera& camera = rig_.camera;
+    if (camera.lens) {
+        const int line = source_line(root.at_path("camera.calibration").node());
+        for (std::string& what :
+             calibration_doubts(*camera.lens, camera.width_px, camera.height_px)) {
+            add({.key = "camera.calibration", .pattern = "calibration: " + what, .line = line},
+                std::move(what));
+        }
+        return;
+    }
     constexpr double kLeast_rad = 3.0 * kRadiansPerDegree;
     constexpr double kMost_rad = 140.0 * kRadiansPerDegree;  // the widest lenses without distortion
     constexpr double kTypical_rad = 50.0 * kRadiansPerDegree;
-    const Camera& camera = rig_.camera;
     const double f_m = camera.focal_length_m;
     const double pitch_m = camera.pixel_pitch_m;
     const double view = view_rad(camera, f_m, pitch_m);
-    // A fisheye's field of view is not 2 atan(r / f).
-    const double half_of_lens = std::tan(0.5 * view);
-    if (view >= kLeast_rad && (camera.lens ? half_of_lens <= std::numbers::pi : view <= kMost_rad))
-        return;
+    if (view >= kLeast_rad && view <= kMost_rad) return;
     struct Slip {
         std::string_view key;
         std::string_view unit;
@@ -375,7 +382,7 @@ void Doubter::judge_view(const toml::table& root) {
         const double focal_m = f_m * slip.of_focal;
         const double sensor_m = camera.width_px * pitch_m * slip.of_pitch;
         const double other = view_rad(camera, focal_m, pitch_m * slip.of_pitch);
-        if (camera.lens || other < kLeast_rad || other > kMost_rad || focal_m < kLeastFocal_m ||
+        if (other < kLeast_rad || other > kMost_rad || focal_m < kLeastFocal_m ||
             focal_m > kMostFocal_m || sensor_m < kLeastSensor_m || sensor_m > kMostSensor_m) {
             continue;
         }
