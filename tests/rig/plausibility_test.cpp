@@ -197,13 +197,13 @@ TEST(Plausibility, EveryNumberInAnotherUnitIsDoubtedAndTheUnitTold) {
 // A principal point at the image's corner, as of a calibration that tells none.
 TEST(Plausibility, WhatACalibrationCannotMeanIsDoubted) {
     const TempFolder folder;
-    write_text_file(folder / "camera.txt", "1 PINHOLE 1360 1024 1860 1860 0 0\n");
+    write_text_file(folder.path() / "camera.txt", "1 PINHOLE 1360 1024 1860 1860 0 0\n");
     std::string text(kUsualRig);
     const std::string told = "pixel_pitch_um = 6.45\nfocal_length_mm = 12.0\n";
     text.replace(
         text.find(told), told.size(), "pixel_pitch_um = 6.45\ncalibration = \"camera.txt\"\n");
-    write_text_file(folder / "rig.toml", text);
-    const std::vector<Doubt> doubts = doubts_of(read_rig(folder / "rig.toml"));
+    write_text_file(folder.path() / "rig.toml", text);
+    const std::vector<Doubt> doubts = doubts_of(read_rig(folder.path() / "rig.toml"));
     const auto found = std::ranges::find(doubts, "camera.calibration", &Doubt::key);
     ASSERT_NE(found, doubts.end());
     EXPECT_NE(found->what.find("found 0, 0 in an image of 1360 x 1024"), std::string::npos)
