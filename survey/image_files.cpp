@@ -84,7 +84,7 @@ bool is_other_raw(std::string_view extension) {
     if (!others.empty()) {
         found = "; found " + kinds_in_words(others);
         found += std::ranges::any_of(others, [](const auto& o) { return is_other_raw(o.first); })
-                     ? ", raw files that are not read: convert them to DNG"
+                     ? " (raw files of these kinds are not read: convert them to DNG)"
                      : "";
     }
     throw InputError(
