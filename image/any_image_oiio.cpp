@@ -298,6 +298,7 @@ extern "C" std::string aphotic_write_any_image(const std::filesystem::path& file
         spec.attribute("jpeg:subsampling", "4:4:4");
     }
     if (image.is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("tiff:write_exif", 0);
     spec.channelnames = image.channels;
     if (!image.description.empty()) spec.attribute("ImageDescription", image.description);
     // Exif's words for a time that is not known; without any, TIFF gets the time of writing.
