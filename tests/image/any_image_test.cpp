@@ -454,7 +454,6 @@ TEST(AnyImage, ThatDoesNotFitOnTheDiskIsSaidByItsOwnName) {
             EXPECT_EQ(fault(std::size_t{1} << 20U), "");
             EXPECT_EQ(planes_in(file).size(), planes.size());
             const SharedTags found = read_image_tags(file);
-            EXPECT_EQ(found != nullptr, with != nullptr);
             EXPECT_EQ(found ? exposure_of(*found).iso.value_or(0.0) : 0.0, with ? 100.0 : 0.0);
             std::filesystem::remove(file);
         }
