@@ -53,7 +53,10 @@ void write_any_image(const std::filesystem::path& file, const WrittenImage& imag
     const std::string fault =
         from_part<Write>("aphotic_write_any_image")(destination.temporary(), image);
     if (!fault.empty()) throw RunError("{}: cannot be written: {}", file.string(), fault);
-    if (image.tags) add_image_tags(destination.temporary(), *image.tags, file);
+    // OpenImageIO says so in PNG and JPEG alone (any_image_oiio.cpp).
+    const bool is_unmarked = image.is_srgb && file.extension().string().starts_with(".tif");
+    if (image.tags || is_unmarked)
+        add_image_tags(destination.temporary(), image.tags, is_unmarked, file);
     destination.commit();
 }
 

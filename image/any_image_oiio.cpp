@@ -22,6 +22,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -303,9 +304,9 @@ extern "C" std::string aphotic_write_any_image(const std::filesystem::path& file
     // Exif's words for a time that is not known; without any, TIFF gets the time of writing.
     constexpr const char* kUnknown = "    :  :     :  :  ";
     const bool is_dated = !image.date_time.empty();
-    if (is_dated || std::string_view(output->format_name()) == "tiff") {
-        spec.attribute("DateTime", is_dated ? image.date_time : kUnknown);
-    }
+    const bool is_tiff = std::string_view(output->format_name()) == "tiff";
+    if (is_dated || is_tiff) spec.attribute("DateTime", is_dated ? image.date_time : kUnknown);
+    if (is_tiff) spec.attribute("tiff:write_exif", 0);  // it reads what it wrote, and cannot here
     output->threads(1);  // images are spread over threads, not their rows
     const bool is_whole = output->open(file.string(), spec) &&
                           (is_bytes ? write_as<std::uint8_t>(*output, image)

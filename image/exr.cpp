@@ -17,6 +17,7 @@
 
 #include <cassert>
 #include <cstdint>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string_view>

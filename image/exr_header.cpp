@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "image/decoded_size.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fstream>

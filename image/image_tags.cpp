@@ -14,10 +14,11 @@ SharedTags read_image_tags(const std::filesystem::path& file) {
 }
 
 void add_image_tags(const std::filesystem::path& file,
-                    const ImageTags& tags,
+                    const SharedTags& tags,
+                    bool is_srgb,
                     const std::filesystem::path& called) {
-    using Add = std::string (*)(const std::filesystem::path&, const ImageTags&);
-    const std::string fault = from_part<Add>("aphotic_add_image_tags")(file, tags);
+    using Add = std::string (*)(const std::filesystem::path&, const ImageTags*, bool);
+    const std::string fault = from_part<Add>("aphotic_add_image_tags")(file, tags.get(), is_srgb);
     if (fault.empty()) return;
     throw RunError(
         "{}: its tags cannot be written: {}", (called.empty() ? file : called).string(), fault);

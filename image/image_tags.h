@@ -23,10 +23,12 @@ using SharedTags = std::shared_ptr<const ImageTags>;
 // None: the file has none that can be read.
 [[nodiscard]] SharedTags read_image_tags(const std::filesystem::path& file);
 
-// To those of a TIFF, PNG or JPEG. A RunError when it cannot be written, of the file as it will be
-// called, where that is another name.
+// To those of a TIFF, PNG or JPEG, where there are some, and that its samples are encoded as sRGB.
+// A RunError when it cannot be written, of the file as it will be called, where that is another
+// name.
 void add_image_tags(const std::filesystem::path& file,
-                    const ImageTags& tags,
+                    const SharedTags& tags,
+                    bool is_srgb = false,
                     const std::filesystem::path& called = {});
 
 // As names and words, such as Exif.GPSInfo.GPSLatitude and "41/1 30/1 444442/10000".

@@ -162,6 +162,16 @@ std::unique_ptr<Exiv2::Image> tagged(const std::filesystem::path& file) {
     return image;
 }
 
+void put(const ImageTags& tags, Exiv2::Image& image) {
+    for (const Exiv2::Exifdatum& datum : tags.exif) {
+        image.exifData()[datum.key()].setValue(&datum.value());
+    }
+    for (const Exiv2::Xmpdatum& datum : tags.xmp) {
+        image.xmpData()[datum.key()].setValue(&datum.value());
+    }
+    image.setIptcData(tags.iptc);
+}
+
 }  // namespace
 }  // namespace aphotic
 
@@ -188,23 +198,18 @@ extern "C" void aphotic_read_image_tags(const std::filesystem::path& file,
 
 // Why it could not be written, or nothing. In memory, for Exiv2 does not say that a disk was full.
 extern "C" std::string aphotic_add_image_tags(const std::filesystem::path& file,
-                                              const aphotic::ImageTags& tags) {
+                                              const aphotic::ImageTags* tags,
+                                              bool is_srgb) {
     using namespace aphotic;
     try {
         make_ready();
-        Exiv2::DataBuf bytes = Exiv2::readFile(file.string());
+        const Exiv2::DataBuf bytes = Exiv2::readFile(file.string());
         const std::unique_ptr<Exiv2::Image> image(
             Exiv2::ImageFactory::open(bytes.pData_, bytes.size_).release());
         image->readMetadata();
-        for (const Exiv2::Exifdatum& datum : tags.exif) {
-            image->exifData()[datum.key()].setValue(&datum.value());
-        }
-        for (const Exiv2::Xmpdatum& datum : tags.xmp) {
-            image->xmpData()[datum.key()].setValue(&datum.value());
-        }
-        image->setIptcData(tags.iptc);
+        if (tags != nullptr) put(*tags, *image);
+        if (is_srgb) image->exifData()["Exif.Photo.ColorSpace"] = std::uint16_t{1};
         image->writeMetadata();
-        bytes = Exiv2::DataBuf();
         Exiv2::BasicIo& made = image->io();
         if (made.open() != 0) return "there are no bytes";
         CheckedFile out(file);

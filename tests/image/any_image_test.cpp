@@ -452,6 +452,9 @@ TEST(AnyImage, ThatDoesNotFitOnTheDiskIsSaidByItsOwnName) {
                 EXPECT_TRUE(why.ends_with("cannot be written: File too large")) << why;
             }
             EXPECT_EQ(fault(std::size_t{1} << 20U), "");
+            EXPECT_EQ(planes_in(file).size(), planes.size());
+            const SharedTags found = read_image_tags(file);
+            EXPECT_EQ(found ? exposure_of(*found).iso.value_or(0.0) : 0.0, with ? 100.0 : 0.0);
             std::filesystem::remove(file);
         }
     }

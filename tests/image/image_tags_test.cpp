@@ -205,7 +205,7 @@ TEST(ImageTags, WhatIsNoImageTakesNone) {
     EXPECT_EQ(exposure_of(*tags).time_s, 0.004);
     EXPECT_EQ(exposure_of(*tags).iso, std::nullopt);
     write_file(folder.path() / "b.tif", "this is no image");
-    EXPECT_THROW(add_image_tags(folder.path() / "b.tif", *tags), RunError);
+    EXPECT_THROW(add_image_tags(folder.path() / "b.tif", tags), RunError);
 }
 
 }  // namespace
