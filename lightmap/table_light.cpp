@@ -223,7 +223,9 @@ TableLight table_light(const BeamTable& table, double factor) {
     TableLight light{.angles = table.angles,
                      .vertical = node_finder(table.vertical_rad),
                      .horizontal = {},
-                     .intensity = table.intensity};
+                     .intensity = table.intensity,
+                     .vertical_limits = {},
+                     .horizontal_limits = {}};
     if (table.horizontal_rad.size() > 1) light.horizontal = node_finder(table.horizontal_rad);
     for (double& I : light.intensity) I *= factor;
     const std::vector<TableEdge> edges = edges_of(table);
