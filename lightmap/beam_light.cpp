@@ -109,6 +109,7 @@ BeamFrame turned_frame(const Beam& beam, const Eigen::Vector3d& axis) {
 
 void look_into(const BeamLight& light, const DirectionBlock& V, Edges edges, BeamBlock& block) {
     if (light.window) {
+        block.in_air.is_in_order = V.is_in_order;
         refract_round(*light.window, V, block.in_air);
         if (!light.is_round) refract_sides(*light.window, V, block.in_air);
         if (edges == Edges::Found) find_let_out(block.in_air, block.is_let_out);

@@ -9,6 +9,7 @@ namespace aphotic {
 
 struct DirectionBlock {
     std::size_t count = kBlockCount;  // in use, a multiple of 16
+    bool is_in_order = true;          // of neighbours in a row, along which all is smooth
     RowBlock<double> along;           // V.along and V.across: only where they are asked for
     RowBlock<double> across;
     RowBlock<double> axis;    // V.a

@@ -9,8 +9,12 @@
 // Where a kink of the beam (a row of a table, an end of a soft edge, of a blur, of a highlight)
 // lies between two nodes, G is no polynomial of n. Half way between nodes a single kink shows at
 // least a third of the most that it does anywhere; G that is smooth but steep shows nearly all.
-// Pixels whose doubts are over kMostDoubt of their signal are computed by a ray for each wavelength
-// of the spectral grid instead:
+// What shows nothing is a ray that crosses a kink and comes back between two of these indices.
+// Unless the kink is steep, that is little, for the way is short: so steep kinks are looked for as
+// such (rig/beam_crease.h), on the parabola through the nodes.
+//
+// Pixels whose doubts are over kMostDoubt of their signal, or where a lamp's ray crosses a steep
+// kink, are computed by a ray for each wavelength of the spectral grid instead:
 //
 //   S_c = sum_i w_ci G(n_i) exp(-K_i l(n_i))
 //
@@ -18,6 +22,7 @@
 #pragma once
 
 #include "lightmap/row_light.h"
+#include "rig/beam_crease.h"
 #include "rig/index_nodes.h"
 #include "rig/path_table.h"
 
@@ -28,9 +33,22 @@ namespace aphotic {
 
 inline constexpr float kMostDoubt = 1e-5F;
 
-// Nodes are in the order of the map: the middle one, then the first and the last.
+// Kinks at which the slope of I changes by more than this share of the largest I over a degree; and
+// the ends of soft edges and blurs that are so steep. In the lamp's own frame, turned.
+inline constexpr double kSteepPerDegree = 0.1;
+[[nodiscard]] std::vector<Crease> steep_creases(const Beam& beam);
+
+// 1 where the way of the direction from the first index to the last crosses one, else as it was.
+void note_crossings(const std::vector<Crease>& creases,
+                    const std::array<DirectionBlock, kIndexNodes>& at_nodes,
+                    bool has_sides,
+                    RowBlock<float>& crosses);
+
+// In the order of a map: the nodes of light, the middle one, the first and the last; then those
+// half way between the middle and either, and l_j there.
 using IndexShares = std::array<double, kIndexNodes>;
-inline constexpr std::array<IndexShares, 2> kHalfWay{
+inline constexpr std::array<std::size_t, 2 * kIndexNodes - 1> kLookOrder{2, 0, 4, 1, 3};
+inline constexpr std::array<IndexShares, kLookOrder.size() - kIndexNodes> kHalfWay{
     {{0.75, 0.375, -0.125}, {0.75, -0.125, 0.375}}};
 
 // Of one lamp: its factors at each node, and at an index whose shares these are.
@@ -51,8 +69,8 @@ struct DispersedSpectrum {
 using TotalBlock = std::array<RowBlock<double>, kChannels>;
 void add_dispersed(const RayTerms& terms,
                    const PathSteps& steps,
-                   const std::array<RayBlock, kIndexNodes>& nodes,
-                   const std::vector<IndexShares>& shares,
+                   const RayNodes& nodes,
+                   const std::vector<std::vector<double>>& shares,
                    int count,
                    const LampTerms& lamp,
                    const DispersedSpectrum& spectrum,

@@ -6,6 +6,7 @@
 #include "base/offered.h"
 #include "base/parallel.h"
 #include "image/camera_image.h"
+#include "lightmap/dispersed_light.h"
 #include "lightmap/row_light.h"
 #include "rig/geometry.h"
 #include "rig/index_nodes.h"
@@ -17,12 +18,14 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <numbers>
 #include <numeric>
 #include <random>
 #include <span>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -32,6 +35,8 @@ using Eigen::ArrayXd;
 // Shares of the error that is asked for: the rest is dispersion's.
 constexpr double kGridShare = 0.1;
 constexpr double kTableShare = 0.5;
+// What has a ray for each wavelength changes faster over them than light that keeps its path.
+constexpr double kDispersedShare = 1e-4;
 
 void require_bare_floor(const Rig& rig) {
     constexpr auto kAllowed = "allowed: the bare floor, which is all that a lightmap is of";
@@ -107,6 +112,15 @@ SpectralSum spectral_sum(const Rig& rig,
     return sum;
 }
 
+// Of the grid, what any channel sees.
+std::vector<WeightedWavelength> seen_of(const std::vector<WeightedWavelength>& grid) {
+    std::vector<WeightedWavelength> seen;
+    std::ranges::copy_if(grid, std::back_inserter(seen), [](const WeightedWavelength& node) {
+        return std::ranges::any_of(node.weight, [](double weight) { return weight != 0.0; });
+    });
+    return seen;
+}
+
 // As in clear water: of what a signal counts, little is attenuated so much that it asks for more.
 LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
     constexpr double kMostLamps = 1e5;  // a map adds up the lamps pixel by pixel
@@ -166,6 +180,7 @@ struct PlacedLamp {
     LampTerms terms;
     std::size_t strobe;
     std::size_t spectrum;
+    std::shared_ptr<const std::vector<Crease>> steep;  // behind a port
 };
 
 using FitBlock = std::array<bool, kSampledBlocks>;
@@ -178,8 +193,9 @@ struct FactorBlock {
 
 // Of one thread.
 struct Workspace {
-    std::array<RayBlock, kIndexNodes> rays;
-    std::array<RayBlock, kHalfWay.size()> between;  // rays half way between nodes
+    std::array<RayBlock, kLookOrder.size()> rays;
+    RayNodes nodes;                             // of pixels in doubt
+    std::array<DirectionBlock, kIndexNodes> V;  // of the last lamp at the nodes
     LampBlock lit;
     FactorBlock diffuse;
     FactorBlock highlight;
@@ -236,11 +252,8 @@ std::size_t block_of(int column) {
 
 // The middle index first, for it tells where the beams end.
 std::vector<std::size_t> node_order(std::size_t nodes) {
-    std::vector<std::size_t> order{nodes / 2};
-    for (std::size_t j = 0; j < nodes; ++j) {
-        if (j != nodes / 2) order.push_back(j);
-    }
-    return order;
+    if (nodes == 1) return {0};
+    return {nodes / 2, 0, nodes - 1};
 }
 
 // Light that has gone from the shortest path to the longest, and as wide, is all but gone.
@@ -256,7 +269,7 @@ bool ends_in_darkness(const Water& water, const PathRange& paths) {
 
 struct LightmapMaker::Scene {
     std::vector<std::size_t> nodes;  // of the index, the middle one first
-    std::vector<RayTerms> rays;      // in their order
+    std::vector<RayTerms> rays;      // in their order, and those between
     std::vector<PlacedLamp> lamps;
     std::vector<ColumnBlock> blocks;   // of a row
     std::vector<ColumnBlock> samples;  // of its blocks; none where they are not worth it
@@ -339,7 +352,9 @@ LightmapMaker::LightmapMaker(const Rig& rig,
     if (!paths || ends_in_darkness(rig.water, paths_)) paths_.has_horizon = true;
     if (rig.camera.vignetting) vignetting_ = vignetting_plane(rig.camera);
     index_nodes_nm_ = index_nodes_nm(rig_);
-    for (const double nm : index_nodes_nm_)
+    ray_nodes_nm_ = rig_.camera.port ? index_nodes_nm(rig_, kLookOrder.size()) : index_nodes_nm_;
+    if (rig_.camera.port) dispersed_nodes_nm_ = index_nodes_nm(rig_, kRayNodes);
+    for (const double nm : ray_nodes_nm_)
         ray_tables_.push_back(ray_table(rig_, nm, options_.threads));
     if (paths_.longest_m > 0.0) tabulate();
     make_veil();
@@ -377,15 +392,20 @@ void LightmapMaker::tabulate() {
         family.sources.push_back({strobe.spectrum, floor});
         if (has_highlight) family.sources.push_back({strobe.spectrum});
     }
-    const auto grid =
-        reference_grid(rig_.camera.sensor, family, rig_.camera.range, kGridShare * options_.error);
+    const auto grid_of = [&](double error) {
+        return reference_grid(rig_.camera.sensor, family, rig_.camera.range, error);
+    };
+    const auto grid = grid_of(kGridShare * options_.error);
     grid_size_ = grid.size();
-    for (std::size_t i = 0; i < grid.size() && rig_.camera.port; ++i) {
-        const std::vector<std::size_t> order = node_order(index_nodes_nm_.size());
-        IndexShares shares{};
-        for (std::size_t j = 0; j < order.size(); ++j)
-            shares.at(j) = index_share(rig_, index_nodes_nm_, order[j], grid[i].lambda_nm);
-        shares_.push_back(shares);
+    std::vector<WeightedWavelength> dispersed;
+    if (rig_.camera.port) dispersed = seen_of(grid_of(kDispersedShare * options_.error));
+    if (rig_.camera.port) {
+        for (const WeightedWavelength& node : dispersed) {
+            shares_.emplace_back();
+            for (std::size_t j = 0; j < kRayNodes; ++j) {
+                shares_.back().push_back(index_share(rig_, dispersed_nodes_nm_, j, node.lambda_nm));
+            }
+        }
     }
 
     // Lagrange's polynomials of three even points sum, in size, to 5/4 at most.
@@ -404,12 +424,13 @@ void LightmapMaker::tabulate() {
     tables_.resize(rig_.strobes.size());
     for (std::size_t s = 0; s < rig_.strobes.size(); ++s) {
         if (spectrum_of_strobe_[s] != s) continue;
-        tabulate_lamp(rig_.strobes[s].spectrum, grid, tables_[s]);
+        tabulate_lamp(rig_.strobes[s].spectrum, grid, dispersed, tables_[s]);
     }
 }
 
 void LightmapMaker::tabulate_lamp(const Spectrum& lamp,
                                   const std::vector<WeightedWavelength>& grid,
+                                  const std::vector<WeightedWavelength>& dispersed_grid,
                                   LightTables& tables) const {
     const Spectrum& floor = rig_.seafloor.reflectance;
     for (std::size_t j = 0; j < index_nodes_nm_.size(); ++j) {
@@ -422,10 +443,13 @@ void LightmapMaker::tabulate_lamp(const Spectrum& lamp,
         tables.highlight.push_back(path_table(spectral_sum(rig_, grid, bare), steps_));
     }
     if (!rig_.camera.port) return;
-    tables.dispersed.diffuse =
-        spectral_sum(rig_, grid, [&](double nm) { return lamp.at(nm) * floor.at(nm); });
-    if (rig_.seafloor.phong == 0.0) return;
-    tables.dispersed.highlight = spectral_sum(rig_, grid, [&](double nm) { return lamp.at(nm); });
+    DispersedSpectrum dispersed;
+    dispersed.diffuse =
+        spectral_sum(rig_, dispersed_grid, [&](double nm) { return lamp.at(nm) * floor.at(nm); });
+    if (rig_.seafloor.phong > 0.0)
+        dispersed.highlight =
+            spectral_sum(rig_, dispersed_grid, [&](double nm) { return lamp.at(nm); });
+    tables.dispersed = std::make_shared<const DispersedSpectrum>(std::move(dispersed));
 }
 
 LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
@@ -435,23 +459,32 @@ LightmapMaker::Scene LightmapMaker::scene_of(const Sled& sled) const {
                 .lamps = {},
                 .blocks = {},
                 .samples = {}};
-    for (const std::size_t j : scene.nodes) {
-        scene.rays.push_back(ray_terms(rig_, floor, index_nodes_nm_[j], ray_tables_[j]));
+    for (std::size_t j = 0; j < ray_nodes_nm_.size(); ++j) {
+        const std::size_t node = ray_nodes_nm_.size() > 1 ? kLookOrder.at(j) : j;
+        scene.rays.push_back(ray_terms(rig_, floor, ray_nodes_nm_[node], ray_tables_[node]));
     }
     const int width_px = rig_.camera.width_px;
-    const bool is_sampled = width_px >= kRowBlock && std::ranges::all_of(edges_, is_smooth_between);
-    for (int block = 0; block * kRowBlock < width_px; ++block) {
-        scene.blocks.push_back(neighbours(scene.rays.front(), block * kRowBlock));
-        if (is_sampled && static_cast<std::size_t>(block) % kSampledBlocks == 0)
-            scene.samples.push_back(samples_of_blocks(scene.rays.front(), block));
-    }
     Rig flown = rig_;
     flown.sled = sled;
     require_over_floor(rig_, sled);
     for (std::size_t s = 0; s < rig_.strobes.size() && steps_.count > 0; ++s) {
+        std::shared_ptr<const std::vector<Crease>> steep;
+        if (rig_.camera.port)
+            steep = std::make_shared<std::vector<Crease>>(steep_creases(rig_.strobes[s].beam));
         for (const LampTerms& lamp : lamps_of(flown, rig_.strobes[s], floor)) {
-            scene.lamps.push_back({.terms = lamp, .strobe = s, .spectrum = spectrum_of_strobe_[s]});
+            scene.lamps.push_back(
+                {.terms = lamp, .strobe = s, .spectrum = spectrum_of_strobe_[s], .steep = steep});
         }
+    }
+    // Between samples nothing would tell of a steep kink that dispersion crosses.
+    const bool is_sampled =
+        width_px >= kRowBlock && std::ranges::all_of(edges_, is_smooth_between) &&
+        std::ranges::all_of(
+            scene.lamps, [](const PlacedLamp& lamp) { return !lamp.steep || lamp.steep->empty(); });
+    for (int block = 0; block * kRowBlock < width_px; ++block) {
+        scene.blocks.push_back(neighbours(scene.rays.front(), block * kRowBlock));
+        if (is_sampled && static_cast<std::size_t>(block) % kSampledBlocks == 0)
+            scene.samples.push_back(samples_of_blocks(scene.rays.front(), block));
     }
     return scene;
 }
@@ -502,12 +535,23 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
             const auto take = [&](const RowBlock<float>& found, FactorBlock& factors) {
                 take_doubt(factors.at_nodes, kHalfWay.at(h), found, factors.doubt);
             };
-            shine(work.between.at(h), lamp.terms, Edges::Kept, work.lit);
-            static_cast<void>(weigh(work.between.at(h), lamp.terms, steps_, work.lit));
+            shine(work.rays.at(kIndexNodes + h), lamp.terms, Edges::Kept, work.lit);
+            static_cast<void>(weigh(work.rays.at(kIndexNodes + h), lamp.terms, steps_, work.lit));
             take(work.lit.diffuse, work.diffuse);
             if (tables.highlight.empty()) continue;
-            weigh_highlight(work.between.at(h), lamp.terms, work.lit);
+            weigh_highlight(work.rays.at(kIndexNodes + h), lamp.terms, work.lit);
             take(work.lit.highlight, work.highlight);
+        }
+        if (!lamp.steep->empty()) {
+            RowBlock<float> crosses;
+            crosses.fill(0.0F);
+            note_crossings(*lamp.steep, work.V, !lamp.terms.light->is_round, crosses);
+            for (FactorBlock* factors : {&work.diffuse, &work.highlight}) {
+                for (const RowBlock<float>& at_node : factors->at_nodes) {
+                    for (std::size_t i = 0; i < kBlockCount; ++i)
+                        factors->doubt[i] = std::max(factors->doubt[i], crosses[i] * at_node[i]);
+                }
+            }
         }
         const auto sum_up = [&](const FactorBlock& factors, const auto& by_node) {
             if (by_node.empty() || !is_in_doubt(factors.doubt, factors.at_nodes[0])) return;
@@ -527,6 +571,7 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
             work.outside.beyond += found.beyond;
             look_up(work.lit, work.lit.diffuse, tables.diffuse[scene.nodes[j]], work.sums);
             work.diffuse.at_nodes[j] = work.lit.diffuse;
+            if (is_dispersed && !lamp.steep->empty()) work.V[j] = work.lit.V;
             if (tables.highlight.empty()) continue;
             weigh_highlight(rays, lamp.terms, work.lit);
             look_up(work.lit, work.lit.highlight, tables.highlight[scene.nodes[j]], work.sums);
@@ -535,16 +580,8 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
         if (is_dispersed) add_doubts(lamp, work);
     };
     const auto look = [&](int row, const ColumnBlock& columns, Workspace& work) {
-        for (std::size_t j = 0; j < scene.nodes.size(); ++j) {
+        for (std::size_t j = 0; j < scene.rays.size(); ++j) {
             look_along(scene.rays[j], steps_, first_row + row, columns, work.rays[j]);
-        }
-        for (std::size_t h = 0; h < kHalfWay.size() && is_dispersed; ++h) {
-            look_between(scene.rays.front(),
-                         steps_,
-                         work.rays,
-                         kHalfWay.at(h),
-                         columns.count,
-                         work.between.at(h));
         }
         for (RowBlock<float>& sum : work.sums) sum.fill(0.0F);
         for (RowBlock<float>& doubt : work.doubts) doubt.fill(0.0F);
@@ -599,16 +636,20 @@ void LightmapMaker::rows_into(const Sled& sled, int first_row, int count, Lightm
     };
     const auto disperse = [&](int row, std::span<const int> in_doubt, Workspace& work) {
         const ColumnBlock columns = some_columns(scene.rays.front(), in_doubt);
-        look(row, columns, work);
+        const RayTerms& terms = scene.rays.front();
+        look_along(terms, steps_, first_row + row, columns, work.rays.front());
+        for (std::size_t j = 0; j < kRayNodes; ++j)
+            look_exactly(rig_, first_row + row, columns, dispersed_nodes_nm_[j], work.nodes[j]);
+        for (RowBlock<double>& total : work.totals) total.fill(0.0);
         for (const PlacedLamp& lamp : scene.lamps) {
             shine(work.rays.front(), lamp.terms, Edges::Found, work.lit);
-            add_dispersed(scene.rays.front(),
+            add_dispersed(terms,
                           steps_,
-                          work.rays,
+                          work.nodes,
                           shares_,
                           columns.count,
                           lamp.terms,
-                          tables_[lamp.spectrum].dispersed,
+                          *tables_[lamp.spectrum].dispersed,
                           work.lit,
                           work.totals);
         }

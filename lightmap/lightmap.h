@@ -26,7 +26,6 @@
 #pragma once
 
 #include "lightmap/beam_edges.h"
-#include "lightmap/dispersed_light.h"
 #include "lightmap/ray_table.h"
 #include "rig/path_range.h"
 #include "rig/path_table.h"
@@ -44,6 +43,8 @@
 #include <vector>
 
 namespace aphotic {
+
+struct DispersedSpectrum;  // lightmap/dispersed_light.h
 
 struct LightmapOptions {
     // Relative, of the spectral integral and of its table. The rounding of floats comes on top, and
@@ -126,7 +127,7 @@ class LightmapMaker {
     struct LightTables {
         std::vector<std::vector<float>> diffuse;
         std::vector<std::vector<float>> highlight;
-        DispersedSpectrum dispersed{};
+        std::shared_ptr<const DispersedSpectrum> dispersed{};
     };
 
     struct Scene;  // what all rows of a map have in common
@@ -135,6 +136,7 @@ class LightmapMaker {
     void make_veil();
     void tabulate_lamp(const Spectrum& lamp,
                        const std::vector<WeightedWavelength>& grid,
+                       const std::vector<WeightedWavelength>& dispersed_grid,
                        LightTables& tables) const;
     [[nodiscard]] Scene scene_of(const Sled& sled) const;
     void require_served(const Sled& sled, bool is_before, bool is_beyond) const;
@@ -145,8 +147,10 @@ class LightmapMaker {
     PathRange direct_;  // as they were asked for
     PathSteps steps_;
     std::size_t grid_size_ = 0;
-    std::vector<IndexShares> shares_;     // by wavelength of the grid, behind a port
-    std::vector<double> index_nodes_nm_;  // wavelengths whose rays are traced; one without a port
+    std::vector<std::vector<double>> shares_;                  // of rays, by wavelength of the grid
+    std::vector<double> index_nodes_nm_;                       // of light; one without a port
+    std::vector<double> dispersed_nodes_nm_;                   // of pixels in doubt
+    std::vector<double> ray_nodes_nm_;                         // whose rays are traced
     std::vector<std::shared_ptr<const RayTable>> ray_tables_;  // at each; none has a formula
     std::vector<float> vignetting_;                            // by pixel; empty: none
     std::vector<LightTables> tables_;                          // by lamp spectrum

@@ -182,7 +182,7 @@ void look_into(const LobeLight& light,
         }
         const double power = light.other_exponents[k] - 1.0;
         raise(work.log2_of_samples, power, kFitSamples, work.power_of_samples);
-        if (!fit(work.power_of_samples, 0.0, kFitError, work.power)) {
+        if (!V.is_in_order || !fit(work.power_of_samples, 0.0, kFitError, work.power)) {
             if (!has_logarithm) take_logarithm(V, work.log2_cosine);
             has_logarithm = true;
             raise(work.log2_cosine, power, kBlockCount, work.power);

@@ -18,8 +18,7 @@ constexpr std::size_t kNodesOfCubic = 4;
 std::size_t nodes_over(const Camera& camera) {
     constexpr double kShareOfFocalLength = 1.0 / 64.0;
     const double focal_px = camera.focal_length_m / camera.pixel_pitch_m;
-    const double apart_px =
-        std::clamp(kShareOfFocalLength * focal_px, 1.0, RayTable::kMostRowsApart);
+    const double apart_px = std::min(kShareOfFocalLength * focal_px, RayTable::kMostRowsApart);
     const double steps = std::ceil(camera.height_px / apart_px);
     return std::max(kNodesOfCubic, static_cast<std::size_t>(steps) + 1);
 }

@@ -2,7 +2,7 @@
 //
 // The rays in water of every pixel at one wavelength, for cameras whose rays have no short formula:
 // calibrated lenses, tilted and domed ports. They come from pixel_ray() (rig/geometry.h) at some
-// rows of the image, a sixty-fourth of the focal length f apart, from one row to kMostRowsApart;
+// rows of the image, a sixty-fourth of the focal length f apart and no more than kMostRowsApart;
 // between these each pixel's is a cubic through its column's four next. Where the formula changes
 // over f, that is right to about (1/64)^4 / 40, 1e-9 of a slope.
 //

@@ -193,17 +193,16 @@ void end_row(int count, RayBlock& rays) {
     for (int i = count; i < kRowBlock; ++i) rays.w3[static_cast<std::size_t>(i)] = 0.0F;
 }
 
-APHOTIC_WIDE void mix(const std::array<RayBlock, kIndexNodes>& nodes,
-                      const std::array<double, kIndexNodes>& shares,
+APHOTIC_WIDE void mix(const RayNodes& nodes,
+                      const std::vector<double>& shares,
                       RowBlock<double> RayBlock::*part,
                       RayBlock& rays) {
-    static_assert(kIndexNodes == 3);
-    const RowBlock<double>& a = nodes[0].*part;
-    const RowBlock<double>& b = nodes[1].*part;
-    const RowBlock<double>& c = nodes[2].*part;
     RowBlock<double>& mixed = rays.*part;
-    for (std::size_t i = 0; i < kBlockCount; ++i)
-        mixed[i] = shares[0] * a[i] + shares[1] * b[i] + shares[2] * c[i];
+    mixed.fill(0.0);
+    for (std::size_t j = 0; j < kRayNodes; ++j) {
+        const RowBlock<double>& node = nodes[j].*part;
+        for (std::size_t i = 0; i < kBlockCount; ++i) mixed[i] += shares[j] * node[i];
+    }
 }
 
 void look_by_table(const RayTable& table, int row, const ColumnBlock& columns, RayBlock& rays) {
@@ -226,6 +225,7 @@ void look_along(const RayTerms& terms,
                 int row,
                 const ColumnBlock& columns,
                 RayBlock& rays) {
+    rays.is_in_order = columns.is_in_order;
     if (terms.table) {
         look_by_table(*terms.table, row, columns, rays);
         (terms.table->has_port() ? meet_floor_ahead : meet_floor)(terms, steps, rays);
@@ -241,16 +241,32 @@ void look_along(const RayTerms& terms,
 
 void look_between(const RayTerms& terms,
                   const PathSteps& steps,
-                  const std::array<RayBlock, kIndexNodes>& nodes,
-                  const std::array<double, kIndexNodes>& shares,
+                  const RayNodes& nodes,
+                  const std::vector<double>& shares,
                   int count,
                   RayBlock& rays) {
+    rays.is_in_order = nodes.front().is_in_order;
     rays.o_z = nodes.front().o_z;
     for (const auto part : {&RayBlock::D_x, &RayBlock::D_y, &RayBlock::o_x, &RayBlock::o_y})
         mix(nodes, shares, part, rays);
     if (terms.table) mix(nodes, shares, &RayBlock::ahead, rays);
     (terms.table ? meet_floor_ahead : meet_floor)(terms, steps, rays);
     end_row(count, rays);
+}
+
+void look_exactly(
+    const Rig& rig, int row, const ColumnBlock& columns, double lambda_nm, RayBlock& rays) {
+    rays.is_in_order = columns.is_in_order;
+    rays.o_z = front_m(rig.camera.port);
+    for (std::size_t i = 0; i < kBlockCount; ++i) {
+        const WaterRay ray = pixel_ray(rig, columns.column[i] + 0.5, row + 0.5, lambda_nm);
+        const Eigen::Vector3d D = ray.direction / ray.direction.z();
+        rays.ahead[i] = ray.origin_m.z() - rays.o_z;
+        rays.D_x[i] = D.x();
+        rays.D_y[i] = D.y();
+        rays.o_x[i] = ray.origin_m.x() - rays.ahead[i] * D.x();
+        rays.o_y[i] = ray.origin_m.y() - rays.ahead[i] * D.y();
+    }
 }
 
 namespace {
@@ -291,6 +307,7 @@ APHOTIC_WIDE void aim_turned(const RayBlock& rays, const LampTerms& lamp, Direct
 }
 
 void shine(const RayBlock& rays, const LampTerms& lamp, Edges edges, LampBlock& block) {
+    block.V.is_in_order = rays.is_in_order;
     (lamp.light->is_round ? aim_round : aim_turned)(rays, lamp, block.V);
     look_into(*lamp.light, block.V, edges, block.beam);
 }

@@ -68,6 +68,10 @@ void find_angles(const TableLight& light, const DirectionBlock& V, TableAnglesBl
 // Angles are smooth along a row, but where it passes close to a pole or the turn begins anew.
 void find_angles(const TableLight& light, const DirectionBlock& V, TableWork& work) {
     constexpr double kFitError_rad = 1e-9;  // what the reference takes for an edge
+    if (!V.is_in_order) {
+        find_angles(light, V, work.angles);
+        return;
+    }
     const bool has_turn = !light.horizontal.nodes.empty();
     take_samples(V, true, work.samples);
     find_angles(light, work.samples, work.of_samples);
@@ -219,9 +223,25 @@ TableLight table_light(const BeamTable& table, double factor) {
     TableLight light{.angles = table.angles,
                      .vertical = node_finder(table.vertical_rad),
                      .horizontal = {},
-                     .intensity = table.intensity};
+                     .intensity = table.intensity,
+                     .vertical_limits = {},
+                     .horizontal_limits = {}};
     if (table.horizontal_rad.size() > 1) light.horizontal = node_finder(table.horizontal_rad);
     for (double& I : light.intensity) I *= factor;
+    const std::vector<TableEdge> edges = edges_of(table);
+    const auto limits_of = [&](TableAngle angle, const NodeFinder& finder) {
+        TableLimits limits;
+        const auto is_step = [&](double at_rad) {
+            return std::ranges::find(edges, TableEdge{angle, at_rad}) != edges.end();
+        };
+        (is_step(finder.nodes.front()) ? limits.steps : limits.others).first = finder.nodes.front();
+        (is_step(finder.nodes.back()) ? limits.steps : limits.others).last = finder.nodes.back();
+        return limits;
+    };
+    light.vertical_limits = limits_of(TableAngle::Vertical, light.vertical);
+    // Type C's goes all about; what a fit is off by must not put it before 0.
+    if (table.angles != TableAngles::TypeC)
+        light.horizontal_limits = limits_of(TableAngle::Horizontal, light.horizontal);
     return light;
 }
 
@@ -230,22 +250,26 @@ void look_into(const TableLight& light,
                Edges edges,
                TableWork& work,
                RowBlock<double>& intensity) {
-    const auto note = [&](const NodeFinder& finder, const RowBlock<double>& angles) {
-        keep_within(angles, finder.nodes.front(), finder.nodes.back(), work.is_within);
-    };
     const bool has_turn = !light.horizontal.nodes.empty();
     find_angles(light, V, work);
     take_lengths(V, work.length);
+    const auto keep = [&](TableEnds TableLimits::*ends, RowBlock<double>& is_within) {
+        const TableEnds& vertical = light.vertical_limits.*ends;
+        const TableEnds& horizontal = light.horizontal_limits.*ends;
+        keep_within(work.angles.vertical, vertical.first, vertical.last, is_within);
+        if (light.angles == TableAngles::TypeC) return;
+        keep_within(work.angles.horizontal, horizontal.first, horizontal.last, is_within);
+    };
     if (edges == Edges::Found) {
         work.is_within.fill(1.0);
-        note(light.vertical, work.angles.vertical);
-        // Type C's goes all about; what a fit is off by must not put it before 0.
-        if (light.angles != TableAngles::TypeC) note(light.horizontal, work.angles.horizontal);
+        keep(&TableLimits::steps, work.is_within);
     }
+    work.is_lit = work.is_within;
+    keep(&TableLimits::others, work.is_lit);
     Places vertical;
     find_places(light.vertical, work.angles.vertical, vertical);
     if (!has_turn) {
-        take_between(light.intensity.data(), vertical, work.is_within, intensity);
+        take_between(light.intensity.data(), vertical, work.is_lit, intensity);
         return;
     }
     Places horizontal;
@@ -254,7 +278,7 @@ void look_into(const TableLight& light,
                  static_cast<std::int32_t>(light.vertical.nodes.size()),
                  vertical,
                  horizontal,
-                 work.is_within,
+                 work.is_lit,
                  intensity);
 }
 

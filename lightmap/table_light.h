@@ -8,6 +8,7 @@
 #include "rig/beam_table.h"
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace aphotic {
@@ -25,11 +26,25 @@ struct NodeFinder {
 };
 [[nodiscard]] NodeFinder node_finder(const std::vector<double>& nodes);
 
+struct TableEnds {
+    double first = -std::numeric_limits<double>::infinity();
+    double last = std::numeric_limits<double>::infinity();
+};
+
+// Where light ends. On which side of a step a direction is may be kept, and of an end at 0 it is
+// its own.
+struct TableLimits {
+    TableEnds steps;
+    TableEnds others;
+};
+
 struct TableLight {
     TableAngles angles = TableAngles::TypeC;
     NodeFinder vertical;
     NodeFinder horizontal;  // none where it is the same all about
     std::vector<double> intensity;
+    TableLimits vertical_limits;
+    TableLimits horizontal_limits;
 };
 [[nodiscard]] TableLight table_light(const BeamTable& table, double factor);
 
@@ -39,7 +54,8 @@ struct TableAnglesBlock {
 };
 
 struct TableWork {
-    RowBlock<double> is_within;  // 1 or 0
+    RowBlock<double> is_within;  // the steps: 1 or 0
+    RowBlock<double> is_lit;     // and the other ends
     TableAnglesBlock angles;
     DirectionBlock samples;
     TableAnglesBlock of_samples;

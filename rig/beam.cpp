@@ -138,14 +138,28 @@ bool is_in_table(const BeamTable& table, const Vector3d& direction) {
            (table.horizontal_rad.size() == 1 || is_within(table.horizontal_rad, at.horizontal_rad));
 }
 
+// Beyond a line at which the table ends with a step; where it ends at 0, it goes on as 0.
+bool is_beyond_edge(const BeamTable& table, const Vector3d& direction) {
+    const GoniometerAngles at = angles_of(table.angles, direction);
+    return std::ranges::any_of(edges_of(table), [&](const TableEdge& edge) {
+        const bool is_vertical = edge.angle == TableAngle::Vertical;
+        const double angle = is_vertical ? at.vertical_rad : at.horizontal_rad;
+        const double first = (is_vertical ? table.vertical_rad : table.horizontal_rad).front();
+        return edge.at_rad == first ? angle < first : angle > edge.at_rad;
+    });
+}
+
 double of_pattern(const Beam& beam, const Vector3d& towards, const Vector3d& from) {
     return std::visit(
         Cases{[&](std::monostate) {
                   return of_cones(beam, towards.z() / towards.norm(), from.z() / from.norm());
               },
               [&](const BeamTable& table) {
-                  if (!is_in_table(table, from)) return 0.0;
-                  return beam.per_flux * table_intensity(table, into_table(table, towards));
+                  if (is_in_table(table, from))
+                      return beam.per_flux * table_intensity(table, into_table(table, towards));
+                  return is_beyond_edge(table, from)
+                             ? 0.0
+                             : beam.per_flux * table_intensity(table, towards);
               },
               [&](const BeamOptics& optics) {
                   if (!is_focused(optics)) return beam.per_flux * optics_intensity(optics, towards);

@@ -21,13 +21,13 @@ double wavelength_of_index(const Rig& rig, double index) {
 
 }  // namespace
 
-std::vector<double> index_nodes_nm(const Rig& rig) {
+std::vector<double> index_nodes_nm(const Rig& rig, std::size_t nodes) {
     if (!rig.camera.port) return {rig.camera.range.first_nm};
     const double first = rig.water.refractive_index(rig.camera.range.first_nm);
     const double last = rig.water.refractive_index(rig.camera.range.last_nm);
     std::vector<double> nodes_nm;
-    for (std::size_t j = 0; j < kIndexNodes; ++j) {
-        const double share = static_cast<double>(j) / (kIndexNodes - 1);
+    for (std::size_t j = 0; j < nodes; ++j) {
+        const double share = static_cast<double>(j) / static_cast<double>(nodes - 1);
         nodes_nm.push_back(wavelength_of_index(rig, std::lerp(first, last, share)));
     }
     return nodes_nm;

@@ -22,8 +22,8 @@ namespace aphotic {
 
 inline constexpr std::size_t kIndexNodes = 3;
 
-// The wavelengths of the nodes, from the range's first to its last.
-[[nodiscard]] std::vector<double> index_nodes_nm(const Rig& rig);
+// The wavelengths of so many nodes, from the range's first to its last.
+[[nodiscard]] std::vector<double> index_nodes_nm(const Rig& rig, std::size_t nodes = kIndexNodes);
 
 // l_j at the water's index there.
 [[nodiscard]] double index_share(const Rig& rig,

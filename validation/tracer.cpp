@@ -587,29 +587,46 @@ void Tracer::trace_pixel(int column, int row, ArrayXd& radiance) const {
         radiance *= traced_vignetting(rig_.camera, column + 0.5, row + 0.5, *in_air);
 }
 
+std::array<Tracer::Index, 3> Tracer::indices_over(WavelengthRange range) const {
+    return {index_at(range.first_nm),
+            index_at(0.5 * (range.first_nm + range.last_nm)),
+            index_at(range.last_nm)};
+}
+
 bool Tracer::is_on_beam_edge(double column,
                              double row,
-                             const std::array<Index, 2>& ends,
+                             const std::array<Index, 3>& indices,
                              double within_px) const {
-    std::array<View, 2> views;
-    if (!look(column, row, ends[0], views[0]) || !look(column, row, ends[1], views[1])) {
-        return false;
+    std::array<View, 3> views;
+    for (std::size_t e = 0; e < indices.size(); ++e) {
+        if (!look(column, row, indices.at(e), views.at(e))) return false;
     }
     // A pixel covers more of a floor that is seen aslant.
     constexpr double kAslant = 1.5;
     return std::ranges::any_of(apexes_, [&](const Apex& apex) {
-        std::array<Vector3d, 2> paths_m;
+        std::array<Vector3d, 3> paths_m;
         // How far a strobe's lamps spread about the edge, at least.
         double spread_rad = sight_error_rad_;
-        for (std::size_t e = 0; e < ends.size(); ++e) {
+        for (std::size_t e = 0; e < indices.size(); ++e) {
             paths_m.at(e) = views.at(e).point_m - apex.position_m;
             const double d_m = paths_m.at(e).norm();
             spread_rad = std::max({spread_rad,
                                    kAslant * within_px * pixel_rad_ * views.at(e).distance_m / d_m,
                                    std::asin(std::min(1.0, apex.reach_m / d_m))});
         }
+        // Dispersion's way is bent: each half leaves its own chord by a quarter of what the middle
+        // leaves that of the whole, and twice that is room.
+        const Vector3d first = paths_m[0].normalized();
+        const Vector3d last = paths_m[2].normalized();
+        const Vector3d off = paths_m[1].normalized() - 0.5 * (first + last);
+        if (first != last) {
+            const Vector3d along = (last - first).normalized();
+            spread_rad = std::max(spread_rad, 0.5 * (off - off.dot(along) * along).norm());
+        }
+        const TracedBeam& beam = beams_[apex.strobe];
         return rig_.strobes[apex.strobe].power > 0.0 &&
-               beams_[apex.strobe].is_on_edge(paths_m, spread_rad);
+               (beam.is_on_edge({paths_m[0], paths_m[1]}, spread_rad) ||
+                beam.is_on_edge({paths_m[1], paths_m[2]}, spread_rad));
     });
 }
 
@@ -770,24 +787,24 @@ bool Tracer::is_on_object_edge(double column,
 
 bool Tracer::is_on_edge(std::size_t pixel,
                         WavelengthRange range,
-                        const std::array<Index, 2>& ends,
+                        const std::array<Index, 3>& indices,
                         double within_px) const {
     const auto width = static_cast<std::size_t>(rig_.camera.width_px);
     const double column = static_cast<double>(pixel % width) + 0.5;
     const std::size_t rows_above = pixel / width;
     const double row = static_cast<double>(rows_above) + 0.5;
-    return is_on_beam_edge(column, row, ends, within_px) ||
+    return is_on_beam_edge(column, row, indices, within_px) ||
            (!shapes_.empty() && is_on_object_edge(column, row, range, within_px));
 }
 
 std::vector<unsigned char> Tracer::on_edges(WavelengthRange range, double within_px) const {
-    const std::array<Index, 2> ends{index_at(range.first_nm), index_at(range.last_nm)};
+    const std::array<Index, 3> indices = indices_over(range);
     const auto width = static_cast<std::size_t>(rig_.camera.width_px);
     const auto height = static_cast<std::size_t>(rig_.camera.height_px);
     std::vector<unsigned char> marks(width * height);
     for_each(height, [&](std::size_t row) {
         for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
-            marks[i] = is_on_edge(i, range, ends, within_px) ? 1 : 0;
+            marks[i] = is_on_edge(i, range, indices, within_px) ? 1 : 0;
         }
     });
     return marks;
@@ -795,10 +812,10 @@ std::vector<unsigned char> Tracer::on_edges(WavelengthRange range, double within
 
 std::vector<unsigned char> Tracer::on_edges_of(std::span<const std::size_t> which,
                                                WavelengthRange range) const {
-    const std::array<Index, 2> ends{index_at(range.first_nm), index_at(range.last_nm)};
+    const std::array<Index, 3> indices = indices_over(range);
     std::vector<unsigned char> marks(which.size());
     for_each(which.size(),
-             [&](std::size_t i) { marks[i] = is_on_edge(which[i], range, ends, 0.0) ? 1 : 0; });
+             [&](std::size_t i) { marks[i] = is_on_edge(which[i], range, indices, 0.0) ? 1 : 0; });
     return marks;
 }
 

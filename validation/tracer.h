@@ -205,7 +205,7 @@ class Tracer {
     void write_planes(const Eigen::ArrayXd& radiance, double* sample, std::size_t stride) const;
     [[nodiscard]] bool is_on_edge(std::size_t pixel,
                                   WavelengthRange range,
-                                  const std::array<Index, 2>& ends,
+                                  const std::array<Index, 3>& indices,
                                   double within_px) const;
 
     [[nodiscard]] bool is_blocked(const Lamp& lamp,
@@ -216,9 +216,11 @@ class Tracer {
                                      const View& view,
                                      double lambda_nm) const;
     [[nodiscard]] bool shines_on(const Lamp& lamp, const View& view) const;
+    // Of the range's ends, its middle between them.
+    [[nodiscard]] std::array<Index, 3> indices_over(WavelengthRange range) const;
     [[nodiscard]] bool is_on_beam_edge(double column,
                                        double row,
-                                       const std::array<Index, 2>& ends,
+                                       const std::array<Index, 3>& indices,
                                        double within_px) const;
     [[nodiscard]] bool is_on_object_edge(double column,
                                          double row,

@@ -5,6 +5,8 @@
 // the beams' edges.
 #include "lightmap/lightmap.h"
 
+#include "base/error.h"
+#include "rig/path_range.h"
 #include "rig/rig_reader.h"
 #include "support/effort.h"
 #include "support/random_beam.h"
@@ -13,11 +15,13 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <boost/math/quadrature/gauss.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +49,39 @@ Sensor line_sensor() {
     return {std::move(responses), ResponseKind::Energy};
 }
 
+// The tracer's own grid is for light that is smooth over wavelengths. Gauss's rule between all
+// knots holds what a kink makes of it.
+std::vector<double> by_every_wavelength(const Rig& rig, std::size_t pixel) {
+    constexpr unsigned kPoints = 20;
+    using Gauss = boost::math::quadrature::gauss<double, kPoints>;
+    std::vector<const Spectrum*> curves = rig.camera.sensor.curves();
+    for (const Spectrum* curve : rig.water.curves()) curves.push_back(curve);
+    for (const Strobe& strobe : rig.strobes) curves.push_back(&strobe.spectrum);
+    curves.push_back(&rig.seafloor.reflectance);
+    const std::vector<double> knots_nm = union_of_knots(curves, rig.camera.range);
+    std::vector<double> nodes_nm;
+    std::vector<double> widths_nm;
+    for (std::size_t k = 0; k + 1 < knots_nm.size(); ++k) {
+        const double half_nm = 0.5 * (knots_nm[k + 1] - knots_nm[k]);
+        for (const double sign : {-1.0, 1.0}) {
+            for (std::size_t i = 0; i < Gauss::abscissa().size(); ++i) {
+                nodes_nm.push_back(knots_nm[k] + half_nm * (1.0 + sign * Gauss::abscissa()[i]));
+                widths_nm.push_back(half_nm * Gauss::weights()[i]);
+            }
+        }
+    }
+    const std::vector<double> radiance =
+        Tracer(rig, {.signals = false, .planes_nm = nodes_nm}).pixels({&pixel, 1});
+    std::vector<double> signals(kChannels, 0.0);
+    for (std::size_t i = 0; i < nodes_nm.size(); ++i) {
+        for (int c = 0; c < kChannels; ++c) {
+            signals[static_cast<std::size_t>(c)] +=
+                widths_nm[i] * rig.camera.sensor.response(c, nodes_nm[i]) * radiance[i];
+        }
+    }
+    return signals;
+}
+
 struct Worst {
     double of_promise = 0.0;  // error / what is printed
     std::size_t sample = 0;
@@ -67,10 +104,14 @@ Worst worst_off_edges(const Rig& rig) {
             *std::max_element(first, first + static_cast<std::ptrdiff_t>(plane));
         for (std::size_t i = 0; i < plane; ++i) {
             const std::size_t k = c * plane + i;
-            const double off = std::abs(found[k] - expected[k]);
-            if (edges[i] != 0 || off <= kDarkShare * brightest) continue;
+            const auto off = [&](double light) { return std::abs(found[k] - light); };
+            if (edges[i] != 0 || off(expected[k]) <= kDarkShare * brightest) continue;
             ++worst.compared;
-            const double ratio = off / expected[k] / promise;
+            double ratio = off(expected[k]) / expected[k] / promise;
+            if (ratio > 0.5) {
+                const double exact = by_every_wavelength(rig, i)[c];
+                ratio = off(exact) / exact / promise;
+            }
             if (ratio > worst.of_promise) {
                 worst.of_promise = ratio;
                 worst.sample = k;
@@ -94,7 +135,7 @@ Rig random_port_rig(std::uint64_t seed) {
         rig.seafloor.phong = dice.between(0.05, 1.0);
         rig.seafloor.phong_size = dice.over_octaves(4.0, 200.0);
     }
-    rig.strobes.resize(static_cast<std::size_t>(dice.whole(1, 4)));
+    rig.strobes.erase(rig.strobes.begin() + dice.whole(1, 4), rig.strobes.end());
     for (Strobe& strobe : rig.strobes) {
         strobe.position_m = {
             dice.between(-0.7, 0.7), dice.between(-0.7, 0.7), dice.between(-0.3, 0.1)};
@@ -106,6 +147,12 @@ Rig random_port_rig(std::uint64_t seed) {
     give_port(kPortKinds.at(seed % kPortKinds.size()), dice, rig.camera);
     if (dice.chance(0.3)) give_lens(kLensKinds.at(dice.index_in(kLensKinds)), dice, rig.camera);
     if (dice.chance(0.3)) give_vignetting(dice.index_in(kLensKinds), dice, rig.camera);
+    // A lens whose formula ends between the points at which it is asked is refused as a rig.
+    try {
+        static_cast<void>(path_range(rig));
+    } catch (const InputError&) {
+        rig.camera.lens.reset();
+    }
     return rig;
 }
 
@@ -156,7 +203,7 @@ TEST(PortLight, FollowsKinksThatLieBetweenTheWatersIndices) {
             Dice dice(5);
             Rig rig = small_rig(pixels(136), pixels(102));
             rig.camera.sensor = line_sensor();
-            rig.strobes.resize(2);
+            rig.strobes.erase(rig.strobes.begin() + 2, rig.strobes.end());
             for (Strobe& strobe : rig.strobes) strobe.beam = scaled_to_flux(beam);
             give_port(kind, dice, rig.camera);
             const Worst found = worst_off_edges(rig);
