@@ -81,8 +81,10 @@ bool is_habcam_img(const Fields& fields) {
     return fields.size() == kHabCamColumns.size() && are_numbers(fields, 1, 5);
 }
 
+// A header row of as many words has no number; a line that is spoilt has one left.
 bool is_eic(const Fields& fields) {
-    return fields.size() == kEicFields && are_numbers(fields, 1, 3);
+    return fields.size() == kEicFields &&
+           (are_numbers(fields, 1, 1) || are_numbers(fields, 2, 1) || are_numbers(fields, 3, 1));
 }
 
 // Its date is 31/12/2018; latitude to pitch are numbers.

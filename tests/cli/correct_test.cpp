@@ -665,8 +665,7 @@ TEST_F(CorrectCommand, ACutNavigationIsWarnedOf) {
     write_file(path("nav.eic"), "image,pitch_deg,roll_deg,altitude_m\na.tif,0,0,2");
     const CommandResult run = correct({});
     EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_NE(run.err.find("looks wrong: navigation: " + path("nav.eic").string() +
-                           ":2: the file ends within this line"),
+    EXPECT_NE(run.err.find("looks wrong: navigation: nav.eic:2: the file ends within this line"),
               std::string::npos)
         << run.err;
     const CommandResult strict = correct({"--strict"});
