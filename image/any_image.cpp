@@ -47,11 +47,11 @@ std::map<std::string, std::string> header_of_image(const std::filesystem::path& 
 }
 
 void write_any_image(const std::filesystem::path& file, const WrittenImage& image) {
-    using Write = std::string (*)(const std::filesystem::path&, const WrittenImage&);
+    using Write = void (*)(const std::filesystem::path&, const WrittenImage&, std::string&);
     require_plain_path(file);
     AtomicFile destination(file);
-    const std::string fault =
-        from_part<Write>("aphotic_write_any_image")(destination.temporary(), image);
+    std::string fault;
+    from_part<Write>("aphotic_write_any_image")(destination.temporary(), image, fault);
     if (!fault.empty()) throw RunError("{}: cannot be written: {}", file.string(), fault);
     // OpenImageIO says so in PNG and JPEG alone (any_image_oiio.cpp).
     const bool is_unmarked = image.is_srgb && file.extension().string().starts_with(".tif");

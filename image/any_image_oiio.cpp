@@ -282,8 +282,7 @@ extern "C" void aphotic_header_of_image(const std::filesystem::path& file,
 }
 
 // Why it could not be written, or nothing.
-extern "C" std::string aphotic_write_any_image(const std::filesystem::path& file,
-                                               const aphotic::WrittenImage& image) {
+static std::string written(const std::filesystem::path& file, const aphotic::WrittenImage& image) {
     WatchedFile watched(file);
     const std::unique_ptr<OIIO::ImageOutput> output =
         OIIO::ImageOutput::create(file.string(), &watched);
@@ -317,6 +316,12 @@ extern "C" std::string aphotic_write_any_image(const std::filesystem::path& file
     if (!cause.empty()) return cause;
     if (is_whole) return "";
     return fault.empty() ? "the library does not say why" : fault;
+}
+
+extern "C" void aphotic_write_any_image(const std::filesystem::path& file,
+                                        const aphotic::WrittenImage& image,
+                                        std::string& fault) {
+    fault = written(file, image);
 }
 
 extern "C" void aphotic_resize(std::vector<float>& plane,

@@ -17,8 +17,9 @@ void add_image_tags(const std::filesystem::path& file,
                     const SharedTags& tags,
                     bool is_srgb,
                     const std::filesystem::path& called) {
-    using Add = std::string (*)(const std::filesystem::path&, const ImageTags*, bool);
-    const std::string fault = from_part<Add>("aphotic_add_image_tags")(file, tags.get(), is_srgb);
+    using Add = void (*)(const std::filesystem::path&, const ImageTags*, bool, std::string&);
+    std::string fault;
+    from_part<Add>("aphotic_add_image_tags")(file, tags.get(), is_srgb, fault);
     if (fault.empty()) return;
     throw RunError(
         "{}: its tags cannot be written: {}", (called.empty() ? file : called).string(), fault);

@@ -197,9 +197,9 @@ extern "C" void aphotic_read_image_tags(const std::filesystem::path& file,
 }
 
 // Why it could not be written, or nothing. In memory, for Exiv2 does not say that a disk was full.
-extern "C" std::string aphotic_add_image_tags(const std::filesystem::path& file,
-                                              const aphotic::ImageTags* tags,
-                                              bool is_srgb) {
+static std::string tagged(const std::filesystem::path& file,
+                          const aphotic::ImageTags* tags,
+                          bool is_srgb) {
     using namespace aphotic;
     try {
         make_ready();
@@ -219,6 +219,13 @@ extern "C" std::string aphotic_add_image_tags(const std::filesystem::path& file,
     } catch (const std::exception& error) {
         return error.what();
     }
+}
+
+extern "C" void aphotic_add_image_tags(const std::filesystem::path& file,
+                                       const aphotic::ImageTags* tags,
+                                       bool is_srgb,
+                                       std::string& fault) {
+    fault = tagged(file, tags, is_srgb);
 }
 
 extern "C" void aphotic_words_of_tags(const aphotic::ImageTags& tags,
