@@ -395,13 +395,13 @@ struct Offset {
 // d = b (1 - phi_c rho) + phi_c rho q by least squares, each row over its d, for errors are
 // relative; phi of the factor before b is that of the last step.
 Offset offset_of(const std::vector<Darkness>& all, std::size_t images) {
-    constexpr int kSteps = 4;
+    constexpr int kRefinements = 4;
     // Channels of an image show one floor: they are one observation of it.
     const double freedom = static_cast<double>(images) - 4.0;
     if (all.empty() || freedom < 1.0) return {};
     Eigen::Vector4d fit(0.0, 1.0, 1.0, 1.0);
     Offset offset;
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kRefinements; ++step) {
         Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::ssize(all), 4);
         for (std::size_t i = 0; i < all.size(); ++i) {
             const auto& [channel, d, q, rho] = all[i];
@@ -439,7 +439,9 @@ bool check_black(std::span<const ImageLook> looks, std::vector<Suspicion>& found
             all.push_back(one);
         }
     }
-    const auto [b, error] = offset_of(all, looks.size());
+    const Offset offset = offset_of(all, looks.size());
+    const double b = offset.b;
+    const double error = offset.error;
     // Of light that hardly varies anything is an offset.
     const auto is_varied = [&](std::size_t c) {
         double dimmest = std::numeric_limits<double>::infinity();
