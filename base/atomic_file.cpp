@@ -39,7 +39,7 @@ std::string told_of(const fs::path& file) {
     constexpr std::size_t kLongestName = 255;
     constexpr std::size_t kOurs = 48;  // dots, boot, numbers, process and "part"
     constexpr std::size_t kDigest = 16;
-    const std::string stem = file.stem().string();
+    std::string stem = file.stem().string();
     const std::size_t taken = kOurs + file.extension().string().size();
     if (stem.size() + taken <= kLongestName || taken + kDigest > kLongestName) return stem;
     return stem.substr(0, kLongestName - taken - kDigest) + sha256_of_text(stem).substr(0, kDigest);
@@ -92,7 +92,7 @@ template <typename IsAllowed>
 void remove_abandoned(const fs::path& folder, IsAllowed is_allowed) {
     static const std::regex kTemporary(
         R"(\.(.*)\.([0-9a-f]{8})-([0-9a-f]{1,16})-(\d{1,9})\.part(\..*)?)");
-    static const ProcessSpace ours = our_space();
+    static const ProcessSpace kOurs = our_space();
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
@@ -100,9 +100,9 @@ void remove_abandoned(const fs::path& folder, IsAllowed is_allowed) {
         if (!std::regex_match(name, found, kTemporary)) continue;
         if (!is_allowed(found.str(1) + found.str(5))) continue;
         const bool is_abandoned =
-            found.str(2) == ours.boot
-                ? found.str(3) == ours.numbers && is_gone(*read_number<pid_t>(found.str(4)))
-                : !ours.boot.empty() && is_of_this_machine(folder);
+            found.str(2) == kOurs.boot
+                ? found.str(3) == kOurs.numbers && is_gone(*read_number<pid_t>(found.str(4)))
+                : !kOurs.boot.empty() && is_of_this_machine(folder);
         if (is_abandoned) fs::remove(entry.path(), ignored);
     }
 }
@@ -123,13 +123,13 @@ bool is_synced(const fs::path& path) {
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path final_path) : final_path_(std::move(final_path)) {
-    static const ProcessSpace ours = our_space();
+    static const ProcessSpace kOurs = our_space();
     // The extension stays last: some writers choose their format by it.
     temporary_ = final_path_;
     temporary_.replace_filename(fmt::format(".{}.{}-{}-{}.part{}",
                                             told_of(final_path_),
-                                            ours.boot,
-                                            ours.numbers,
+                                            kOurs.boot,
+                                            kOurs.numbers,
                                             ::getpid(),
                                             final_path_.extension().string()));
     removed_by_signal_.emplace(temporary_);

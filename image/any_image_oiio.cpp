@@ -311,8 +311,8 @@ static std::string written(const std::filesystem::path& file, const aphotic::Wri
                           (is_bytes ? write_as<std::uint8_t>(*output, image)
                                     : write_as<std::uint16_t>(*output, image)) &&
                           output->close();
-    const std::string fault = output->geterror();
-    const std::string cause = watched.end();
+    std::string fault = output->geterror();
+    std::string cause = watched.end();
     if (!cause.empty()) return cause;
     if (is_whole) return "";
     return fault.empty() ? "the library does not say why" : fault;

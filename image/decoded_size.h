@@ -43,7 +43,7 @@ inline constexpr std::uint64_t kMebi = std::uint64_t{1} << 20U;
 inline constexpr std::uint64_t kMostOfNotes_bytes = 512 * kMebi;
 
 inline void require_sides(std::int64_t width, std::int64_t height) {
-    constexpr std::int64_t kMost = 2 * kLargestImagePx;
+    constexpr std::int64_t kMost = std::int64_t{2} * kLargestImagePx;
     const auto is_side = [](std::int64_t side) { return side > 0 && side <= kMost; };
     if (is_side(width) && is_side(height)) return;
     throw InputError("found {} x {} pixels; allowed: 1 to {} each way", width, height, kMost);

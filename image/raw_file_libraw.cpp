@@ -143,7 +143,7 @@ std::vector<float> colours_of(LibRaw& raw, double black) {
 // take beside them.
 void require_sound_sizes(LibRaw& raw, const std::filesystem::path& file) {
     constexpr std::uint64_t kMostPixel_bytes = 8;
-    constexpr std::uint64_t kBeside_MiB = 256;
+    constexpr std::uint64_t kBeside_mebi = 256;
     const auto& sizes = raw.imgdata.sizes;
     const std::uint64_t pixels = std::uint64_t{sizes.raw_width} * sizes.raw_height;
     try {
@@ -157,7 +157,7 @@ void require_sound_sizes(LibRaw& raw, const std::filesystem::path& file) {
     }
     if (raw.is_floating_point() != 0) refuse_samples(file);
     raw.imgdata.params.max_raw_memory_mb =
-        static_cast<unsigned>(pixels * kMostPixel_bytes / aphotic::kMebi + kBeside_MiB);
+        static_cast<unsigned>(pixels * kMostPixel_bytes / aphotic::kMebi + kBeside_mebi);
 }
 
 }  // namespace

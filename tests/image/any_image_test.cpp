@@ -446,7 +446,7 @@ TEST(AnyImage, ThatDoesNotFitOnTheDiskIsSaidByItsOwnName) {
                 }
                 return "";
             };
-            for (const ::rlim_t most_bytes : {0, 10, 300}) {
+            for (const ::rlim_t most_bytes : {0U, 10U, 300U}) {
                 const std::string why = fault(most_bytes);
                 EXPECT_TRUE(why.starts_with(file.string() + ": ")) << why;
                 EXPECT_TRUE(why.ends_with("cannot be written: File too large")) << why;
