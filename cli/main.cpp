@@ -75,7 +75,7 @@ void add_completion(CLI::App& app, Action& chosen) {
 }
 
 std::string words_of_failure(const CLI::App* app, const CLI::Error& error) {
-    const std::string unknown = unknown_words(*app);
+    std::string unknown = unknown_words(*app);
     if (!unknown.empty()) return unknown;
     return fmt::format("{}\nRun with {} for more information.\n",
                        aphotic::shown_text(error.what()),

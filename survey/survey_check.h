@@ -121,8 +121,8 @@ inline constexpr std::size_t kEnoughImages = 12;
 inline constexpr std::string_view kAboutNavigation = "navigation";
 
 struct Suspicion {
-    // "white-level", "bayer", "altitude", "encoding", "corrected", "black-level", "map", "attitude",
-    // "navigation"
+    // "white-level", "bayer", "altitude", "encoding", "corrected", "black-level", "map",
+    // "attitude", "navigation"
     std::string about;
     std::string what;  // with the number that shows it
 };

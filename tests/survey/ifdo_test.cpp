@@ -132,10 +132,9 @@ TEST(Ifdo, RefusesAliasesThatStandForTooMuch) {
 TEST(Ifdo, RefusesMoreYamlThanMemoryHolds) {
     std::string text = "image-set-header: {}\nimage-set-items:\n a: [";
     for (std::size_t i = 0; i < kMostYamlValues; ++i) text += "0,";
-    EXPECT_EQ(
-        fault_of(text + "0]\n"),
-        "set.yaml: found 800005 lines and values of YAML; allowed: up to 800000; an iFDO in "
-        "JSON may have more");
+    EXPECT_EQ(fault_of(text + "0]\n"),
+              "set.yaml: found 800005 lines and values of YAML; allowed: up to 800000; an iFDO in "
+              "JSON may have more");
 }
 
 TEST(Ifdo, RefusesDepth) {
