@@ -345,10 +345,10 @@ void Doubter::judge_view(const toml::table& root) {
     const Camera& camera = rig_.camera;
     if (camera.lens) {
         const int line = source_line(root.at_path("camera.calibration").node());
-        for (std::string& what :
+        for (const std::string& what :
              calibration_doubts(*camera.lens, camera.width_px, camera.height_px)) {
             add({.key = "camera.calibration", .pattern = "calibration: " + what, .line = line},
-                std::move(what));
+                what);
         }
         return;
     }
