@@ -6,6 +6,7 @@
 
 #include "base/degrees.h"
 #include "base/error.h"
+#include "base/json_text.h"
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
