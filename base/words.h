@@ -4,6 +4,8 @@
 // case.
 #pragma once
 
+#include "base/printable.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +19,24 @@ namespace aphotic {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+// What printf makes of a format in ASCII: a line break in a path is one for the shell, and steers
+// no terminal that shows the command. The shell drops a line break at the end.
+[[nodiscard]] inline std::string printed_word(std::string_view word) {
+    std::string format;
+    for (const char c : word) {
+        if (c == '\'') {
+            format += "'\\''";
+        } else if (c == '%' || c == '\\') {
+            format += {c, c};
+        } else if (c >= ' ' && c <= '~') {
+            format += c;
+        } else {
+            format += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+        }
+    }
+    return "\"$(printf '" + format + "')\"";
+}
+
 // For a line that a user may paste into a shell, whatever the path.
 [[nodiscard]] inline std::string shell_word(std::string_view path) {
     constexpr std::string_view kPlain =
@@ -24,6 +44,7 @@ namespace aphotic {
     std::string word(path.starts_with('-') ? "./" : "");  // not an option
     word += path;
     if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    if (has_control_characters(word)) return printed_word(word);
     std::string quoted = "'";
     for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
     return quoted + "'";
