@@ -293,8 +293,10 @@ double Tracer::nearest_lamp_m() const {
     const Index index = index_at(0.5 * (rig_.camera.range.first_nm + rig_.camera.range.last_nm));
     double nearest_m = std::numeric_limits<double>::infinity();
     for (int k = 0; k < (kSteps + 1) * (kSteps + 1); ++k) {
-        const auto in_air = sight(rig_.camera.width_px * (k % (kSteps + 1)) / double{kSteps},
-                                  rig_.camera.height_px * (k / (kSteps + 1)) / double{kSteps});
+        const int across = k % (kSteps + 1);
+        const int down = k / (kSteps + 1);
+        const auto in_air = sight(rig_.camera.width_px * (across / double{kSteps}),
+                                  rig_.camera.height_px * (down / double{kSteps}));
         if (!in_air) continue;
         View view;
         view.is_clear = true;                                 // objects do not matter here

@@ -47,7 +47,7 @@ constexpr std::uint64_t kSeed = 20240613;
 constexpr int kRigs = 500;
 constexpr int kRigsOfWavelengths = 100;
 constexpr int kNastyRigs = 100;
-constexpr int kExtendedRigs = 60;
+constexpr int kExtendedRigs = 30;
 #else
 // In debug builds, with sanitizers, the plan of one rig takes half a minute: there it is enough
 // that every line runs.
