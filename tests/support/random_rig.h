@@ -256,8 +256,11 @@ inline PhaseFunction random_phase(Dice& dice) {
 }
 
 // By its chlorophyll, or the water as it was with particles of any kind.
-inline void give_scatterers(Dice& dice, Water& water) {
+inline void give_scatterers(Dice& dice, Camera& camera, Water& water) {
     if (dice.chance(0.5)) {
+        // Where the formulas of case-1 water have values.
+        camera.range = {std::max(camera.range.first_nm, 400.0),
+                        std::min(camera.range.last_nm, 700.0)};
         const double chlorophyll_mg_m3 =
             dice.over_octaves(kLeastChlorophyll, 0.1 * kMostChlorophyll);
         take_constituents({.chlorophyll_mg_m3 = chlorophyll_mg_m3}, water);
@@ -276,7 +279,7 @@ inline Rig random_extended_rig(std::uint64_t seed) {
     if (dice.chance(0.5)) give_lens(kLensKinds.at(dice.index_in(kLensKinds)), dice, camera);
     if (dice.chance(0.6)) give_port(kPortKinds.at(dice.index_in(kPortKinds)), dice, camera);
     if (dice.chance(0.5)) give_vignetting(dice.index_in(kPortKinds), dice, camera);
-    if (dice.chance(0.4)) give_scatterers(dice, rig.water);
+    if (dice.chance(0.4)) give_scatterers(dice, camera, rig.water);
     std::erase_if(rig.objects, [&](const Object& object) {
         return rig.water.scatters() || !has_place(rig, object.shape);
     });

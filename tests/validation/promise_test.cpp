@@ -68,6 +68,9 @@ constexpr double kLooseTolerance = 1e-2;
 constexpr double kRareShare = 0.01;
 // The worst tables ask for more wavelengths than there may be now and then.
 constexpr double kNastyRefusals = 0.01;
+// Large emitters of many cones ask for more lamps than POV-Ray takes, and steep tables behind ports
+// for more wavelengths than there may be: six of these thirty.
+constexpr double kExtendedRefusals = 0.25;
 
 // Promises are to be worth something: on half of the rigs no more than so many times the error.
 constexpr double kMedianRatio = 5.0;
@@ -89,6 +92,7 @@ Spectrum flat(double value) {
 Rig in_the_light_of(Rig rig, double lambda_nm) {
     for (Strobe& strobe : rig.strobes) strobe.spectrum = flat(strobe.spectrum.at(lambda_nm));
     rig.seafloor.reflectance = flat(rig.seafloor.reflectance.at(lambda_nm));
+    for (Object& object : rig.objects) object.reflectance = flat(object.reflectance.at(lambda_nm));
     rig.water.absorption_per_m = flat(rig.water.attenuation_per_m(lambda_nm));
     rig.water.multiple = 1.0;
     rig.water.uniform_loss_per_m = 0.0;
@@ -276,6 +280,8 @@ std::vector<Trial> try_out_all(MakeRig& make_rig,
             try {
                 const std::uint64_t seed = first_seed + i;
                 trials[i] = try_out(make_rig(seed), kind, Dice(~seed));
+            } catch (const InputError& error) {
+                trials[i].refusal = error.what();
             } catch (const std::exception& error) {
                 trials[i].fault = error.what();
             }
@@ -408,12 +414,16 @@ TEST(Promise, HoldsThroughLensesAndPorts) {
                                                   first != nullptr ? std::stoull(first) : kSeed,
                                                   count,
                                                   Frames::Halves);
+    int refused = 0;
     for (std::size_t i = 0; i < trials.size(); ++i) {
         EXPECT_EQ(trials[i].fault, "") << description_of(trials, i);
-        if (trials[i].tolerance == 0.0)
+        if (trials[i].tolerance == 0.0) {
+            ++refused;
             std::cout << description_of(trials, i) << ": " << trials[i].refusal << '\n';
+        }
         expect_kept(trials, i);
     }
+    EXPECT_LE(refused, kExtendedRefusals * static_cast<double>(trials.size()) + 1.0);
 }
 
 // Rigs that were found with promises that did not hold: by 114 times, 33 times, 1.8 times, and
