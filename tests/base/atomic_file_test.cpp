@@ -24,15 +24,23 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace aphotic::atomic_file_test {
 namespace {
 
-// What the calls that follow were made on, in their order, and what fsync fails with.
+// What the calls that follow were made on, in their order, and what fsync fails with. Threads call
+// them, too.
+std::mutex disk_calls_mutex;
 std::vector<std::string> disk_calls;
+void note_call(std::string call) {
+    const std::scoped_lock lock(disk_calls_mutex);
+    disk_calls.push_back(std::move(call));
+}
 int fsync_error = 0;
 long file_system = 0;  // what statfs tells; 0: the truth
 
@@ -43,7 +51,7 @@ long file_system = 0;  // what statfs tells; 0: the truth
 extern "C" int fsync(int descriptor) {
     using namespace aphotic::atomic_file_test;
     const std::string link = "/proc/self/fd/" + std::to_string(descriptor);
-    disk_calls.push_back("fsync " + std::filesystem::read_symlink(link).string());
+    note_call("fsync " + std::filesystem::read_symlink(link).string());
     if (fsync_error != 0) {
         errno = fsync_error;
         return -1;
@@ -52,7 +60,7 @@ extern "C" int fsync(int descriptor) {
 }
 
 extern "C" int rename(const char* from, const char* to) noexcept {
-    aphotic::atomic_file_test::disk_calls.push_back("rename " + std::string(from));
+    aphotic::atomic_file_test::note_call("rename " + std::string(from));
     return static_cast<int>(::syscall(SYS_renameat, AT_FDCWD, from, AT_FDCWD, to));
 }
 
