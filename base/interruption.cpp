@@ -143,8 +143,12 @@ void throw_if_interrupted() {
 }
 
 void end_by_signal(int signal) {
-    ::signal(signal, SIG_DFL);
-    ::raise(signal);
+    // Again where another thread, which begins a use meanwhile, has put the handler back.
+    constexpr int kMostTries = 100;
+    for (int i = 0; i < kMostTries; ++i) {
+        ::signal(signal, SIG_DFL);
+        ::raise(signal);
+    }
     // Only where the signal is blocked.
     constexpr int kShellsOffset = 128;
     ::_exit(kShellsOffset + signal);
