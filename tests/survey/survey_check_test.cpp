@@ -447,7 +447,7 @@ TEST(SurveyCheck, ImagesThatAreCorrectedAlreadyAreTold) {
 // whose share along x is that of a few independent patterns.
 double share_of_tilts_told(double truth) {
     constexpr int kPatterns = 12;
-    constexpr double kFloor = 0.14;  // as simulated floors of 25 % contrast have it
+    constexpr double kFloor = 0.14;  // as in one simulated survey of 25 % contrast
     std::uint32_t told = 0;
     const std::uint32_t surveys = 50 * surveys_to_fly();
     for (std::uint32_t seed = 0; seed < surveys; ++seed) {
