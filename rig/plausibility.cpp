@@ -61,7 +61,7 @@ constexpr std::string_view kSledReach = "sleds and vehicles are a few metres lon
 constexpr std::string_view kHousing = "ports are the size of a lens or a hand";
 constexpr std::string_view kLampSize = "lamps are the size of a hand";
 constexpr std::string_view kCloseBy = "what the camera sees is a few metres away";
-constexpr std::string_view kCameras = "cameras have that";
+constexpr std::string_view kCameras = "typical of cameras";
 constexpr std::string_view kGloss = "the floor's own light is about 1";
 
 // Reasons from: a metre of the clearest water takes 1.5 to 4 % of green and 30 % of red light and
@@ -73,24 +73,23 @@ constexpr std::array kUsual{
           30,
           2.5,
           kOfAltitude,
-          "from higher up, water takes the strobes' light",
+          "water absorbs the strobes' light from higher up",
           false},
     Usual{"sled.altitude_offset_m", 0, 20, 1, kOfMetres, kSledReach},
     Usual{"sled.pitch_deg", 0, 75, 5, kNoUnits, "the camera looks down"},
     Usual{"sled.roll_deg", 0, 75, 5, kNoUnits, "the camera looks down"},
     Usual{"camera.position_m", 0, 20, 1, kOfMetres, kSledReach},
-    Usual{"camera.fov_deg", 3, 150, 50, kOfDegrees, "lenses see that"},
-    Usual{
-        "camera.range_nm", 200, 1200, 550, {{{"angstrom", 0.1}}}, "light that water lets through"},
+    Usual{"camera.fov_deg", 3, 150, 50, kOfDegrees, "typical of lenses"},
+    Usual{"camera.range_nm", 200, 1200, 550, {{{"angstrom", 0.1}}}, "water passes no other light"},
     Usual{"camera.exposure_ms",
           0.005,
           60'000,
           5,
           {{{"seconds", 1e3}, {"microseconds", 1e-3}}},
-          "shutters are open so long",
+          "typical of shutters",
           false},
     Usual{"camera.iso", 20, 1e6, 400, kNoUnits, kCameras, false},
-    Usual{"camera.f_number", 0.7, 64, 4, kNoUnits, "lenses have that", false},
+    Usual{"camera.f_number", 0.7, 64, 4, kNoUnits, "typical of lenses", false},
     Usual{"camera.gain_dn_per_e", 1e-3, 1e3, 1, kNoUnits, kCameras, false},
     Usual{"camera.read_noise_e", 0, 1000, 5, kNoUnits, kCameras},
     Usual{"camera.saturation_e", 200, 1e7, 2e4, {{{"thousands", 1e3}}}, kCameras, false},
@@ -104,18 +103,18 @@ constexpr std::array kUsual{
           10,
           0.3,
           {{{"per kilometre", 1e-3}}},
-          "nothing is seen through a metre of such water"},
-    Usual{"water.chlorophyll_mg_m3", 0, 200, 1, kNoUnits, "blooms have no more"},
+          "a metre of such water is opaque"},
+    Usual{"water.chlorophyll_mg_m3", 0, 200, 1, kNoUnits, "even in blooms"},
     Usual{"water.cdom_440_per_m",
           0,
           30,
           0.1,
           {{{"per kilometre", 1e-3}}},
-          "peat waters have no more"},
+          "even in peat-stained water"},
     Usual{"seafloor.phong", 0, 10, 0.3, kOfShares, kGloss},
-    Usual{"seafloor.phong_size", 0, 5000, 40, kNoUnits, "a mirror has more"},
+    Usual{"seafloor.phong_size", 0, 5000, 40, kNoUnits, "beyond that it is a mirror"},
     Usual{"object[].phong", 0, 10, 0.3, kOfShares, kGloss},
-    Usual{"object[].phong_size", 0, 5000, 40, kNoUnits, "a mirror has more"},
+    Usual{"object[].phong_size", 0, 5000, 40, kNoUnits, "beyond that it is a mirror"},
     Usual{"object[].position_m", 0, 50, 1, kOfMetres, kCloseBy},
     Usual{"object[].centre_m", 0, 50, 1, kOfMetres, kCloseBy},
     Usual{"object[].from_m", 0, 50, 1, kOfMetres, kCloseBy},
@@ -139,21 +138,21 @@ constexpr std::array kUsual{
           1e8,
           1e4,
           {{{"kilolumens", 1e3}}},
-          "lamps give so much",
+          "typical of lamps",
           false},
     Usual{"strobe[].radiant_flux_w",
           0.05,
           1e6,
           50,
           {{{"milliwatts", 1e-3}, {"kilowatts", 1e3}}},
-          "lamps give so much",
+          "typical of lamps",
           false},
     Usual{"strobe[].energy_j",
           1e-3,
           1e5,
           20,
           {{{"millijoules", 1e-3}, {"kilojoules", 1e3}}},
-          "flashes have so much",
+          "typical of flashes",
           false},
 };
 
@@ -216,7 +215,7 @@ std::optional<std::string> doubt_of(double value, const Usual& usual) {
     if (size == 0.0 ? usual.is_zero_usual : size >= usual.least && size <= usual.most)
         return std::nullopt;
     if (usual.key == "strobe[].power") return fmt::format("found {:g}: {}", value, usual.why);
-    return fmt::format("found {:g}; usual: {}, as {}{}",
+    return fmt::format("found {:g}; usual: {} ({}){}",
                        value,
                        usual_range(usual),
                        usual.why,
@@ -393,11 +392,10 @@ void Doubter::judge_view(const toml::table& root) {
         fix = fmt::format(
             "; {:.3g} degrees if {} is in {}", other * kDegreesPerRadian, slip.key, slip.unit);
     }
-    if (camera.lens) key = "calibration";
     const std::string path = "camera." + key;
     add({.key = path, .pattern = path, .line = source_line(root.at_path(path).node())},
         fmt::format("found a focal length of {:.4g} mm and a pitch of {:.4g} um, a view of {:.4g} "
-                    "degrees from corner to corner; usual: {:g} to {:g}, as lenses see that{}",
+                    "degrees from corner to corner; usual: {:g} to {:g}{}",
                     1e3 * f_m,
                     1e6 * pitch_m,
                     view * kDegreesPerRadian,
@@ -413,8 +411,8 @@ void Doubter::judge_levels(const toml::table& root) {
     if (*readout.black_level_dn <= kMostShare * *readout.white_level_dn) return;
     const std::string path = "camera.black_level_dn";
     add({.key = path, .pattern = path, .line = source_line(root.at_path(path).node())},
-        fmt::format("found {:g}; usual: up to half of white_level_dn, {:g}, as light needs room "
-                    "between them",
+        fmt::format("found {:g}; usual: up to half of white_level_dn, {:g} (light needs the "
+                    "room between them)",
                     *readout.black_level_dn,
                     *readout.white_level_dn));
 }
@@ -450,8 +448,8 @@ void Doubter::judge_cones(const toml::table& root) {
             kDegreesPerRadian;
         if (widest_deg <= kHalfPi * 1.001) {
             add({.key = key, .pattern = "beam.*.cones[].half_angle_deg", .line = source_line(node)},
-                fmt::format("found half angles of {:.4g} degrees at most; usual: 3 and more, as "
-                            "lamps have wider beams; {:.4g} if that is in radians",
+                fmt::format("found half angles of {:.4g} degrees at most; usual: 3 or more "
+                            "(lamps have wider beams); {:.4g} if that is in radians",
                             widest_deg,
                             widest_deg * kDegreesPerRadian));
         }
@@ -459,8 +457,8 @@ void Doubter::judge_cones(const toml::table& root) {
         for (const Cone& cone : beam.cones) sum += cone.weight;
         if (beam.weights == ConeWeights::Flux && sum >= kLeastSum && sum <= kMostSum) {
             add({.key = key, .pattern = "beam.*.cones[].weight", .line = source_line(node)},
-                fmt::format("found weights that add up to {:.4g}; usual: about 1, as they are "
-                            "shares of the flux; {:.4g} if they are in per cent",
+                fmt::format("found weights that add up to {:.4g}; usual: about 1 (they are "
+                            "shares of the flux); {:.4g} if they are in per cent",
                             sum,
                             0.01 * sum));
         }
@@ -479,8 +477,8 @@ void Doubter::judge_beam_tables() {
         if (end_deg > std::numbers::pi * 1.001) continue;
         add({.key = fmt::format("beam.{}.table", printable(strobe.beam.name)),
              .pattern = "beam.*.table"},
-            fmt::format("found a table that ends {:.4g} degrees off its axis; usual: 5 and more, "
-                        "as lamps have wider beams; {:.4g} if that is in radians",
+            fmt::format("found a table that ends {:.4g} degrees off its axis; usual: 5 or more "
+                        "(lamps have wider beams); {:.4g} if that is in radians",
                         end_deg,
                         end_deg * kDegreesPerRadian));
     }
