@@ -78,6 +78,13 @@ class Tiff {
         return has(tag) ? one(tag) : usual;
     }
 
+    [[nodiscard]] std::uint64_t most(std::uint64_t tag, std::uint64_t usual) {
+        if (!has(tag)) return usual;
+        const std::vector<std::uint64_t> values = all(tag);
+        if (!values.empty()) return std::ranges::max(values);
+        throw InputError("it is not whole: the tag {} is empty", tag);
+    }
+
     void require_end(std::uint64_t offset, std::uint64_t count) const {
         if (count <= size_ && offset <= size_ - count) return;
         if (count > kMost - offset) throw InputError("it points beyond its end");
@@ -186,8 +193,7 @@ Parts parts_of(Tiff& tiff) {
     const std::uint64_t samples = tiff.one(kSamplesPerPixel, 1);
     const bool is_separate = tiff.one(kPlanarConfig, 1) == kSeparate;
     const std::uint64_t planes = is_separate ? samples : 1;
-    const std::uint64_t bits =
-        tiff.has(kBitsPerSample) ? std::ranges::max(tiff.all(kBitsPerSample)) : 1;
+    const std::uint64_t bits = tiff.most(kBitsPerSample, 1);
     const std::uint64_t pixel_bits = product(samples / planes, bits);
     const bool is_tiled = tiff.has(kTileWidth) || tiff.has(kTileOffsets);
     const BigSize part =

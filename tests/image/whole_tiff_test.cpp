@@ -127,6 +127,7 @@ TEST(WholeTiff, WhatIsNotToldIsNotWhole) {
     for (const std::uint16_t tag : std::vector<std::uint16_t>{322, 323}) {
         EXPECT_NE(fault_of(with(kTiles, {{tag, {0}}})).find(" is 0 or empty"), std::string::npos);
     }
+    EXPECT_EQ(fault_of(with(kStrips, {{258, {}}})), "it is not whole: the tag 258 is empty");
 }
 
 // Numbers whose sums and products 64 bits do not hold.
