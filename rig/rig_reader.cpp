@@ -79,6 +79,9 @@ constexpr Bounds kConeExponent{0.0, 1000.0};
 constexpr Bounds kFwhmDeg{1.0, 179.9};
 constexpr Bounds kTurnDeg{-360.0, 360.0};
 constexpr Bounds kOpticsMm{0.01, 100000.0};
+// Nearer to 0 a lens throws its light so steeply that the flux through it is no longer integrated
+// to 1e-4.
+constexpr Bounds kOpticsLengthMm{0.05, 100000.0};
 constexpr Bounds kWindowIndex{1.0, 3.0};
 constexpr Bounds kFlux{0.0, 1e12};
 constexpr Bounds kPositionM{-1000.0, 1000.0};
@@ -463,14 +466,14 @@ Cone RigReader::read_cone(Section& section) {
 
 BeamOptics RigReader::read_optics(Section& section) {
     const auto [along_mm, across_mm] = section.numbers<2>("diffuser_mm", kOpticsMm);
-    const auto metres = [&](std::string_view key) {
-        return section.number(key, kOpticsMm) * kMetresPerMillimetre;
+    const auto metres = [&](std::string_view key, const Bounds& bounds) {
+        return section.number(key, bounds) * kMetresPerMillimetre;
     };
     return {.along_m = along_mm * kMetresPerMillimetre,
             .across_m = across_mm * kMetresPerMillimetre,
-            .focal_length_m = metres("focal_length_mm"),
-            .distance_m = metres("distance_mm"),
-            .aperture_m = metres("aperture_mm")};
+            .focal_length_m = metres("focal_length_mm", kOpticsLengthMm),
+            .distance_m = metres("distance_mm", kOpticsLengthMm),
+            .aperture_m = metres("aperture_mm", kOpticsMm)};
 }
 
 BeamTable RigReader::read_beam_table(Section& section) {

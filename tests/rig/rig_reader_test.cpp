@@ -540,6 +540,9 @@ TEST(RigReader, ChecksBeamsOfOtherKinds) {
          "ends"},
         {12, "tabel = \"lamp.ies\"", "beam.wide.tabel: is not a known key; did you mean 'table'?"},
         {11, "diffuser_mm = [30, 60]", "beam.wide.focal_length_mm: is missing; allowed: "},
+        {13,
+         "diffuser_mm = [30, 60]\nfocal_length_mm = 0.04",
+         "beam.wide.focal_length_mm: found 0.04; allowed: a number from 0.05 to 100000"},
     };
     for (const Bad& bad : all) {
         const std::string found = error_of(with(12, bad.text));

@@ -430,6 +430,29 @@ TEST(TracedBeam, AgreesWithWhatTheRigSays) {
     }
 }
 
+// As the quadratures of both meet for the steepest lenses that a rig may have: on the way to a
+// step.
+constexpr double kSteepAgreement = 1e-4;
+
+TEST(TracedBeam, OfTheSteepestLensesAgrees) {
+    const BeamOptics lamp{.along_m = 0.0635,
+                          .across_m = 0.0302,
+                          .focal_length_m = 0.065,
+                          .distance_m = 0.05,
+                          .aperture_m = 0.065};
+    BeamOptics short_lens = lamp;
+    short_lens.focal_length_m = 5e-5;
+    BeamOptics near_lens = lamp;
+    near_lens.distance_m = 5e-5;
+    for (const BeamOptics& optics : {short_lens, near_lens}) {
+        const Beam beam = beam_of(optics);
+        EXPECT_NEAR(TracedBeam(beam, kAxis).intensity(kAxis) /
+                        intensity_towards(beam, frame_about(kAxis), kAxis),
+                    1.0,
+                    kSteepAgreement);
+    }
+}
+
 // ---- Edges
 
 constexpr double kNear = 1e-6;
