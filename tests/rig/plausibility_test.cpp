@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "rig/geometry.h"
 #include "rig/rig_reader.h"
+#include "support/effort.h"
 #include "support/random_rig.h"
 #include "support/temp_folder.h"
 
@@ -411,14 +412,9 @@ std::string with_strobes(std::string text, std::uint64_t seed) {
     return text;
 }
 
-// APHOTIC_RIGS=1000 tries so many; 1000 of each kind were tried when this was written.
-std::uint64_t rigs_to_try() {
-    const char* told = std::getenv("APHOTIC_RIGS");  // NOLINT(concurrency-mt-unsafe)
-    return told == nullptr ? 40 : std::strtoull(told, nullptr, 10);
-}
-
 TEST(Plausibility, OrdinaryRigsAreNotDoubted) {
-    for (std::uint64_t seed = 0; seed < rigs_to_try(); ++seed) {
+    const auto rigs = static_cast<std::uint64_t>(campaign(40, 1000));
+    for (std::uint64_t seed = 0; seed < rigs; ++seed) {
         const std::string text = with_strobes(ordinary_rig(seed), seed);
         const std::vector<Doubt> doubts = doubts_of_text(text, "");
         EXPECT_TRUE(doubts.empty()) << seed << "\n" << words_of(doubts);

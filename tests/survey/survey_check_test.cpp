@@ -5,6 +5,8 @@
 #include "survey/survey_check.h"
 
 #include <fmt/format.h>
+#include "support/effort.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,7 +68,7 @@ const std::vector<std::string> kNothing;
 const std::vector<std::string> kAltitude{"altitude"};
 const std::vector<std::string> kBayer{"bayer"};
 
-constexpr std::uint32_t kSurveys = 1000;
+const auto kSurveys = static_cast<std::uint32_t>(campaign(100, 1000));
 
 TEST(SurveyCheck, ARightSurveyLooksRight) {
     for (std::uint32_t seed = 0; seed < kSurveys; ++seed) {
@@ -373,10 +375,9 @@ std::vector<std::string> told_of_flown(std::uint32_t seed, const Flown& flown) {
     return told_of(looks);
 }
 
-// APHOTIC_SURVEYS=1000 flies so many of each: docs/surveys.md has what came of that.
+// docs/surveys.md has what came of the night's.
 std::uint32_t surveys_to_fly() {
-    const char* told = std::getenv("APHOTIC_SURVEYS");  // NOLINT(concurrency-mt-unsafe)
-    return told == nullptr ? 6 : static_cast<std::uint32_t>(std::strtoul(told, nullptr, 10));
+    return static_cast<std::uint32_t>(campaign(6, 100));
 }
 
 // Of how many is this told, and nothing else.
