@@ -5,7 +5,7 @@
 #include "rig/geometry.h"
 #include "support/random_beam.h"
 #include "support/random_rig.h"
-#include "validation/exact_light.h"
+#include "support/exact_light.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
