@@ -52,7 +52,6 @@ extern const Command kSurvey;
 extern const Command kSweep;
 extern const Command kValidate;
 extern const Command kStudy;
-extern const Command kStress;
 extern const Command kCompare;
 extern const Command kBeam;
 extern const Command kData;

@@ -5,16 +5,19 @@
 #include "base/error.h"
 #include "base/interruption.h"
 #include "base/printable.h"
+#include "base/words.h"
 #include "cli/command.h"
 #include "cli/completion.h"
 #include "cli/help.h"
 #include "cli/option_checks.h"
 #include "cli/terminal.h"
 #include "cli/unknown_word.h"
+#include "report/page.h"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -28,10 +31,10 @@ namespace {
 using namespace aphotic::cli;
 
 // In the order of --help.
-constexpr std::array kCommands{&kRender, &kPlan,   &kGenerate, &kIntegrate, &kTrace,  &kLightmap,
-                               &kAtlas,  &kDesign, &kCorrect,  &kObserve,   &kFit,    &kBaseline,
-                               &kSurvey, &kSweep,  &kValidate, &kStudy,     &kStress, &kCompare,
-                               &kBeam,   &kData,   &kHelp};
+constexpr std::array kCommands{&kRender,   &kPlan,     &kGenerate, &kIntegrate, &kTrace,
+                               &kLightmap, &kAtlas,    &kDesign,   &kCorrect,   &kObserve,
+                               &kFit,      &kBaseline, &kSurvey,   &kSweep,     &kValidate,
+                               &kStudy,    &kCompare,  &kBeam,     &kData,      &kHelp};
 
 ExitStatus run(const Action& action) {
     try {
@@ -74,6 +77,22 @@ void add_completion(CLI::App& app, Action& chosen) {
         ->trigger_on_parse();
 }
 
+aphotic::PageOrigin page_origin(int argc, char** argv) {
+    constexpr std::size_t kMostCharacters = 2000;  // of a shell's thousand images the first
+    std::string command = "aphotic";
+    for (int i = 1; i < argc && command.size() < kMostCharacters; ++i)
+        command += " " + aphotic::shell_word(argv[i]);
+    if (command.size() >= kMostCharacters) command += " ...";
+    const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+    const std::chrono::year_month_day day(std::chrono::floor<std::chrono::days>(now));
+    return {.command = std::move(command),
+            .version = APHOTIC_VERSION,
+            .date = fmt::format("{:04}-{:02}-{:02}",
+                                static_cast<int>(day.year()),
+                                static_cast<unsigned>(day.month()),
+                                static_cast<unsigned>(day.day()))};
+}
+
 std::string words_of_failure(const CLI::App* app, const CLI::Error& error) {
     std::string unknown = unknown_words(*app);
     if (!unknown.empty()) return unknown;
@@ -102,6 +121,7 @@ int main(int argc, char** argv) {
         "Exit status: 0 done; 1 ran, and the answer is no; 2 wrong command line or input file; 3 "
         "POV-Ray or the file system failed. Ends by the signal when interrupted.");
 
+    aphotic::set_page_origin(page_origin(argc, argv));
     Action chosen;
     add_completion(app, chosen);
     for (const Command* command : kCommands) {

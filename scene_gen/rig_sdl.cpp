@@ -114,10 +114,6 @@ std::string strobe_sdl(const Strobe& strobe,
     } else {
         sdl += beam_sdl(in_scene.beam) + "\n";
     }
-    if (in_scene.soft_edge_deg) {
-        sdl += fmt::format("   #declare Aphotic_Soft_Edge = {};\n",
-                           sdl_number(*in_scene.soft_edge_deg));
-    }
     return sdl + fmt::format("   Aphotic_Strobe ({} / Aphotic_Unit, {}, Beam, {}, {}, {})\n",
                              sdl_point(strobe.position_m),
                              sdl_point(strobe.axis),

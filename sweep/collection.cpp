@@ -5,7 +5,7 @@
 #include "base/json_text.h"
 #include "image/any_image.h"
 #include "report/html.h"
-#include "report/picture.h"
+#include "report/page.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -129,20 +129,11 @@ std::string caption_of(const Sweep& sweep, std::size_t number) {
     std::string caption = fmt::format("task {}", number);
     for (std::size_t k = 0; k < point.size(); ++k) {
         const double* value = std::get_if<double>(&point[k]);
-        caption += fmt::format("<br/>{} {}",
-                               user_text(sweep.file.vary[k].key),
-                               value != nullptr ? plain(*value) : user_text(words_of(point[k])));
+        caption += fmt::format(", {} {}",
+                               named(sweep.file.vary[k].key),
+                               value != nullptr ? plain(*value) : named(words_of(point[k])));
     }
     return caption;
-}
-
-std::string verdict_of(std::span<const TaskStanding> standings) {
-    const std::size_t done = count_of(standings, TaskState::Done);
-    const bool is_whole = done == standings.size();
-    return html_verdict(is_whole,
-                        fmt::format("{} of {} done", done, grouped_count(standings.size(), "task")),
-                        html_paragraph("Each preview has an exposure of its own: compare their "
-                                       "evenness, and signals in results.csv."));
 }
 
 }  // namespace
@@ -211,24 +202,29 @@ SweepSheet sweep_sheet(const Sweep& sweep, std::span<const TaskStanding> standin
             pictured.push_back(number);
     }
     SweepSheet sheet{.pictures = std::min(pictured.size(), kMostOnSweepSheet)};
-    std::string figures;
+    PageFigures figures{.figures = {}, .are_small = true};
     for (std::size_t i = 0; i < sheet.pictures; ++i) {
         const std::size_t number = pictured[i * pictured.size() / sheet.pictures];
         const SmallPicture picture =
             small_picture(results_folder(sweep, number) / kPreview, sweep.folder);
-        figures += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
-                               picture_html(picture.jpeg,
-                                            picture.width_px,
-                                            picture.height_px,
-                                            fmt::format("task {}", number),
-                                            kJpeg),
-                               caption_of(sweep, number));
+        figures.figures.push_back({.pictures = {{.bytes = picture.jpeg,
+                                                 .width_px = picture.width_px,
+                                                 .height_px = picture.height_px,
+                                                 .words = fmt::format("task {}", number),
+                                                 .type = kJpeg}},
+                                   .caption = caption_of(sweep, number)});
     }
     const std::string title = sweep.folder.filename().string();
-    sheet.html = html_page(
-        "Sweep: " + title,
-        html_header("sweep of " + sweep.file.command, user_text(title), verdict_of(standings)) +
-            fmt::format("<div class=\"sheet\">\n{}</div>\n", figures));
+    const std::size_t done = count_of(standings, TaskState::Done);
+    sheet.html = page_html(
+        {.kind = "sweep of " + sweep.file.command,
+         .title = "Sweep: " + title,
+         .heading = title,
+         .is_good = done == standings.size(),
+         .headline = fmt::format("{} of {} done", done, grouped_count(standings.size(), "task")),
+         .said = {"Each preview has an exposure of its own: compare their evenness, and signals in "
+                  "results.csv."},
+         .sections = {{.id = "previews", .heading = "Previews", .parts = {std::move(figures)}}}});
     return sheet;
 }
 

@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
 constexpr int kBadInput = 2;
 constexpr int kRunFailed = 3;
 
-const std::vector<std::string> kCommands{
-    "render", "plan",     "generate", "integrate", "trace",   "lightmap", "atlas",
-    "design", "validate", "study",    "stress",    "survey",  "correct",  "observe",
-    "fit",    "sweep",    "baseline", "beam",      "compare", "data",     "help"};
+const std::vector<std::string> kCommands{"render",   "plan",    "generate", "integrate", "trace",
+                                         "lightmap", "atlas",   "design",   "validate",  "study",
+                                         "survey",   "correct", "observe",  "fit",       "sweep",
+                                         "baseline", "beam",    "compare",  "data",      "help"};
 
 class CommandErrors : public testing::Test {
   protected:

@@ -125,7 +125,6 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
                  {"validate", "rig.toml", "-o", "out"},
                  {"validate", "rig.toml", "--rendered", "out", "-o", "elsewhere"},
                  {"study", "rig.toml", "--quick", "-o", "out"},
-                 {"stress", "--only", "altitude", "-o", "out"},
                  {"atlas", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
                  {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.csv", "-o", "out"},
                  {"baseline", "homomorphic", "raw", "-o", "out"},

@@ -43,7 +43,6 @@ const std::vector<Struck> kCommands{
     {"Lightmap", {"lightmap", "rig.toml", "--per-cone", "-o", "out/map.exr"}},
     {"Observe", {"observe", "raw", "--nav", "nav.eic", "--altitude", "2", "-o", "out/map.exr"}},
     {"Plan", {"plan", "rig.toml", "--plot", "out/plan.svg"}},
-    {"Stress", {"stress", "-o", "out", "--width", "6", "--only", "roll-degrees-45"}},
     {"Survey", {"survey", "rig.toml", "--images", "8", "-o", "out"}},
     {"Study", {"study", "rig.toml", "-o", "out", "--quick"}},
     {"Trace", {"trace", "rig.toml", "-o", "out"}},

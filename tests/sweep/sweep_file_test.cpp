@@ -165,7 +165,7 @@ TEST(SweepFile, SaysWhatIsWrongAndWhatIsAllowed) {
             EXPECT_NE(message.find(part), std::string::npos) << message << "\nof " << text;
         }
     }
-    EXPECT_THROW((void)parse_sweep_file("command = \"stress\"\nrig = \"r\"\n", "s"), InputError);
+    EXPECT_THROW((void)parse_sweep_file("command = \"study\"\nrig = \"r\"\n", "s"), InputError);
     EXPECT_THROW((void)parse_sweep_file("command = \"fit\"\nrig = \"r\"\n", "s"), InputError);
     EXPECT_THROW((void)parse_sweep_file("command = ", "s"), InputError);
 }

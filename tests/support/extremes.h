@@ -1,40 +1,119 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "validation/stress.h"
+//
+// Both renderers at the extremes: what a rig may ask for and a sled never does, each row of
+// tests/validation/extremes.toml held against the answer in long double (exact_light.h).
+//
+//   e = (a - b) / max(|b|, floor)       a a renderer's value, b the answer
+//
+// floor, what counts as black: for POV-Ray what its frames can hold (validation.h), and in any case
+// the smallest normal float, which is what images hold; for the tracer kTracedFloor.
+#pragma once
 
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/number.h"
-#include "base/parallel.h"
+#include "cli/rendered_images.h"
 #include "image/frame_check.h"
+#include "plugin/render.h"
 #include "rig/rig_reader.h"
+#include "scene_gen/render_plan.h"
+#include "scene_gen/scene_set.h"
+#include "spectral/integrator.h"
+#include "support/exact_light.h"
 #include "validation/comparison.h"
-#include "validation/exact_light.h"
 #include "validation/tracer.h"
+#include "validation/validation.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <functional>
 #include <limits>
-#include <mutex>
+#include <optional>
+#include <ostream>
+#include <span>
 #include <sstream>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
-namespace aphotic {
+namespace aphotic::extremes {
 
-namespace fs = std::filesystem;
+// The tracer's bounds of |e|: a double's rounding, through sums and exponentials, and for the
+// signals its spectral grid's (tracer.h).
+inline constexpr double kTracedRadianceBound = 1e-11;
+inline constexpr double kTracedSignalBound = 2e-8;
+// Where the water scatters: kVeilTolerance, and the rounding of distances of 100 m beside
+// kVeilBeside_m.
+inline constexpr double kTracedVeilBound = 1e-8;
+// The tracer's light ends where the water has left e^-700 of it (tracer.h); the rest is for the
+// brightest lamps that a rig may have.
+inline constexpr double kTracedFloor = 1e-280;
+inline constexpr double kSmallestNormalFloat = std::numeric_limits<float>::min();
 
-namespace {
+// The words of extremes.toml.
+inline constexpr std::array kOutcomes{"holds",    // every error within its bound, something to see
+                                      "grows",    // an image, finite, out of bounds
+                                      "faint",    // within bounds, but all is under a floor
+                                      "black",    // the same, and both images are zero throughout
+                                      "refused",  // the reader says why not
+                                      "unrenderable"};  // the plan or the render says why not
 
-constexpr double kSmallestNormalFloat = std::numeric_limits<float>::min();
-constexpr std::array kAnswerWords{"holds", "faint", "black", "refused", "grows"};
+struct ExtremeTable {
+    std::string file;
+    std::string text;
+};
+
+struct Extreme {
+    std::string group;  // such as "water"
+    std::string what;   // is changed, in words
+    std::string value;  // and to what
+    std::string name;   // of letters, digits and _, unique
+    std::string rig;    // TOML
+    std::vector<ExtremeTable> tables;
+    std::optional<int> peak_log2;        // of the frames' exposure, if not the usual
+    std::vector<double> wavelengths_nm;  // none: as a render plans them
+    std::string expected;                // of kOutcomes
+    std::vector<std::string> says;       // one of these stands in the words of a refusal
+};
+
+inline void PrintTo(const Extreme& one, std::ostream* out) {
+    *out << one.what << ": " << one.value;
+}
+
+struct ExtremeFound {
+    std::string outcome = "holds";
+    std::string said;              // why it was refused
+    double peak = 0.0;             // largest radiance of the answer, over pixels and wavelengths
+    double povray_radiance = 0.0;  // largest |e|, off the edges
+    double povray_signal = 0.0;
+    double promise = 0.0;  // the plan's, of the worst channel
+    double traced_radiance = 0.0;
+    double traced_signal = 0.0;
+};
+
+// A refusal for another reason, such as a POV-Ray that fails, is not.
+inline bool is_as_expected(const Extreme& asked, const ExtremeFound& found) {
+    if (found.outcome != asked.expected) return false;
+    return found.said.empty() || std::ranges::any_of(asked.says, [&](const std::string& words) {
+               return found.said.find(words) != std::string::npos;
+           });
+}
+
+// How a row is rendered. Throws InputError or RunError where a render does.
+using ExtremeRender = std::function<RenderedImages(
+    const Rig& rig, const Extreme& asked, const std::filesystem::path& folder)>;
 
 // The sheet.
 
 // What overlay holds goes over what base holds, table by table; arrays are replaced whole.
-void lay_over(toml::table& base, const toml::table& overlay) {
+inline void lay_over(toml::table& base, const toml::table& overlay) {
     for (const auto& [key, node] : overlay) {
         toml::table* below = base[key].as_table();
         if (node.is_table() && below != nullptr) {
@@ -46,7 +125,7 @@ void lay_over(toml::table& base, const toml::table& overlay) {
 }
 
 // key is a path such as "strobe.0.position_m".
-void put(toml::node& at, std::string_view key, const toml::node& value) {
+inline void put(toml::node& at, std::string_view key, const toml::node& value) {
     const std::size_t dot = key.find('.');
     const std::string_view first = key.substr(0, dot);
     if (auto* array = at.as_array()) {
@@ -60,13 +139,13 @@ void put(toml::node& at, std::string_view key, const toml::node& value) {
     }
 }
 
-std::string printed(const toml::table& table) {
+inline std::string printed(const toml::table& table) {
     std::ostringstream text;
     text << table;
     return text.str();
 }
 
-std::string label_of(const toml::node& value) {
+inline std::string label_of(const toml::node& value) {
     if (const toml::table* piece = value.as_table()) {
         return piece->get("as")->value_or(std::string());
     }
@@ -78,19 +157,19 @@ std::string label_of(const toml::node& value) {
     return fmt::format("{}", value.value_or(0.0));
 }
 
-std::string folder_name(std::string_view words, std::size_t number) {
-    constexpr std::size_t kLongest = 40;
+inline std::string test_name(std::string_view words, std::size_t number) {
+    constexpr std::size_t kLongest = 60;
     std::string name;
     for (const char c : words.substr(0, kLongest)) {
         const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
         if (is_plain) name += c;
-        if (!is_plain && !name.empty() && name.back() != '-') name += '-';
+        if (!is_plain && !name.empty() && name.back() != '_') name += '_';
     }
-    return fmt::format("{:03}-{}", number, name);
+    return fmt::format("{:03}_{}", number, name);
 }
 
 // A smooth curve of so many points over the visible range, for a table of any size.
-std::string filled_table(std::int64_t points) {
+inline std::string filled_table(std::int64_t points) {
     std::string text = "wavelength_nm,relative_power\n";
     for (std::int64_t i = 0; i < points; ++i) {
         const double t = static_cast<double>(i) / static_cast<double>(points - 1);
@@ -99,8 +178,8 @@ std::string filled_table(std::int64_t points) {
     return text;
 }
 
-std::vector<StressTable> tables_of(const toml::table& words) {
-    std::vector<StressTable> tables;
+inline std::vector<ExtremeTable> tables_of(const toml::table& words) {
+    std::vector<ExtremeTable> tables;
     const toml::table* named = words["tables"].as_table();
     if (named == nullptr) return tables;
     for (const auto& [file, content] : *named) {
@@ -113,7 +192,7 @@ std::vector<StressTable> tables_of(const toml::table& words) {
 }
 
 // So many strobes, the first again and again.
-void copy_strobe(toml::table& rig, std::int64_t count) {
+inline void copy_strobe(toml::table& rig, std::int64_t count) {
     const toml::table first = *rig["strobe"].as_array()->at(0).as_table();
     toml::array strobes;
     for (std::int64_t i = 0; i < count; ++i) {
@@ -125,7 +204,7 @@ void copy_strobe(toml::table& rig, std::int64_t count) {
 }
 
 // Fewer and larger pixels over the same field of view.
-void set_width(toml::table& rig, int width_px) {
+inline void set_width(toml::table& rig, int width_px) {
     toml::table& camera = *rig["camera"].as_table();
     const auto width = camera["resolution"][0].value_or(1.0);
     const auto height = camera["resolution"][1].value_or(1.0);
@@ -136,10 +215,10 @@ void set_width(toml::table& rig, int width_px) {
     camera.insert_or_assign("pixel_pitch_um", camera["pixel_pitch_um"].value_or(1.0) / share);
 }
 
-StressCase case_of(const toml::table& base,
-                   const toml::table& extreme,
-                   const toml::node& value,
-                   StressAnswer expected) {
+inline Extreme row_of(const toml::table& base,
+                      const toml::table& extreme,
+                      const toml::node& value,
+                      const std::string& expected) {
     toml::table sheet = base;
     if (const auto* set = extreme["set"].as_table()) lay_over(sheet, *set);
     const std::string key = extreme["key"].value_or(std::string());
@@ -150,21 +229,21 @@ StressCase case_of(const toml::table& base,
     }
     sheet.erase("as");
     toml::table words;
-    if (const auto* stress = sheet["stress"].as_table()) words = *stress;
-    sheet.erase("stress");
+    if (const auto* also = sheet["also"].as_table()) words = *also;
+    sheet.erase("also");
     if (auto* tables = words["tables"].as_table()) tables->erase("as");
     if (const auto count = words["strobes"].value<std::int64_t>()) copy_strobe(sheet, *count);
 
-    StressCase made{.group = extreme["group"].value_or(std::string()),
-                    .extreme = extreme["name"].value_or(std::string()),
-                    .value = label_of(value),
-                    .name = "",
-                    .rig = printed(sheet) + "\n",
-                    .tables = tables_of(words),
-                    .peak_log2 = words["peak_log2"].value<int>(),
-                    .wavelengths_nm = {},
-                    .expected = expected,
-                    .says = {}};
+    Extreme made{.group = extreme["group"].value_or(std::string()),
+                 .what = extreme["name"].value_or(std::string()),
+                 .value = label_of(value),
+                 .name = "",
+                 .rig = printed(sheet) + "\n",
+                 .tables = tables_of(words),
+                 .peak_log2 = words["peak_log2"].value<int>(),
+                 .wavelengths_nm = {},
+                 .expected = expected,
+                 .says = {}};
     if (const auto* says = extreme["says"].as_array()) {
         for (const toml::node& words_of : *says) {
             made.says.push_back(words_of.value_or(std::string()));
@@ -183,7 +262,7 @@ struct Answer {
     std::array<std::vector<double>, kChannels> signals;
 };
 
-Answer answer_of(const Rig& rig, std::span<const double> lambda_nm) {
+inline Answer answer_of(const Rig& rig, std::span<const double> lambda_nm) {
     const ExactLight<long double> light(rig);
     Answer answer{.radiance = std::vector<std::vector<double>>(lambda_nm.size()), .signals = {}};
     for (int row = 0; row < rig.camera.height_px; ++row) {
@@ -216,11 +295,11 @@ double largest_error(std::span<const Sample> samples,
     return largest;
 }
 
-double peak_of(std::span<const double> samples) {
+inline double peak_of(std::span<const double> samples) {
     return samples.empty() ? 0.0 : std::ranges::max(samples);
 }
 
-struct StressPlane {
+struct ExtremePlane {
     std::span<const double> answer;
     std::span<const float> rendered;
     std::span<const double> traced;
@@ -238,7 +317,7 @@ struct Verdict {
     bool is_seen = false;  // something is over its floor
     bool is_black = true;  // POV-Ray's values are zero throughout
 
-    void take_in(const StressPlane& plane) {
+    void take_in(const ExtremePlane& plane) {
         const double e = largest_error(plane.rendered, plane.answer, plane.on_edge, plane.floor);
         const double traced_e =
             largest_error(plane.traced, plane.answer, plane.on_edge, kTracedFloor);
@@ -250,7 +329,7 @@ struct Verdict {
     }
 };
 
-void compare(const Rig& rig, const RenderedImages& rendered, StressFound& found) {
+inline void compare(const Rig& rig, const RenderedImages& rendered, ExtremeFound& found) {
     const Tracer tracer(rig, {.signals = true, .planes_nm = rendered.lambda_nm});
     const std::vector<double> traced = tracer.rows(0, rig.camera.height_px);
     const Answer answer = answer_of(rig, rendered.lambda_nm);
@@ -274,7 +353,6 @@ void compare(const Rig& rig, const RenderedImages& rendered, StressFound& found)
     }
     Verdict signals;
     const std::vector<unsigned char> on_edge = tracer.on_edges(rig.camera.range);
-    found.on_edges = static_cast<std::size_t>(std::ranges::count(on_edge, 1));
     for (std::size_t c = 0; c < kChannels; ++c) {
         const double black = std::max(kBlackShare * peak_of(answer.signals[c]), rendered.black[c]);
         found.promise = std::max(found.promise, rendered.promise[c]);
@@ -291,90 +369,76 @@ void compare(const Rig& rig, const RenderedImages& rendered, StressFound& found)
     found.povray_signal = signals.rendered_error;
     found.traced_signal = signals.traced_error;
     if (!radiance.holds || !signals.holds) {
-        found.answer = StressAnswer::Grows;
+        found.outcome = "grows";
     } else if (radiance.is_black && signals.is_black) {
-        found.answer = StressAnswer::Black;
+        found.outcome = "black";
     } else if (!radiance.is_seen || !signals.is_seen) {
-        found.answer = StressAnswer::Faint;
+        found.outcome = "faint";
     }
 }
 
-}  // namespace
-
-std::string_view answer_word(StressAnswer answer) {
-    return kAnswerWords.at(static_cast<std::size_t>(answer));
-}
-
-bool StressFound::as_expected() const {
-    if (answer != asked.expected) return false;
-    return answer != StressAnswer::Refused ||
-           std::ranges::any_of(asked.says, [this](const std::string& words) {
-               return said.find(words) != std::string::npos;
-           });
-}
-
-std::vector<StressCase> stress_cases(int width_px) {
-    const toml::table sheet = toml::parse(stress_sheet().front().text);
+inline std::vector<Extreme> all_extremes(int width_px) {
+    const toml::table sheet =
+        toml::parse_file(std::string(APHOTIC_SOURCE_DIR) + "/tests/validation/extremes.toml");
     toml::table base = *sheet["rig"].as_table();
     set_width(base, width_px);
-    std::vector<StressCase> cases;
+    std::vector<Extreme> rows;
     for (const toml::node& node : *sheet["extreme"].as_array()) {
         const toml::table& extreme = *node.as_table();
-        for (const StressAnswer expected : {StressAnswer::Holds,
-                                            StressAnswer::Grows,
-                                            StressAnswer::Faint,
-                                            StressAnswer::Black,
-                                            StressAnswer::Refused}) {
-            const toml::array* values = extreme[answer_word(expected)].as_array();
+        for (const std::string outcome : kOutcomes) {
+            const toml::array* values = extreme[outcome].as_array();
             if (values == nullptr) continue;
             for (const toml::node& value : *values) {
-                cases.push_back(case_of(base, extreme, value, expected));
-                StressCase& made = cases.back();
-                made.name =
-                    folder_name(made.group + " " + made.extreme + " " + made.value, cases.size());
+                rows.push_back(row_of(base, extreme, value, outcome));
+                Extreme& made = rows.back();
+                made.name = test_name(made.what + " " + made.value, rows.size());
             }
         }
     }
-    return cases;
+    return rows;
 }
 
-StressFound measure_stress(const StressCase& asked,
-                           const fs::path& folder,
-                           const StressRender& render) {
-    StressFound found;
-    found.asked = asked;
+// width_px: of every image whose size is not what the row is about; the field of view stays.
+inline std::vector<Extreme> extremes_of(const std::string& group, int width_px) {
+    std::vector<Extreme> rows = all_extremes(width_px);
+    std::erase_if(rows, [&](const Extreme& one) { return one.group != group; });
+    return rows;
+}
+
+// Writes the row's rig into the folder, reads it as a user's, renders, traces, and compares.
+inline ExtremeFound measure(const Extreme& asked,
+                            const std::filesystem::path& folder,
+                            const ExtremeRender& render) {
     make_folder(folder);
-    for (const StressTable& table : asked.tables) write_text_file(folder / table.file, table.text);
+    for (const ExtremeTable& table : asked.tables) write_text_file(folder / table.file, table.text);
     write_text_file(folder / "rig.toml", asked.rig);
+    ExtremeFound found;
+    found.outcome = "refused";
     try {
         const Rig rig = read_rig(folder / "rig.toml");
-        compare(rig, render(rig, asked, folder), found);
+        found.outcome = "unrenderable";
+        const RenderedImages images = render(rig, asked, folder);
+        found.outcome = "holds";
+        compare(rig, images, found);
     } catch (const InputError& error) {
-        found.answer = StressAnswer::Refused;
         found.said = error.what();
     } catch (const RunError& error) {
-        found.answer = StressAnswer::Refused;
         found.said = error.what();
     }
     return found;
 }
 
-std::vector<StressFound> measure_stress(std::span<const StressCase> cases,
-                                        const std::filesystem::path& folder,
-                                        int cores,
-                                        const StressRender& render,
-                                        const std::function<void(std::size_t)>& progress) {
-    constexpr std::size_t kPerCore = 2;
-    std::vector<StressFound> found(cases.size());
-    std::mutex mutex;  // of what follows
-    std::size_t done = 0;
-    parallel_for(
-        cases.size(), kPerCore * static_cast<std::size_t>(cores), [&](std::size_t i, std::size_t) {
-            found[i] = measure_stress(cases[i], folder / cases[i].name, render);
-            const std::scoped_lock lock(mutex);
-            progress(++done);
-        });
-    return found;
+inline RenderedImages render_by_povray(const Rig& rig,
+                                       const Extreme& asked,
+                                       const std::filesystem::path& folder) {
+    PlanRequest request;
+    request.wavelengths_nm = asked.wavelengths_nm;
+    if (asked.peak_log2) request.scene.peak_log2 = *asked.peak_log2;
+    const RenderPlan plan = plan_render(rig, request);
+    const RenderResult result =
+        render(find_povray(""), folder / "out", make_scene_set(rig, plan), {.jobs = 1});
+    integrate(folder / "out", result.manifest);
+    return cli::images_in(folder / "out", rig, result.manifest, plan.family);
 }
 
-}  // namespace aphotic
+}  // namespace aphotic::extremes
