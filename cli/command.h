@@ -42,7 +42,6 @@ extern const Command kGenerate;
 extern const Command kIntegrate;
 extern const Command kTrace;
 extern const Command kLightmap;
-extern const Command kAtlas;
 extern const Command kDesign;
 extern const Command kCorrect;
 extern const Command kObserve;

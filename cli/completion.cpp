@@ -73,7 +73,7 @@ Taken taken_by(const CLI::App& app, const CLI::Option& option) {
     } else if (type.find('|') != std::string::npos && !is_word_or_file) {
         taken.kind = Taken::Kind::Words;
         taken.words = split(type, '|');
-    } else if (type == "DIR" || type == "ATLAS") {
+    } else if (type == "DIR") {
         taken.kind = Taken::Kind::Folder;
     } else if (type == "RIG") {
         taken.kind = Taken::Kind::File;

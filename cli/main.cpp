@@ -28,10 +28,10 @@ namespace {
 using namespace aphotic::cli;
 
 // In the order of --help.
-constexpr std::array kCommands{&kRender, &kPlan,   &kGenerate, &kIntegrate, &kTrace,  &kLightmap,
-                               &kAtlas,  &kDesign, &kCorrect,  &kObserve,   &kFit,    &kBaseline,
-                               &kSurvey, &kSweep,  &kValidate, &kStudy,     &kStress, &kCompare,
-                               &kBeam,   &kData,   &kHelp};
+constexpr std::array kCommands{&kRender,   &kPlan,    &kGenerate, &kIntegrate, &kTrace,
+                               &kLightmap, &kDesign,  &kCorrect,  &kObserve,   &kFit,
+                               &kBaseline, &kSurvey,  &kSweep,    &kValidate,  &kStudy,
+                               &kStress,   &kCompare, &kBeam,     &kData,      &kHelp};
 
 ExitStatus run(const Action& action) {
     try {

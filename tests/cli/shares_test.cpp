@@ -112,28 +112,6 @@ TEST_F(Shares, OfFramesGoOnWhereTheyStopped) {
     expect_same_files("one", "many");
 }
 
-TEST_F(Shares, OfAnAtlassBins) {
-    const Arguments atlas{"atlas",
-                          path("rig.toml").string(),
-                          "--altitude",
-                          "1:2:0.25",
-                          "--water-multiple",
-                          "1:2:0.5",
-                          "-o"};
-    Arguments one = atlas;
-    one.push_back(path("one").string());
-    run_well(one);
-    Arguments many = atlas;
-    many.push_back(path("many").string());
-    run_shares(many, "--share", 4);
-    many.push_back("--json");
-    const CommandResult joined = run(many);
-    EXPECT_EQ(joined.status, 0) << joined.err;
-    EXPECT_EQ(nlohmann::json::parse(joined.out).at("computed"), 0);
-    expect_same_files("one", "many");
-    EXPECT_EQ(read_text_file(path("one/atlas.json")), read_text_file(path("many/atlas.json")));
-}
-
 class SurveyShares : public Shares {
   protected:
     void SetUp() override { run_well({"survey", "rig.toml", "--images", "9", "-o", "survey"}); }
@@ -232,7 +210,7 @@ TEST_F(Shares, SayWhatIsWrong) {
     expect({"render", "lamps", "--frames", "3/2"}, "found 3/2; allowed: I/N");
     expect({"render", "lamps", "--frames", "1/2", "--bands", "3"},
            "--bands: found with --frames; allowed: with a rig");
-    expect({"atlas", "rig.toml", "--altitude", "2", "-o", "out", "--share", "x"}, "allowed: I/N");
+    expect({"correct", "survey", "-o", "out", "--share", "x"}, "allowed: I/N");
 }
 
 }  // namespace
