@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/completion.h"
 #include "cli/help.h"
+#include "cli/manual.h"
 #include "cli/option_checks.h"
 #include "cli/terminal.h"
 #include "cli/unknown_word.h"
@@ -58,7 +59,21 @@ ExitStatus run(const Action& action) {
     }
 }
 
-// Once parsed, whatever else is on the line.
+// What the parser says of itself, whatever else is on the line.
+void add_manual(CLI::App& app, Action& chosen) {
+    app.add_flag_callback(
+           "--man-page",
+           [&app, &chosen] {
+               chosen = [&app] {
+                   say_text(manual_page(app));
+                   return kDone;
+               };
+               throw CLI::Success();
+           },
+           "Print the manual page of all commands, as man -l takes it")
+        ->trigger_on_parse();
+}
+
 void add_completion(CLI::App& app, Action& chosen) {
     app.add_option_function<std::string>(
            "--completion",
@@ -104,6 +119,7 @@ int main(int argc, char** argv) {
 
     Action chosen;
     add_completion(app, chosen);
+    add_manual(app, chosen);
     for (const Command* command : kCommands) {
         CLI::App* sub = app.add_subcommand(command->name, command->summary)->group(command->group);
         const Action action = command->configure(*sub);
