@@ -24,7 +24,6 @@ using Action = std::function<ExitStatus()>;
 inline constexpr const char* kRenderingCommands = "Render a rig";
 inline constexpr const char* kMapCommands = "Map its light on a flat floor";
 inline constexpr const char* kSurveyCommands = "Correct a survey";
-inline constexpr const char* kSweepCommands = "Do many at once";
 inline constexpr const char* kCheckCommands = "Check and measure";
 inline constexpr const char* kHelpCommands = "Help";
 
@@ -48,7 +47,6 @@ extern const Command kObserve;
 extern const Command kFit;
 extern const Command kBaseline;
 extern const Command kSurvey;
-extern const Command kSweep;
 extern const Command kValidate;
 extern const Command kStudy;
 extern const Command kStress;

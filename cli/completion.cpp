@@ -82,7 +82,7 @@ Taken taken_by(const CLI::App& app, const CLI::Option& option) {
         taken.kind = Taken::Kind::File;
         taken.extension = type.substr(type.find('.') + 1);
     } else if (is_word_or_file ||
-               contains({"FILE", "IMAGE", "IMAGES", "PROGRAM", "SWEEP", "NAME", "A", "B"}, type)) {
+               contains({"FILE", "IMAGE", "IMAGES", "PROGRAM", "NAME", "A", "B"}, type)) {
         taken.kind = Taken::Kind::File;
     }
     return taken;

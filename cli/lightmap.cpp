@@ -19,7 +19,6 @@
 #include "image/preview.h"
 #include "lightmap/altitude_fit.h"
 #include "lightmap/oplab_export.h"
-#include "rig/rig_reader.h"
 
 #include <fmt/format.h>
 
@@ -107,7 +106,7 @@ std::string altitude_fault(const std::string& text) {
 }
 
 Rig rig_of(const LightmapCommandOptions& options) {
-    Rig rig = read_rig(options.rig_file);
+    Rig rig = read_rig_as_set(options.rig_file);
     if (options.altitude_m.size() == 1) rig.sled.altitude_m = options.altitude_m.front();
     if (options.pitch_deg) rig.sled.pitch_rad = *options.pitch_deg * kRadiansPerDegree;
     if (options.roll_deg) rig.sled.roll_rad = *options.roll_deg * kRadiansPerDegree;
@@ -289,14 +288,15 @@ void print(const MadeMaps& made) {
 ExitStatus make_maps(const LightmapCommandOptions& options, const Rig& rig) {
     MadeMaps made{.folder = options.output, .maps = {}};
     const std::vector<std::string> names = map_names(options.altitude_m);
-    for (std::size_t i = options.altitude_m.size(); i-- > 0;) {  // the highest is refused first
-        const Rig there = rig_at(rig, options.altitude_m[i]);
+    std::vector<std::optional<ManifestModel>> models(names.size());
+    for (std::size_t i = names.size(); i-- > 0;)  // the highest is refused first
+        models[i] = model_of(options, rig_at(rig, options.altitude_m[i]));
+    for (std::size_t i = 0; i < names.size(); ++i) {
         made.maps.push_back({.options = options,
-                             .rig = there,
+                             .rig = rig_at(rig, options.altitude_m[i]),
                              .file = (fs::path(options.output) / names[i]).string(),
-                             .model = model_of(options, there)});
+                             .model = models[i]});
     }
-    std::ranges::reverse(made.maps);
     naming(options.rig_file, [&] {
         require_over_floor(made.maps.front().rig, made.maps.front().rig.sled);
         require_room_for_maps(options, rig, made.maps.size(), options.output);

@@ -10,6 +10,7 @@
 #include "cli/help.h"
 #include "cli/manual.h"
 #include "cli/option_checks.h"
+#include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "cli/unknown_word.h"
 
@@ -29,10 +30,25 @@ namespace {
 using namespace aphotic::cli;
 
 // In the order of --help.
-constexpr std::array kCommands{&kRender,   &kPlan,    &kGenerate, &kIntegrate, &kTrace,
-                               &kLightmap, &kDesign,  &kCorrect,  &kObserve,   &kFit,
-                               &kBaseline, &kSurvey,  &kSweep,    &kValidate,  &kStudy,
-                               &kStress,   &kCompare, &kBeam,     &kData,      &kHelp};
+constexpr std::array kCommands{&kRender,
+                               &kPlan,
+                               &kGenerate,
+                               &kIntegrate,
+                               &kTrace,
+                               &kLightmap,
+                               &kDesign,
+                               &kCorrect,
+                               &kObserve,
+                               &kFit,
+                               &kBaseline,
+                               &kSurvey,
+                               &kValidate,
+                               &kStudy,
+                               &kStress,
+                               &kCompare,
+                               &kBeam,
+                               &kData,
+                               &kHelp};
 
 ExitStatus run(const Action& action) {
     try {
@@ -123,6 +139,7 @@ int main(int argc, char** argv) {
     for (const Command* command : kCommands) {
         CLI::App* sub = app.add_subcommand(command->name, command->summary)->group(command->group);
         const Action action = command->configure(*sub);
+        add_set_option(*sub);
         add_common_checks(*sub);
         sub->callback([&chosen, action, sub] {
             chosen = [action, sub] {
@@ -137,8 +154,8 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (chosen && error.get_exit_code() == 0) return run(Action(chosen));
+        if (chosen && error.get_exit_code() == 0) return run(chosen);
         return app.exit(error) == 0 ? kDone : kBadInput;
     }
-    return run(Action(chosen));  // a copy: a sweep's action parses again, which replaces `chosen`
+    return run(chosen);
 }

@@ -69,7 +69,7 @@ std::string roff(const std::string& text) {
 
 std::string option_text(const HelpFormatter& help, const CLI::Option& option) {
     const bool is_argument = option.get_positional();
-    std::string name = roff(help.make_option_name(&option, is_argument));
+    const std::string name = roff(help.make_option_name(&option, is_argument));
     const std::string value = roff(help.make_option_opts(&option));
     return fmt::format(".TP\n\\f{}{}\\fR{}\n{}\n",
                        is_argument ? 'I' : 'B',
@@ -80,16 +80,16 @@ std::string option_text(const HelpFormatter& help, const CLI::Option& option) {
 
 std::string options_text(const HelpFormatter& help, const CLI::App& command) {
     std::string text;
-    std::string group = "Options";
-    for (const bool is_argument : {true, false}) {
-        for (const CLI::Option* option : command.get_options()) {
-            if (option->get_positional() != is_argument || option->get_group().empty()) continue;
-            if (!is_argument && option->get_group() != group) {
-                group = option->get_group();
-                text += fmt::format(".PP\n{}:\n", roff(group));
-            }
-            text += option_text(help, *option);
-        }
+    for (const CLI::Option* option : command.get_options())
+        if (option->get_positional()) text += option_text(help, *option);
+    for (const std::string& group : command.get_groups()) {
+        if (group.empty()) continue;  // hidden
+        std::string options;
+        for (const CLI::Option* option : command.get_options())
+            if (!option->get_positional() && option->get_group() == group)
+                options += option_text(help, *option);
+        if (!options.empty() && group != "Options") text += fmt::format(".PP\n{}:\n", roff(group));
+        text += options;
     }
     return text;
 }
@@ -103,7 +103,8 @@ std::string command_text(const HelpFormatter& help, const CLI::App& command) {
                                    command.get_name(),
                                    roff(arguments),
                                    roff(command.get_description()));
-    if (!command.get_footer().empty()) text += ".PP\n" + roff(command.get_footer()) + "\n";
+    const bool has_own_footer = command.get_footer() != command.get_parent()->get_footer();
+    if (has_own_footer) text += ".PP\n" + roff(command.get_footer()) + "\n";
     return text + options_text(help, command);
 }
 

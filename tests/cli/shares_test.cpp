@@ -4,7 +4,7 @@
 // Joined, it is bit for bit what one machine makes.
 #include "support/command_under_way.h"
 #include "support/run_command.h"
-#include "support/small_sweep.h"
+#include "support/small_rig.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -73,7 +73,7 @@ class Shares : public testing::Test {
         expect_no_leftovers(path(other));
     }
 
-    SmallSweep small_;
+    SmallRig small_;
 };
 
 TEST_F(Shares, OfARendersFrames) {
@@ -163,40 +163,6 @@ TEST_F(SurveyShares, WhatNoShareHasDoneIsDoneWhenTheyAreJoined) {
     EXPECT_EQ(json.at("corrected"), 6);
     EXPECT_EQ(json.at("kept"), 3);
     expect_same_files("one", "many");
-}
-
-// A sweep's tasks leave shares, which --collect joins.
-TEST_F(SurveyShares, OfASweepAreJoinedWhenTheyAreCollected) {
-    run_well(correct("one"));
-    small_.write("correct", R"(images = ["survey/raw"]
-shares = 3
-arguments = ["--nav", "survey/navigation-measured.txt", "--bayer", "RGGB", "--black-level", "64",
-             "--white-level", "4095", "--format", "exr"]
-)");
-    run_well({"sweep", "sweep.toml", "-o", "out"});
-    for (const char* number : {"3", "1", "2"}) {
-        EXPECT_EQ(run({"sweep", "out", "--collect"}).status, 1);
-        run_well({"sweep", "out", "--task", number});
-    }
-    run_well({"sweep", "out", "--collect"});
-    expect_same_files("one", "out/point-0001");
-    run_well({"sweep", "out", "--collect"});
-}
-
-// An image is skipped, which is an answer of correct's: its task is done, and not done again.
-TEST_F(SurveyShares, OfASweepMayAnswerNo) {
-    write_file(path("survey/raw/broken.tif"), "no image");
-    small_.write("correct", R"(images = ["survey/raw"]
-arguments = ["--nav", "survey/navigation-measured.txt", "--bayer", "RGGB", "--black-level", "64",
-             "--white-level", "4095"]
-)");
-    run_well({"sweep", "sweep.toml", "-o", "out"});
-    run_well({"sweep", "out", "--task", "1"});
-    const std::string result = read_text_file(path("out/task-0001/result.json"));
-    EXPECT_EQ(nlohmann::json::parse(result).at("exit_status"), 1);
-    run_well({"sweep", "out", "--status"});
-    run_well({"sweep", "out", "--task", "1"});
-    EXPECT_EQ(read_text_file(path("out/task-0001/result.json")), result);
 }
 
 TEST_F(Shares, SayWhatIsWrong) {
