@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A share of much work, for one machine of several: 2/4 is of each four pieces the second.
-// Neighbours, such as the images of a dive or the maps of an atlas, take alike long, and so do
+// Neighbours, such as the images of a dive, take alike long, and so do
 // shares of this kind.
 //
 // What a share makes goes to a folder of its own, DIR/share-2-of-4, which no other task writes to.

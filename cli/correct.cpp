@@ -15,7 +15,6 @@
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
 #include "image/exr.h"
-#include "rig/rig_reader.h"
 #include "survey/camera_of_files.h"
 #include "survey/correction_run.h"
 #include "survey/ifdo_results.h"
@@ -191,7 +190,7 @@ void write_ifdo(const IfdoTask& task,
                 const Survey& survey,
                 const CorrectionReport& report) {
     std::optional<Rig> rig;
-    if (!options.rig.empty()) rig = read_rig(options.rig);
+    if (!options.rig.empty()) rig = read_rig_as_set(options.rig);
     const IfdoResults made = write_ifdo_of_results(
         task.of_raw, task.place, survey, options.correction, report, rig ? &*rig : nullptr);
     if (!options.json) say("  {}: {}\n", made.file.string(), counted(made.images, "image"));

@@ -160,7 +160,7 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     require_one_source(app);
     require_use(app, options);
     require_other_rig(options);
-    const RigText text(std::filesystem::path(options.rig));
+    const RigText text = read_rig_text_as_set(options.rig);
     const Rig rig = text.rig();
     naming(options.rig, [&] { require_bare_floor(rig); });
     check_plausible(rig, options.rig, options.strict);

@@ -9,7 +9,9 @@
 #include "cli/command.h"
 #include "cli/completion.h"
 #include "cli/help.h"
+#include "cli/manual.h"
 #include "cli/option_checks.h"
+#include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "cli/unknown_word.h"
 #include "report/page.h"
@@ -31,10 +33,24 @@ namespace {
 using namespace aphotic::cli;
 
 // In the order of --help.
-constexpr std::array kCommands{&kRender,   &kPlan,     &kGenerate, &kIntegrate, &kTrace,
-                               &kLightmap, &kAtlas,    &kDesign,   &kCorrect,   &kObserve,
-                               &kFit,      &kBaseline, &kSurvey,   &kSweep,     &kValidate,
-                               &kStudy,    &kCompare,  &kBeam,     &kData,      &kHelp};
+constexpr std::array kCommands{&kRender,
+                               &kPlan,
+                               &kGenerate,
+                               &kIntegrate,
+                               &kTrace,
+                               &kLightmap,
+                               &kDesign,
+                               &kCorrect,
+                               &kObserve,
+                               &kFit,
+                               &kBaseline,
+                               &kSurvey,
+                               &kValidate,
+                               &kStudy,
+                               &kCompare,
+                               &kBeam,
+                               &kData,
+                               &kHelp};
 
 ExitStatus run(const Action& action) {
     try {
@@ -61,7 +77,21 @@ ExitStatus run(const Action& action) {
     }
 }
 
-// Once parsed, whatever else is on the line.
+// What the parser says of itself, whatever else is on the line.
+void add_manual(CLI::App& app, Action& chosen) {
+    app.add_flag_callback(
+           "--man-page",
+           [&app, &chosen] {
+               chosen = [&app] {
+                   say_text(manual_page(app));
+                   return kDone;
+               };
+               throw CLI::Success();
+           },
+           "Print the manual page of all commands, as man -l takes it")
+        ->trigger_on_parse();
+}
+
 void add_completion(CLI::App& app, Action& chosen) {
     app.add_option_function<std::string>(
            "--completion",
@@ -124,9 +154,11 @@ int main(int argc, char** argv) {
     aphotic::set_page_origin(page_origin(argc, argv));
     Action chosen;
     add_completion(app, chosen);
+    add_manual(app, chosen);
     for (const Command* command : kCommands) {
         CLI::App* sub = app.add_subcommand(command->name, command->summary)->group(command->group);
         const Action action = command->configure(*sub);
+        add_set_option(*sub);
         add_common_checks(*sub);
         sub->callback([&chosen, action, sub] {
             chosen = [action, sub] {
@@ -141,8 +173,8 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (chosen && error.get_exit_code() == 0) return run(Action(chosen));
+        if (chosen && error.get_exit_code() == 0) return run(chosen);
         return app.exit(error) == 0 ? kDone : kBadInput;
     }
-    return run(Action(chosen));  // a copy: a sweep's action parses again, which replaces `chosen`
+    return run(chosen);
 }

@@ -5,8 +5,8 @@
 #include "base/error.h"
 #include "cli/option_checks.h"
 #include "cli/options.h"
+#include "cli/rig_file.h"
 #include "cli/terminal.h"
-#include "rig/rig_reader.h"
 #include "survey/image_time.h"
 
 #include <fmt/format.h>
@@ -137,7 +137,7 @@ Navigation read_navigation_with(const std::string& rig,
                                 const std::vector<ImageFile>& files) {
     options.jobs = static_cast<std::size_t>(all_cores());
     if (rig.empty()) return read_navigation(options, files, nullptr);
-    const Rig read = read_rig(rig);
+    const Rig read = read_rig_as_set(rig);
     return read_navigation(options, files, &read);
 }
 

@@ -125,7 +125,7 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
                  {"validate", "rig.toml", "-o", "out"},
                  {"validate", "rig.toml", "--rendered", "out", "-o", "elsewhere"},
                  {"study", "rig.toml", "--quick", "-o", "out"},
-                 {"atlas", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
+                 {"lightmap", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
                  {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.csv", "-o", "out"},
                  {"baseline", "homomorphic", "raw", "-o", "out"},
                  {"fit", "rig.toml", "--maps", "raw/a.exr", "-o", "out"}}) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A folder with HabCam of a few pixels, rig.toml, whose lamps are a table beside it, and sweeps of
-// it.
+// A folder with HabCam of a few pixels, rig.toml, whose lamps are a table beside it.
 #pragma once
 
 #include "base/atomic_file.h"
@@ -13,9 +12,9 @@
 
 namespace aphotic {
 
-class SmallSweep {
+class SmallRig {
   public:
-    SmallSweep() {
+    SmallRig() {
         std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
         text = std::regex_replace(
             text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [16, 12]");
@@ -29,17 +28,8 @@ class SmallSweep {
 
     [[nodiscard]] const std::filesystem::path& folder() const { return temp_.path(); }
 
-    std::filesystem::path write(const std::string& command, const std::string& more) const {
-        const std::filesystem::path file = folder() / "sweep.toml";
-        write_file(file, "command = \"" + command + "\"\nrig = \"rig.toml\"\n" + more);
-        return file;
-    }
-
   private:
     TempFolder temp_;
 };
-
-inline constexpr const char* kThreeWaters =
-    "[[vary]]\nkey = \"water.multiple\"\nvalues = [0.5, 1, 2]\n";
 
 }  // namespace aphotic
