@@ -77,7 +77,7 @@ ExitStatus stress(const StressCommandOptions& options) {
     if (cases.empty()) {
         throw InputError("--only: found '{}'; allowed: part of a case's name", options.only);
     }
-    const FolderLock lock = claim_tree(options.folder);
+    const FolderLock lock = claim_folder(options.folder);
     const StressRender render = [&](const Rig& rig, const StressCase& asked, const fs::path& to) {
         return render_case(povray, options.stall_timeout_s, rig, asked, to);
     };

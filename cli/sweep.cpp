@@ -6,8 +6,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/folder_lock.h"
 #include "base/words.h"
+#include "base/work_folder.h"
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/outcome.h"

@@ -15,7 +15,7 @@
 // says that it is of all the same.
 #pragma once
 
-#include "base/share.h"
+#include "base/work_folder.h"
 #include "lightmap/atlas_export.h"
 #include "lightmap/atlas_plan.h"
 #include "lightmap/map_axes.h"

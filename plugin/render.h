@@ -14,7 +14,7 @@
 // those noted before belong to the scene as it was, so the next run renders them again.
 #pragma once
 
-#include "base/share.h"
+#include "base/work_folder.h"
 #include "plugin/frame_runner.h"
 #include "plugin/povray.h"
 #include "scene_gen/scene_set.h"

@@ -3,10 +3,10 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/folder_lock.h"
 #include "base/json_text.h"
 #include "base/sha256.h"
 #include "base/words.h"
+#include "base/work_folder.h"
 #include "rig/rig_text.h"
 #include "sweep/sweep_inputs.h"
 #include "sweep/wrapper.h"

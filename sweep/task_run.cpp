@@ -3,10 +3,9 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/folder_lock.h"
 #include "base/interruption.h"
 #include "base/json_text.h"
-#include "base/share.h"
+#include "base/work_folder.h"
 #include "plugin/process.h"
 
 #include <nlohmann/json.hpp>
