@@ -4,7 +4,7 @@
 // to those of a rig of other water, lamps, materials or sensor.
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/share.h"
+#include "base/work_folder.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
 #include "cli/options.h"

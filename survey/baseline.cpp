@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "survey/local_equalisation.h"
-#include "survey/site_planes.h"
+#include "survey/raw_image.h"
 #include "survey/slow_light.h"
 
 #include <cmath>

@@ -46,6 +46,10 @@ inline constexpr std::array<std::string_view, 6> kBaselineNames{
     "binned-polynomial",
     "altitude-exponential"};  // in order
 
+[[nodiscard]] constexpr std::string_view name_of(Baseline baseline) {
+    return kBaselineNames[static_cast<std::size_t>(baseline)];
+}
+
 [[nodiscard]] constexpr bool needs_altitude(Baseline baseline) {
     return baseline >= Baseline::BinnedPolynomial;
 }

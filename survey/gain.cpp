@@ -88,6 +88,23 @@ bool looked_wrong(const nlohmann::json& notes) {
     });
 }
 
+// What is found in notes of these settings; nothing in others, or in what correct_survey() did not
+// write.
+template <typename Kept, typename Find>
+std::optional<Kept> kept_of(std::string_view text,
+                            const nlohmann::ordered_json& settings,
+                            const Find& found_in) {
+    try {
+        const nlohmann::json notes = parse_json(text, "notes");
+        if (notes.at("settings") != nlohmann::json(settings)) return std::nullopt;
+        return found_in(notes);
+    } catch (const nlohmann::json::exception&) {
+        return std::nullopt;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
 }  // namespace
 
 SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
@@ -116,17 +133,10 @@ SurveyGain measured_gain(const SurveyLook& look, const PerChannel& middle) {
     return gain;
 }
 
-std::optional<SurveyGain> kept_gain(std::string_view text, const std::string& settings_sha256) {
-    try {
-        const nlohmann::json notes = parse_json(text, "correction.json");
-        if (notes.at("settings_sha256") != settings_sha256) return std::nullopt;
-        if (looked_wrong(notes)) return std::nullopt;
-        return gain_in(notes);
-    } catch (const nlohmann::json::exception&) {
-        return std::nullopt;
-    } catch (const InputError&) {
-        return std::nullopt;
-    }
+std::optional<SurveyGain> kept_gain(std::string_view text, const nlohmann::ordered_json& settings) {
+    return kept_of<SurveyGain>(text, settings, [](const nlohmann::json& notes) {
+        return looked_wrong(notes) ? std::nullopt : gain_in(notes);
+    });
 }
 
 SurveyGain gain_of_notes(std::string_view text,
@@ -196,17 +206,12 @@ PerChannel grey_balance(const Survey& survey, double grey, std::size_t jobs) {
     return balance;
 }
 
-std::optional<PerChannel> kept_balance(std::string_view text, std::string_view settings) {
-    try {
-        const nlohmann::json notes = parse_json(text, "baseline.json");
-        if (notes.at("settings") != parse_json(settings, "settings")) return std::nullopt;
+std::optional<PerChannel> kept_balance(std::string_view text,
+                                       const nlohmann::ordered_json& settings) {
+    return kept_of<PerChannel>(text, settings, [](const nlohmann::json& notes) {
         const auto balance = notes.at("srgb").at("balance").get<PerChannel>();
         return std::ranges::all_of(balance, is_number) ? std::optional(balance) : std::nullopt;
-    } catch (const nlohmann::json::exception&) {
-        return std::nullopt;
-    } catch (const InputError&) {
-        return std::nullopt;
-    }
+    });
 }
 
 }  // namespace aphotic

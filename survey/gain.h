@@ -8,6 +8,8 @@
 #include "survey/correction.h"
 #include "survey/first_look.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -31,7 +33,7 @@ struct SurveyGain {
 // settings, or not as correct_survey() wrote it: a gain that is no finite number above 0 among it.
 // Nor of a survey that looked wrong: it may be mended since.
 [[nodiscard]] std::optional<SurveyGain> kept_gain(std::string_view text,
-                                                  const std::string& settings_sha256);
+                                                  const nlohmann::ordered_json& settings);
 
 // The gain and the middle of another survey, from the correction.json in its folder of results, for
 // a survey in this light: dives that share one gain can be compared. An InputError when there is
@@ -54,6 +56,6 @@ struct SurveyGain {
 // The balance that the text of a folder's baseline.json tells of. None when the text is of other
 // settings, or no numbers over 0.
 [[nodiscard]] std::optional<PerChannel> kept_balance(std::string_view text,
-                                                     std::string_view settings);
+                                                     const nlohmann::ordered_json& settings);
 
 }  // namespace aphotic

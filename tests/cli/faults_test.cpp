@@ -2,8 +2,8 @@
 //
 // What breaks while a command runs, or between two runs (docs/faults.md): disks, folders, frames,
 // manifests, POV-Ray, and users who edit their scene too early.
-#include "base/folder_lock.h"
 #include "base/sha256.h"
+#include "base/work_folder.h"
 #include "image/exr.h"
 #include "image/output_images.h"
 #include "spectral/manifest.h"

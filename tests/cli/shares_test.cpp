@@ -116,23 +116,26 @@ class SurveyShares : public Shares {
   protected:
     void SetUp() override { run_well({"survey", "rig.toml", "--images", "9", "-o", "survey"}); }
 
-    [[nodiscard]] Arguments correct(const std::string& folder) const {
-        return {"correct",
-                path("survey/raw").string(),
-                "--rig",
-                path("rig.toml").string(),
-                "--nav",
-                path("survey/navigation-measured.txt").string(),
-                "--bayer",
-                "RGGB",
-                "--black-level",
-                "64",
-                "--white-level",
-                "4095",
-                "--format",
-                "exr",
-                "-o",
-                path(folder).string()};
+    [[nodiscard]] Arguments correct(const std::string& folder,
+                                    const Arguments& command = {"correct"}) const {
+        Arguments all = command;
+        for (const auto& argument : Arguments{path("survey/raw").string(),
+                                              "--rig",
+                                              path("rig.toml").string(),
+                                              "--nav",
+                                              path("survey/navigation-measured.txt").string(),
+                                              "--bayer",
+                                              "RGGB",
+                                              "--black-level",
+                                              "64",
+                                              "--white-level",
+                                              "4095",
+                                              "--format",
+                                              "exr",
+                                              "-o",
+                                              path(folder).string()})
+            all.push_back(argument);
+        return all;
     }
 };
 
@@ -149,6 +152,19 @@ TEST_F(SurveyShares, OfASurveysImages) {
     const auto alone = nlohmann::json::parse(read_text_file(path("one/correction.json")));
     for (const char* key : {"gain", "settings_sha256", "doubtful", "gain_from"})
         EXPECT_EQ(json.at(key), alone.at(key)) << key;
+    expect_same_files("one", "many");
+}
+
+// Each learns the pattern of the whole survey.
+TEST_F(SurveyShares, OfABaseline) {
+    const Arguments baseline{"baseline", "log-polynomial"};
+    run_well(correct("one", baseline));
+    run_shares(correct("many", baseline), "--share", 2);
+    Arguments join = correct("many", baseline);
+    join.push_back("--json");
+    const auto json = nlohmann::json::parse(run(join).out);
+    EXPECT_EQ(json.at("corrected"), 0);
+    EXPECT_EQ(json.at("kept"), 9);
     expect_same_files("one", "many");
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "survey/srgb_files.h"
+#include "survey/result_files.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace aphotic::srgb_files_test {
+namespace aphotic::result_files_test {
 namespace {
 
 // Of lines in place of the power, in 65536 steps: least good across the bend, where the slope falls
@@ -78,4 +78,4 @@ TEST(SrgbEncoding, LeavesNumbersAsTheyAreWhoseMiddleNobodyKnows) {
 }
 
 }  // namespace
-}  // namespace aphotic::srgb_files_test
+}  // namespace aphotic::result_files_test
