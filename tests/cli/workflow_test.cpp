@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The workflow by real Snakemake, and docs/workflow.md's line by real GNU parallel. Snakemake is
-// stopped midway and started again, and one job fails at first. In the end all images are those of
-// the command by itself, bit for bit.
+// The workflow by real Snakemake, on this machine and by Slurm on a node of its own, and
+// docs/workflow.md's line by real GNU parallel. Snakemake is stopped midway and started again, and
+// one job fails at first. In the end all images are those of the command by itself, bit for bit.
 #include "base/atomic_file.h"
 #include "plugin/process.h"
 #include "support/command_under_way.h"
@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -168,6 +169,66 @@ TEST_F(Workflow, BySnakemake) {
     EXPECT_EQ(run(snakemake), 0) << log();
     EXPECT_EQ(images(), 8U);
     EXPECT_EQ(fs::last_write_time(old), written);
+}
+
+// Of one node, gone with its object.
+class OneNodeSlurm {
+  public:
+    OneNodeSlurm() { is_up_ = script("start") == 0; }
+    ~OneNodeSlurm() { script("stop"); }
+    OneNodeSlurm(const OneNodeSlurm&) = delete;
+    OneNodeSlurm& operator=(const OneNodeSlurm&) = delete;
+
+    [[nodiscard]] bool is_up() const { return is_up_; }
+    [[nodiscard]] std::string log() const { return read_text_file(folder_.path() / "log"); }
+    // What its tools need to find it.
+    [[nodiscard]] std::string environment() const {
+        return "export SLURM_CONF='" + (folder_.path() / "slurm.conf").string() + "'; ";
+    }
+
+  private:
+    int script(const std::string& verb) {
+        return run_process(
+                   {.executable = std::string(APHOTIC_SOURCE_DIR) + "/tests/support/one-node-slurm",
+                    .arguments = {verb, folder_.path().string()},
+                    .folder = "/",
+                    .environment = {},
+                    .log = folder_.path() / "log"},
+                   kEngine_s)
+            .exit_code;
+    }
+
+    TempFolder folder_;
+    bool is_up_ = false;
+};
+
+TEST_F(Workflow, BySlurm) {
+    for (const char* program : {"snakemake", "sbatch", "srun"}) {
+        if (!has_program(program)) GTEST_SKIP() << program << " is not installed";
+    }
+    if (run("snakemake --help | grep -q slurm-status-command") != 0)
+        GTEST_SKIP() << "snakemake-executor-plugin-slurm is not installed";
+    if (::geteuid() != 0) GTEST_SKIP() << "only root may start a node";
+    const OneNodeSlurm slurm;
+    if (!slurm.is_up()) GTEST_SKIP() << "no node comes up on this machine: " << slurm.log();
+    fs::copy(
+        fs::path(APHOTIC_SOURCE_DIR) / "workflow", path("workflow"), fs::copy_options::recursive);
+    fs::create_directory(path("config"));
+    write_file(path("config/config.yaml"),
+               "aphotic: ./aphotic-of-tests\ncommand: trace\nrigs: {small: rig.toml}\n"
+               "set: {sled.altitude_m: [1.5, 2], water.multiple: [0.5]}\n");
+    // A node of its own keeps no accounts.
+    EXPECT_EQ(run(slurm.environment() +
+                  "snakemake --workflow-profile workflow/profiles/slurm --latency-wait 5 "
+                  "--slurm-no-account --slurm-status-command squeue "
+                  "--slurm-init-seconds-before-status-checks 2"),
+              0)
+        << log();
+    for (const char* altitude : {"1.5", "2"})
+        expect_image_of(altitude,
+                        "0.5",
+                        path(std::string("results/rigs/small/sled.altitude_m=") + altitude +
+                             "_water.multiple=0.5/image.exr"));
 }
 
 // The line of docs/workflow.md.
