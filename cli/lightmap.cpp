@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "base/progress.h"
 #include "base/words.h"
+#include "base/work_folder.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
 #include "cli/options.h"
@@ -300,7 +301,7 @@ ExitStatus make_maps(const LightmapCommandOptions& options, const Rig& rig) {
     naming(options.rig_file, [&] {
         require_over_floor(made.maps.front().rig, made.maps.front().rig.sled);
         require_room_for_maps(options, rig, made.maps.size(), options.output);
-        const OutputPlace place(options.output);
+        const WorkFolder place(options.output);
         remove_maps(options.output);
         ProgressLine line;
         for (std::size_t i = 0; i < made.maps.size(); ++i) {
@@ -358,7 +359,7 @@ ExitStatus export_maps(const LightmapCommandOptions& options, const Rig& rig) {
         require_room(oplab_needs(rig.camera.width_px, rig.camera.height_px),
                      options.output,
                      options.ignore_needs);
-        const OutputPlace place(options.output);
+        const WorkFolder place(options.output);
         ProgressLine line;
         made.written = export_oplab(
             options.output,

@@ -21,7 +21,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -99,13 +98,7 @@ void print_study(const Study& study, const fs::path& folder) {
         study.height_px,
         counted(study.measures.size(), "setting"),
         counted(static_cast<std::size_t>(study.cores), "core"));
-    say("  {:<24} {:>6} {:>8} {:>10} {:>10} {:>10}\n",
-        "",
-        "frames",
-        "time (s)",
-        "promised",
-        "max |e|",
-        "on edges");
+    say("{:>34}  time (s)   promised    max |e|   on edges\n", "frames");
     for (std::size_t i = 0; i < study.measures.size(); ++i) {
         const StudyMeasure& m = study.measures[i];
         say("{} {:<24} {:6} {:8.2f} {:10.2e} {:10.2e} {:10.2e}\n",
@@ -156,14 +149,14 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
     set_exr_threads(study.cores);
     const FolderLock lock = claim_folder(folder);
     std::vector<StudySetting> settings;
-    std::map<std::string, const RenderPlan*> plans;
-    for (const PlannedSetting& one : planned) {
-        settings.push_back(one.setting);
-        plans[one.setting.name] = &one.plan;
-    }
+    for (const PlannedSetting& one : planned) settings.push_back(one.setting);
     StudyHands hands;
-    hands.render = [&](const StudySetting& setting, const fs::path& its_folder) {
-        const RenderPlan& plan = *plans.at(setting.name);
+    std::optional<ProgressLine> line(std::in_place);
+    hands.progress = [&](std::string_view what, double share) { line->show(what, share); };
+    hands.render = [&](std::size_t index, const fs::path& its_folder) {
+        line.reset();
+        warn("{} of {}: {}", index + 1, settings.size(), settings[index].words);
+        const RenderPlan& plan = planned[index].plan;
         RenderedFrames frames =
             render_frames(povray,
                           its_folder,
@@ -172,14 +165,6 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
         return StudyFrames{.manifest = std::move(frames.result.manifest),
                            .promise = plan.promise(),
                            .render_s = frames.povray_s};
-    };
-    std::optional<ProgressLine> line(std::in_place);
-    hands.progress = [&](std::string_view what, double share) {
-        if (line) line->show(what, share);
-    };
-    hands.begins = [&](const StudySetting& setting, std::size_t index) {
-        line.reset();
-        warn("{} of {}: {}", index + 1, settings.size(), setting.words);
     };
     run_study(study, rig, settings, folder, hands);
     line.reset();

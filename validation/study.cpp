@@ -124,11 +124,12 @@ StudyReference study_reference(Study& study,
 
 // Renders the setting in the folder, from nothing, and takes the folder away again.
 StudyMeasure measure(const StudySetting& setting,
+                     std::size_t index,
                      const StudyReference& reference,
                      const fs::path& folder,
                      const StudyHands& hands) {
     fs::remove_all(folder);
-    const StudyFrames frames = hands.render(setting, folder);
+    const StudyFrames frames = hands.render(index, folder);
     const auto start = Clock::now();
     const CameraImage image = integrate_signals(folder, frames.manifest, folder);
     StudyMeasure measure{.setting = setting,
@@ -173,23 +174,23 @@ StudyMeasure measure_of(const nlohmann::json& json) {
     return measure;
 }
 
+// The measures of study.json; names and words have no commas.
 std::string study_csv(const Study& study) {
-    std::string csv = "name,wavelengths,frames,time_s,on_front";
-    for (const NamedNumber& one : kNumbers) csv += fmt::format(",{}", one.name);
-    csv += '\n';
-    const std::vector<bool> front = pareto_front(study.measures);
-    for (std::size_t i = 0; i < study.measures.size(); ++i) {
-        const StudyMeasure& m = study.measures[i];
-        csv += fmt::format("{},{},{},{},{}",
-                           m.setting.name,
-                           m.wavelengths,
-                           m.frames,
-                           m.total_s(),
-                           static_cast<int>(front[i]));
-        for (const NamedNumber& one : kNumbers) csv += fmt::format(",{}", m.*one.number);
-        csv += '\n';
+    const Json json = Json::parse(study_json(study));
+    std::string head;
+    std::string rows;
+    for (const Json& measure : json.at("measures")) {
+        head.clear();
+        for (const auto& [name, value] : measure.items()) {
+            head += (head.empty() ? "" : ",") + name;
+            rows += name == measure.items().begin().key() ? "" : ",";
+            rows += value.is_string() ? value.get<std::string>()
+                    : value.is_null() ? "inf"
+                                      : value.dump();
+        }
+        rows += '\n';
     }
-    return csv;
+    return head + '\n' + rows;
 }
 
 PlotCurve curve_of(const Study& study, bool equal_bands) {
@@ -375,9 +376,8 @@ void run_study(Study& study,
             study.measures.push_back(*measured);
             continue;
         }
-        hands.begins(settings[i], i);
         study.measures.push_back(
-            measure(settings[i], reference, folder / "settings" / settings[i].name, hands));
+            measure(settings[i], i, reference, folder / "settings" / settings[i].name, hands));
         // With those that are still to come: an interruption loses none of them.
         Study so_far = study;
         so_far.measures.insert(so_far.measures.end(), kept.begin(), kept.end());

@@ -90,13 +90,10 @@ struct StudyFrames {
 };
 
 struct StudyHands {
-    // Renders the frames of a setting into the folder.
-    std::function<StudyFrames(const StudySetting& setting, const std::filesystem::path& folder)>
-        render;
+    // Renders the frames of the setting with that index into the folder; not called for one that
+    // was measured before.
+    std::function<StudyFrames(std::size_t setting, const std::filesystem::path& folder)> render;
     std::function<void(std::string_view what, double share)> progress = [](auto, auto) {};
-    // index: from 0. Not called for a setting that was measured before.
-    std::function<void(const StudySetting& setting, std::size_t index)> begins = [](const auto&,
-                                                                                    auto) {};
 };
 
 // Fills in the reference and the measures of a study whose rig, versions and cores are named. The

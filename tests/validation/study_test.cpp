@@ -255,10 +255,12 @@ TEST(StudyCsv, HasARowAMeasureAndEveryNumber) {
     study.measures.resize(2);
     study.measures[1].max_error = kInfinity;
     EXPECT_EQ(written(study, "study.csv"),
-              "name,wavelengths,frames,time_s,on_front,promise,render_s,integrate_s,max_error,"
-              "percentile_999,rms_error,max_error_on_edges\n"
-              "fitted-3,3,1,4,1,0.00075,3,1,0.0005,0.00045000000000000004,0.00015,0.25\n"
-              "bands-6,3,1,2,0,0.15000000000000002,1.5,0.5,inf,0.09000000000000001,0.03,0.25\n");
+              "name,words,equal_bands,wavelengths,frames,time_s,on_front,promise,render_s,"
+              "integrate_s,max_error,percentile_999,rms_error,max_error_on_edges\n"
+              "fitted-3,3 fitted wavelengths,false,3,1,4.0,true,0.00075,3.0,1.0,0.0005,"
+              "0.00045000000000000004,0.00015,0.25\n"
+              "bands-6,6 bands,true,3,1,2.0,false,0.15000000000000002,1.5,0.5,inf,"
+              "0.09000000000000001,0.03,0.25\n");
 }
 
 TEST(StudyJson, IsOfTheStudyAndReadsBack) {
