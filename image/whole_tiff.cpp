@@ -109,7 +109,8 @@ void require_sound_sizes(const Directory& tiff) {
     const BigSize image{tiff.number<std::uint32_t>(TIFFTAG_IMAGEWIDTH),
                         tiff.number<std::uint32_t>(TIFFTAG_IMAGELENGTH)};
     require_sides(static_cast<std::int64_t>(image.width), static_cast<std::int64_t>(image.height));
-    for (const std::uint32_t tag : {TIFFTAG_IMAGEDEPTH, TIFFTAG_TILEDEPTH}) {
+    for (const std::uint32_t tag :
+         {std::uint32_t{TIFFTAG_IMAGEDEPTH}, std::uint32_t{TIFFTAG_TILEDEPTH}}) {
         const std::uint64_t depth = tiff.number<std::uint32_t>(tag);
         if (depth > 1) throw InputError("found a depth of {} pixels; allowed: 1", depth);
     }

@@ -67,15 +67,15 @@ void smooth_rows(ImagePlane& plane, const BoxFilter& box) {
 }  // namespace
 
 std::vector<float> gaussian_blur(std::span<const float> plane, int width_px, double sigma_px) {
-    using Samples = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    using FloatPlane = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const Eigen::Index height = static_cast<Eigen::Index>(plane.size()) / width_px;
     const BoxFilter box = box_of(sigma_px * sigma_px / kBoxes);
-    ImagePlane smooth = Eigen::Map<const Samples>(plane.data(), height, width_px).cast<double>();
+    ImagePlane smooth = Eigen::Map<const FloatPlane>(plane.data(), height, width_px).cast<double>();
     smooth_rows(smooth, box);
     ImagePlane turned = smooth.transpose();
     smooth_rows(turned, box);
     std::vector<float> result(plane.size());
-    Eigen::Map<Samples>(result.data(), height, width_px) = turned.transpose().cast<float>();
+    Eigen::Map<FloatPlane>(result.data(), height, width_px) = turned.transpose().cast<float>();
     return result;
 }
 
