@@ -2,7 +2,6 @@
 #include "survey/baseline.h"
 
 #include "base/error.h"
-#include "survey/local_equalisation.h"
 #include "survey/raw_image.h"
 #include "survey/slow_light.h"
 

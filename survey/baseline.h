@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A correction that knows nothing of the lamps, by its name, over raw images and whole surveys. The
-// formulas and their limits stand in slow_light.h, local_equalisation.h and altitude_exponential.h.
+// formulas and their limits stand in slow_light.h and altitude_exponential.h.
 //
 //   illumination-reflectance  of each image alone
 //   local-equalisation        of each image alone

@@ -38,7 +38,7 @@ namespace aphotic {
 // b       what the channels are balanced by, near 1: where the middle is the colour that the rig's
 //         floor has by the lamps, the one it has in the light that reaches the camera over that
 // M       the camera's matrix (camera_to_srgb.h); the identity where the camera is not known
-// middle  what the survey's middle was made (gain.h); where only a gain is known, e = 2^stops
+// middle  what the survey's middle was made (corrector.h); where only a gain is known, e = 2^stops
 // e       one exposure for the whole survey, so that its images can be compared
 // Of what a model did not correct (baseline.h), neither colours nor the middle are known, and
 // b makes the survey's median in each channel kMiddleGrey; M is the identity, e = 2^stops.

@@ -10,7 +10,7 @@
 //     log-polynomial              p = exp(P), P fitted to the mean of log I over many images
 //     altitude-binned polynomial  p = P, fitted to the images of one bin of altitude
 //   homomorphic                 log out = l_mean + low (G l - l_mean) + high (l - G l)
-//   local equalisation          see local_equalisation.h
+//   local equalisation          see below
 //
 // G  a Gaussian blur      P  a polynomial over the image (polynomial_surface.h)
 // l  log max(I, kBlackShare mean I): what is black has a logarithm, too
@@ -73,5 +73,35 @@ struct Homomorphic {
 // l of every sample, 0 where the plane's mean is not above 0.
 [[nodiscard]] std::vector<float> logarithms(std::span<const float> plane);
 [[nodiscard]] std::vector<float> exponentials(std::span<const float> plane);
+
+// Contrast-limited adaptive histogram equalisation: every part of the image is given the same
+// distribution of brightness, whatever its light.
+//
+//   out = least + (most - least) F(I)
+//
+// F            the share of samples below I, of the tile around; between the centres of tiles
+//              their F are interpolated linearly, beyond the outermost they go on
+// least, most  of the plane: out stays within them, and f(k I) = k f(I)
+// clip         no bin counts for more than clip times the mean bin, and what is cut off is spread
+//              over all bins: 1 leaves the image as it is, without a bound F is the tile's own
+//
+// Bins are kBins between least and most, and F is linear within a bin. A constant stays as it is.
+// It bends the tones, so that what comes out measures nothing; and a pale patch as large as a tile
+// is levelled away with the light.
+//
+// K. Zuiderveld, "Contrast limited adaptive histogram equalization", Graphics Gems IV, 1994.
+
+inline constexpr int kBins = 1024;
+
+struct LocalEqualisation {
+    int tiles = 8;  // across and down
+    double clip = 3.0;
+};
+
+// plane: rows of width_px samples, all finite. An InputError when there are more tiles than rows or
+// columns.
+[[nodiscard]] std::vector<float> locally_equalised(std::span<const float> plane,
+                                                   int width_px,
+                                                   const LocalEqualisation& options);
 
 }  // namespace aphotic

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/slow_light.h"
 
-#include "survey/local_equalisation.h"
 #include "survey/polynomial_surface.h"
 
 #include <gtest/gtest.h>
