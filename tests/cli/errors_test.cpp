@@ -183,7 +183,8 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
           "2",
           "--allow-skipped",
           "2%%"},
-         "--allow-skipped: found '2%%'; allowed: a number of images, or a share such as 0.01 or 1%"},
+         "--allow-skipped: found '2%%'; allowed: a number of images, or a share such as 0.01 or "
+         "1%"},
         {{"baseline", "homomorphic", "raw", "-o", "out", "--allow-skipped", "1.01"},
          "--allow-skipped: found '1.01'; allowed: a number of images, or a share"},
         {{"compare", "a.exr", "--patches", "p.csv", "--encoding", "gamma"},
