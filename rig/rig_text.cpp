@@ -345,9 +345,8 @@ void RigText::erase(std::string_view key) {
     const toml::table root = toml::parse(text_);
     if (find(root, key) == nullptr) return;
     const std::size_t dot = key.rfind('.');
-    const toml::node* holder =
-        dot == std::string_view::npos ? &root : find(root, key.substr(0, dot));
-    const toml::table* table = holder->as_table();
+    const toml::table* table = &root;
+    if (dot != std::string_view::npos) table = find(root, key.substr(0, dot))->as_table();
     if (table == nullptr) throw InputError("{}: found no table to hold it", key);
     std::vector<TextRange> ranges;
     const auto entry = table->find(key.substr(dot + 1));
