@@ -62,7 +62,7 @@ std::string html_of(const PageList& list) {
 std::string html_of(const PagePicture& picture) {
     constexpr int kSmall_px = 400;
     const bool shows_pixels = picture.width_px < kSmall_px && picture.type == kPng;
-    const std::string image =
+    std::string image =
         fmt::format(R"(<img class="picture{}" width="{}" height="{}" alt="{}" src="{}"/>)",
                     shows_pixels ? " squares" : "",
                     picture.width_px,
