@@ -365,11 +365,15 @@ double flux_all_round(const Beam& beam, double widest_rad, int rings = 1000) {
     return sum * widest_rad / rings * 2.0 * kPi / kTurns;
 }
 
+// POV-Ray's t^2 (3 - 2 t), t along the cosine: 1/2 in the middle, 5/32 at a quarter.
 TEST(SoftEdge, FallsByHalfInTheMiddleOfItsCosines) {
     const Beam beam = soft(40.0, 15.0, 0.0);
-    const double middle_rad =
-        std::acos(0.5 * (std::cos(25.0 * kDegree) + std::cos(40.0 * kDegree)));
-    EXPECT_NEAR(at(beam, middle_rad) / at(beam, 0.0), 0.5, kRounding);
+    const auto of_axis = [&](double t) {
+        const double cosine = std::lerp(std::cos(40.0 * kDegree), std::cos(25.0 * kDegree), t);
+        return at(beam, std::acos(cosine)) / at(beam, 0.0);
+    };
+    EXPECT_NEAR(of_axis(0.5), 0.5, kRounding);
+    EXPECT_NEAR(of_axis(0.25), 5.0 / 32.0, kRounding);
     EXPECT_NEAR(at(beam, 24.99 * kDegree) / at(beam, 0.0), 1.0, kRounding);
     EXPECT_EQ(at(beam, 40.01 * kDegree), 0.0);
     EXPECT_TRUE(edges_rad(beam).empty());
