@@ -250,7 +250,7 @@ ExitStatus make_survey(const SurveyCommandOptions& options) {
     const std::optional<PovRay> povray = povray_for(options, survey);
     require_room(
         {.folder_bytes = missing_bytes(survey)}, survey.folder, options.planning.ignore_needs);
-    const FolderLock lock = claim_tree(survey.folder);
+    const FolderLock lock = claim_folder(survey.folder);
     begin_survey(survey);
     ProgressLine line;
     survey.progress = [&](double share) { line.show("images", share); };
@@ -362,14 +362,7 @@ void add_floor_options(CLI::App& app, SurveyCommandOptions& options) {
                    options.declared,
                    "Declare this in the scene, such as Depth=2 or Floor=\"card\"; repeatable")
         ->option_text("NAME=VALUE")
-        ->check([](const std::string& text) {
-            try {
-                require_declaration(text);
-                return std::string();
-            } catch (const InputError& error) {
-                return std::string(error.what());
-            }
-        });
+        ->check(refused_by(require_declaration));
 }
 
 void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {

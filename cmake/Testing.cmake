@@ -7,17 +7,23 @@
 #
 #   unit    no other program needed; milliseconds each. Under the name unit_that_computes it gets the
 #           same label and is optimised, see below
-#   povray  runs POV-Ray. Under the name povray_of_few_pixels it gets the same label and weighs half
+#   povray  runs POV-Ray for a few pixels
 #   cli     runs the command as a user would
-#   slow    hundreds of plans, fits or interruptions, or a program beyond POV-Ray, such as a browser. Under
-#           the name slow_that_waits, for POV-Ray, it gets the same label and weighs half; under the name
-#           slow_that_computes the same label, and is optimised
+#   campaign  random rigs: a few in CI, hundreds in the night (tests/support/effort.h)
+#   night   what CI has no time for: POV-Ray's images, whole fits, programs such as a browser or Snakemake.
+#           Built with APHOTIC_NIGHT alone. Under the name night_that_waits, for POV-Ray, it gets the same label and
+#           weighs half; under the name night_that_computes the same label, and is optimised
 #
 # POV-Ray takes two thirds of a second for a few pixels, most of it asleep. So scripts/test gives CTest
-# four processors for each core: what computes weighs four, renders two, those of few pixels one.
+# four processors for each core: what computes weighs four, what waits two, renders of few pixels one.
 #
 # A file's tests stand in a namespace of its name, aphotic::name_test: in a unity build the unnamed
 # namespaces of all files are one.
+option(APHOTIC_NIGHT "Build the tests of scripts/night as well" OFF)
+
+# All of the label, for builds that have time for no other.
+add_custom_target(unit_tests)
+
 function(aphotic_tests label)
     set(program ${label})
     # Half of the time to build tests went into making those fast that run for an instant. What they
@@ -30,22 +36,23 @@ function(aphotic_tests label)
     if(label STREQUAL "unit_that_computes")
         set(label unit)
         set(optimisation -O2)
-    elseif(label STREQUAL "povray")
-        set(weight 2)
-        list(APPEND limits COST 50)  # early, to wait while others compute
-    elseif(label STREQUAL "povray_of_few_pixels")
-        set(label povray)
-        set(weight 1)
-        list(APPEND limits COST 50)
-    elseif(label MATCHES "^slow")
+    elseif(label STREQUAL "campaign")
+        set(optimisation -O2)
         list(APPEND limits COST 100)  # first, so that none is left over at the end
-        if(label STREQUAL "slow_that_waits")
-            set(label slow)
+    elseif(label STREQUAL "povray")
+        set(weight 1)
+        list(APPEND limits COST 50)  # early, to wait while others compute
+    elseif(label MATCHES "^night")
+        if(NOT APHOTIC_NIGHT)
+            return()
+        endif()
+        set(limits TIMEOUT 7200 COST 100)
+        if(label STREQUAL "night_that_waits")
             set(weight 2)
-        elseif(label STREQUAL "slow_that_computes")
-            set(label slow)
+        elseif(label STREQUAL "night_that_computes")
             set(optimisation -O2)
         endif()
+        set(label night)
     endif()
 
     set(folders ${ARGN})
@@ -66,11 +73,16 @@ function(aphotic_tests label)
             APHOTIC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
             APHOTIC_COMMAND="$<TARGET_FILE:aphotic>")
         target_link_libraries(${target} PRIVATE
-            aphotic::sweep aphotic::survey aphotic::validation aphotic::plugin
+            aphotic::survey aphotic::validation aphotic::plugin
             fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR PkgConfig::cairo
             GTest::gtest_main
             aphotic_sanitizers aphotic_warnings)
-        add_dependencies(${target} aphotic)
+        if(label STREQUAL "unit")
+            add_dependencies(unit_tests ${target})
+            add_dependencies(${target} aphotic_any_image)
+        else()
+            add_dependencies(${target} aphotic)
+        endif()
 
         # What CTest reads when it starts.
         set(suites ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)

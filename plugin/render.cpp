@@ -3,8 +3,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/folder_lock.h"
 #include "base/sha256.h"
+#include "base/work_folder.h"
 #include "image/frame_check.h"
 #include "image/png_frame.h"
 #include "image/traced_image.h"

@@ -5,7 +5,7 @@
 #include "base/printable.h"
 #include "lightmap/cone_edge.h"
 #include "python/bindings.h"
-#include "survey/camera_of_files.h"
+#include "survey/camera_numbers.h"
 #include "survey/correction.h"
 #include "survey/fit.h"
 #include "survey/fit_json.h"

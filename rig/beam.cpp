@@ -286,43 +286,6 @@ double steepest_by_grid(const Beam& beam) {
     return steepest;
 }
 
-// Its values carried on to where angles of this type end.
-void carry_on(BeamTable& table) {
-    const bool is_c = table.angles == TableAngles::TypeC;
-    const std::size_t rows = table.vertical_rad.size();
-    const auto value = [&, old = table.intensity](std::size_t column, std::size_t row) {
-        return old[column * rows + row];
-    };
-    const auto ends_of = [](std::vector<double> nodes, double least, double most) {
-        std::vector<std::size_t> from(nodes.size());
-        for (std::size_t i = 0; i < nodes.size(); ++i) from[i] = i;
-        if (nodes.front() > least) {
-            nodes.insert(nodes.begin(), least);
-            from.insert(from.begin(), 0);
-        }
-        if (nodes.back() < most) {
-            nodes.push_back(most);
-            from.push_back(from.back());
-        }
-        return std::pair(nodes, from);
-    };
-    const auto [vertical, row_from] =
-        is_c ? ends_of(table.vertical_rad, 0.0, std::numbers::pi)
-             : ends_of(table.vertical_rad, -kRightAngle_rad, kRightAngle_rad);
-    const bool turns = is_c;
-    const auto columns =
-        turns ? ends_of(
-                    table.horizontal_rad, table.horizontal_rad.front(), table.horizontal_rad.back())
-              : ends_of(table.horizontal_rad, -kRightAngle_rad, kRightAngle_rad);
-    std::vector<double> intensity;
-    for (const std::size_t column : columns.second) {
-        for (const std::size_t row : row_from) intensity.push_back(value(column, row));
-    }
-    table.vertical_rad = vertical;
-    table.horizontal_rad = columns.first;
-    table.intensity = std::move(intensity);
-}
-
 }  // namespace
 
 Beam scaled_to_flux(Beam beam) {
@@ -450,22 +413,6 @@ bool is_within_rim(const Beam& beam, const BeamFrame& frame, const Vector3d& tow
     }
     const auto* table = std::get_if<BeamTable>(&beam.pattern);
     return table != nullptr && is_in_table(*table, direction);
-}
-
-Beam without_edges(Beam beam) {
-    for (Cone& cone : beam.cones) {
-        cone.weight = axial_intensity(cone, beam.weights);
-        if (cone.edge_rad == 0.0) cone.half_angle_rad = kRightAngle_rad;
-    }
-    beam.weights = ConeWeights::Literal;
-    if (auto* table = std::get_if<BeamTable>(&beam.pattern)) {
-        if (!edges_of(*table).empty()) carry_on(*table);
-    }
-    if (auto* optics = std::get_if<BeamOptics>(&beam.pattern)) {
-        constexpr double kEndless_m = 1e12;
-        if (is_focused(*optics)) optics->along_m = optics->across_m = kEndless_m;
-    }
-    return beam;
 }
 
 double steepest_exponent(const Beam& beam) {

@@ -132,9 +132,6 @@ struct PatternView {
                                  const BeamFrame& frame,
                                  const Eigen::Vector3d& towards);
 
-// The same light carried on beyond its edges: to 90 degrees, or all that a window lets out.
-[[nodiscard]] Beam without_edges(Beam beam);
-
 // I changes no more steeply with the direction than cos to this power does, nor bends more: for
 // cones without soft edges (ln I)' >= n (ln cos)'. For all others it is found on a grid of a
 // degree, with I taken for no less than kDimBeamShare of the largest, and is an estimate.

@@ -3,9 +3,9 @@
 // Camera calibrations of other tools, told apart by what a file holds:
 //
 //   FileStorage of OpenCV (YAML, XML, JSON), camera_info of ROS   rig/opencv_calibration.h
-//   camchain of Kalibr                                            rig/kalibr_calibration.h
+//   camchain of Kalibr                                            rig/calibration_file.cpp
 //   cameras.txt of COLMAP, calibration.yaml of calibmar           rig/colmap_calibration.h
-//   calibration in XML of Metashape                               rig/metashape_calibration.h
+//   calibration in XML of Metashape                               rig/calibration_file.cpp
 //
 // Each of these headers says where the centre of the first pixel is: here it is (0.5, 0.5). A file
 // says one camera. An error is an InputError "file:line: key: what was found; allowed: ...".

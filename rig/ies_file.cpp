@@ -17,8 +17,6 @@ namespace aphotic {
 namespace {
 
 constexpr std::size_t kMostTilts = 1000;
-constexpr double kLeastTiltFactor = 1e-3;
-constexpr double kMostTiltFactor = 1e3;
 constexpr std::size_t kMostLamps = 1'000'000;
 constexpr double kMostLumens = 1e12;
 
@@ -146,51 +144,20 @@ std::optional<std::string_view> tilt_in(std::string_view line) {
     return without_blanks(line.substr(1));
 }
 
-LampTilt next_tilt(NumberReader& numbers) {
+// A table of factors by which the light changes as the lamp is tilted: what we read has none.
+void pass_over_constant_tilt(NumberReader& numbers) {
     const std::string& file = numbers.file();
-    LampTilt tilt;
-    const FileNumber geometry = numbers.next("the lamp's geometry");
-    tilt.geometry = static_cast<int>(count_of(file, geometry, "the lamp's geometry", 1, 3));
+    static_cast<void>(numbers.next("the lamp's geometry"));
     const std::size_t count =
         count_of(file, numbers.next("the number of tilts"), "the number of tilts", 1, kMostTilts);
-    const std::vector<FileNumber> angles = numbers.next(count, "tilt");
-    check_angles(file, angles, "tilt", 0.0, 180.0);
-    if (angles.front().value != 0.0) {
-        fail_number(file, angles.front(), "the first tilt", "0, as the lamp was measured");
-    }
-    tilt.tilt_rad = radians_of(angles);
+    static_cast<void>(numbers.next(count, "tilt"));
     for (const FileNumber& factor : numbers.next(count, "the factor of a tilt")) {
-        if (factor.value < kLeastTiltFactor || factor.value > kMostTiltFactor) {
-            fail_number(file,
-                        factor,
-                        "the factor of a tilt",
-                        fmt::format("{} to {}", kLeastTiltFactor, kMostTiltFactor));
-        }
-        tilt.factor.push_back(factor.value);
+        if (factor.value == 1.0) continue;
+        fail_number(file,
+                    factor,
+                    "the factor of a tilt (TILT)",
+                    "1, for a lamp whose light changes as it is tilted is not modelled");
     }
-    return tilt;
-}
-
-LampTilt tilt_of_file(const std::string& file,
-                      std::size_t line,
-                      const std::string& name,
-                      const ReadBeside& read_beside) {
-    try {
-        const std::string text = read_beside(name);
-        NumberReader numbers(name, text, 1);
-        LampTilt tilt = next_tilt(numbers);
-        numbers.expect_end();
-        return tilt;
-    } catch (const InputError& error) {
-        fail_at_line(file, line, fmt::format("TILT: {}", error.what()));
-    }
-}
-
-// The lamp as it was measured: what it gives when tilted is told as a share of that.
-double take_untilted(LampTilt& tilt) {
-    const double untilted = tilt.factor.front();
-    for (double& factor : tilt.factor) factor /= untilted;
-    return untilted;
 }
 
 struct IesHeader {
@@ -437,9 +404,7 @@ std::string number_text(double number) {
 
 }  // namespace
 
-PhotometricFile parse_ies(const std::string& file_name,
-                          std::string_view bytes,
-                          const ReadBeside& read_beside) {
+PhotometricFile parse_ies(const std::string& file_name, std::string_view bytes) {
     const std::string text = utf8_of(bytes);
     LineReader lines(text);
     PhotometricFile photometry;
@@ -447,10 +412,11 @@ PhotometricFile parse_ies(const std::string& file_name,
     std::optional<std::string_view> tilt_word;
     while (!tilt_word) {
         if (lines.is_at_end()) {
-            fail_at_line(file_name,
-                         lines.line() + 1,
-                         "the file ends without a line TILT=; allowed: TILT=NONE, TILT=INCLUDE or "
-                         "TILT= and the name of a file");
+            fail_at_line(
+                file_name,
+                lines.line() + 1,
+                "the file ends without a line TILT=; allowed: TILT=NONE, or TILT=INCLUDE with "
+                "factors of 1");
         }
         const std::string_view line = lines.next();
         const std::optional<int> named = edition_in(file_name, lines.line(), line);
@@ -464,13 +430,15 @@ PhotometricFile parse_ies(const std::string& file_name,
     const std::string word = lower_case(std::string(*tilt_word));
     NumberReader numbers(file_name, lines.rest(), lines.line() + 1);
     if (word == "include") {
-        photometry.tilt = next_tilt(numbers);
+        pass_over_constant_tilt(numbers);
     } else if (word != "none") {
-        photometry.tilt =
-            tilt_of_file(file_name, lines.line(), std::string(*tilt_word), read_beside);
+        fail_at_line(file_name,
+                     lines.line(),
+                     fmt::format("found TILT={}, a table of how the lamp's light changes as it is "
+                                 "tilted; allowed: TILT=NONE, or INCLUDE with factors of 1",
+                                 shown_word(*tilt_word)));
     }
-    IesHeader header = next_header(numbers, edition, photometry);
-    if (photometry.tilt) header.factor *= take_untilted(*photometry.tilt);
+    const IesHeader header = next_header(numbers, edition, photometry);
     photometry.table = next_table(numbers, header);
     return photometry;
 }
@@ -482,16 +450,8 @@ std::string ies_text(const PhotometricFile& photometry, const std::string& file_
     lines.add("IESNA:LM-63-2002");
     lines.end_line();
     add_labels(lines, photometry.labels);
-    lines.add(photometry.tilt ? "TILT=INCLUDE" : "TILT=NONE");
+    lines.add("TILT=NONE");
     lines.end_line();
-    if (photometry.tilt) {
-        add_numbers(lines, {fmt::format("{}", photometry.tilt->geometry)});
-        add_numbers(lines, {fmt::format("{}", photometry.tilt->tilt_rad.size())});
-        add_numbers(lines, degrees_texts(photometry.tilt->tilt_rad));
-        std::vector<std::string> factors;
-        for (const double factor : photometry.tilt->factor) factors.push_back(number_text(factor));
-        add_numbers(lines, factors);
-    }
     const bool states_flux = !photometry.is_absolute && photometry.luminous_flux_lm.has_value();
     const int type = table.angles == TableAngles::TypeC   ? 1
                      : table.angles == TableAngles::TypeB ? 2

@@ -5,7 +5,7 @@
 //   IESNA:LM-63-2002            the edition: none in 1986, IESNA91, IESNA:LM-63-1995 or -2002,
 //                               IES:LM-63-2019
 //   [KEYWORD] text ...          in 1986, lines of any text
-//   TILT=NONE                   or INCLUDE, or the name of a file beside this one
+//   TILT=NONE                   or INCLUDE, with factors of 1: light does not change with the tilt
 //   lamps  lumens per lamp  multiplier  nV  nH  type  units  width  length  height
 //   ballast factor  lamp factor  watts
 //   V[nV]  H[nH]  candela[nH][nV]
@@ -41,11 +41,9 @@
 namespace aphotic {
 
 // file_name stands in messages.
-[[nodiscard]] PhotometricFile parse_ies(const std::string& file_name,
-                                        std::string_view text,
-                                        const ReadBeside& read_beside);
+[[nodiscard]] PhotometricFile parse_ies(const std::string& file_name, std::string_view text);
 
-// Of LM-63-2002, whose readers are everywhere: type and tilt kept, symmetries unfolded, absolute
+// Of LM-63-2002, whose readers are everywhere: type kept, symmetries unfolded, absolute
 // where no flux of lamps is known. Keywords that the edition asks for say "not stated" where
 // nothing is known.
 [[nodiscard]] std::string ies_text(const PhotometricFile& photometry, const std::string& file_name);

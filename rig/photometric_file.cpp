@@ -3,7 +3,6 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/file_beside.h"
 #include "base/printable.h"
 #include "base/words.h"
 #include "rig/beam_csv.h"
@@ -38,12 +37,10 @@ Format format_of(const std::string& file_name) {
         kPhotometricEndings);
 }
 
-PhotometricFile parse_by_ending(const std::string& file_name,
-                                std::string_view text,
-                                const ReadBeside& read_beside) {
+PhotometricFile parse_by_ending(const std::string& file_name, std::string_view text) {
     switch (format_of(file_name)) {
         case Format::Ies:
-            return parse_ies(file_name, text, read_beside);
+            return parse_ies(file_name, text);
         case Format::Eulumdat:
             return parse_eulumdat(file_name, text);
         case Format::Csv:
@@ -54,10 +51,8 @@ PhotometricFile parse_by_ending(const std::string& file_name,
 
 }  // namespace
 
-PhotometricFile parse_photometric_file(const std::string& file_name,
-                                       std::string_view text,
-                                       const ReadBeside& read_beside) {
-    PhotometricFile file = parse_by_ending(file_name, text, read_beside);
+PhotometricFile parse_photometric_file(const std::string& file_name, std::string_view text) {
+    PhotometricFile file = parse_by_ending(file_name, text);
     const double largest = largest_intensity(file.table);
     if (largest > 0.0 && !std::isnormal(largest)) {
         throw InputError(fmt::format(
@@ -78,11 +73,7 @@ BeamTable normalised(BeamTable table) {
 }
 
 PhotometricFile read_photometric_file(const std::filesystem::path& file) {
-    const ReadBeside read_beside = [&](const std::string& name) {
-        return read_text_file(file_beside(file.parent_path(), name), kMostPhotometricBytes);
-    };
-    return parse_photometric_file(
-        file.string(), read_text_file(file, kMostPhotometricBytes), read_beside);
+    return parse_photometric_file(file.string(), read_text_file(file, kMostPhotometricBytes));
 }
 
 bool is_photometric_file_name(std::string_view name) {

@@ -18,7 +18,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,24 +33,12 @@ struct PhotometricLabel {
     [[nodiscard]] bool operator==(const PhotometricLabel&) const = default;
 };
 
-// A lamp whose light changes as it is tilted from the position in which it was measured, as that of
-// discharge lamps does: TILT of .ies. Intensities are multiplied by the factor, linear between
-// these; factor[0] = 1 at tilt_rad[0] = 0.
-struct LampTilt {
-    int geometry = 1;  // of LM-63: lamp in the luminaire 1 vertical, 2 horizontal, 3 tilted with it
-    std::vector<double> tilt_rad;
-    std::vector<double> factor;
-
-    [[nodiscard]] bool operator==(const LampTilt&) const = default;
-};
-
 struct PhotometricFile {
-    BeamTable table;  // of the lamp as it was measured: not tilted
+    BeamTable table;  // of the lamp as it was measured
     // What the file states for all lamps; none of .csv, where it states none, and of absolute
     // photometry, which knows of no lamp apart from the luminaire.
     std::optional<double> luminous_flux_lm;
     bool is_absolute = false;
-    std::optional<LampTilt> tilt;
     std::vector<PhotometricLabel> labels;
 
     [[nodiscard]] bool operator==(const PhotometricFile&) const = default;
@@ -59,13 +46,9 @@ struct PhotometricFile {
 
 inline constexpr std::size_t kMostPhotometricBytes = std::size_t{64} << 20U;
 
-// The text of the file that another one names: by TILT= of .ies.
-using ReadBeside = std::function<std::string(const std::string& name)>;
-
 // file_name stands in messages; its ending says the format.
 [[nodiscard]] PhotometricFile parse_photometric_file(const std::string& file_name,
-                                                     std::string_view text,
-                                                     const ReadBeside& read_beside);
+                                                     std::string_view text);
 [[nodiscard]] PhotometricFile read_photometric_file(const std::filesystem::path& file);
 
 // The same shape with its largest intensity from 0.5 to below 1, by a power of two: no digit

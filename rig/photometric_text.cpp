@@ -7,10 +7,12 @@
 #include "base/printable.h"
 
 #include <fmt/format.h>
+#include <boost/locale/utf.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -18,26 +20,11 @@ namespace aphotic {
 
 namespace {
 
-// The bytes of the UTF-8 character at the front of a text, 0 where there is none.
-std::size_t character_length(std::string_view text) {
-    const auto first = static_cast<unsigned char>(text[0]);
-    const std::size_t length = first < 0x80   ? 1
-                               : first < 0xC2 ? 0
-                               : first < 0xE0 ? 2
-                               : first < 0xF0 ? 3
-                               : first < 0xF5 ? 4
-                                              : 0;
-    if (length > text.size()) return 0;
-    const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80; };
-    const std::string_view rest = text.substr(1, length == 0 ? 0 : length - 1);
-    return std::ranges::all_of(rest, continues) ? length : 0;
-}
+using Utf8 = boost::locale::utf::utf_traits<char>;
 
 bool is_utf8(std::string_view text) {
-    while (!text.empty()) {
-        const std::size_t length = character_length(text);
-        if (length == 0) return false;
-        text.remove_prefix(length);
+    for (auto at = text.begin(); at != text.end();) {
+        if (!boost::locale::utf::is_valid_codepoint(Utf8::decode(at, text.end()))) return false;
     }
     return true;
 }
@@ -58,15 +45,8 @@ std::string utf8_of(std::string_view text) {
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     if (is_utf8(text)) return std::string(text);
     std::string result;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x80) {
-            result += c;
-        } else {
-            result += static_cast<char>(0xC0U | (byte >> 6U));
-            result += static_cast<char>(0x80U | (byte & 0x3FU));
-        }
-    }
+    for (const char c : text)
+        Utf8::encode(static_cast<unsigned char>(c), std::back_inserter(result));
     return result;
 }
 

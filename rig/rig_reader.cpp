@@ -482,18 +482,8 @@ BeamTable RigReader::read_beam_table(Section& section) {
     const std::string name = section.text("table", allowed);
     if (!is_photometric_file_name(name)) section.found_but("table", allowed);
     return section.at_key("table", [&] {
-        const auto read = [&](const std::string& file) {
-            return files_.read(file, kMostPhotometricBytes);
-        };
-        const PhotometricFile file = parse_photometric_file(name, read(name), read);
-        if (file.tilt &&
-            std::ranges::any_of(file.tilt->factor, [](double f) { return f != 1.0; })) {
-            throw InputError(
-                "{}: found a lamp whose light changes as it is tilted (TILT); allowed: "
-                "factors of 1",
-                name);
-        }
-        return normalised(file.table);
+        return normalised(
+            parse_photometric_file(name, files_.read(name, kMostPhotometricBytes)).table);
     });
 }
 

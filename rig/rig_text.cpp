@@ -329,13 +329,24 @@ void RigText::set(std::string_view key, const std::vector<double>& values) {
     put(key, fmt::format("[{}]", fmt::join(parts, ", ")));
 }
 
+void RigText::set_toml(std::string_view key, std::string_view value) {
+    const auto is_one_value = [](const toml::table& table) {
+        return table.size() == 1 && table.contains("key");
+    };
+    try {
+        const toml::table table = toml::parse(fmt::format("key = {}", value));
+        if (is_one_value(table)) return put(key, toml_of(*table.get("key")));
+    } catch (const toml::parse_error&) {  // a word
+    }
+    put(key, toml_of(std::string(value)));
+}
+
 void RigText::erase(std::string_view key) {
     const toml::table root = toml::parse(text_);
     if (find(root, key) == nullptr) return;
     const std::size_t dot = key.rfind('.');
-    const toml::node* holder =
-        dot == std::string_view::npos ? &root : find(root, key.substr(0, dot));
-    const toml::table* table = holder->as_table();
+    const toml::table* table = &root;
+    if (dot != std::string_view::npos) table = find(root, key.substr(0, dot))->as_table();
     if (table == nullptr) throw InputError("{}: found no table to hold it", key);
     std::vector<TextRange> ranges;
     const auto entry = table->find(key.substr(dot + 1));

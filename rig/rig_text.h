@@ -35,6 +35,8 @@ class RigText {
     void set(std::string_view key, double value);
     void set(std::string_view key, const std::string& value);
     void set(std::string_view key, const std::vector<double>& values);
+    // As TOML has it: 2.5, "xenon-flash", [0.5, 0, 0], true. A word without quotes is a text.
+    void set_toml(std::string_view key, std::string_view value);
     // With its line, where nothing else stands there. A table goes with all that it holds.
     void erase(std::string_view key);
     // A table of a rig's, whose place is another here; what stood in that place goes.

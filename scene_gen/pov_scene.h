@@ -52,9 +52,6 @@ struct SceneOptions {
     bool omit = true;                       // false: what changes nothing is written all the same
     int peak_log2 = kTargetLog2;            // where a frame's brightest pixel goes, or a bit under
     FrameFormat format = FrameFormat::Exr;
-    // One lamp for every emitter: each cone's edge falls from one end of what the emitter spans,
-    // seen from the floor below it, to the other.
-    bool soft_edges = false;
     std::shared_ptr<const UserScene> user_scene{};  // none: the rig's own floor
     // The share of a pixel's light under which rays between a user's mirrors and glasses end.
     double bailout = kRayShare * kTargetError;

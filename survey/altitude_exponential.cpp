@@ -63,7 +63,7 @@ void AltitudeExponential::fit(std::size_t threads) {
         for (std::size_t i = part * kAtOnce; i < std::min((part + 1) * kAtOnce, samples_); ++i) {
             std::ranges::transform(
                 means, signal.begin(), [i](const float* mean) { return mean[i]; });
-            const AltitudeFit fit = fitter.fit_bounded(signal);
+            const AltitudeFit fit = fitter.fit(signal);
             fits_[i] = {.a = static_cast<float>(fit.a),
                         .b_per_m = static_cast<float>(fit.b_per_m),
                         .c = static_cast<float>(fit.c)};

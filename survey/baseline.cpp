@@ -2,8 +2,7 @@
 #include "survey/baseline.h"
 
 #include "base/error.h"
-#include "survey/local_equalisation.h"
-#include "survey/site_planes.h"
+#include "survey/raw_image.h"
 #include "survey/slow_light.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A correction that knows nothing of the lamps, by its name, over raw images and whole surveys. The
-// formulas and their limits stand in slow_light.h, local_equalisation.h and altitude_exponential.h.
+// formulas and their limits stand in slow_light.h and altitude_exponential.h.
 //
 //   illumination-reflectance  of each image alone
 //   local-equalisation        of each image alone
@@ -45,6 +45,10 @@ inline constexpr std::array<std::string_view, 6> kBaselineNames{
     "log-polynomial",
     "binned-polynomial",
     "altitude-exponential"};  // in order
+
+[[nodiscard]] constexpr std::string_view name_of(Baseline baseline) {
+    return kBaselineNames[static_cast<std::size_t>(baseline)];
+}
 
 [[nodiscard]] constexpr bool needs_altitude(Baseline baseline) {
     return baseline >= Baseline::BinnedPolynomial;

@@ -4,7 +4,7 @@
 //
 //   before = sRGB( k (raw - black) )     the camera's numbers; k puts the kBrightShare quantile of
 //                                        all samples of all images at kBrightLevel (preview.h)
-//   after  = sRGB( e M b v )             as srgb_files.h has it, from the files as they were
+//   after  = sRGB( e M b v )             as result_files.h has it, from the files as they were
 //   written
 //
 // Each with one exposure for all images: as dark and bright, and as uneven, as they are.

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// The page is well-formed XML too.
 #include "survey/correction_page.h"
 
 #include "base/upper_median.h"
 #include "report/html.h"
-#include "report/picture.h"
+#include "report/page.h"
 #include "report/svg.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -34,59 +31,45 @@ std::string per_channel(const PerChannel& numbers) {
 
 // What came out.
 
-std::string verdict(const CorrectionReport& report) {
+std::string headline(const CorrectionReport& report) {
     const RunOutcome& run = *report.run;
-    const std::size_t done = run.corrected + run.kept;
-    const bool is_good = run.skipped.empty() && report.looks_wrong.empty();
-    std::string words = grouped_count(done, "image") + " corrected";
+    std::string words = grouped_count(run.corrected + run.kept, "image") + " corrected";
     if (!run.skipped.empty()) words += fmt::format(", {} skipped", grouped(run.skipped.size()));
     if (!report.looks_wrong.empty())
         words += ", " + grouped_count(report.looks_wrong.size(), "warning");
-    return html_verdict(
-        is_good,
-        words,
-        html_paragraph(fmt::format("{} in this run, which took {} s; {} kept from before.",
-                                   grouped(run.corrected),
-                                   plain(std::round(10.0 * report.seconds) / 10.0),
-                                   grouped(run.kept))));
+    return words;
 }
 
-std::string warnings(const CorrectionReport& report) {
-    std::string content;
-    for (const Suspicion& one : report.looks_wrong) {
-        content += html_paragraph(
-            fmt::format("<strong>{}</strong>: {}", escaped(one.about), user_text(one.what)));
-    }
-    if (!report.not_checked.empty()) {
-        content += html_paragraph("Not checked: " + escaped(report.not_checked));
-    }
-    return content.empty() ? "" : html_section("warnings", "Warnings", content);
+std::vector<std::string> warnings(const CorrectionReport& report) {
+    std::vector<std::string> words;
+    for (const Suspicion& one : report.looks_wrong)
+        words.push_back(fmt::format("{}: {}", one.about, named(one.what)));
+    if (!report.not_checked.empty()) words.push_back("Not checked: " + report.not_checked);
+    return words;
 }
 
 // Before and after.
 
-std::string picture(const SheetPicture& shown, std::string_view words) {
-    return picture_html(shown.jpeg, shown.width_px, shown.height_px, words, kJpeg);
+PagePicture picture(const SheetPicture& shown, std::string words) {
+    return {.bytes = shown.jpeg,
+            .width_px = shown.width_px,
+            .height_px = shown.height_px,
+            .words = std::move(words),
+            .type = kJpeg};
 }
 
-std::string before_and_after(std::span<const SheetImage> sheet) {
-    if (sheet.empty()) return "";
-    std::string figures;
+std::vector<PagePart> before_and_after(std::span<const SheetImage> sheet) {
+    if (sheet.empty()) return {};
+    PageFigures figures{.figures = {}, .are_small = true};
     for (const SheetImage& image : sheet) {
         const std::string altitude =
             image.altitude_m ? fmt::format(", {:.2f}\xC2\xA0m", *image.altitude_m) : "";
-        figures += fmt::format(
-            "<figure><div class=\"duo\">{}{}</div><figcaption>{}{}</figcaption></figure>\n",
-            picture(image.before, "before"),
-            picture(image.after, "after"),
-            user_text(image.name),
-            altitude);
+        figures.figures.push_back(
+            {.pictures = {picture(image.before, "before"), picture(image.after, "after")},
+             .caption = named(image.name) + altitude});
     }
-    return html_section(
-        "images",
-        "Before and after",
-        html_paragraph("Left as taken, right corrected; each under one exposure for all images.") +
-            fmt::format("<div class=\"sheet\">\n{}</div>\n", figures));
+    return {"Left as taken, right corrected; each under one exposure for all images.",
+            std::move(figures)};
 }
 
 // Light over altitude.
@@ -120,13 +103,13 @@ LightSeen light_seen(std::span<const ImageLook> looks) {
     return light;
 }
 
-std::string light_over_altitude(std::span<const ImageLook> looks) {
+std::vector<PagePart> light_over_altitude(std::span<const ImageLook> looks) {
     constexpr double kWidth = 960.0;
     constexpr double kHeight = 420.0;
     constexpr double kMargin = 16.0;
     constexpr int kTicks = 6;
     const LightSeen light = light_seen(looks);
-    if (light.altitude_m.empty()) return "";
+    if (light.altitude_m.empty()) return {};
     ValueRange altitudes;
     altitudes.include(light.altitude_m);
     ValueRange numbers;
@@ -143,7 +126,7 @@ std::string light_over_altitude(std::span<const ImageLook> looks) {
     panel.x.title = "altitude (m)";
     panel.y.title = "light (the camera’s numbers over black)";
     std::string elements = svg_axes(panel);
-    std::string keys;
+    PageLegend keys;
     for (std::size_t c = 0; c < kChannels; ++c) {
         const std::string tone = svg_tone(kChannelTones.at(c));
         elements += svg_curve(
@@ -152,31 +135,24 @@ std::string light_over_altitude(std::span<const ImageLook> looks) {
                              light.altitude_m,
                              light.image[c],
                              fmt::format("class=\"dots\" style=\"stroke-width: 7px\" {}", tone));
-        keys += html_key(fmt::format("<svg class=\"stroke\" viewBox=\"0 0 34 12\"><path "
-                                     "class=\"curve\" {} d=\"M2 6L32 6\"/></svg>",
-                                     tone),
-                         kColours.at(c));
+        keys.push_back(tone_key(kChannelTones.at(c), kColours.at(c)));
     }
-    return html_section(
-        "light",
-        "Light over altitude",
-        html_legend(keys + html_key("", "lines: the maps") + html_key("", "dots: the images")) +
-            fmt::format(
-                "<div class=\"plot wide\">{}</div>\n",
-                svg_drawing("light-plot", "light over altitude", kWidth, kHeight, elements)) +
-            html_paragraph(fmt::format(
-                "{} that were looked at before the run: the mean light of each one’s map, scaled "
-                "to the images, and the light of the image by its median pixel. Where the rig is "
-                "right, the images scatter about the lines.",
-                grouped_count(light.altitude_m.size(), "image"))));
+    keys.push_back({"", "lines: the maps"});
+    keys.push_back({"", "dots: the images"});
+    return {std::move(keys),
+            PagePlot{svg_drawing("light-plot", "light over altitude", kWidth, kHeight, elements)},
+            fmt::format("{} that were looked at before the run: the mean light of each one’s map, "
+                        "scaled to the images, and the light of the image by its median pixel. "
+                        "Where the rig is right, the images scatter about the lines.",
+                        grouped_count(light.altitude_m.size(), "image"))};
 }
 
 // Numbers.
 
-std::string gain_section(const CorrectionReport& report) {
-    std::vector<HtmlItem> items{{"gain", per_channel(report.gain.gain)}};
+PageList gains(const CorrectionReport& report) {
+    PageList items{{"gain", per_channel(report.gain.gain)}};
     if (!report.gain.folder.empty()) {
-        items.emplace_back("taken from", user_text(report.gain.folder));
+        items.emplace_back("taken from", report.gain.folder);
     } else {
         items.emplace_back("taken from",
                            report.gain.images.empty()
@@ -193,54 +169,45 @@ std::string gain_section(const CorrectionReport& report) {
                                            camera->mean_delta_e(),
                                            grouped_count(camera->surfaces.size(), "surface"),
                                            camera->worst().delta_e,
-                                           escaped(camera->worst().name)));
+                                           camera->worst().name));
         }
     }
-    return html_section("gain", "Gain", html_list("gains", items));
+    return items;
 }
 
-std::string doubts_section(const RunOutcome& run) {
+PageList doubts(const RunOutcome& run) {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords{
         {{"dark", "the gain is held, so that noise is not amplified"},
          {"saturated", "the camera saturates"},
          {"black", "no light"},
          {"edge", "the edge of a beam is near"},
          {"clipped", "beyond what the file holds"}}};
-    std::vector<HtmlItem> items;
+    PageList items;
     for (const auto& [name, words] : kWords) {
         items.emplace_back(name, fmt::format("{}: {}", percent(run.doubtful_share(name)), words));
     }
-    return html_section("doubts", "Doubtful pixels", html_list("doubtful", items));
+    return items;
 }
 
-std::string skipped_section(const RunOutcome& run) {
+std::vector<PagePart> skipped(const RunOutcome& run) {
     constexpr std::size_t kMostRows = 200;
-    if (run.skipped.empty()) return "";
-    std::vector<HtmlItem> items;
-    for (std::size_t i = 0; i < std::min(run.skipped.size(), kMostRows); ++i) {
-        items.emplace_back(user_text(run.skipped[i].image), user_text(run.skipped[i].why));
-    }
-    std::string content = html_list("skipped-images", items);
+    if (run.skipped.empty()) return {};
+    PageList items;
+    for (std::size_t i = 0; i < std::min(run.skipped.size(), kMostRows); ++i)
+        items.emplace_back(run.skipped[i].image, run.skipped[i].why);
+    std::vector<PagePart> parts{std::move(items)};
     if (run.skipped.size() > kMostRows) {
-        content += html_paragraph(fmt::format("The first {} of {}; {} has all.",
-                                              kMostRows,
-                                              grouped(run.skipped.size()),
-                                              kCorrectionNotes));
+        parts.emplace_back(fmt::format("The first {} of {}; {} has all.",
+                                       kMostRows,
+                                       grouped(run.skipped.size()),
+                                       kCorrectionNotes));
     }
-    return html_section("skipped", "Skipped images", content);
+    return parts;
 }
 
-std::string settings_section(const CorrectionReport& report) {
-    std::vector<HtmlItem> items;
-    for (const auto& [key, value] : report.settings.items()) {
-        const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-        items.emplace_back(escaped(key), user_text(text));
-    }
-    return html_section("settings", "Settings", html_list("all-settings", items));
-}
-
-std::string rig_section(const LightAt& light) {
-    return light.toml.empty() ? "" : html_section("rig", "Rig", html_source(light.toml));
+std::vector<PagePart> rig(const LightAt& light) {
+    if (light.toml.empty()) return {};
+    return {PageSource{light.toml}};
 }
 
 std::string title_of(const LightAt& light) {
@@ -252,13 +219,28 @@ std::string title_of(const LightAt& light) {
 std::string correction_html(const Survey& survey,
                             const CorrectionReport& report,
                             std::span<const SheetImage> sheet) {
+    const RunOutcome& run = *report.run;
     const std::string title = title_of(survey.light);
-    return html_page("Correction: " + title,
-                     html_header("corrected survey", user_text(title), verdict(report)) +
-                         warnings(report) + before_and_after(sheet) +
-                         light_over_altitude(report.looks) + gain_section(report) +
-                         doubts_section(*report.run) + skipped_section(*report.run) +
-                         settings_section(report) + rig_section(survey.light));
+    return page_html(
+        {.kind = "corrected survey",
+         .title = "Correction: " + title,
+         .heading = title,
+         .is_good = run.skipped.empty() && report.looks_wrong.empty(),
+         .headline = headline(report),
+         .said = {fmt::format("{} in this run, which took {} s; {} kept from before.",
+                              grouped(run.corrected),
+                              plain(std::round(10.0 * report.seconds) / 10.0),
+                              grouped(run.kept))},
+         .warnings = warnings(report),
+         .sections = {
+             {.id = "images", .heading = "Before and after", .parts = before_and_after(sheet)},
+             {.id = "light",
+              .heading = "Light over altitude",
+              .parts = light_over_altitude(report.looks)},
+             {.id = "gain", .heading = "Gain", .parts = {gains(report)}},
+             {.id = "doubts", .heading = "Doubtful pixels", .parts = {doubts(run)}},
+             {.id = "skipped", .heading = "Skipped images", .parts = skipped(run)},
+             {.id = "rig", .heading = "Rig", .parts = rig(survey.light)}}});
 }
 
 }  // namespace aphotic

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// The page is well-formed XML too.
 #include "survey/design_page.h"
 
 #include "base/degrees.h"
 #include "image/preview.h"
 #include "report/html.h"
-#include "report/picture.h"
+#include "report/page.h"
 #include "report/svg.h"
 #include "rig/geometry.h"
 #include "rig/rig_reader.h"
@@ -19,7 +17,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -40,36 +38,25 @@ std::string pose_text(const Sled& sled) {
                        plain(sled.roll_rad * kDegreesPerRadian));
 }
 
-std::string design_verdict(const DesignResult& result) {
+std::string headline(const DesignResult& result) {
     const LightFigures& start = result.start.figures;
     const LightFigures& best = result.best.figures;
-    const std::string word =
-        result.is_better
-            ? fmt::format("Evenness {:.3f} in place of {:.3f}, worst signal to noise {}",
-                          best.evenness,
-                          start.evenness,
-                          gain_of(start.signal_to_noise, best.signal_to_noise))
-            : "Nothing better than the start was found";
-    return html_verdict(
-        result.is_better,
-        word,
-        html_paragraph(
-            fmt::format("The worst of {}; {}, {} looked at.",
-                        grouped_count(result.best.poses.size(), "pose"),
-                        grouped_count(result.numbers, "free number"),
-                        grouped_count(static_cast<std::size_t>(result.evaluations), "design"))));
+    if (!result.is_better) return "Nothing better than the start was found";
+    return fmt::format("Evenness {:.3f} in place of {:.3f}, worst signal to noise {}",
+                       best.evenness,
+                       start.evenness,
+                       gain_of(start.signal_to_noise, best.signal_to_noise));
 }
 
-std::string figures_section(const DesignRequest& request, const DesignResult& result) {
+PageTable figures(const DesignRequest& request, const DesignResult& result) {
     const LightFigures& start = result.start.figures;
     const LightFigures& best = result.best.figures;
-    std::vector<HtmlRow> rows;
+    PageTable table{.columns = {"figure", "start", "design", "gain"}};
     const auto add = [&](std::string name, double before, double after) {
-        rows.push_back({.style = "",
-                        .cells = {std::move(name),
-                                  fmt::format("{:.4g}", before),
-                                  fmt::format("{:.4g}", after),
-                                  gain_of(before, after)}});
+        table.rows.push_back({.cells = {std::move(name),
+                                        fmt::format("{:.4g}", before),
+                                        fmt::format("{:.4g}", after),
+                                        gain_of(before, after)}});
     };
     add("evenness U₀, least over mean", start.evenness, best.evenness);
     add("diversity, least over most", start.diversity, best.diversity);
@@ -79,7 +66,7 @@ std::string figures_section(const DesignRequest& request, const DesignResult& re
     add("signal to noise of the worst pixel, the start’s being 1",
         1.0,
         best.signal_to_noise / start.signal_to_noise);
-    return html_section("figures", "Gain", html_table("gain", "figure;start;design;gain", rows));
+    return table;
 }
 
 // Bright pixels over the mean in steps of a tenth, whose borders are contours: of the channel that
@@ -121,18 +108,19 @@ Lightmap shown_map(const Rig& rig, const Design& design, const Sled& sled) {
     return LightmapMaker(shown, paths_of(shown, {sled}), {.error = 1e-3}).map(sled);
 }
 
-std::string pair_of(const std::array<std::string, 2>& pngs, int width_px, int height_px) {
-    constexpr std::array<std::string_view, 2> kWords{"Start", "Design"};
-    std::string content;
-    for (std::size_t i = 0; i < pngs.size(); ++i) {
-        content += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>",
-                               picture_html(pngs.at(i), width_px, height_px, kWords.at(i)),
-                               kWords.at(i));
+PageFigures pair_of(std::string before, std::string after, int width_px, int height_px) {
+    PageFigures pair;
+    for (auto& [png, words] :
+         {std::pair(std::move(before), "Start"), std::pair(std::move(after), "Design")}) {
+        pair.figures.push_back(
+            {.pictures =
+                 {{.bytes = png, .width_px = width_px, .height_px = height_px, .words = words}},
+             .caption = words});
     }
-    return fmt::format("<div class=\"pair\">{}</div>\n", content);
+    return pair;
 }
 
-std::string light_section(const Rig& rig, const DesignResult& result) {
+std::vector<PagePart> light(const Rig& rig, const DesignResult& result) {
     // The start's own worst pose, of both.
     const auto worst = std::ranges::min_element(
         result.start.poses, {}, [](const JudgedPose& pose) { return pose.figures.evenness; });
@@ -143,20 +131,18 @@ std::string light_section(const Rig& rig, const DesignResult& result) {
     };
     const auto scale =
         preview_scale(image(before), {1.0, 1.0, 1.0}, {.white = PreviewWhite::Image});
-    return html_section(
-        "light",
-        "Light on the floor",
-        html_paragraph(fmt::format("At {}, where the start is least even. First as the camera sees "
-                                   "it, both under one exposure; then the least even channel over "
-                                   "its mean, black to white from 0 to 2 in steps of 0.1.",
-                                   pose_text(worst->sled))) +
-            pair_of({preview_png(image(before), scale), preview_png(image(after), scale)},
+    return {fmt::format("At {}, where the start is least even. First as the camera sees it, both "
+                        "under one exposure; then the least even channel over its mean, black to "
+                        "white from 0 to 2 in steps of 0.1.",
+                        pose_text(worst->sled)),
+            pair_of(preview_png(image(before), scale),
+                    preview_png(image(after), scale),
                     before.width_px,
-                    before.height_px) +
-            pair_of({steps_png(before), steps_png(after)}, before.width_px, before.height_px));
+                    before.height_px),
+            pair_of(steps_png(before), steps_png(after), before.width_px, before.height_px)};
 }
 
-std::string front_section(const DesignResult& result) {
+std::vector<PagePart> front(const DesignResult& result) {
     constexpr double kWidth = 760.0;
     constexpr double kHeight = 420.0;
     constexpr double kMargin = 16.0;
@@ -203,24 +189,14 @@ std::string front_section(const DesignResult& result) {
     const std::string elements = svg_axes(panel) + svg_curve(panel, x, y, "class=\"front\"") +
                                  dots(x, y, kFrontTone) + dots(start_x, start_y, kStartTone) +
                                  dots(best_x, best_y, kBestTone);
-    const auto key = [](std::size_t tone, std::string_view words) {
-        return html_key(fmt::format("<svg class=\"dot-key\" viewBox=\"0 0 14 14\"><path "
-                                    "class=\"dots\" style=\"stroke-width: 9px\" "
-                                    "stroke-linecap=\"round\" {} d=\"M7 7h0\"/></svg>",
-                                    svg_tone(tone)),
-                        words);
-    };
-    return html_section(
-        "trade",
-        "The trade",
-        html_paragraph("Designs of which none is better in both: more even light, or more of it. "
-                       "--keep chooses among them.") +
-            html_legend(key(kFrontTone, "front") + key(kStartTone, "start") +
-                        key(kBestTone, "design")) +
-            fmt::format(
-                "<div class=\"plot wide\">{}</div>\n",
-                svg_drawing(
-                    "trade-plot", "evenness over signal to noise", kWidth, kHeight, elements)));
+    return {
+        "Designs of which none is better in both: more even light, or more of it. --keep chooses "
+        "among them.",
+        PageLegend{dot_key(kFrontTone, "front"),
+                   dot_key(kStartTone, "start"),
+                   dot_key(kBestTone, "design")},
+        PagePlot{
+            svg_drawing("trade-plot", "evenness over signal to noise", kWidth, kHeight, elements)}};
 }
 
 // From above, forward up: the strobes, and a stroke to where each points halfway to the floor.
@@ -288,68 +264,76 @@ std::string plan_of(const Rig& rig, const DesignResult& result) {
     return svg_drawing("plan", "the strobes from above", kSide, kSide, elements);
 }
 
-std::string strobes_section(const Rig& rig, const DesignResult& result) {
-    std::vector<HtmlRow> rows;
+std::vector<PagePart> strobes(const Rig& rig, const DesignResult& result) {
+    PageTable table{.columns = {"strobe",
+                                "position at start (m)",
+                                "position (m)",
+                                "direction at start",
+                                "direction",
+                                "power of the start’s"}};
     const auto vector = [](const Eigen::Vector3d& v) {
         return fmt::format("{:.3f}, {:.3f}, {:.3f}", v.x(), v.y(), v.z());
     };
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         const StrobePlace& was = result.start.places[s];
         const StrobePlace& is = result.best.places[s];
-        rows.push_back(
-            {.style = "",
-             .cells = {user_text(rig.strobes[s].name),
+        table.rows.push_back(
+            {.cells = {rig.strobes[s].name,
                        vector(was.position_m),
                        vector(is.position_m),
                        vector(was.axis),
                        vector(is.axis),
                        was.power > 0.0 ? fmt::format("{:.3f}", is.power / was.power) : "none"}});
     }
-    return html_section(
-        "strobes",
-        "The strobes",
-        html_table(
-            "strobe-table",
-            "strobe;position at start (m);position (m);direction at start;direction;power of "
-            "the start’s",
-            rows) +
-            html_paragraph("From above, forward up: the start in red, the design in green, each "
-                           "with a line to where it points, as long as half the altitude; dashed, "
-                           "what the camera sees of the floor.") +
-            fmt::format("<div class=\"plot\" style=\"max-width: 560px\">{}</div>\n",
-                        plan_of(rig, result)));
+    return {std::move(table),
+            "From above, forward up: the start in red, the design in green, each with a line to "
+            "where it points, as long as half the altitude; dashed, what the camera sees of the "
+            "floor.",
+            PagePlot{plan_of(rig, result)}};
 }
 
-std::string poses_section(const DesignResult& result) {
-    std::vector<HtmlRow> rows;
+PageTable poses(const DesignResult& result) {
+    PageTable table{.columns = {"pose",
+                                "evenness at start",
+                                "evenness",
+                                "signal to noise",
+                                "coverage at start",
+                                "coverage"}};
     for (std::size_t i = 0; i < result.best.poses.size(); ++i) {
         const LightFigures& was = result.start.poses[i].figures;
         const LightFigures& is = result.best.poses[i].figures;
-        rows.push_back({.style = "",
-                        .cells = {pose_text(result.best.poses[i].sled),
-                                  fmt::format("{:.3f}", was.evenness),
-                                  fmt::format("{:.3f}", is.evenness),
-                                  gain_of(was.signal_to_noise, is.signal_to_noise),
-                                  fmt::format("{:.3f}", was.coverage),
-                                  fmt::format("{:.3f}", is.coverage)}});
+        table.rows.push_back({.cells = {pose_text(result.best.poses[i].sled),
+                                        fmt::format("{:.3f}", was.evenness),
+                                        fmt::format("{:.3f}", is.evenness),
+                                        gain_of(was.signal_to_noise, is.signal_to_noise),
+                                        fmt::format("{:.3f}", was.coverage),
+                                        fmt::format("{:.3f}", is.coverage)}});
     }
-    return html_section("poses",
-                        "Over the envelope",
-                        html_table("pose-table",
-                                   "pose;evenness at start;evenness;signal to noise;coverage at "
-                                   "start;coverage",
-                                   rows));
+    return table;
 }
 
 }  // namespace
 
 std::string design_html(const Rig& rig, const DesignRequest& request, const DesignResult& result) {
-    return html_page("Design: " + rig.title,
-                     html_header("designed light", user_text(rig.title), design_verdict(result)) +
-                         figures_section(request, result) + light_section(rig, result) +
-                         front_section(result) + strobes_section(rig, result) +
-                         poses_section(result) +
-                         html_section("rig", "The designed rig", html_source(result.best.toml)));
+    return page_html(
+        {.kind = "designed light",
+         .title = "Design: " + rig.title,
+         .heading = rig.title,
+         .is_good = result.is_better,
+         .headline = headline(result),
+         .said = {fmt::format(
+             "The worst of {}; {}, {} looked at.",
+             grouped_count(result.best.poses.size(), "pose"),
+             grouped_count(result.numbers, "free number"),
+             grouped_count(static_cast<std::size_t>(result.evaluations), "design"))},
+         .sections = {{.id = "figures", .heading = "Gain", .parts = {figures(request, result)}},
+                      {.id = "light", .heading = "Light on the floor", .parts = light(rig, result)},
+                      {.id = "trade", .heading = "The trade", .parts = front(result)},
+                      {.id = "strobes", .heading = "The strobes", .parts = strobes(rig, result)},
+                      {.id = "poses", .heading = "Over the envelope", .parts = {poses(result)}},
+                      {.id = "rig",
+                       .heading = "The designed rig",
+                       .parts = {PageSource{result.best.toml}}}}});
 }
 
 }  // namespace aphotic

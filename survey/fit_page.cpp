@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// The page is well-formed XML too.
 #include "survey/fit_page.h"
 
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "image/preview.h"
 #include "report/html.h"
-#include "report/picture.h"
+#include "report/page.h"
 #include "report/svg.h"
 
 #include <fmt/format.h>
@@ -16,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -33,62 +32,47 @@ std::string altitudes_of(const FitSamples& samples) {
     return fmt::format("{:.3g} to {:.3g}", lowest.sled.altitude_m, highest.sled.altitude_m);
 }
 
-std::string verdict(const FitSamples& samples, const FitResult& result) {
+std::string headline(const FitResult& result) {
     std::string words = words_of(result);
     if (!result.held.empty()) words += ", " + grouped_count(result.held.size(), "number") + " held";
     if (!result.looks_wrong.empty())
         words += ", " + grouped_count(result.looks_wrong.size(), "warning");
-    return html_verdict(
-        result.looks_wrong.empty(),
-        words,
-        html_paragraph(fmt::format(
-            "Of {} at {} m it leaves {} (rms, relative), of which {} stays in place from image to "
-            "image: what the model lacks.",
-            grouped_count(result.blocks, "block"),
-            altitudes_of(samples),
-            number_text(result.left.residual),
-            number_text(result.left.pattern))));
+    return words;
 }
 
-std::string warnings(const FitResult& result) {
-    std::string content;
+std::vector<std::string> warnings(const FitResult& result) {
+    std::vector<std::string> words;
     for (const Suspicion& one : result.looks_wrong)
-        content += html_paragraph(fmt::format("{}: {}", escaped(one.about), escaped(one.what)));
-    return content.empty() ? "" : html_section("warnings", "Warnings", content);
+        words.push_back(fmt::format("{}: {}", one.about, named(one.what)));
+    return words;
 }
 
-std::string numbers(const FitResult& result) {
-    std::vector<HtmlRow> rows;
+std::vector<PagePart> numbers(const FitResult& result) {
+    PageTable table{.columns = {"number", "began at", "fitted", "standard error", ""}};
     for (const FittedNumber& one : result.numbers) {
-        rows.push_back({.style = one.is_at_bound ? "fails" : "",
-                        .cells = {user_text(one.key),
-                                  plain(one.start),
-                                  plain(one.value),
-                                  number_text(one.error),
-                                  one.is_at_bound ? "at the end of its range" : ""}});
+        table.rows.push_back({.cells = {one.key,
+                                        plain(one.start),
+                                        plain(one.value),
+                                        number_text(one.error),
+                                        one.is_at_bound ? "at the end of its range" : ""},
+                              .tone = one.is_at_bound ? PageTone::Bad : PageTone::None});
     }
-    std::string content = html_table("numbers", "number;began at;fitted;standard error;", rows);
-    for (const NotTold& one : result.held)
-        content += html_paragraph("Held: " + escaped(words_of(one)) + ".");
+    std::vector<PagePart> parts{std::move(table)};
+    for (const NotTold& one : result.held) parts.emplace_back("Held: " + words_of(one) + ".");
     if (!result.fixed.empty())
-        content += html_paragraph(
+        parts.emplace_back(
             fmt::format("Not fitted, as the rig has them: {}.", fmt::join(result.fixed, ", ")));
-    return html_section("numbers-section", "What was found", content);
+    return parts;
 }
 
-std::string confounded(const FitResult& result) {
-    if (result.confounded.empty()) return "";
-    std::vector<HtmlRow> rows;
+std::vector<PagePart> confounded(const FitResult& result) {
+    if (result.confounded.empty()) return {};
+    PageTable table{.columns = {"number", "with", "correlation"}};
     for (const Confounded& pair : result.confounded) {
-        rows.push_back({.style = "",
-                        .cells = {user_text(pair.one),
-                                  user_text(pair.other),
-                                  fmt::format("{:+.2f}", pair.correlation)}});
+        table.rows.push_back(
+            {.cells = {pair.one, pair.other, fmt::format("{:+.2f}", pair.correlation)}});
     }
-    return html_section("confounded",
-                        "Confounded",
-                        html_paragraph("Pairs that nearly make up for each other.") +
-                            html_table("pairs", "number;with;correlation", rows));
+    return {"Pairs that nearly make up for each other.", std::move(table)};
 }
 
 // Blue where the image is darker than the fit, red where it is brighter.
@@ -105,36 +89,35 @@ std::uint32_t residual_colour(float residual) {
     return red << 16U | green << 8U | blue;
 }
 
-std::string views(const FitSamples& samples, const FitResult& result) {
+std::vector<PagePart> views(const FitSamples& samples, const FitResult& result) {
     const int width_px = samples.places.width_px / samples.places.block_px;
     const int height_px = static_cast<int>(samples.places.size()) / width_px;
-    std::string figures;
+    PageFigures figures{.figures = {}, .are_small = true};
     for (const FitView& view : result.left.views) {
         const CameraImage fitted{width_px, height_px, view.fitted};
         const auto scale = preview_scale(fitted, {1.0, 1.0, 1.0}, {.white = PreviewWhite::Image});
         std::vector<std::uint32_t> colours;
         for (const float residual : view.residual) colours.push_back(residual_colour(residual));
-        const auto shown = [&](const std::string& png, std::string_view words) {
-            return picture_html(png, width_px, height_px, words);
+        const auto shown = [&](std::string png, std::string words) {
+            return PagePicture{.bytes = std::move(png),
+                               .width_px = width_px,
+                               .height_px = height_px,
+                               .words = std::move(words)};
         };
-        figures += fmt::format(
-            "<figure><div class=\"duo trio\">{}{}{}</div><figcaption>{}, "
-            "{:.2f}\xC2\xA0m</figcaption></figure>\n",
-            shown(preview_png({width_px, height_px, view.observed}, scale), "observed"),
-            shown(preview_png(fitted, scale), "fitted"),
-            shown(png_of(colours, width_px, height_px), "what is left"),
-            user_text(samples.images[view.image].name),
-            samples.images[view.image].sled.altitude_m);
+        figures.figures.push_back(
+            {.pictures = {shown(preview_png({width_px, height_px, view.observed}, scale),
+                                "observed"),
+                          shown(preview_png(fitted, scale), "fitted"),
+                          shown(png_of(colours, width_px, height_px), "what is left")},
+             .caption = fmt::format("{}, {:.2f}\xC2\xA0m",
+                                    named(samples.images[view.image].name),
+                                    samples.images[view.image].sled.altitude_m)});
     }
-    return html_section(
-        "views",
-        "Observed and fitted",
-        html_paragraph(fmt::format("Observed, fitted, and what is left: red brighter, blue darker "
-                                   "than the fit, in full colour "
-                                   "from {:.0f} % on. Each block is {} pixels wide.",
-                                   100.0 * kShownResidual,
-                                   samples.places.block_px)) +
-            fmt::format("<div class=\"sheet\">\n{}</div>\n", figures));
+    return {fmt::format("Observed, fitted, and what is left: red brighter, blue darker than the "
+                        "fit, in full colour from {:.0f} % on. Each block is {} pixels wide.",
+                        100.0 * kShownResidual,
+                        samples.places.block_px),
+            std::move(figures)};
 }
 
 constexpr double kWidth = 760.0;
@@ -150,7 +133,7 @@ SvgPanel panel_over(const ValueRange& x, const ValueRange& y) {
             .y = linear_axis_around(y.least, y.most, 6)};
 }
 
-std::string beam(std::size_t number, const std::vector<BeamPoint>& curve) {
+PagePlot beam(std::size_t number, const std::vector<BeamPoint>& curve) {
     std::vector<double> theta_deg;
     std::vector<double> middle;
     std::vector<double> low;
@@ -174,23 +157,18 @@ std::string beam(std::size_t number, const std::vector<BeamPoint>& curve) {
     const std::string drawing = svg_axes(panel) + svg_curve(panel, theta_deg, low, dashed) +
                                 svg_curve(panel, theta_deg, high, dashed) +
                                 svg_curve(panel, theta_deg, middle, solid);
-    return fmt::format(
-        "<figure class=\"plot wide\">\n{}</figure>\n",
-        svg_drawing(fmt::format("beam-{}", number), "beam", kWidth, kHeight, drawing));
+    return {svg_drawing(fmt::format("beam-{}", number), "beam", kWidth, kHeight, drawing)};
 }
 
-std::string beams(const FitResult& result) {
-    std::string content;
+std::vector<PagePart> beams(const FitResult& result) {
+    if (result.beam_curves.empty()) return {};
+    std::vector<PagePart> parts{"For a flux of 1, within twice its standard error."};
     for (std::size_t b = 0; b < result.beam_curves.size(); ++b)
-        content += beam(b, result.beam_curves[b]);
-    if (content.empty()) return "";
-    return html_section(
-        "beams",
-        "Beam",
-        html_paragraph("For a flux of 1, within twice its standard error.") + content);
+        parts.emplace_back(beam(b, result.beam_curves[b]));
+    return parts;
 }
 
-std::string over_altitude(const FitResult& result) {
+std::vector<PagePart> over_altitude(const FitResult& result) {
     std::vector<double> altitude_m;
     std::vector<double> residual;
     std::vector<double> level;
@@ -204,7 +182,7 @@ std::string over_altitude(const FitResult& result) {
         y.include(residual.back());
         y.include(level.back());
     }
-    if (!(x.most > x.least)) return "";
+    if (!(x.most > x.least)) return {};
     y.include(0.0);
     SvgPanel panel = panel_over(x, y);
     panel.x.title = "altitude [m]";
@@ -213,32 +191,23 @@ std::string over_altitude(const FitResult& result) {
     const std::string drawing = svg_axes(panel) +
                                 svg_dots(panel, altitude_m, residual, dots + svg_tone(0)) +
                                 svg_dots(panel, altitude_m, level, dots + svg_tone(1));
-    return html_section(
-        "altitude",
-        "Over altitude",
-        html_paragraph("Blue: what is left of an image, rms. Red: how much brighter the image is "
-                       "than its pose explains; that should not go with the altitude.") +
-            fmt::format(
-                "<figure class=\"plot wide\">\n{}</figure>\n",
-                svg_drawing("residuals", "residuals over altitude", kWidth, kHeight, drawing)));
+    return {
+        "Blue: what is left of an image, rms. Red: how much brighter the image is than its pose "
+        "explains; that should not go with the altitude.",
+        PagePlot{svg_drawing("residuals", "residuals over altitude", kWidth, kHeight, drawing)}};
 }
 
-std::string deviations(const FitResult& result) {
+std::vector<PagePart> deviations(const FitResult& result) {
     const auto deviation = [&](std::size_t k) { return std::sqrt(result.effects[k]); };
-    const std::vector<HtmlItem> items{
-        {"brightness", number_text(deviation(0))},
-        {"red and blue beside green",
-         fmt::format("{}, {}", number_text(deviation(1)), number_text(deviation(2)))},
-        {"altitude", fmt::format("{} m", number_text(deviation(3)))},
-        {"pitch, roll",
-         fmt::format("{}, {} degrees",
-                     number_text(deviation(4) * kDegreesPerRadian),
-                     number_text(deviation(5) * kDegreesPerRadian))}};
-    return html_section(
-        "deviations",
-        "From image to image",
-        html_paragraph("Standard deviations of what the images are off by, each its own.") +
-            html_list("deviation-list", items));
+    PageList items{{"brightness", number_text(deviation(0))},
+                   {"red and blue beside green",
+                    fmt::format("{}, {}", number_text(deviation(1)), number_text(deviation(2)))},
+                   {"altitude", fmt::format("{} m", number_text(deviation(3)))},
+                   {"pitch, roll",
+                    fmt::format("{}, {} degrees",
+                                number_text(deviation(4) * kDegreesPerRadian),
+                                number_text(deviation(5) * kDegreesPerRadian))}};
+    return {"Standard deviations of what the images are off by, each its own.", std::move(items)};
 }
 
 }  // namespace
@@ -248,12 +217,30 @@ void write_fit_page(const std::filesystem::path& file,
                     const FitSamples& samples,
                     const FitResult& result) {
     const std::string title = text.rig().title.empty() ? "Untitled rig" : text.rig().title;
-    const std::string content =
-        html_header("fit", user_text(title), verdict(samples, result)) + warnings(result) +
-        numbers(result) + views(samples, result) + beams(result) + over_altitude(result) +
-        deviations(result) + confounded(result) +
-        html_section("rig", "The rig that it began with", html_source(text.text()));
-    write_text_file(file, html_page("Fit: " + title, content));
+    const Page page{
+        .kind = "fit",
+        .title = "Fit: " + title,
+        .heading = title,
+        .is_good = result.looks_wrong.empty(),
+        .headline = headline(result),
+        .said = {fmt::format("Of {} at {} m it leaves {} (rms, relative), of which {} stays in "
+                             "place from image to image: what the model lacks.",
+                             grouped_count(result.blocks, "block"),
+                             altitudes_of(samples),
+                             number_text(result.left.residual),
+                             number_text(result.left.pattern))},
+        .warnings = warnings(result),
+        .sections = {
+            {.id = "numbers", .heading = "What was found", .parts = numbers(result)},
+            {.id = "views", .heading = "Observed and fitted", .parts = views(samples, result)},
+            {.id = "beams", .heading = "Beam", .parts = beams(result)},
+            {.id = "altitude", .heading = "Over altitude", .parts = over_altitude(result)},
+            {.id = "deviations", .heading = "From image to image", .parts = deviations(result)},
+            {.id = "confounded", .heading = "Confounded", .parts = confounded(result)},
+            {.id = "rig",
+             .heading = "The rig that it began with",
+             .parts = {PageSource{text.text()}}}}};
+    write_text_file(file, page_html(page));
 }
 
 }  // namespace aphotic

@@ -22,6 +22,7 @@ struct ImageFile {
 inline constexpr std::string_view kCorrectionNotes = "correction.json";
 inline constexpr std::string_view kBaselineNotes = "baseline.json";
 inline constexpr std::string_view kReportPage = "report.html";
+inline constexpr std::string_view kJournal = "corrected.jsonl";  // of what is done
 
 // In the order of the arguments, a folder's images sorted by name, those in the folders within it
 // among them, also by links; but for a link to a folder that it lies in. What lies in `output` and

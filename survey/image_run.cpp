@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -57,26 +58,47 @@ void require_sources_stay(const std::vector<ImageFile>& files, const ImageRunOpt
     }
 }
 
-FolderLock claimed(const ImageRunOptions& options, const std::vector<ImageFile>& files) {
-    require_separate_results(files, options);
-    require_sources_stay(files, options);
-    make_folder(options.folder);
-    FolderLock lock(options.folder, FolderUse::Write);
-    remove_abandoned_files(options.folder);
-    for (const auto& entry : fs::recursive_directory_iterator(options.folder)) {
-        if (entry.is_directory()) remove_abandoned_files(entry.path());
+std::size_t join_share(const fs::path& share,
+                       const std::vector<ImageFile>& files,
+                       const ImageRunOptions& options,
+                       Journal& journal) {
+    const FolderLock lock(share, FolderUse::Write);
+    if (!fs::exists(share / kJournal)) return 0;
+    const std::map<std::string, JournalEntry> done =
+        parse_journal(read_text_file(share / kJournal, kMostJournal_bytes));
+    std::size_t count = 0;
+    for (const ImageFile& file : files) {
+        const auto entry = done.find(file.name.string());
+        if (entry == done.end()) continue;
+        const std::vector<fs::path> results = results_of(file, options.format);
+        const bool are_there = std::ranges::all_of(
+            results, [&](const fs::path& result) { return fs::exists(share / result); });
+        if (!are_there) continue;
+        for (const fs::path& result : results) {
+            make_folder((options.folder / result).parent_path());
+            fs::rename(share / result, options.folder / result);
+        }
+        journal.note(entry->first, entry->second.digest, results, entry->second.counts);
+        ++count;
     }
-    return lock;
+    remove_joined(share, {kJournal, kCorrectionNotes, kBaselineNotes, kReportPage});
+    return count;
 }
 
 }  // namespace
 
-ResultFolder::ResultFolder(const ImageRunOptions& options, const std::vector<ImageFile>& files)
-    : folder_(options.folder), lock_(claimed(options, files)) {}
+void require_results_apart(const std::vector<ImageFile>& files, const ImageRunOptions& options) {
+    require_separate_results(files, options);
+    require_sources_stay(files, options);
+}
 
-ResultFolder::~ResultFolder() {
-    std::error_code holds_something;
-    fs::remove(folder_, holds_something);
+std::size_t join_shares(const std::vector<ImageFile>& files, const ImageRunOptions& options) {
+    const std::vector<fs::path> shares = share_folders(options.folder);
+    if (shares.empty()) return 0;
+    Journal journal(options.folder / kJournal);
+    std::size_t count = 0;
+    for (const fs::path& share : shares) count += join_share(share, files, options, journal);
+    return count;
 }
 
 std::string state_of(const fs::path& image) {

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Work on every image of a survey, some at a time, that can be stopped at any moment and given
-// again: what is done is noted in the folder of results as it is done (journal.h), and an image
+// again: what is done is noted in the folder of results as it is done (work_folder.h), and an image
 // that cannot be used costs no other.
 //
 // An image is left as it is when its source (size and time) and all that its result depends on are
 // what was noted, and its files are there in the noted size.
 #pragma once
 
-#include "base/folder_lock.h"
+#include "base/work_folder.h"
 #include "survey/image_files.h"
-#include "survey/journal.h"
 #include "survey/result_files.h"
 #include "survey/run_watch.h"
 
@@ -32,20 +31,15 @@ struct ImageRunOptions {
     std::size_t jobs = std::max(1U, std::thread::hardware_concurrency());
 };
 
-// The folder, made, taken from all other runs, and rid of what killed ones left half written. When
-// nothing was written it goes again.
-class ResultFolder {
-  public:
-    // An InputError when a result would take the place of one of the images.
-    ResultFolder(const ImageRunOptions& options, const std::vector<ImageFile>& files);
-    ~ResultFolder();
-    ResultFolder(const ResultFolder&) = delete;
-    ResultFolder& operator=(const ResultFolder&) = delete;
+// An InputError when two images would have one result, or a result would take the place of one of
+// the images.
+void require_results_apart(const std::vector<ImageFile>& files, const ImageRunOptions& options);
 
-  private:
-    std::filesystem::path folder_;
-    FolderLock lock_;
-};
+// Results that shares of the images (base/work_folder.h) left below the folder, taken into it with
+// their notes: the run that follows finds them done, and does what no share has. Returns how many
+// images it took. A RunError where this machine still works on a share. What stays of the shares'
+// folders is what is not ours.
+std::size_t join_shares(const std::vector<ImageFile>& files, const ImageRunOptions& options);
 
 // Of the file as it is now: size and time. An InputError when it vanished since it was listed: one
 // bad image.

@@ -25,7 +25,7 @@
 // generate_nav_file_for_squidle.py; biigle/core, image metadata parser; oii, HabCam's metadata.
 #pragma once
 
-#include "survey/navigation_notes.h"
+#include "survey/navigation.h"
 
 #include <array>
 #include <map>
@@ -35,6 +35,12 @@
 #include <vector>
 
 namespace aphotic {
+
+// A number of a pose, as tables and tags hold it.
+
+// NaN when the field says that nobody knows it, as by None or an empty cell; what is neither is a
+// fault of the pose.
+[[nodiscard]] double number_in(ImagePose& pose, std::string_view column, std::string_view field);
 
 enum class NavigationField { Image, Time, Altitude, Pitch, Roll };
 inline constexpr std::array<std::string_view, 5> kNavigationFields{

@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "rig/photometric_text.h"
-#include "survey/navigation_acfr.h"
-#include "survey/navigation_cell.h"
+#include "survey/navigation.h"
+#include "survey/navigation_columns.h"
 #include "survey/table_text.h"
 #include "survey/time_text.h"
 
@@ -16,11 +16,70 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace aphotic {
+
 namespace {
+
+// Poses from stereo_pose_est.data of the Australian Centre for Field Robotics (ACFR), of the AUV
+// Sirius and its kin: fifteen words a line, without a header,
+//
+//   identifier time latitude longitude X Y Z phi theta psi left right altitude radius cross-over
+//
+// Each line tells of two images, left and right. phi, theta and psi (radians) turn north, east and
+// down, in this order of axes, into the stereo frame: X right in the image, Y to its bottom, Z
+// along the axis. So the way down has these parts in the camera's own frame, whose x runs to the
+// image's top (vehicle_pose.h):
+//
+//   (x, y, z) = (-cos theta sin phi, -sin theta, cos theta cos phi)
+//   pitch = -asin x        roll = atan2(y, z)
+//
+// phi = 0.0873, theta = 0: pitch 5.002 degrees, roll 0. The altitude is the vehicle's, 0 where its
+// altimeter lost the floor.
+//
+// Source: the comments that seabed_slam and oplab_pipeline (auv_nav, parse_acfr_stereo_pose.py)
+// write into these files.
+enum AcfrWord : std::size_t { kPhi = 7, kTheta = 8, kLeft = 10, kRight = 11, kAltitude = 12 };
+constexpr std::size_t kAcfrWords = 15;
+
+bool is_numeric_word(std::string_view word) {
+    ImagePose none;
+    static_cast<void>(number_in(none, "", word));
+    return none.fault.empty();
+}
+
+// Fifteen words, numbers but for the two names.
+bool is_acfr_line(const std::vector<std::string>& words) {
+    if (words.size() != kAcfrWords) return false;
+    for (std::size_t i = 0; i < kAcfrWords; ++i) {
+        const bool is_name = i == kLeft || i == kRight;
+        if (is_name == is_numeric_word(words[i])) return false;
+    }
+    return true;
+}
+
+// Of a line, be it one of these or not: that is the poses' fault.
+std::array<ImagePose, 2> acfr_poses(const std::vector<std::string>& words, std::size_t line) {
+    ImagePose pose{.line = line};
+    if (words.size() != kAcfrWords) {
+        pose.fault = fmt::format("found {} fields; allowed: {}", words.size(), kAcfrWords);
+    } else {
+        const double phi = number_in(pose, "X-axis Euler angle", words[kPhi]);
+        const double theta = number_in(pose, "Y-axis Euler angle", words[kTheta]);
+        pose.sled = {.altitude_m = number_in(pose, "altitude", words[kAltitude]),
+                     .pitch_rad = std::asin(std::cos(theta) * std::sin(phi)),
+                     .roll_rad = std::atan2(-std::sin(theta), std::cos(theta) * std::cos(phi))};
+    }
+    std::array<ImagePose, 2> poses{pose, pose};
+    if (words.size() > kLeft) poses[0].image = words[kLeft];
+    if (words.size() > kRight) poses[1].image = words[kRight];
+    return poses;
+}
 
 using enum NavigationField;
 using Fields = std::vector<std::string>;

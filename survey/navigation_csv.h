@@ -13,7 +13,7 @@
 //   201207.0001.tif 2.05 4.8 -0.3        HabCam's .eic
 //   sixteen fields                       HabCam's .img
 //   thirteen fields or more between ;    Matisse's .dim2
-//   fifteen words                        ACFR's stereo_pose_est.data (navigation_acfr.h)
+//   fifteen words                        ACFR's stereo_pose_est.data (navigation_csv.cpp)
 //
 // Lines that are empty or hold separators alone are passed over. A cell that is no number costs its
 // own line alone, as does a line with too few or too many fields. A table without a column for
@@ -22,7 +22,6 @@
 
 #include "survey/navigation.h"
 #include "survey/navigation_columns.h"
-#include "survey/navigation_notes.h"
 
 #include <cstddef>
 #include <string>

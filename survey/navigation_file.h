@@ -4,7 +4,7 @@
 //
 //   a table          of poses by image, or of poses over time (navigation_csv.h, track.h)
 //   an iFDO          of the camera's own poses (navigation_ifdo.h)
-//   the images' tags HabCam's, with "tags" for a file's name (habcam_tags.h)
+//   the images' tags HabCam's, with "tags" for a file's name
 //
 // What poses over time are of: an image's time (image_time.h) plus clock_offset_s. Lines of the
 // track without a time, or with a pose that no sled can have or from outside the altitudes, are
@@ -29,6 +29,25 @@
 #include <vector>
 
 namespace aphotic {
+
+// HabCam's tags, which its controller writes into the ImageDescription of each image:
+//
+//   lat=40.612345,lon=-67.123456,hdg=181.20,pitch=-4.80,roll=0.30,alt0=2.05,alt1=2.11,depth=61.2,...
+//
+// Keys with their values, parted by commas, in any order. Angles are in degrees, altitudes in
+// metres: alt0 and alt1 are the two altimeters'.
+//
+// Source: howland54/habcam-dsvimc.
+
+// alt0, pitch and roll, or what `given` names instead of them. An InputError when it names anything
+// but these three.
+[[nodiscard]] ColumnNames tag_names(const ColumnNames& given);
+
+// A fault of the pose, and no error, where the description has none of them.
+void read_tags(ImagePose& pose,
+               std::string_view description,
+               const ColumnNames& names,
+               AngleUnit angles_in);
 
 inline constexpr std::string_view kNavigationInTags = "tags";
 inline constexpr std::size_t kMostNavigation_bytes = kMostIfdo_bytes;

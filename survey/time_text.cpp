@@ -8,6 +8,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <regex>
+#include <string>
 
 namespace aphotic {
 namespace {
@@ -15,108 +18,34 @@ namespace {
 constexpr double kMinute_s = 60.0;
 constexpr double kHour_s = 3600.0;
 
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
-// Takes a text apart from its beginning.
-class Reader {
-  public:
-    explicit Reader(std::string_view text) : rest_(text) {}
-
-    [[nodiscard]] bool is_at_end() const { return rest_.empty(); }
-
-    // One of these characters, or a null character.
-    char one_of(std::string_view characters) {
-        if (rest_.empty() || characters.find(rest_.front()) == std::string_view::npos) return '\0';
-        const char found = rest_.front();
-        rest_.remove_prefix(1);
-        return found;
-    }
-
-    // A whole number of so many digits.
-    std::optional<int> number(std::size_t digits) {
-        int value = 0;
-        if (rest_.size() < digits) return std::nullopt;
-        for (std::size_t i = 0; i < digits; ++i) {
-            if (!is_digit(rest_[i])) return std::nullopt;
-            value = 10 * value + (rest_[i] - '0');
-        }
-        rest_.remove_prefix(digits);
-        return value;
-    }
-
-    // What follows a decimal point, from 0 to 1.
-    std::optional<double> fraction() {
-        std::size_t digits = 0;
-        while (digits < rest_.size() && is_digit(rest_[digits])) ++digits;
-        if (digits == 0) return std::nullopt;
-        const std::string text = "0." + std::string(rest_.substr(0, digits));
-        rest_.remove_prefix(digits);
-        return read_number<double>(text);
-    }
-
-  private:
-    std::string_view rest_;
-};
-
-// "", "Z", "+02:00", "-0330": seconds ahead of UTC.
-std::optional<double> offset_at(Reader& text) {
-    text.one_of(" ");
-    if (text.is_at_end() || text.one_of("Zz") != '\0') return 0.0;
-    const char sign = text.one_of("+-");
-    if (sign == '\0') return std::nullopt;
-    const auto hours = text.number(2);
-    text.one_of(":");
-    const auto minutes = text.number(2);
-    if (!hours || !minutes || *hours > 14 || *minutes > 59) return std::nullopt;
-    const double ahead_s = *hours * kHour_s + *minutes * kMinute_s;
-    return sign == '-' ? -ahead_s : ahead_s;
-}
-
-struct CalendarDate {
-    std::optional<int> year{};
-    std::optional<int> month{};
-    std::optional<int> day{};
-};
-
-// 2024-03-09, or 09.03.2024: between points the day comes first everywhere. Without a year it is
-// none.
-CalendarDate date_at(Reader& text) {
-    CalendarDate date{.year = text.number(4)};
-    const bool is_year_first = date.year.has_value();
-    if (!is_year_first) date.day = text.number(2);
-    const char mark = text.one_of(is_year_first ? "-/:" : ".");
-    date.month = text.number(2);
-    if (mark == '\0' || text.one_of({&mark, 1}) == '\0') return {};
-    (is_year_first ? date.day : date.year) = text.number(is_year_first ? 2 : 4);
-    return date;
-}
-
-std::optional<double> calendar_time_s(Reader text) {
-    const auto [year, month, day] = date_at(text);
-    if (text.one_of(" T") == '\0') return std::nullopt;
-    const auto hour = text.number(2);
-    if (text.one_of(":") == '\0') return std::nullopt;
-    const auto minute = text.number(2);
-    if (text.one_of(":") == '\0') return std::nullopt;
-    const auto second = text.number(2);
-    if (!year || !month || !day || !hour || !minute || !second) return std::nullopt;
-    double part_s = 0.0;
-    if (text.one_of(".,") != '\0') {
-        const auto fraction = text.fraction();
-        if (!fraction) return std::nullopt;
-        part_s = *fraction;
-    }
-    const auto ahead_s = offset_at(text);
-    if (!ahead_s || !text.is_at_end()) return std::nullopt;
-    const auto time_s = unix_time_s({.year = *year,
-                                     .month = *month,
-                                     .day = *day,
-                                     .hour = *hour,
-                                     .minute = *minute,
-                                     .second = *second + part_s});
-    return time_s ? std::optional(*time_s - *ahead_s) : std::nullopt;
+// 2024-03-09, or 09.03.2024: between points the day comes first everywhere; a time; parts of a
+// second; Z or hours and minutes ahead of UTC.
+std::optional<double> calendar_time_s(std::string_view text) {
+    constexpr std::size_t kMostLetters = 100;  // of digits, too
+    static const std::regex kTime(
+        "(?:([0-9]{4})([-/:])([0-9]{2})\\2([0-9]{2})|([0-9]{2})\\.([0-9]{2})\\.([0-9]{4}))[ T]"
+        "([0-9]{2}):([0-9]{2}):([0-9]{2})(?:[.,]([0-9]+))?"
+        " ?(?:[Zz]|([+-])([0-9]{2}):?([0-9]{2}))?");
+    std::match_results<std::string_view::const_iterator> found;
+    if (text.size() > kMostLetters || !std::regex_match(text.begin(), text.end(), found, kTime))
+        return std::nullopt;
+    const auto number = [&](std::size_t group) {
+        return read_number<int>(found[group].str()).value_or(0);
+    };
+    const bool is_year_first = found[1].matched;
+    const int hours_ahead = number(13);
+    const int minutes_ahead = number(14);
+    if (hours_ahead > 14 || minutes_ahead > 59) return std::nullopt;
+    const double part_s = read_number<double>("0." + found[11].str()).value_or(0.0);
+    const auto time_s = unix_time_s({.year = number(is_year_first ? 1 : 7),
+                                     .month = number(is_year_first ? 3 : 6),
+                                     .day = number(is_year_first ? 4 : 5),
+                                     .hour = number(8),
+                                     .minute = number(9),
+                                     .second = number(10) + part_s});
+    if (!time_s) return std::nullopt;
+    const double ahead_s = hours_ahead * kHour_s + minutes_ahead * kMinute_s;
+    return found[12].str() == "-" ? *time_s + ahead_s : *time_s - ahead_s;
 }
 
 std::optional<double> seconds_in(std::string_view text) {
@@ -143,7 +72,7 @@ std::optional<double> unix_time_s(const DateAndTime& time) {
 std::optional<double> unix_time_s(std::string_view text) {
     const std::string_view content = trimmed(text);
     if (const auto seconds = seconds_in(content)) return seconds;
-    return calendar_time_s(Reader(content));
+    return calendar_time_s(content);
 }
 
 std::string utc_text(double unix_time_s) {

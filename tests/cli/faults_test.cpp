@@ -2,8 +2,8 @@
 //
 // What breaks while a command runs, or between two runs (docs/faults.md): disks, folders, frames,
 // manifests, POV-Ray, and users who edit their scene too early.
-#include "base/folder_lock.h"
 #include "base/sha256.h"
+#include "base/work_folder.h"
 #include "image/exr.h"
 #include "image/output_images.h"
 #include "spectral/manifest.h"
@@ -125,8 +125,7 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
                  {"validate", "rig.toml", "-o", "out"},
                  {"validate", "rig.toml", "--rendered", "out", "-o", "elsewhere"},
                  {"study", "rig.toml", "--quick", "-o", "out"},
-                 {"stress", "--only", "altitude", "-o", "out"},
-                 {"atlas", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
+                 {"lightmap", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
                  {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.csv", "-o", "out"},
                  {"baseline", "homomorphic", "raw", "-o", "out"},
                  {"fit", "rig.toml", "--maps", "raw/a.exr", "-o", "out"}}) {

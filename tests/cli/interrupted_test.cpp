@@ -9,6 +9,7 @@
 #include "image/exr.h"
 #include "spectral/manifest.h"
 #include "support/command_under_way.h"
+#include "support/effort.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
 
@@ -30,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kInterruptions = 200;
+const int kInterruptions = campaign(16, 200);
 constexpr int kLanes = 4;
 
 enum class Target { Command, PovRay };
@@ -216,7 +217,7 @@ class Lane {
     std::vector<Blow> blows_;
 };
 
-TEST(Interrupted, RendersEndInTheSameImageAfterTwoHundredBlows) {
+TEST(Interrupted, RendersEndInTheSameImageHoweverOftenTheyAreStruck) {
     const unsigned seed = seed_of_this_run();
     fmt::print("seed {} (APHOTIC_TEST_SEED)\n", seed);
     const TempFolder folder;

@@ -156,11 +156,8 @@ Rig random_port_rig(std::uint64_t seed) {
     return rig;
 }
 
-// By hand: APHOTIC_PORT_RIGS=300 build/ci/tests/lightmap_unit_that_computes_tests
-// --gtest_filter='PortLight.IsWithinThePrintedFigure*'
 TEST(PortLight, IsWithinThePrintedFigureForRandomBeamsAndPorts) {
-    const char* asked = std::getenv("APHOTIC_PORT_RIGS");
-    const int count = asked != nullptr ? std::stoi(asked) : cases(12);
+    const int count = campaign(12, 300);
     double worst = 0.0;
     for (int i = 0; i < count; ++i) {
         const std::uint64_t seed = 4000 + static_cast<std::uint64_t>(i);

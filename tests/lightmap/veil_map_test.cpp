@@ -5,7 +5,6 @@
 #include "rig/veil_map.h"
 
 #include "image/exr.h"
-#include "lightmap/atlas_plan.h"
 #include "lightmap/lightmap.h"
 #include "lightmap/lightmap_file.h"
 #include "rig/geometry.h"
@@ -298,39 +297,6 @@ TEST(VeilMap, IsWrittenBesideTheFloorAndDividedByTheSamePeak) {
         ASSERT_EQ(planes[size + i], map.veil[i] / written.peaks[0]);
         ASSERT_LT(planes[2 * size + i], planes[size + i]);
     }
-}
-
-// Between bins both are interpolated, and a bin itself is what it is.
-TEST(VeilMap, IsBlendedBetweenBins) {
-    const Rig rig = coast(48, 36);
-    const MapAxes axes{.altitude_m = {1.9, 2.1},
-                       .pitch_rad = {rig.sled.pitch_rad},
-                       .roll_rad = {0.0},
-                       .water_multiple = {0.0, 1.0}};
-    MapSource source(rig, axes, options());
-    std::vector<Lightmap> bins;
-    for (const MapPoint& point : points_of(axes)) bins.push_back(source.map(point));
-    EXPECT_TRUE(bins[0].veil.empty());  // no water
-    EXPECT_FALSE(bins[1].veil.empty());
-    const MapPoint between{.sled = {.altitude_m = 2.0, .pitch_rad = rig.sled.pitch_rad},
-                           .water_multiple = 1.0};
-    const auto neighbours = neighbours_of(axes, between);
-    std::vector<const Lightmap*> maps;
-    for (const Neighbour& neighbour : neighbours) maps.push_back(&bins[neighbour.bin]);
-    const Lightmap blend = blended(maps, neighbours);
-    const Lightmap truth = source.map(between);
-    constexpr double kBetween = 0.02;
-    for (std::size_t i = 0; i < truth.veil.size(); ++i) {
-        const double signal = static_cast<double>(truth.veil[i] + truth.samples[i]);
-        ASSERT_NEAR(static_cast<double>(blend.veil[i]),
-                    static_cast<double>(truth.veil[i]),
-                    kBetween * signal);
-    }
-    const MapPoint thin{.sled = {.altitude_m = 1.9, .pitch_rad = rig.sled.pitch_rad},
-                        .water_multiple = 0.5};
-    const auto two = neighbours_of(axes, thin);
-    maps = {&bins[two[0].bin], &bins[two[1].bin]};
-    EXPECT_EQ(blended(maps, two).veil.size(), bins[1].veil.size());
 }
 
 }  // namespace aphotic::veil_map_test

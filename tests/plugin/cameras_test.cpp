@@ -5,6 +5,7 @@
 #include "image/output_images.h"
 #include "rig/lens.h"
 #include "spectral/integrator.h"
+#include "support/effort.h"
 #include "support/random_camera.h"
 #include "support/random_rig.h"
 #include "support/rendered.h"
@@ -154,12 +155,11 @@ std::optional<Rig> rig_around(Rig rig, const PortWindow& port) {
     return std::nullopt;
 }
 
-// All that the reader takes, and far beyond what is built. APHOTIC_PORTS=300 tries so many; each
-// here by one way of bounding, there by all.
+// All that the reader takes, and far beyond what is built; each by one way of bounding, in the
+// night by all.
 TEST(Cameras, PortsOfAnySizeAreTheReferencesHoweverPovrayBoundsThem) {
-    constexpr int kPorts = 6;
-    const char* asked = std::getenv("APHOTIC_PORTS");
-    const int ports = asked != nullptr ? std::atoi(asked) : kPorts;
+    const int ports = campaign(6, 300);
+    const bool by_all_boundings = is_night();
     int compared = 0;
     int refused = 0;
     double worst_error = 0.0;
@@ -175,7 +175,7 @@ TEST(Cameras, PortsOfAnySizeAreTheReferencesHoweverPovrayBoundsThem) {
         }
         SCOPED_TRACE(in_words(seed, *rig) + ", " + port_signature(*rig->camera.port));
         for (std::size_t b = 0; b < kBoundings.size(); ++b) {
-            if (asked == nullptr && b != (seed / kPortKinds.size()) % kBoundings.size()) continue;
+            if (!by_all_boundings && b != (seed / kPortKinds.size()) % kBoundings.size()) continue;
             const Worst worst = against_the_reference(*rig, {kBoundings[b]});
             EXPECT_LE(worst.error, kHalfFloatError) << kBoundings[b] << worst.lit << " lit pixels";
             worst_error = std::max(worst_error, worst.error);

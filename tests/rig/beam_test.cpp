@@ -230,14 +230,6 @@ TEST(Edges, AreOfConesThatShineAndEndBefore90Degrees) {
     EXPECT_EQ(edges_rad(beam).size(), 2U);
 }
 
-TEST(Edges, GoneLeaveTheLightAsItWas) {
-    const Beam smooth = without_edges(fresnel());
-    EXPECT_TRUE(edges_rad(smooth).empty());
-    EXPECT_NEAR(at(smooth, 0.1), at(fresnel(), 0.1), kRounding);
-    // Of 1.742 + 0.150 + 0.236 on the axis, half at 60 degrees.
-    EXPECT_NEAR(at(smooth, kPi / 3.0), 0.5 * at(fresnel(), 0.0), kRounding);
-}
-
 TEST(Parts, AddUpToTheBeamAndHaveItsConesNames) {
     const std::vector<Beam> parts = parts_of(fresnel());
     ASSERT_EQ(parts.size(), 3U);
@@ -510,28 +502,6 @@ TEST(Edges, AreWhereTheLightJumps) {
                 EXPECT_TRUE(is_circle || is_rim)
                     << beam.pattern.index() << " at " << inner / kDegree << " degrees";
             }
-        }
-    }
-}
-
-TEST(Edges, GoneLeaveEveryKindAsItWas) {
-    std::mt19937 engine(6);
-    std::uniform_real_distribution<double> share(0.0, 1.0);
-    const BeamFrame frame = frame_about(kAxis);
-    for (const Beam& beam : all_kinds()) {
-        if (!beam.cones.empty()) continue;  // these overlap
-        const Beam endless = without_edges(beam);
-        EXPECT_EQ(edges_rad(endless).size(), beam.window ? 1U : 0U);
-        for (int trial = 0; trial < 300; ++trial) {
-            const double theta_rad = 1.5 * share(engine);
-            const double phi_rad = 2.0 * kPi * share(engine);
-            if (has_rim(endless)) {
-                EXPECT_TRUE(beam.window ||
-                            is_within_rim(endless, frame, off_axis(theta_rad, phi_rad)));
-            }
-            const double before = at(beam, theta_rad, phi_rad);
-            if (before == 0.0) continue;
-            EXPECT_NEAR(at(endless, theta_rad, phi_rad) / before, 1.0, 1e-9);
         }
     }
 }

@@ -32,6 +32,7 @@ Manifest some_manifest() {
     manifest.frame_error = 1.0 / 2048.0;
     manifest.geometry = {{"sled.altitude_m", "2"}, {"strobe 'fore \"x\"'", "at 0.5 0 0 m"}};
     manifest.model = ManifestModel{.error = {0.01, 1.0 / 3.0, 0.0}};
+    manifest.rig_settings = ManifestSettings{.keys = {"sled.altitude_m=3", "title=a \"b\""}};
     manifest.strobes = {{.name = "fore \"x\"", .lamps_across = 5, .lamps_along = 3},
                         {.name = "aft"}};
     manifest.frames = {
@@ -118,6 +119,8 @@ TEST(Manifest, ComesBackWhole) {
     EXPECT_EQ(read.width_px, written.width_px);
     EXPECT_EQ(read.height_px, written.height_px);
     EXPECT_EQ(read.lamp_signal, written.lamp_signal);
+    ASSERT_TRUE(read.rig_settings);
+    EXPECT_EQ(read.rig_settings->keys, written.rig_settings->keys);
     ASSERT_TRUE(read.model);
     EXPECT_EQ(read.model->error, written.model->error);
     EXPECT_EQ(read.method, written.method);
@@ -255,8 +258,9 @@ TEST(Manifest, ThatIsNoJsonIsRefused) {
 TEST(Manifest, NamesEachKeyThatIsMissing) {
     EXPECT_EQ(error_after([](Json&) {}), "no error");
     Json whole = some_json();
-    whole.erase("sha256");  // is asked for of files alone
-    whole.erase("model");   // of water that scatters
+    whole.erase("sha256");        // is asked for of files alone
+    whole.erase("rig_settings");  // of rigs with --set
+    whole.erase("model");         // of water that scatters
     for (const auto& [key, value] : whole.items()) {
         const std::string message = error_after([gone = key](Json& json) { json.erase(gone); });
         EXPECT_TRUE(message.starts_with(key + ": found nothing; allowed: ")) << message;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace aphotic {
 
@@ -15,6 +16,19 @@ namespace aphotic {
     constexpr int kShare = 30;
     return std::max(std::min(count, 2), count / kShare);
 #endif
+}
+
+// Whether this is scripts/night, which has the hours that CI has not.
+[[nodiscard]] inline bool is_night() {
+    return std::getenv("APHOTIC_NIGHT") != nullptr;  // NOLINT(concurrency-mt-unsafe)
+}
+
+// The cases of a campaign: few in CI, all of them in the night, and as many as APHOTIC_CASES says
+// where it is set.
+[[nodiscard]] inline int campaign(int few, int all) {
+    const char* asked = std::getenv("APHOTIC_CASES");  // NOLINT(concurrency-mt-unsafe)
+    if (asked != nullptr) return std::atoi(asked);     // NOLINT(cert-err34-c)
+    return is_night() ? all : cases(few);
 }
 
 // Along a side.

@@ -45,7 +45,6 @@ TEST_F(CorrectionPage, TellsWhatWasDoneAndWhatNot) {
     EXPECT_TRUE(contains(words_, "0.1 red, 0.1 green, 0.1 blue"));
     EXPECT_TRUE(contains(words_, "&lt;b&gt;x.exr"));
     EXPECT_TRUE(contains(words_, "saturated"));
-    EXPECT_TRUE(contains(words_, "least_light"));
     EXPECT_TRUE(contains(words_, "title = &quot;&lt;i&gt;&quot;"));
     EXPECT_TRUE(contains(words_, "altitude (m)"));
 }

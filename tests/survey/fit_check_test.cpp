@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/fit_check.h"
 
+#include "support/has.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -115,9 +117,7 @@ TEST(FitCheck, NumbersAtTheirEndsNameWhatIsHeld) {
     fitted.result.held = {{.key = "water.chlorophyll_mg_m3"}};
     const std::vector<Suspicion> found = suspicions(fitted.samples, fitted.result);
     ASSERT_EQ(found.size(), 1U);
-    EXPECT_NE(found[0].what.find("than the fit allows, another water.chlorophyll_mg_m3, or"),
-              std::string::npos)
-        << found[0].what;
+    EXPECT_TRUE(has(found[0].what, "than the fit allows, another water.chlorophyll_mg_m3, or"));
 }
 
 TEST(FitCheck, OneAltitude) {

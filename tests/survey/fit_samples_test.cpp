@@ -6,6 +6,7 @@
 #include "image/exr.h"
 #include "support/absurd_images.h"
 #include "support/fit_rig.h"
+#include "support/has.h"
 #include "support/temp_folder.h"
 
 #include <fmt/format.h>
@@ -93,7 +94,7 @@ TEST_F(FitSamplesOfAnImage, ImagesOfAbsurdSizeAreSkippedByTheirHeaders) {
     ASSERT_EQ(found.skipped.size(), names.size() - 1);
     for (const Skipped& one : found.skipped) {
         for (const char* words : {"alloc", "memory", "vector"})
-            EXPECT_EQ(one.why.find(words), std::string::npos) << one.image << ": " << one.why;
+            EXPECT_FALSE(has(one.why, words)) << one.image << ": ";
         if (!one.image.ends_with("tiff-large.tif")) continue;
         EXPECT_EQ(one.why,
                   fmt::format("found 16000 x 16000 pixels; allowed: {} x {}, as the rig's camera "
@@ -173,8 +174,7 @@ TEST_F(FitSamplesOfAMap, WhatIsMissingIsNamed) {
         static_cast<void>(samples_of_maps({map()}, camera_, 40));
         ADD_FAILURE() << "nothing was thrown";
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("aphotic:pitch_deg: found 'nan'"),
-                  std::string::npos)
+        EXPECT_TRUE(has(std::string(error.what()), "aphotic:pitch_deg: found 'nan'"))
             << error.what();
     }
     camera_.width_px = 41;

@@ -6,6 +6,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "support/fit_rig.h"
+#include "support/has.h"
 #include "support/temp_folder.h"
 #include "survey/fitted_rig.h"
 
@@ -373,8 +374,8 @@ TEST(Fit, SaysWhatCannotBeTold) {
     } catch (const InputError& error) {
         words = error.what();
     }
-    EXPECT_NE(words.find("cannot be told"), std::string::npos) << words;
-    EXPECT_NE(words.find("as many images again at"), std::string::npos) << words;
+    EXPECT_TRUE(has(words, "cannot be told"));
+    EXPECT_TRUE(has(words, "as many images again at"));
 
     options.free.reset();
     const FitResult result = fit(fit_rig(coarse), samples, options, {});
@@ -433,8 +434,7 @@ TEST(Fit, SaysThatNoLightFits) {
         static_cast<void>(fit(guess(), samples, exact_poses(), {}));
         ADD_FAILURE() << "fitted";
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("no light at all"), std::string::npos)
-            << error.what();
+        EXPECT_TRUE(has(std::string(error.what()), "no light at all")) << error.what();
     }
 }
 
@@ -562,7 +562,7 @@ TEST(Fit, FindsOutASurveyWhosePosesAreThoseOfOtherImages) {
     samples.are_maps = true;
     for (std::size_t i = 0; i + 1 < samples.images.size(); ++i)
         std::swap(samples.images[i].sled, samples.images[i + 1].sled);
-    EXPECT_NE(warnings_of(fitted_to(samples)).find("exposure\n"), std::string::npos);
+    EXPECT_TRUE(has(warnings_of(fitted_to(samples)), "exposure\n"));
 }
 
 // The lowest image has the highest one's altitude, and so on: said before the fit, which need not
@@ -579,7 +579,7 @@ TEST(Fit, FindsOutPosesThatRunTheOtherWayFirst) {
     };
     EXPECT_THROW(static_cast<void>(fitted_to(samples, watch)), InputError);
     EXPECT_TRUE(told.starts_with("altitude: brightness varies ")) << told;
-    EXPECT_NE(told.find("the other way: poses of other images"), std::string::npos) << told;
+    EXPECT_TRUE(has(told, "the other way: poses of other images"));
 }
 
 // A black level of a fifth of the brightest that nobody took off.
@@ -591,7 +591,7 @@ TEST(Fit, FindsOutABlackLevel) {
     for (FitImage& image : samples.images) {
         for (float& signal : image.signal) signal += 0.2F * most;
     }
-    EXPECT_NE(warnings_of(fitted_to(samples)).find("altitude\n"), std::string::npos);
+    EXPECT_TRUE(has(warnings_of(fitted_to(samples)), "altitude\n"));
 }
 
 // Every other block a tenth darker in all images, which no beam or lens can be.
@@ -601,7 +601,7 @@ TEST(Fit, FindsOutAPatternThatStaysInPlace) {
         for (std::size_t i = 0; i < image.signal.size(); ++i)
             if (i / kChannels % 2 == 0) image.signal[i] *= 0.9F;
     }
-    EXPECT_NE(warnings_of(fitted_to(samples)).find("pattern\n"), std::string::npos);
+    EXPECT_TRUE(has(warnings_of(fitted_to(samples)), "pattern\n"));
 }
 
 }  // namespace

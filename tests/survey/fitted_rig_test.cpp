@@ -5,6 +5,7 @@
 #include "survey/fitted_rig.h"
 
 #include "base/atomic_file.h"
+#include "support/has.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -120,8 +121,8 @@ TEST(FittedRig, IsWrittenAgain) {
     const TempFolder folder;
     write_fitted_rig(rig, result, folder.path());
     const std::string toml = read_text_file(folder.path() / kFittedRig);
-    EXPECT_NE(toml.find("fwhm_deg = 120"), std::string::npos) << toml;
-    EXPECT_EQ(toml.find("0000000"), std::string::npos) << toml;
+    EXPECT_TRUE(has(toml, "fwhm_deg = 120"));
+    EXPECT_FALSE(has(toml, "0000000"));
 
     result = start_of(rig, {.beam = FitBeamKind::Cones});
     result.shares << 0.5, 0.25, 0.25;

@@ -4,7 +4,9 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/sha256.h"
+#include "support/has.h"
 #include "support/raw_survey.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -89,10 +91,9 @@ TEST_F(IfdoResultsOf, AreItsImagesWithOtherPixels) {
         EXPECT_EQ(calibration["photometric-exposure-factor-RGB"], (Json{1.5, 2.5, 3.5}));
         EXPECT_EQ(calibration["photometric-illumination-factor-RGB"], (Json{1, 1, 1}));
         EXPECT_EQ(calibration["photometric-sequence-illumination-type"], "constant artificial");
-        EXPECT_NE(
-            calibration["photometric-sequence-illumination-description"].get<std::string>().find(
-                "5eed"),
-            std::string::npos);
+        EXPECT_TRUE(
+            has(calibration["photometric-sequence-illumination-description"].get<std::string>(),
+                "5eed"));
 
         ASSERT_EQ(set["image-set-items"].size(), 2U);
         const Json& a = set["image-set-items"]["a.tif"];
@@ -132,12 +133,8 @@ TEST(IfdoUuid, IsASha256OfVersion4) {
 
 TEST_F(IfdoResultsOf, OfAnotherSurveyAreRefused) {
     set_["image-set-items"] = {{"never-given.exr", {{"image-uuid", kOldUuid}}}};
-    try {
-        (void)write();
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(), "set: has no item for any of the 3 images that were corrected");
-    }
+    EXPECT_EQ(refusal_of([&] { (void)write(); }),
+              "set: has no item for any of the 3 images that were corrected");
     EXPECT_FALSE(std::filesystem::exists(raw_.path("out/set.json")));
 }
 

@@ -39,5 +39,47 @@ TEST(ImageFiles, AFolderWithoutImagesSaysWhatItHolds) {
     EXPECT_EQ(refusal_of({"a.tif", "b.orf"}), "no error");
 }
 
+std::vector<std::string> names_in(const std::filesystem::path& folder) {
+    std::vector<std::string> names;
+    for (const ImageFile& file : image_files({folder.string()}, folder / "out"))
+        names.push_back(file.name.string());
+    return names;
+}
+
+// Links are followed, but for those that lead back; a linked image has the link's name.
+TEST(ImageFiles, LinksOfFoldersAreFollowedAndEnd) {
+    namespace fs = std::filesystem;
+    const TempFolder folder;
+    const auto path = [&](const char* name) { return folder.path() / name; };
+    fs::create_directories(path("raw/dive"));
+    fs::create_directories(path("elsewhere/far"));
+    for (const char* name : {"raw/a.tif", "elsewhere/far/b.tif", "elsewhere/original.tif"})
+        write_file(path(name), "");
+    fs::create_directory_symlink("../../elsewhere/far", path("raw/dive/linked"));
+    fs::create_symlink("../elsewhere/original.tif", path("raw/c.tif"));
+    fs::create_directory_symlink("..", path("raw/dive/up"));
+    fs::create_directory_symlink("../raw/dive", path("raw/across"));
+    fs::create_directory_symlink("../../raw", path("elsewhere/far/back"));
+    fs::create_directory_symlink("itself", path("raw/itself"));
+    EXPECT_EQ(names_in(path("raw")),
+              (std::vector<std::string>{"a", "across/linked/b", "c", "dive/linked/b"}));
+}
+
+TEST(ImageFiles, ResultsOfAnEarlierRunAreNoRawImages) {
+    const TempFolder folder;
+    for (const char* name : {"out", "corrected", "flat"})
+        std::filesystem::create_directories(folder.path() / name);
+    for (const char* name : {"a.tif",
+                             "out/b.tif",
+                             "corrected/c.tif",
+                             "corrected/correction.json",
+                             "flat/d.tif",
+                             "flat/baseline.json"})
+        write_file(folder.path() / name, "");
+    EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"a"});
+    // Nor are they lost when the folder is named itself.
+    EXPECT_EQ(names_in(folder.path() / "flat"), std::vector<std::string>{"d"});
+}
+
 }  // namespace
 }  // namespace aphotic::image_files_test

@@ -57,7 +57,7 @@ class ImageRun : public testing::Test {
         };
         RunWatch watch;
         watch.skipped = [&](const Skipped& one) { heard_.push_back(one.why); };
-        const ResultFolder folder(options_, files());
+        const WorkFolder folder(options_.folder);
         return run_images(files(), options_, work, watch);
     }
 
@@ -142,13 +142,13 @@ TEST_F(ImageRun, AFaultOfTheSystemEndsItAndWhatIsDoneStays) {
 }
 
 TEST_F(ImageRun, TheFolderIsRidOfKilledRunsAndGoesWhenNothingIsWritten) {
-    { const ResultFolder folder(options_, files()); }
+    { const WorkFolder folder(options_.folder); }
     EXPECT_FALSE(fs::exists(path("out")));
     fs::create_directories(path("out/below"));
     const auto left = abandon(path("out/below/a.exr"));
     ASSERT_TRUE(fs::exists(left));
     write_file(path("out/a.exr"), "a result");
-    { const ResultFolder folder(options_, files()); }
+    { const WorkFolder folder(options_.folder); }
     EXPECT_FALSE(fs::exists(left));
     EXPECT_TRUE(fs::exists(path("out/a.exr")));
 }
@@ -156,11 +156,11 @@ TEST_F(ImageRun, TheFolderIsRidOfKilledRunsAndGoesWhenNothingIsWritten) {
 TEST_F(ImageRun, NoSourceIsOverwritten) {
     const std::vector<ImageFile> sources = files();
     options_.folder = path("raw");
-    EXPECT_THROW(ResultFolder(options_, sources), InputError);
+    EXPECT_THROW(require_results_apart(sources, options_), InputError);
     options_.format.format = "png";
-    EXPECT_NO_THROW(ResultFolder(options_, sources));
+    EXPECT_NO_THROW(require_results_apart(sources, options_));
     fs::create_symlink("c.exr", path("raw/a.png"));  // by another name
-    EXPECT_THROW(ResultFolder(options_, sources), InputError);
+    EXPECT_THROW(require_results_apart(sources, options_), InputError);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "image/any_image.h"
+#include "support/refusal.h"
 #include "support/temp_folder.h"
 #include "survey/navigation_file.h"
 
@@ -25,16 +26,6 @@ namespace {
 
 constexpr double kDouble_s = 5e-7;          // the step of a double around 1.7e9 is 2.4e-7
 constexpr double kTime_s = 1709987696.789;  // date -u -d "2024-03-09 12:34:56.789" +%s.%N
-
-template <typename Function>
-std::string fault_of(Function function) {
-    try {
-        function();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was said";
-}
 
 TEST(ImageTime, AMaskReadsAName) {
     const auto time = [](const std::string& name, const std::string& mask) {
@@ -57,7 +48,7 @@ TEST(ImageTime, AMaskReadsAName) {
 
 TEST(ImageTime, AMaskHasEachPartOnce) {
     for (const char* mask : {"YYYYMMDDhhmmss", "xYYYYxMMxDDxhhmmssxfff", "hhmmssYYYYMMDDfffuuu"})
-        EXPECT_EQ(fault_of([&] { require_time_mask(mask); }), "nothing was said") << mask;
+        EXPECT_EQ(refusal_of([&] { require_time_mask(mask); }), "nothing was said") << mask;
     const std::string allowed =
         "; allowed: YYYY, MM, DD, hh, mm, ss once each, fff for milliseconds, uuu for microseconds "
         "after it, x for any other character";
@@ -70,7 +61,7 @@ TEST(ImageTime, AMaskHasEachPartOnce) {
         {"YYYYMMDDhhmmssf", "which has not fff in one place"},
         {"YYYYMMDDhhmmssuuu", "which has uuu without fff"}};
     for (const auto& one : wrong) {
-        EXPECT_EQ(fault_of([&] { require_time_mask(one.first); }),
+        EXPECT_EQ(refusal_of([&] { require_time_mask(one.first); }),
                   "found '" + one.first + "', " + one.second + allowed);
     }
 }
@@ -105,7 +96,7 @@ TEST(ImageTime, ExifHasPartsOfASecondAndAZone) {
     tags["Exif:SubsecTimeOriginal"] = "05";
     EXPECT_NEAR(time_in_exif(tags).value_or(0.0), kTime_s + 3600.0 - 0.739, kDouble_s);
     tags["Exif:OffsetTimeOriginal"] = "CEST";
-    EXPECT_EQ(fault_of([&] { static_cast<void>(time_in_exif(tags)); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(time_in_exif(tags)); }),
               "OffsetTimeOriginal: found 'CEST'; allowed: Z, or hours and minutes such as +02:00");
     EXPECT_FALSE(time_in_exif({}).has_value());
     EXPECT_FALSE(time_in_exif({{"Exif:DateTimeOriginal", "    :  :     :  :  "}}).has_value());
@@ -228,12 +219,12 @@ TEST_F(TimeOfFiles, ANameCountsWhereThereIsNoExif) {
         image_time(image("20120623.171552346.1219.png"), "").time_s, 1340471752.346, kDouble_s);
     const std::filesystem::path file = image("c_20240309_123456.png");
     EXPECT_NEAR(image_time(file, "xxYYYYMMDDxhhmmss").time_s, 1709987696.0, kDouble_s);
-    EXPECT_EQ(fault_of([&] { static_cast<void>(image_time(file, "YYYYMMDDxhhmmss")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(image_time(file, "YYYYMMDDxhhmmss")); }),
               "its name has no time where --image-time YYYYMMDDxhhmmss has it");
-    EXPECT_EQ(fault_of([&] { static_cast<void>(image_time(file, "")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(image_time(file, "")); }),
               "it tells no time: no DateTimeOriginal in its EXIF, and its name is not HabCam's; "
               "--image-time says where its name has the time");
-    EXPECT_EQ(fault_of([&] { static_cast<void>(image_time(folder_.path() / "none.png", "")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(image_time(folder_.path() / "none.png", "")); }),
               "there is no such file any more");
 }
 

@@ -5,13 +5,16 @@
 
 #include "base/error.h"
 #include "rig/rig_reader.h"
+#include "support/refusal.h"
 #include "support/temp_folder.h"
 #include "survey/navigation_file.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <string>
 
 namespace aphotic::navigation_csv_test {
 namespace {
@@ -32,18 +35,8 @@ Navigation parsed(std::string_view text) {
     return parse_navigation(text, {.source = "nav.csv"}, {}, &rig());
 }
 
-template <typename Function>
-std::string fault_of(Function function) {
-    try {
-        function();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was said";
-}
-
 std::string fault_in(std::string_view text) {
-    return fault_of([&] { static_cast<void>(parsed(text)); });
+    return refusal_of([&] { static_cast<void>(parsed(text)); });
 }
 
 TEST(NavigationCsv, ColumnsStandInAnyOrderAmongOthers) {
@@ -92,7 +85,7 @@ TEST(NavigationCsv, AnImageIsKnownByItsNameWithoutFolderAndExtension) {
         "/data/20120623.171552346.1220,2.5\n");
     EXPECT_EQ(nav.pose_of("converted/20120623.171552346.1219.png").sled.altitude_m, 1.5);
     EXPECT_EQ(nav.pose_of("20120623.171552346.1220.tif").sled.altitude_m, 2.5);
-    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("20120623.171552346.tif")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(nav.pose_of("20120623.171552346.tif")); }),
               "nav.csv has no line for it");
 }
 
@@ -115,11 +108,11 @@ TEST(NavigationCsv, ByteOrderMarkAndWindowsLinesAreNoMatter) {
 
 TEST(NavigationCsv, AnAltimeterThatLostTheFloorCostsItsOwnImageAlone) {
     const Navigation nav = parsed("a.tif 0 0 0\nb.tif nan 0 0\nc.tif 2 95 0\nd.tif 2 0 0\n");
-    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(nav.pose_of("a.tif")); }),
               "nav.csv:1: altitude_m: found 0; allowed: 0.001 to 10000");
-    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
               "nav.csv:2: altitude_m: found no number; allowed: 0.001 to 10000");
-    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("c.tif")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(nav.pose_of("c.tif")); }),
               "nav.csv:3: pitch_deg: found 95; allowed: -89.9 to 89.9");
     EXPECT_EQ(nav.pose_of("d.tif").sled.altitude_m, 2.0);
 }
@@ -133,13 +126,13 @@ TEST(NavigationCsv, ACellWithoutANumberCostsItsOwnImageAlone) {
             parsed("image,altitude_m,pitch_deg,roll_deg,latitude\n" + std::string("a.tif,") + cell +
                    ",1,2,41\nb.tif,2," + cell + ",2,41\nc.tif,2,1," + cell + ",41\nd.tif,2,1,2," +
                    cell + "\n");
-        EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); }),
+        EXPECT_EQ(refusal_of([&] { static_cast<void>(nav.pose_of("a.tif")); }),
                   "nav.csv:2: altitude_m: found no number; allowed: 0.001 to 10000")
             << none;
-        EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
+        EXPECT_EQ(refusal_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
                   "nav.csv:3: pitch_deg: found no number; allowed: -89.9 to 89.9")
             << none;
-        EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("c.tif")); }),
+        EXPECT_EQ(refusal_of([&] { static_cast<void>(nav.pose_of("c.tif")); }),
                   "nav.csv:4: roll_deg: found no number; allowed: -89.9 to 89.9")
             << none;
         EXPECT_EQ(nav.pose_of("d.tif").sled.altitude_m, 2.0) << none;
@@ -153,7 +146,7 @@ TEST(NavigationCsv, ALineThatCannotBeUnderstoodCostsItsOwnImageAlone) {
     const auto fault_of_a = [](const std::string& text) {
         const Navigation nav = parsed(text);
         EXPECT_EQ(nav.pose_of("z.tif").sled.altitude_m, 2.0) << text;
-        return fault_of([&] { static_cast<void>(nav.pose_of("a.tif")); });
+        return refusal_of([&] { static_cast<void>(nav.pose_of("a.tif")); });
     };
     const std::string header = "image,altitude_m,pitch_deg,roll_deg\nz.tif,2,0,0\n";
     for (const std::string cell : {"--", "---", "2 m", "?", "ERR", "1.5.2", "0x2", "2;0"}) {
@@ -226,7 +219,7 @@ TEST(NavigationCsv, ACommentInATableIsNoRow) {
         "//d.tif,2\n;e.tif,2\n/* f.tif,2\ng.tif,2 */\nh.tif,2.45\n");
     EXPECT_EQ(nav.size(), 2U);
     EXPECT_EQ(nav.pose_of("h.tif").sled.altitude_m, 2.45);
-    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(nav.pose_of("b.tif")); }),
               "nav.csv has no line for it");
     EXPECT_EQ(fault_in("/* DATA DESCRIPTION:\nimage,altitude_m\na,2\n"),
               "nav.csv:1: found a comment that begins with /* and never ends in */");
@@ -272,7 +265,7 @@ TEST(NavigationCsv, ALastLineWithoutAnEndIsWarnedOf) {
                               "image,altitude_m,place\nb,2,Geor"})
         EXPECT_TRUE(parsed(whole).warnings().empty()) << whole;
     const Navigation cut = parsed("image,altitude_m,roll_deg\na,2,0\nb,2.");
-    EXPECT_EQ(fault_of([&] { static_cast<void>(cut.pose_of("b")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(cut.pose_of("b")); }),
               "nav.csv:3: found 2 fields; allowed: 3, as in the header row");
     EXPECT_EQ(parsed("a 2 0 0\nb 2 0 1").warnings().size(), 1U);
 }
@@ -287,7 +280,7 @@ TEST(NavigationCsv, NamesMayHoldQuotesAndLineEnds) {
 
 TEST(NavigationCsv, ADecimalCommaIsNamed) {
     const Navigation nav = parsed("image;altitude_m\na;2,15\nb;2.25\n");
-    EXPECT_EQ(fault_of([&] { static_cast<void>(nav.pose_of("a")); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(nav.pose_of("a")); }),
               "nav.csv:2: altitude_m: found '2,15'; allowed: a number with a decimal point");
 }
 
@@ -303,7 +296,7 @@ TEST(NavigationCsv, FilesAreReadAndNamed) {
     const TempFolder folder;
     const auto file = folder.path() / "nav.csv";
     write_file(file, "image,altitude\n");
-    EXPECT_TRUE(fault_of([&] {
+    EXPECT_TRUE(refusal_of([&] {
                     static_cast<void>(read_navigation({.source = file.string()}, {}, &rig()));
                 }).starts_with(file.string() + ":1: found the columns"));
     write_file(file, "a.tif 2 0 0\n");
@@ -312,3 +305,95 @@ TEST(NavigationCsv, FilesAreReadAndNamed) {
 
 }  // namespace
 }  // namespace aphotic::navigation_csv_test
+
+namespace aphotic::navigation_acfr_test {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kWritten_deg = 5e-5;  // half the last digit of the angles below
+
+constexpr std::string_view kPoses =
+    "% STEREO_POSE_FILE VERSION 3\n"
+    "%\n"
+    "ORIGIN_LATITUDE    -33.5000000000000000\n"
+    "ORIGIN_LONGITUDE   151.5000000000000000\n"
+    "\n"
+    "101\t1270000000.25\t-33.5\t151.5\t-90.1\t-788.1\t69.2\t0.01\t0.02\t1.5\tPR_1_LC16.png\t"
+    "PR_1_RM16.png\t2.25\t0.95\t0\n"
+    "102\t1270000002.25\t-33.5\t151.5\t-90.1\t-788.1\t69.2\t0\t0\t0\tPR_2_LC16.png\t"
+    "PR_2_RM16.png\t0.0\t0.95\t0\n"
+    "103\t1270000003.25\t-33.5\t151.5\t-90.1\t-788.1\t69.2\t0.0873\t0\t0.7\tPR_3_LC16.png\t"
+    "PR_3_RM16.png\t1.9\t0.95\t0\n";
+
+Rig rig() {
+    return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
+}
+
+Navigation parsed(std::string_view text, const Rig& of) {
+    return parse_navigation(text, {.source = "stereo_pose_est.data"}, {}, &of);
+}
+
+std::string fault_of(const Navigation& navigation, const std::string& image) {
+    return refusal_of([&] { static_cast<void>(navigation.pose_of(image)); });
+}
+
+void expect_pose(const Navigation& nav,
+                 const std::string& image,
+                 double altitude_m,
+                 double pitch_deg,
+                 double roll_deg) {
+    const Sled& sled = nav.pose_of(image).sled;
+    EXPECT_EQ(sled.altitude_m, altitude_m) << image;
+    EXPECT_NEAR(sled.pitch_rad / kDegree, pitch_deg, kWritten_deg) << image;
+    EXPECT_NEAR(sled.roll_rad / kDegree, roll_deg, kWritten_deg) << image;
+}
+
+TEST(NavigationAcfr, BothImagesOfALineHaveTheCamerasPose) {
+    const Navigation nav = parsed(kPoses, rig());
+    for (const std::string camera : {"_LC16", "_RM16"}) {
+        expect_pose(nav, "PR_1" + camera + ".png", 2.25, 0.5728, -1.1460);
+        expect_pose(nav, "PR_3" + camera + ".tif", 1.9, 5.0019, 0.0);
+        EXPECT_EQ(fault_of(nav, "PR_2" + camera + ".png"),
+                  "stereo_pose_est.data:7: altitude_m: found 0; allowed: 0.001 to 10000");
+    }
+    EXPECT_EQ(words_of(*nav.notes()),
+              "ACFR's stereo_pose_est.data: image 'left, right', altitude_m 'altitude', pitch_deg "
+              "'X angle', roll_deg 'Y angle'; metres, radians; altitude: along the axis");
+}
+
+TEST(NavigationAcfr, ALineThatIsCutCostsItsOwnImagesAlone) {
+    const Navigation nav =
+        parsed(std::string(kPoses) +
+                   "104\t1270000004.25\t-33.5\t151.5\t-90.1\t-788.1\t69.2\t0\t0\t0\t"
+                   "PR_4_LC16.png\tPR_4_RM1",
+               rig());
+    EXPECT_EQ(fault_of(nav, "PR_4_LC16.png"),
+              "stereo_pose_est.data:9: found 12 fields; allowed: 15");
+    EXPECT_EQ(nav.pose_of("PR_3_LC16.png").sled.altitude_m, 1.9);
+    EXPECT_TRUE(nav.warnings().empty());
+}
+
+// The angles are the camera's already: its place on the vehicle would turn them twice.
+TEST(NavigationAcfr, ARigThatPlacesItsCameraOnAVehicleIsRefused) {
+    Rig placed = rig();
+    placed.mounting.position_m = {0.4, 0.0, 0.1};
+    EXPECT_THROW(static_cast<void>(parsed(kPoses, placed)), InputError);
+    Rig plumb = rig();
+    plumb.mounting.altitude_is = AltitudeIs::Plumb;
+    EXPECT_NEAR(
+        parsed(kPoses, plumb).pose_of("PR_3_LC16").sled.altitude_m, 1.9 / std::cos(0.0873), 1e-12);
+}
+
+TEST(NavigationAcfr, ColumnsHaveNoNamesToBeGiven) {
+    const Rig of = rig();
+    try {
+        static_cast<void>(parse_navigation(
+            kPoses, {.source = "nav", .columns = {{"altitude_m", "altitude"}}}, {}, &of));
+        FAIL() << "nothing was said";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "nav:6: found no header row; needed by --columns");
+    }
+}
+
+}  // namespace
+}  // namespace aphotic::navigation_acfr_test

@@ -4,6 +4,7 @@
 #include "survey/navigation.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -15,12 +16,7 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 std::string fault_of(const Navigation& navigation, const std::string& image) {
-    try {
-        static_cast<void>(navigation.pose_of(image));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was said";
+    return refusal_of([&] { static_cast<void>(navigation.pose_of(image)); });
 }
 
 TEST(Navigation, IsMadeOfPoses) {

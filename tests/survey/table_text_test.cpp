@@ -4,6 +4,7 @@
 #include "survey/table_text.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -24,12 +25,7 @@ Rows rows_of(std::string_view text, char separator = ',') {
 }
 
 std::string fault_of(std::string_view text, char separator = ',') {
-    try {
-        static_cast<void>(rows_of(text, separator));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was said";
+    return refusal_of([&] { static_cast<void>(rows_of(text, separator)); });
 }
 
 TEST(TableText, AnySeparatorPartsFields) {

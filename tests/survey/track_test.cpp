@@ -2,6 +2,7 @@
 #include "survey/track.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -22,12 +23,7 @@ const Track kTrack({{.time_s = kNoon_s + 2.0, .sled = {3.0, 0.1, -0.1}, .line = 
                    2.0);
 
 std::string fault_at(double time_s) {
-    try {
-        static_cast<void>(kTrack.at(time_s));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was said";
+    return refusal_of([&] { static_cast<void>(kTrack.at(time_s)); });
 }
 
 TEST(Track, IsItsPointsAndStraightBetween) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "support/dice.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -22,12 +23,7 @@ using Eigen::Vector3d;
 constexpr double kRounding = 1e-12;  // of some tens of operations on numbers around 1
 
 std::string fault_of(const Sled& vehicle, const Mounting& mounting) {
-    try {
-        static_cast<void>(camera_pose(vehicle, mounting));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was said";
+    return refusal_of([&] { static_cast<void>(camera_pose(vehicle, mounting)); });
 }
 
 TEST(VehiclePose, WithoutAMountingItIsTheCamerasToTheBit) {

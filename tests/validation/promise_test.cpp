@@ -11,6 +11,7 @@
 #include "rig/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
+#include "support/effort.h"
 #include "support/random_rig.h"
 #include "validation/comparison.h"
 #include "validation/tracer.h"
@@ -43,19 +44,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20240613;
 
-#ifdef NDEBUG
-constexpr int kRigs = 500;
-constexpr int kRigsOfWavelengths = 100;
-constexpr int kNastyRigs = 100;
-constexpr int kExtendedRigs = 30;
-#else
-// In debug builds, with sanitizers, the plan of one rig takes half a minute: there it is enough
-// that every line runs.
-constexpr int kRigs = 1;
-constexpr int kRigsOfWavelengths = 1;
-constexpr int kNastyRigs = 1;
-constexpr int kExtendedRigs = 1;
-#endif
+constexpr std::uint64_t kMostRigs = 500;
 constexpr unsigned kThreads = 2;
 
 // Of every rig so many pixels: the reference traces whole rows.
@@ -384,7 +373,8 @@ void expect_kept(const std::vector<Trial>& trials, std::size_t i) {
 
 TEST(Promise, HoldsOnRandomRigsAndIsSeldomFarAboveTheError) {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<Trial> trials = try_out_all(random_rig, kSeed, kRigs, Frames::Halves);
+    const std::vector<Trial> trials =
+        try_out_all(random_rig, kSeed, campaign(60, kMostRigs), Frames::Halves);
     expect_sound(trials);
     for (std::size_t i = 0; i < trials.size(); ++i) expect_kept(trials, i);
     EXPECT_LE(median_ratio(trials), kMedianRatio);
@@ -401,10 +391,8 @@ TEST(Promise, HoldsOnRandomRigsAndIsSeldomFarAboveTheError) {
               << " (largest)\nframes:" << frames_taken(trials) << '\n';
 }
 
-// APHOTIC_NASTY_RIGS=2000 tries so many.
 TEST(Promise, HoldsWithUsersWorstTables) {
-    const char* asked = std::getenv("APHOTIC_NASTY_RIGS");
-    const int count = asked != nullptr ? std::atoi(asked) : kNastyRigs;
+    const int count = campaign(20, 100);
     const std::vector<Trial> trials = try_out_all(random_nasty_rig, kSeed, count, Frames::Halves);
     int refused = 0;
     for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -418,10 +406,9 @@ TEST(Promise, HoldsWithUsersWorstTables) {
     EXPECT_LE(refused, kNastyRefusals * static_cast<double>(trials.size()) + 1.0);
 }
 
-// Through lenses and ports, by beams of every kind. APHOTIC_EXTENDED_RIGS=1000 tries so many.
+// Through lenses and ports, by beams of every kind.
 TEST(Promise, HoldsThroughLensesAndPorts) {
-    const char* asked = std::getenv("APHOTIC_EXTENDED_RIGS");
-    const int count = asked != nullptr ? std::atoi(asked) : kExtendedRigs;
+    const int count = campaign(3, 100);
     const char* first = std::getenv("APHOTIC_RIG_SEED");
     const std::vector<Trial> trials = try_out_all(random_extended_rig_without_veil,
                                                   first != nullptr ? std::stoull(first) : kSeed,
@@ -473,7 +460,7 @@ TEST(Promise, HoldsAtEveryPixelOfSteepTablesBehindAPort) {
 TEST(Promise, OfTheWavelengthsAloneHoldsOnRandomRigs) {
     // None of the other test's rigs.
     const std::vector<Trial> trials =
-        try_out_all(random_rig, kSeed + kRigs, kRigsOfWavelengths, Frames::Exact);
+        try_out_all(random_rig, kSeed + kMostRigs, campaign(20, 100), Frames::Exact);
     expect_sound(trials);
     const auto allowed = [](const Trial& t, std::size_t c) {
         return (1.0 + kBetweenPaths) * t.quality[c].error + kReferenceError;
