@@ -4,6 +4,7 @@
 #include "rig/geometry.h"
 #include "rig/rig_reader.h"
 #include "spectral/curve_loader.h"
+#include "support/flat.h"
 
 #include <gtest/gtest.h>
 
@@ -30,10 +31,6 @@ constexpr double kRounding = 1e-13;
 constexpr double kSearch = 1e-7;
 // Up to here the promise of a render holds (render_plan.h).
 constexpr double kBlack = 1e-8;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
 
 // The camera of HabCam with fewer and larger pixels, 2 m above a level floor; no strobes.
 Rig camera_rig() {
@@ -88,7 +85,7 @@ class Dice {
     std::mt19937_64 random_{kSeed};
 };
 
-// --- Brute force --------------------------------------------------------------------------
+// --- Brute force ----------------------------------------------------------------------- --------
 
 // Floor point and leg of the point (column, row) at a wavelength, if it sees the floor.
 struct Seen {
@@ -276,7 +273,7 @@ TEST(PathRange, TakesInEveryPathOfRandomRigs) {
     EXPECT_GT(without_horizon, kRigs / 2) << "most rigs must have ends for this to mean anything";
 }
 
-// --- Closed forms -------------------------------------------------------------------------
+// --- Closed forms ---------------------------------------------------------------------- --------
 
 // Out and back along one line: twice the height on the axis, twice the slant at the corners.
 TEST(PathRange, OfAStrobeAtThePupilIsThereAndBack) {
@@ -314,7 +311,7 @@ TEST(PathRange, IsZeroWhereTheImageSeesNoFloor) {
     EXPECT_FALSE(paths.has_horizon);
 }
 
-// --- The horizon --------------------------------------------------------------------------
+// --- The horizon ----------------------------------------------------------------------- --------
 
 // Where exp(-K l) / l^3 is this share of what it is at the shortest path, by bisection.
 double dark_path_m(double K_per_m, double shortest_m, double share) {
@@ -462,7 +459,7 @@ TEST(PathRange, FindsTheHorizonInTheMiddleOfAnEdgeBehindAPort) {
     }
 }
 
-// --- The family ---------------------------------------------------------------------------
+// --- The family ------------------------------------------------------------------------ --------
 
 Rig rig_of(const std::string& scene) {
     return read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene);
@@ -503,15 +500,15 @@ TEST(LightFamilyOfARig, HasEveryLampOnEveryMaterial) {
 TEST(LightFamilyOfARig, TellsCurvesByTheirValues) {
     Rig rig = camera_rig();
     rig.strobes = {strobe_at({0.5, 0.0, 0.0}), strobe_at({-0.5, 0.0, 0.0})};
-    rig.strobes[1].spectrum = Spectrum("another name", {300.0, 800.0}, {1.0, 1.0});
+    rig.strobes[1].spectrum = Spectrum("another name", {300.0, 1100.0}, {1.0, 1.0});
     EXPECT_EQ(light_family(rig).sources.size(), 1U);
-    rig.strobes[1].spectrum = Spectrum("flat", {300.0, 800.0}, {1.0, 1.01});
+    rig.strobes[1].spectrum = Spectrum("flat", {300.0, 1100.0}, {1.0, 1.01});
     EXPECT_EQ(light_family(rig).sources.size(), 2U);
-    rig.strobes[1].spectrum = Spectrum("flat", {300.0, 801.0}, {1.0, 1.0});
+    rig.strobes[1].spectrum = Spectrum("flat", {300.0, 1101.0}, {1.0, 1.0});
     EXPECT_EQ(light_family(rig).sources.size(), 2U);
 }
 
-// --- The port's tilt ----------------------------------------------------------------------
+// --- The port's tilt ------------------------------------------------------------------- --------
 
 // ln of the radiance's change from the middle wavelength's floor point to this one's, on a pixel,
 // at this one's loss and reflectance: one cone that fills the half space has no edge in view.
@@ -576,7 +573,7 @@ TEST(PortTilt, BoundsTheChangeOfLightOfSingleLamps) {
     }
 }
 
-// --- Objects ------------------------------------------------------------------------------
+// --- Objects --------------------------------------------------------------------------- --------
 
 Object ball_of(const Vector3d& centre_m, double radius_m, double phong = 0.0) {
     return {.name = "ball",

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "rig/rig_reader.h"
 #include "spectral/curve_loader.h"
+#include "support/refusal.h"
 #include "tests/support/closed_form.h"
 #include "tests/support/simpson.h"
 
@@ -46,12 +47,7 @@ std::vector<double> wavelengths_of(const RenderPlan& plan) {
 }
 
 std::string error_of(const Rig& rig, const PlanRequest& request) {
-    try {
-        static_cast<void>(plan_render(rig, request));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { static_cast<void>(plan_render(rig, request)); });
 }
 
 // Wavelengths increase and lie in the range; the frames hold each of them once, in their order.
@@ -76,7 +72,7 @@ void expect_order(const Rig& rig, const RenderPlan& plan) {
     EXPECT_EQ(plan.frames(), frame + 1);
 }
 
-// --- The promise, pixel by pixel ----------------------------------------------------------
+// --- The promise, pixel by pixel ------------------------------------------------------- --------
 
 struct Pixel {
     int column, row;
@@ -200,7 +196,7 @@ void expect_promise_kept(const Rig& rig,
     }
 }
 
-// --- HabCam -------------------------------------------------------------------------------
+// --- HabCam ---------------------------------------------------------------------------- --------
 
 // The goal of the whole: one frame, with an error of under 1e-5.
 TEST(RenderPlan, OfHabCamIsOneFrameOfThreeWavelengths) {
@@ -276,7 +272,7 @@ TEST(RenderPlan, CountsTheErrorOfAnEmittersLamps) {
     EXPECT_EQ(plan.frames(), 1U);
 }
 
-// --- Equal bands, listed wavelengths ------------------------------------------------------
+// --- Equal bands, listed wavelengths --------------------------------------------------- --------
 
 // docs/physics.md has 36 bands err by 1.3e-3 over 4 m; the weights are widths times responses.
 TEST(RenderPlan, OfEqualBandsIsTheMidpointRule) {
@@ -357,7 +353,7 @@ TEST(RenderPlan, RefusesListedWavelengthsOutOfOrderOrRange) {
               "720 nm");
 }
 
-// --- Paths, materials, water --------------------------------------------------------------
+// --- Paths, materials, water ----------------------------------------------------------- --------
 
 PlanRequest over_paths(double tolerance) {
     PlanRequest request;
@@ -450,7 +446,7 @@ TEST(RenderPlan, BearsAnEdgeThatAllButSeesTheHorizon) {
         rig.sled.pitch_rad = horizon_rad + beyond_deg * kDegree;
         const PathRange paths = path_range(rig);
         EXPECT_EQ(paths.has_horizon, beyond_deg > 0.0) << beyond_deg;
-        EXPECT_EQ(error_of(rig, {}), "no error")
+        EXPECT_EQ(error_of(rig, {}), "nothing was said")
             << beyond_deg << " degrees beyond; paths " << paths.shortest_m << " to "
             << paths.longest_m << " m";
     }
@@ -491,7 +487,7 @@ TEST(RenderPlan, NamesAFocalLengthThatNoLensHasWhereItCannotKeepATolerance) {
     EXPECT_TRUE(error_of(rig, request).starts_with("tolerance: found 0.0004; allowed: "));
 }
 
-// --- Behind a port ------------------------------------------------------------------------
+// --- Behind a port --------------------------------------------------------------------- --------
 
 TEST(RenderPlan, BehindAPortKeepsItsToleranceAndItsSharing) {
     const Rig rig = rig_of("port.toml");

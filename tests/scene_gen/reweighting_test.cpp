@@ -5,6 +5,7 @@
 #include "rig/rig_reader.h"
 #include "scene_gen/scene_set.h"
 #include "spectral/curve_loader.h"
+#include "support/refusal.h"
 #include "tests/support/closed_form.h"
 #include "tests/support/simpson.h"
 
@@ -85,15 +86,10 @@ double promise_of(const Manifest& manifest) {
 }
 
 std::string error_of(const Rig& rig, const Manifest& manifest, double tolerance = kTolerance) {
-    try {
-        static_cast<void>(reintegrate(rig, manifest, tolerance));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { static_cast<void>(reintegrate(rig, manifest, tolerance)); });
 }
 
-// --- Integrals of the test's own ----------------------------------------------------------
+// --- Integrals of the test's own ------------------------------------------------------- --------
 
 double integral(const Rig& rig, const std::function<double(double)>& f) {
     double sum = 0.0;
@@ -166,7 +162,7 @@ void expect_error_kept(const Rig& now,
     }
 }
 
-// --- What frames can be the image of ------------------------------------------------------
+// --- What frames can be the image of --------------------------------------------------- --------
 
 TEST(Reintegrate, KeepsItsPromiseForOtherWatersLampsFloorsAndSensors) {
     struct Case {
@@ -207,7 +203,7 @@ TEST(Reintegrate, KeepsItsPromiseForOtherWatersLampsFloorsAndSensors) {
                   for (Strobe& strobe : rig.strobes) strobe.spectrum = flash("xenon-arc");
               }}}) {
         const Rig now = changed(habcam(), each.change);
-        ASSERT_EQ(error_of(now, habcams()), "no error") << each.what;
+        ASSERT_EQ(error_of(now, habcams()), "nothing was said") << each.what;
         const Manifest weights = reintegrate(now, habcams(), kTolerance);
         EXPECT_LE(promise_of(weights), kTolerance) << each.what;
         expect_error_kept(now, habcam(), weights, each.what);
@@ -253,7 +249,7 @@ TEST(Reintegrate, KeepsItsPromiseForOtherMaterials) {
                                                  strobe.spectrum = flash("xenon-arc");
                                          }}}) {
         const Rig now = changed(shown, change);
-        ASSERT_EQ(error_of(now, manifest), "no error") << what;
+        ASSERT_EQ(error_of(now, manifest), "nothing was said") << what;
         expect_error_kept(now, shown, reintegrate(now, manifest, kTolerance), what);
     }
 }
@@ -345,7 +341,7 @@ TEST(Reintegrate, NamesTheChangedRigAndLeavesTheFramesAlone) {
     }
 }
 
-// --- Power of one strobe ------------------------------------------------------------------------
+// --- Power of one strobe ---------------------------------------------------------------------
 
 // One strobe's light cannot be told from another's in frames that hold their sum: twice its share
 // would take weights that double it and not the rest, so the best is off by a third both ways.
@@ -362,7 +358,7 @@ TEST(Reintegrate, CannotShiftPowerBetweenStrobes) {
     EXPECT_TRUE(error_of(lamp, habcams()).starts_with(start));
 }
 
-// --- What is lacking ----------------------------------------------------------------------
+// --- What is lacking ------------------------------------------------------------------- --------
 
 // Wavelengths that the message names, whose frames of the changed rig would keep the tolerance.
 std::vector<double> lacking_in(const std::string& message) {
@@ -430,7 +426,7 @@ TEST(Reintegrate, TakesWhatTheToleranceAllows) {
     expect_error_kept(now, habcam(), weights, "twenty times the absorption");
 }
 
-// --- What the frames are not the image of -----------------------------------------------------
+// --- What the frames are not the image of --------------------------------------------------
 
 TEST(Reintegrate, NamesWhatDiffers) {
     const std::string fore = "strobe 'fore': found ";
@@ -455,7 +451,7 @@ TEST(Reintegrate, NamesWhatDiffers) {
     const Shown port = shown(rig_of("port.toml"));
     const Shown objects = shown(rig_of("objects.toml"));
     for (const Shown* each : {&dark, &emitter, &port, &objects}) {
-        EXPECT_EQ(error_of(each->rig, each->frames), "no error");
+        EXPECT_EQ(error_of(each->rig, each->frames), "nothing was said");
     }
     struct Case {
         const Shown& frames;
@@ -538,7 +534,7 @@ TEST(Reintegrate, NamesWhatDiffers) {
     }
 }
 
-// --- Pixel by pixel -----------------------------------------------------------------------
+// --- Pixel by pixel -------------------------------------------------------------------- --------
 
 // The frames' own error included, no pixel is off by more than the promise.
 void expect_promise_kept(const Rig& now,

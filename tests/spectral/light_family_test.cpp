@@ -2,6 +2,7 @@
 #include "spectral/light_family.h"
 
 #include "spectral/curve_loader.h"
+#include "support/flat.h"
 #include "support/simpson.h"
 
 #include <gtest/gtest.h>
@@ -20,10 +21,6 @@ constexpr WavelengthRange kRange{400.0, 700.0};
 constexpr double kWidth_nm = 300.0;
 // What some thousand additions of numbers of one sign may lose.
 constexpr double kRounding = 1e-13;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
 
 // first at 400 nm, last at 700 nm.
 Spectrum line(double first, double last) {
@@ -73,7 +70,7 @@ double total_weight(const std::vector<WeightedWavelength>& rule, std::size_t cha
     return sum;
 }
 
-// --- The reference grid against integrals done by hand ----------------------------------------
+// --- The reference grid against integrals done by hand -------------------------------------
 
 // K a straight line from k0 to k1 over the range, all else flat:
 //   T_c(l) = q_c W (exp(-k0 l) - exp(-k1 l)) / ((k1 - k0) l)
@@ -283,7 +280,7 @@ TEST(ReferenceGrid, BearsAFamilyWithoutSources) {
     EXPECT_NEAR(total_weight(grid, 0), kWidth_nm, kRounding * kWidth_nm);
 }
 
-// --- The reference grid against brute force ---------------------------------------------------
+// --- The reference grid against brute force ------------------------------------------------
 
 class Dice {
   public:

@@ -2,6 +2,7 @@
 #include "spectral/quadrature_fit.h"
 
 #include "spectral/curve_loader.h"
+#include "support/flat.h"
 
 #include <gtest/gtest.h>
 
@@ -24,10 +25,6 @@ constexpr double kRounding = 1e-13;
 constexpr double kGridError = 2e-9;
 // Lawson's iteration ends this near the least error there is.
 constexpr double kConverged = 0.01;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
 
 // first at 400 nm, last at 700 nm.
 Spectrum line(double first, double last) {
@@ -111,7 +108,7 @@ std::array<double, kChannels> rule_error(const Sensor& sensor,
     return errors;
 }
 
-// --- The error of a rule ----------------------------------------------------------------------
+// --- The error of a rule -------------------------------------------------------------------
 
 // All flat but K, a line that rises by k over the range. One wavelength in the middle finds
 // W exp(-K_m l) where W exp(-K_m l) sinh(x) / x is right, x = k l / 2; so it errs by
@@ -196,7 +193,7 @@ TEST(RuleError, IsZeroForAChannelThatSeesNothing) {
     EXPECT_EQ(rule_error(sensor, family, kRange, rule)[0], 0.0);
 }
 
-// --- The amplification of a rule --------------------------------------------------------------
+// --- The amplification of a rule -----------------------------------------------------------
 
 // Weights 2 W and -W in clear water find 2 - 1 = 1 of what is there, and let in the rounding of
 // 2 + 1 = 3 of it.
@@ -242,7 +239,7 @@ TEST(RuleQuality, PromisesItsErrorAndWhatItLetsInOfTheFrames) {
     EXPECT_EQ(rule.promise(0.125), 0.625);
 }
 
-// --- Fits that are known by hand --------------------------------------------------------------
+// --- Fits that are known by hand -----------------------------------------------------------
 
 // The lamp rises from 1 to 3, the responses fall, rise and stay: T is the integral of a product
 // of two lines, W (a c + (a d + b c) / 2 + b d / 3) for (a + b t) (c + d t), and the weight makes
@@ -358,7 +355,7 @@ TEST(QuadratureFitter, GivesAChannelThatSeesNothingNoWeight) {
     EXPECT_GT(rule.quality[0].error, 0.0);
 }
 
-// --- Fits against other ways to weigh ---------------------------------------------------------
+// --- Fits against other ways to weigh ------------------------------------------------------
 
 // What a fit says of itself is what a judge says of its weights.
 TEST(QuadratureFitter, JudgesItselfAsItJudgesOthers) {
@@ -389,7 +386,7 @@ TEST(QuadratureFitter, HoldsWeightsDownWhereFramesAreRough) {
     }
 }
 
-// --- The tilt behind a port -------------------------------------------------------------------
+// --- The tilt behind a port ----------------------------------------------------------------
 
 // A tilt of h at the one wavelength's indices and none elsewhere: in clear water the frame holds
 // exp(h), 1 and exp(-h) of the same signal. Best is 1 / cosh(h), which errs by tanh(h).
@@ -407,7 +404,7 @@ TEST(QuadratureFitter, KnowsTheTiltOfAFrameFromItsOwnIndices) {
     }
 }
 
-// --- Light that a channel does not see --------------------------------------------------------
+// --- Light that a channel does not see -----------------------------------------------------
 
 // Red sees nothing under 600 nm, so nothing of the second lamp. At 450 nm both shine: a weight
 // there would be no error to the first lamp, and show red the second, which may be brighter by any
@@ -458,7 +455,7 @@ TEST(QuadratureFitter, GivesNoWeightToLightThatNoFrameHolds) {
     }
 }
 
-// --- Invariance -------------------------------------------------------------------------------
+// --- Invariance ----------------------------------------------------------------------------
 
 void expect_equal(const FittedRule& one, const FittedRule& other, double relative) {
     for (std::size_t c = 0; c < kChannels; ++c) {
@@ -514,7 +511,7 @@ TEST(QuadratureFitter, DoesNotCareForALossWithoutColour) {
     expect_equal(fitted(2000.0), rule, 100.0 * kSixtySteps);
 }
 
-// --- Black water ------------------------------------------------------------------------------
+// --- Black water ---------------------------------------------------------------------------
 
 // K rises from 0 to k: T = W (1 - exp(-k l)) / (k l), all of it at 400 nm, where the frame holds
 // 1. So T of the frame runs as 1 / l, from 1 to 3 if the path does: best is half the sum, which
@@ -556,7 +553,7 @@ TEST(QuadratureFitter, StaysFiniteWithFramesOfMuchClearerWater) {
     }
 }
 
-// --- Where the light is, and what plots show --------------------------------------------------
+// --- Where the light is, and what plots show -----------------------------------------------
 
 // Two lines of a thousandth of a nanometre beside a lamp that shines everywhere.
 TEST(QuadratureFitter, LooksForLightInLinesTooNarrowToHaveAShare) {

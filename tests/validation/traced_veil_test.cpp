@@ -6,6 +6,7 @@
 #include "rig/rig_reader.h"
 #include "rig/veil.h"
 #include "spectral/phase_loader.h"
+#include "support/flat.h"
 #include "support/random_beam.h"
 #include "validation/tracer.h"
 
@@ -33,10 +34,6 @@ constexpr double kOfClosedForms = 1e-10;
 // nodes take four times their points: with their own they are off by up to 6e-6 here.
 constexpr double kOfTwoQuadratures = 1e-6;
 constexpr double kFar = std::numeric_limits<double>::infinity();
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 900.0}, {value, value}};
-}
 
 Beam even(double half_angle_rad = 0.5 * pi) {
     Beam beam{.name = "even", .weights = ConeWeights::Literal, .cones = {}};

@@ -5,6 +5,7 @@
 #include "validation/traced_water.h"
 
 #include "spectral/phase_loader.h"
+#include "support/flat.h"
 
 #include <gtest/gtest.h>
 
@@ -21,10 +22,6 @@ using std::numbers::pi;
 constexpr double kDegree = pi / 180.0;
 constexpr double kOfQuadrature = 1e-10;
 constexpr double kNm = 500.0;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 900.0}, {value, value}};
-}
 
 }  // namespace
 

@@ -10,6 +10,7 @@
 #include "scene_gen/light_paths.h"
 #include "spectral/curve_loader.h"
 #include "support/closed_form.h"
+#include "support/flat.h"
 #include "support/simpson.h"
 
 #include <gtest/gtest.h>
@@ -34,10 +35,6 @@ constexpr double kDegree = kPi / 180.0;
 constexpr double kLambda_nm = 550.0;
 // Some hundred operations on doubles.
 constexpr double kRounding = 1e-13;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
 
 Beam lambertian() {
     return {.name = "lambertian",
@@ -138,7 +135,7 @@ void expect_ratio(double found, double wanted, double tolerance, const std::stri
         << what << " found " << found << "; wanted " << wanted;
 }
 
-// --- Closed forms ---------------------------------------------------------------------------
+// --- Closed forms ------------------------------------------------------------------------
 
 // Pixels at 45 degrees ahead and astern of a sled with its bow up by p, lamp at the pupil. The
 // floor falls away forward: z = h + x tan p. The ray x = z meets it at z = h / (1 - tan p), the
@@ -208,7 +205,7 @@ TEST(TracerClosedForm, IsBlackAboveTheHorizonAndLitBelow) {
     }
 }
 
-// --- Flux -----------------------------------------------------------------------------------
+// --- Flux --------------------------------------------------------------------------------
 
 // The flux that a white floor catches, from its image: E = pi L, times the floor that a pixel
 // covers, dA = dOmega r^2 / cos v, with dOmega = slope^2 / |ray|^3 and v the ray's angle to the
@@ -405,7 +402,7 @@ TEST(TracerEmitter, TooLargeForItsHeightIsRefusedByName) {
     }
 }
 
-// --- The port ---------------------------------------------------------------------------------
+// --- The port ------------------------------------------------------------------------------
 
 Rig port_rig(int width_px, int height_px, double pixel_um) {
     Rig rig = plain_rig(width_px, height_px);
@@ -482,7 +479,7 @@ TEST(TracerPort, BendsAnObliqueRayAtBothFaces) {
     expect_ratio(clear, 4.0 / (kPi * kPi * std::pow(d_m, 4)), 4.0 * kDigits);
 }
 
-// --- Symmetry ---------------------------------------------------------------------------------
+// --- Symmetry ------------------------------------------------------------------------------
 
 // Mirrors would not see forward and starboard exchanged. A narrow lamp aimed a little forward
 // and far to starboard lights the pixels there: the third row from the top of seven, and the
@@ -497,7 +494,7 @@ TEST(TracerSymmetry, TopIsForwardAndRightIsStarboard) {
     }
 }
 
-// --- The highlight --------------------------------------------------------------------------
+// --- The highlight -----------------------------------------------------------------------
 
 // docs/physics.md: 0 where r.l <= 0, whatever the exponent. Lamp low astern, camera looking
 // ahead: the mirrored ray goes ahead, away from the lamp.
@@ -512,7 +509,7 @@ TEST(TracerHighlight, IsNothingOnTheSideAwayFromTheMirroredRay) {
     }
 }
 
-// --- The spectrum -------------------------------------------------------------------------------
+// --- The spectrum ----------------------------------------------------------------------------
 
 TEST(TracerSignal, OfFlatSpectraIsRadianceTimesResponseTimesWidth) {
     Rig rig = with_loss(plain_rig(), 0.3);
@@ -654,7 +651,7 @@ TEST(TracerSignal, HoldsItsStatedErrorBehindAPort) {
     expect_signals_within_stated_error(rig, kSimpsonError);
 }
 
-// --- Against the tests' own formula -------------------------------------------------------------
+// --- Against the tests' own formula ----------------------------------------------------------
 
 class Dice {
   public:
@@ -746,7 +743,7 @@ TEST(Tracer, AgreesWithTheClosedFormOnRandomRigs) {
     EXPECT_GT(lit, 2000);
 }
 
-// --- Bits -------------------------------------------------------------------------------------
+// --- Bits ----------------------------------------------------------------------------------
 
 TEST(Tracer, ThreadsChangeNoBit) {
     for (const char* scene : {"habcam", "port"}) {
@@ -780,7 +777,7 @@ TEST(Tracer, RowsAreTheSameInBlocksOfAnySize) {
     }
 }
 
-// --- Edges of cones -----------------------------------------------------------------------------
+// --- Edges of cones --------------------------------------------------------------------------
 
 std::vector<unsigned char> edges_of(const Rig& rig, WavelengthRange range = {450.0, 650.0}) {
     return Tracer(rig, {.signals = false, .planes_nm = {kLambda_nm}}).on_edges(range);
@@ -989,7 +986,7 @@ TEST(Tracer, PixelsAreThoseOfItsRowsAndEdges) {
     }
 }
 
-// --- Objects ------------------------------------------------------------------------------
+// --- Objects --------------------------------------------------------------------------- --------
 
 // A white ball of radius R, c below pupil and lamp. Seen at an angle a off the axis it is
 // t = c cos a - sqrt(R^2 - c^2 sin^2 a) away, where light falls at i with
