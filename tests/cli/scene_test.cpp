@@ -54,7 +54,7 @@ TEST_F(UserScenes, ValidateLikeAnyOther) {
     const CommandResult run = aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"});
     EXPECT_EQ(run.status, 0) << run.out << run.err;
     const std::string page = read_text_file(home_ / "out" / "report.html");
-    EXPECT_NE(page.find("reef.pov, a scene of the user’s own"), std::string::npos)
+    EXPECT_NE(page.find("reef.pov\u2069, a scene of the user’s own"), std::string::npos)
         << "the page says what the reference did not read";
     const auto json = nlohmann::json::parse(read_text_file(home_ / "out" / "validation.json"));
     EXPECT_TRUE(json.at("rig").at("scene").get<std::string>().ends_with("reef.pov"));
