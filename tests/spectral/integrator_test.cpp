@@ -273,6 +273,18 @@ TEST(Integrator, SumsInDouble) {
     EXPECT_EQ(render.integrate().samples[0], 1.0F);
 }
 
+// Weights of both signs that all but cancel, 1 part left of 1.5e8: right to the rounding of
+// doubles, 1.5e8 times 1.1e-16, and of the image's floats, 6e-8.
+TEST(Integrator, KeepsWhatIsLeftOfACancellation) {
+    constexpr double kLeft = 1e-7;
+    Render render(1, 1);
+    render.add_frame("a", [](int channel, int, int) { return channel == 0 ? 1.5F : 1.25F; });
+    render.add_wavelength(500.0, {1e8, 0.0, 0.0}, 0, "R", 0);
+    render.add_wavelength(600.0, {-1.2e8 + 0.8, 0.0, 0.0}, 0, "G", 0);
+    // 1.5e8 - 1.25 * 1.2e8 + 1.25 * 0.8
+    EXPECT_NEAR(render.integrate().samples[0], 1.0, kLeft);
+}
+
 TEST(Integrator, TakesOutLargeExposuresExactly) {
     Render render(1, 1);
     render.add_frame("f", [](int, int, int) { return 3.0F; });
