@@ -3,10 +3,10 @@
 // The table of extremes as Markdown, row by row: both renderers against long double
 // (docs/accuracy.md).
 //
-//   extremes [WIDTH]        of images WIDTH pixels wide, 24 unless said
+//   extremes DIR [WIDTH]    of images WIDTH pixels wide, 24 unless said; rigs and images stay in
+//   DIR
 #include "support/extremes.h"
 #include "base/number.h"
-#include "support/temp_folder.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -29,7 +29,7 @@ std::string row_text(const Extreme& row, const ExtremeFound& found) {
                        outcome);
 }
 
-int print_table(int width_px) {
+int print_table(const std::filesystem::path& folder, int width_px) {
     std::string what;
     bool all_as_expected = true;
     for (const Extreme& row : all_extremes(width_px)) {
@@ -42,8 +42,7 @@ int print_table(int width_px) {
                 row.group,
                 what);
         }
-        const TempFolder folder;
-        const ExtremeFound found = measure(row, folder.path(), render_by_povray);
+        const ExtremeFound found = measure(row, folder / row.name, render_by_povray);
         all_as_expected &= is_as_expected(row, found);
         fmt::print("{}", row_text(row, found));
         std::fflush(stdout);
@@ -56,10 +55,10 @@ int print_table(int width_px) {
 
 int main(int argc, char** argv) {
     constexpr int kWidth_px = 24;
-    const auto width_px = argc > 1 ? aphotic::read_number<int>(argv[1]) : kWidth_px;
-    if (!width_px || *width_px < 1) {
-        fmt::print(stderr, "extremes: found {}; allowed: a width of 1 pixel or more\n", argv[1]);
+    const auto width_px = argc > 2 ? aphotic::read_number<int>(argv[2]) : kWidth_px;
+    if (argc < 2 || !width_px || *width_px < 1) {
+        fmt::print(stderr, "usage: extremes DIR [WIDTH], a width of 1 pixel or more\n");
         return EXIT_FAILURE;
     }
-    return aphotic::extremes::print_table(*width_px);
+    return aphotic::extremes::print_table(argv[1], *width_px);
 }
