@@ -81,20 +81,6 @@ TEST(Intensity, HasTheFiguresOfTheSourcePapersCones) {
     EXPECT_EQ(at(fresnel(), 100.0 * kDegree), 0.0);
 }
 
-TEST(Intensity, IsTheSameAllRoundAndAtAnyDistance) {
-    for (const double phi_rad : {0.0, 1.0, 4.0}) {
-        EXPECT_NEAR(at(fresnel(), 0.3, phi_rad, 7.0) / at(fresnel(), 0.3), 1.0, kRounding);
-    }
-}
-
-TEST(Intensity, OfALiteralConeIsItsWeightOnTheAxis) {
-    const Beam beam =
-        beam_of({{.part = "", .half_angle_rad = 0.5, .weight = 0.75}}, ConeWeights::Literal);
-    EXPECT_NEAR(at(beam, 0.0), 0.75, kRounding);
-    EXPECT_NEAR(at(beam, 0.4), 0.75 * std::cos(0.4), kRounding);
-    EXPECT_EQ(at(beam, 0.6), 0.0);
-}
-
 TEST(Intensity, ContinuedIsOfTheSideOfTheEdgesThatIsAsked) {
     const Beam beam =
         beam_of({{.part = "", .half_angle_rad = 0.5, .weight = 0.75}}, ConeWeights::Literal);
@@ -105,24 +91,6 @@ TEST(Intensity, ContinuedIsOfTheSideOfTheEdgesThatIsAsked) {
     EXPECT_NEAR(continued(0.51, 0.49), 0.75 * std::cos(0.51), kRounding);
     EXPECT_EQ(continued(0.49, 0.51), 0.0);
     EXPECT_EQ(continued(2.0, 0.49), 0.0) << "behind the lamp";
-}
-
-TEST(FluxOf, IsTheIntegralOfTheIntensity) {
-    constexpr double kQuadrature = 5e-4;  // the midpoint rule's over a step, with 20 000 of them
-    for (const double gamma_deg : {0.5, 10.0, 26.565, 60.0, 90.0}) {
-        const Beam beam =
-            beam_of({{.part = "", .half_angle_rad = gamma_deg * kDegree, .weight = 0.165}});
-        EXPECT_EQ(flux_of(beam), 0.165) << "to the last bit, as the rig says it";
-        EXPECT_NEAR(flux_by_quadrature(beam) / 0.165, 1.0, kQuadrature / gamma_deg * 90.0);
-    }
-    EXPECT_NEAR(flux_of(fresnel()), 1.0, kRounding);
-    // int cos(theta) over a half space is pi; within 30 degrees, a quarter of it.
-    const auto literal = [](double gamma_rad) {
-        return beam_of({{.part = "", .half_angle_rad = gamma_rad, .weight = 2.0}},
-                       ConeWeights::Literal);
-    };
-    EXPECT_NEAR(flux_of(literal(kPi / 2.0)), 2.0 * kPi, kRounding);
-    EXPECT_NEAR(flux_of(literal(kPi / 6.0)), 0.5 * kPi, kRounding);
 }
 
 // 2 pi int cos^n sin = 2 pi (1 - cos^(n + 1))/(n + 1); of n = 0, the solid angle.
@@ -164,48 +132,6 @@ TEST(Intensity, FallsAsTheExponentSays) {
     EXPECT_NEAR(at(sheet, kPi / 6.0), 1.0, kRounding);
 }
 
-TEST(MostIntensity, IsOnTheAxisOfAll) {
-    EXPECT_NEAR(most_intensity(fresnel()), at(fresnel(), 0.0), kRounding);
-}
-
-// Held against every direction of a fine fan within the angle, for beams and directions at random.
-TEST(MostIntensity, IsABoundAndReachedByACone) {
-    std::mt19937_64 engine(1);
-    const auto between = [&](double least, double most) {
-        return std::uniform_real_distribution<double>(least, most)(engine);
-    };
-    const BeamFrame frame = frame_about(kAxis);
-    for (int n = 0; n < 200; ++n) {
-        std::vector<Cone> cones;
-        for (int k = 0; k < 3; ++k) {
-            cones.push_back({.part = "",
-                             .half_angle_rad = between(0.02, 0.5 * kPi),
-                             .weight = between(0.0, 1.0),
-                             .exponent = n % 2 == 0 ? 1.0 : between(0.0, 4.0)});
-        }
-        const Beam beam = beam_of(cones);
-        const double theta_rad = between(0.0, 2.0);
-        const double within_rad = between(0.0, 0.4);
-        const double most = most_intensity(beam, frame, off_axis(theta_rad, 1.0), within_rad);
-        double found = 0.0;
-        for (int i = -200; i <= 200; ++i) {
-            found = std::max(found, at(beam, std::abs(theta_rad + within_rad * i / 200.0), 1.0));
-        }
-        EXPECT_GE(most, found * (1.0 - kRounding)) << n;
-        EXPECT_EQ(reaches(beam, frame, off_axis(theta_rad, 1.0), within_rad), most > 0.0) << n;
-        const Beam one = beam_of({cones.front()});
-        double of_one = 0.0;
-        for (int i = -200; i <= 200; ++i) {
-            of_one = std::max(of_one, at(one, std::abs(theta_rad + within_rad * i / 200.0), 1.0));
-        }
-        if (of_one > 0.0 && theta_rad > within_rad) {
-            const double most_of_one =
-                most_intensity(one, frame, off_axis(theta_rad, 1.0), within_rad);
-            EXPECT_NEAR(most_of_one / of_one, 1.0, 0.02) << n;
-        }
-    }
-}
-
 TEST(Reaches, GoesToTheEdgeAndTheAngleBeyondIt) {
     const BeamFrame frame = frame_about(kAxis);
     const Beam beam = beam_of({{.part = "", .half_angle_rad = 0.5, .weight = 1.0}});
@@ -245,19 +171,6 @@ TEST(Parts, AddUpToTheBeamAndHaveItsConesNames) {
     EXPECT_NEAR(flux_of(wide), 0.741, kRounding);
 }
 
-TEST(Lobes, AreTheIntensity) {
-    Beam beam = fresnel();
-    beam.cones[1].exponent = 4.0;
-    for (const double theta_rad : {0.05, 0.3, 1.2}) {
-        double sum = 0.0;
-        for (const Lobe& lobe : lobes_of(beam)) {
-            const double cosine = std::cos(theta_rad);
-            if (cosine >= lobe.edge_cosine) sum += lobe.on_axis * std::pow(cosine, lobe.exponent);
-        }
-        EXPECT_NEAR(sum, at(beam, theta_rad), kRounding);
-    }
-}
-
 TEST(BeamSignature, IsTheLightsAndNotTheNames) {
     Beam beam = fresnel();
     const std::string before = beam_signature(beam);
@@ -277,7 +190,7 @@ TEST(BeamSignature, IsTheLightsAndNotTheNames) {
     EXPECT_NE(beam_signature(beam), before);
 }
 
-// --- Soft edges, patterns, windows --------------------------------------------------------------
+// --- Soft edges, patterns, windows -----------------------------------------------------------
 
 Beam soft(double half_deg, double edge_deg, double exponent) {
     return beam_of({{.part = "soft",
@@ -357,11 +270,15 @@ double flux_all_round(const Beam& beam, double widest_rad, int rings = 1000) {
     return sum * widest_rad / rings * 2.0 * kPi / kTurns;
 }
 
+// POV-Ray's t^2 (3 - 2 t), t along the cosine: 1/2 in the middle, 5/32 at a quarter.
 TEST(SoftEdge, FallsByHalfInTheMiddleOfItsCosines) {
     const Beam beam = soft(40.0, 15.0, 0.0);
-    const double middle_rad =
-        std::acos(0.5 * (std::cos(25.0 * kDegree) + std::cos(40.0 * kDegree)));
-    EXPECT_NEAR(at(beam, middle_rad) / at(beam, 0.0), 0.5, kRounding);
+    const auto of_axis = [&](double t) {
+        const double cosine = std::lerp(std::cos(40.0 * kDegree), std::cos(25.0 * kDegree), t);
+        return at(beam, std::acos(cosine)) / at(beam, 0.0);
+    };
+    EXPECT_NEAR(of_axis(0.5), 0.5, kRounding);
+    EXPECT_NEAR(of_axis(0.25), 5.0 / 32.0, kRounding);
     EXPECT_NEAR(at(beam, 24.99 * kDegree) / at(beam, 0.0), 1.0, kRounding);
     EXPECT_EQ(at(beam, 40.01 * kDegree), 0.0);
     EXPECT_TRUE(edges_rad(beam).empty());
@@ -513,16 +430,6 @@ TEST(Intensity, OfEveryKindContinuesFromItsOwnSide) {
                 intensity_towards(table, frame, inside),
                 1e-5);
     EXPECT_EQ(continued_intensity(table, frame, inside, outside), 0.0);
-}
-
-TEST(Fwhm, IsTheCosinesExponent) {
-    const double half_rad = 50.0 * kDegree;
-    const Beam beam = beam_of({{.part = "fwhm",
-                                .half_angle_rad = 0.5 * kPi,
-                                .weight = 1.0,
-                                .exponent = std::log(0.5) / std::log(std::cos(half_rad))}});
-    EXPECT_NEAR(at(beam, half_rad) / at(beam, 0.0), 0.5, kRounding);
-    EXPECT_NEAR(steepest_exponent(beam), 1.5684, 1e-3);
 }
 
 TEST(BeamSignature, KnowsEveryKindByAllThatItHas) {

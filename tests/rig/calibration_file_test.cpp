@@ -11,6 +11,7 @@
 #include "rig/calibration_file.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -43,12 +44,7 @@ CameraCalibration parse(std::string_view text) {
 }
 
 std::string error_of(std::string_view text) {
-    try {
-        static_cast<void>(parse(text));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { static_cast<void>(parse(text)); });
 }
 
 void replace(std::string& text, std::string_view from, std::string_view to) {
@@ -63,7 +59,7 @@ std::string with(std::string_view text, std::string_view from, std::string_view 
     return result;
 }
 
-// --- One camera in all formats -----------------------------------------------------------------
+// --- One camera in all formats --------------------------------------------------------------
 
 // As OpenCV 4.6 writes it.
 constexpr std::string_view kFileStorage =
@@ -259,7 +255,7 @@ TEST(CalibrationFile, OneFisheyeIsTheSameInAllFormats) {
         EXPECT_EQ(parse(text), fisheye) << text;
 }
 
-// --- What the lenses show ----------------------------------------------------------------------
+// --- What the lenses show -------------------------------------------------------------------
 
 // OpenCV's first pixel is (0, 0), ours (0.5, 0.5).
 void expect_pixels(const LensModel& lens, const std::array<Vector2d, 5>& opencv_px) {
@@ -387,7 +383,7 @@ TEST(CalibrationFile, WithoutDistortionAllAreOnePinhole) {
               expected);
 }
 
-// --- calibmar's ports --------------------------------------------------------------------------
+// --- calibmar's ports -----------------------------------------------------------------------
 
 std::string behind(std::string_view model, std::string_view parameters) {
     return fmt::format(
@@ -445,7 +441,7 @@ TEST(CalibrationFile, RefusesPortsThatNoRigMayHave) {
               "DOMEPORT");
 }
 
-// --- What is wrong -----------------------------------------------------------------------------
+// --- What is wrong --------------------------------------------------------------------------
 
 struct Fault {
     std::string text;
@@ -613,7 +609,7 @@ TEST(CalibrationFile, WhatIsNoTextIsSaidByName) {
         EXPECT_EQ(error_of(bytes), fmt::format("cam: found {}{}", kind, allowed));
 }
 
-// --- Hostile files -----------------------------------------------------------------------------
+// --- Hostile files --------------------------------------------------------------------------
 
 TEST(CalibrationFile, RefusesValuesWithinValuesWithoutEnd) {
     std::string lists = "camera_matrix: ";

@@ -2,6 +2,7 @@
 #include "rig/mesh_reader.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -28,12 +29,7 @@ Mesh read(std::string_view obj, const Vector3d& position_m = Vector3d::Zero()) {
 }
 
 std::string error_of(std::string_view obj) {
-    try {
-        static_cast<void>(read(obj));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { static_cast<void>(read(obj)); });
 }
 
 std::string triangle_and(std::string_view text) {

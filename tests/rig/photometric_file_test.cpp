@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "base/error.h"
+#include "support/refusal.h"
 #include "support/temp_folder.h"
 
 #include <fmt/format.h>
@@ -45,12 +46,7 @@ PhotometricFile parse(const std::string& name, std::string_view text) {
 }
 
 std::string error_of(const std::string& name, std::string_view text) {
-    try {
-        static_cast<void>(parse(name, text));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { static_cast<void>(parse(name, text)); });
 }
 
 Numbers in_degrees(const Numbers& angles_rad) {
@@ -521,14 +517,11 @@ TEST(PhotometricFile, WritesWhatItReadOfEverySample) {
 
 TEST(PhotometricFile, RefusesToWriteWhatAFormatCannotSay) {
     const auto error = [](const BeamTable& table, const std::string& name) {
-        try {
+        return refusal_of([&] {
             static_cast<void>(photometric_text(
                 {.table = table, .luminous_flux_lm = {}, .is_absolute = false, .labels = {}},
                 name));
-        } catch (const InputError& fault) {
-            return std::string(fault.what());
-        }
-        return std::string("no error");
+        });
     };
     const BeamTable b = read_sample("lm63-2002-type-b-quadrant.ies").table;
     EXPECT_EQ(error(b, "b.ldt"), "b.ldt: found a table of type A or B; allowed in .ldt: type C");

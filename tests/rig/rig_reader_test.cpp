@@ -5,15 +5,18 @@
 #include "base/printable.h"
 #include "rig/calibration_file.h"
 #include "rig/geometry_signature.h"
+#include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
+#include <map>
 #include <numbers>
+#include <sstream>
 #include <utility>
 
 namespace aphotic::rig_reader_test {
@@ -24,41 +27,25 @@ namespace fs = std::filesystem;
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-15;  // a few units in the last place of numbers near 1
 
-// The least that a rig must say. Errors are told by line: keep the lines' numbers in mind.
-constexpr std::string_view kMinimal =
-    /*  1 */
-    "[sled]\n"
-    /*  2 */
-    "altitude_m = 2.5\n"
-    /*  3 */
-    "[camera]\n"
-    /*  4 */
-    "resolution = [1360, 1024]\n"
-    /*  5 */
-    "pixel_pitch_um = 6.45\n"
-    /*  6 */
-    "focal_length_mm = 12\n"
-    /*  7 */
-    "range_nm = [400, 700]\n"
-    /*  8 */
-    "response = \"nikon-d5100\"\n"
-    /*  9 */
-    "[water]\n"
-    /* 10 */
-    "[seafloor]\n"
-    /* 11 */
-    "[beam.wide]\n"
-    /* 12 */
-    "cones = [{ part = \"all\", half_angle_deg = 90, weight = 1 }]\n"
-    /* 13 */
-    "[[strobe]]\n"
-    /* 14 */
-    "name = \"fore\"\n"
-    /* 15 */
-    "position_m = [0.5, 0, 0]\n"
-    /* 16 */
-    "aim = { tilt_deg = 26, toward = \"axis\" }\n"
-    /* 17 */ "beam = \"wide\"\n";
+// The least that a rig must say. Errors are told by line: [camera] is line 3, [[strobe]] line 13.
+constexpr std::string_view kMinimal = R"([sled]
+altitude_m = 2.5
+[camera]
+resolution = [1360, 1024]
+pixel_pitch_um = 6.45
+focal_length_mm = 12
+range_nm = [400, 700]
+response = "nikon-d5100"
+[water]
+[seafloor]
+[beam.wide]
+cones = [{ part = "all", half_angle_deg = 90, weight = 1 }]
+[[strobe]]
+name = "fore"
+position_m = [0.5, 0, 0]
+aim = { tilt_deg = 26, toward = "axis" }
+beam = "wide"
+)";
 
 constexpr std::string_view kPort =
     "[camera.port]\n"
@@ -90,12 +77,7 @@ Rig parse(std::string_view toml) {
 }
 
 std::string error_of(std::string_view toml, const fs::path& folder = ".") {
-    try {
-        static_cast<void>(parse_rig(toml, "rig.toml", folder));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { static_cast<void>(parse_rig(toml, "rig.toml", folder)); });
 }
 
 void expect_vector(const Eigen::Vector3d& found, const Eigen::Vector3d& wanted) {
@@ -103,7 +85,7 @@ void expect_vector(const Eigen::Vector3d& found, const Eigen::Vector3d& wanted) 
         << "found " << found.transpose() << "; wanted " << wanted.transpose();
 }
 
-// --- What a good rig becomes -----------------------------------------------------------------
+// --- What a good rig becomes ----------------------------------------------------------- --------
 
 TEST(RigReader, ReadsTheMinimalRigIntoSi) {
     const Rig rig = parse(kMinimal);
@@ -240,7 +222,7 @@ TEST(RigReader, ReadsTheRigOfTheSourcePaper) {
     }
 }
 
-// --- Aim -------------------------------------------------------------------------------------
+// --- Aim ------------------------------------------------------------------------------- --------
 
 std::string strobe_at(std::string_view position, std::string_view axis) {
     std::string text = with(15, "position_m = " + std::string(position));
@@ -281,165 +263,106 @@ TEST(RigReader, TakesADirectionOfAnyLength) {
     expect_vector(axis_of("[0, 0, 0]", "direction = [-1e-6, 0, 0]"), {-1.0, 0.0, 0.0});
 }
 
-TEST(RigReader, CannotTiltTowardTheAxisFromTheAxis) {
-    EXPECT_EQ(error_of(with(15, "position_m = [0, 0, 0.1]")),
-              "rig.toml:16: strobe[0].aim.toward: found 'axis'; allowed: direction = [x, y, z] in "
-              "place of aim, since this strobe stands on the camera's axis");
+// --- Every value is checked ------------------------------------------------------------ --------
+
+fs::path mistakes_folder() {
+    return fs::path(APHOTIC_SOURCE_DIR) / "tests/rig/mistakes";
 }
 
-TEST(RigReader, TakesEitherAimOrDirection) {
-    const std::string allowed =
-        "allowed: either aim = { tilt_deg = 26.0, toward = \"axis\" } or direction = [x, y, z]";
-    EXPECT_EQ(error_of(minimal_and("direction = [0, 0, 1]\n")),
-              "rig.toml:18: strobe[0].direction: found [0, 0, 1]; " + allowed);
-    EXPECT_EQ(error_of(with(16, "")), "rig.toml:13: strobe[0].aim: is missing; " + allowed);
-    EXPECT_EQ(
-        error_of(with(16, "aim = { direction = [0, 0, 1] }")),
-        "rig.toml:16: strobe[0].aim.direction: is not a known key. Known here: tilt_deg, toward");
-    EXPECT_EQ(error_of(with(16, "aim = 26")), "rig.toml:16: strobe[0].aim: found 26; " + allowed);
-    EXPECT_EQ(error_of(with(16, "direction = [0, 0, 0]")),
-              "rig.toml:16: strobe[0].direction: found [0, 0, 0]; allowed: a vector that is not "
-              "zero");
-}
-
-// --- Every value is checked ------------------------------------------------------------------
-
-struct BadValue {
-    int line;
-    std::string text;     // in place of that line
-    std::string message;  // after "rig.toml:LINE: "
+// By the rules at the head of the file.
+struct Mistake {
+    int line = 0;  // of the file
+    std::map<std::size_t, std::string> instead;
+    std::string message;
 };
 
-void expect_errors(const std::vector<BadValue>& values) {
-    for (const BadValue& bad : values) {
-        EXPECT_EQ(error_of(with(bad.line, bad.text)),
-                  "rig.toml:" + std::to_string(bad.line) + ": " + bad.message)
-            << bad.text;
+std::vector<Mistake> all_mistakes() {
+    std::ifstream file(mistakes_folder() / "rigs.txt");
+    std::vector<Mistake> mistakes;
+    Mistake next;
+    std::string* last = nullptr;
+    int line = 0;
+    for (std::string text; std::getline(file, text);) {
+        ++line;
+        if (text.empty() || text.front() == '#') continue;
+        const std::size_t space = text.find(' ');
+        const std::string rest = space == std::string::npos ? "" : text.substr(space + 1);
+        if (text.front() == '=') {
+            next.line = line;
+            next.message = "rig.toml:" + rest;
+            mistakes.push_back(std::exchange(next, {}));
+        } else if (text.front() == '|') {
+            *last += "\n" + rest;
+        } else {
+            last = &(next.instead[std::stoul(text)] = rest);
+        }
+    }
+    return mistakes;
+}
+
+std::string with_mistake(const Mistake& mistake) {
+    std::string rig;
+    std::istringstream lines{std::string(kMinimal)};
+    std::string line;
+    for (std::size_t n = 0; n == 0 || std::getline(lines, line); ++n) {
+        const auto instead = mistake.instead.find(n);
+        if (instead != mistake.instead.end()) line = instead->second;
+        if (n > 0 || instead != mistake.instead.end()) rig += line + "\n";
+    }
+    const auto behind = mistake.instead.find(18);
+    return behind == mistake.instead.end() ? rig : rig + behind->second + "\n";
+}
+
+void PrintTo(const Mistake& mistake, std::ostream* out) {
+    *out << "tests/rig/mistakes/rigs.txt:" << mistake.line;
+}
+
+class RigMistake : public testing::TestWithParam<Mistake> {};
+
+TEST_P(RigMistake, IsNamedByLineKeyWhatWasFoundAndWhatIsAllowed) {
+    std::string wanted = GetParam().message;
+    const std::string name = "FOLDER";
+    if (const std::size_t at = wanted.find(name); at != std::string::npos) {
+        wanted.replace(at, name.size(), mistakes_folder().string());
+    }
+    const std::string found = error_of(with_mistake(GetParam()), mistakes_folder());
+    if (wanted.ends_with("...")) {
+        wanted.resize(wanted.size() - 3);
+        EXPECT_EQ(found.substr(0, wanted.size()), wanted) << found;
+    } else {
+        EXPECT_EQ(found, wanted);
     }
 }
 
-TEST(RigReader, NamesFileLineKeyWhatWasFoundAndWhatIsAllowed) {
-    const std::string focal = "camera.focal_length_mm: found ";
-    const std::string allowed = "; allowed: a number from 0.01 to 100000";
-    expect_errors({
-        {6, "focal_length_mm = -12", focal + "-12" + allowed},
-        {6, "focal_length_mm = 0.009", focal + "0.009" + allowed},
-        {6, "focal_length_mm = 100001", focal + "100001" + allowed},
-        {6, "focal_length_mm = nan", focal + "nan" + allowed},
-        {6, "focal_length_mm = inf", focal + "inf" + allowed},
-        {6, "focal_length_mm = -inf", focal + "-inf" + allowed},
-        {6, "focal_length_mm = true", focal + "true" + allowed},
-        {6, "focal_length_mm = \"12\"", focal + "'12'" + allowed},
-        {6, "focal_length_mm = [12]", focal + "[12]" + allowed},
-        {6, "focal_length_mm = { mm = 12 }", focal + "a table" + allowed},
-        {6, "focal_length_mm = 1979-05-27", focal + "1979-05-27" + allowed},
-        // More digits than a double holds.
-        {6, "focal_length_mm = 9007199254740993", focal + "9007199254740993" + allowed},
-    });
-    EXPECT_EQ(error_of(with(6, "focal_length_mm = 0.01")), "no error");
-    EXPECT_EQ(error_of(with(6, "focal_length_mm = 100000")), "no error");
+INSTANTIATE_TEST_SUITE_P(InLine,
+                         RigMistake,
+                         testing::ValuesIn(all_mistakes()),
+                         [](const auto& mistake) { return std::to_string(mistake.param.line); });
+
+TEST(RigReader, TakesNumbersAtTheirLimits) {
+    for (const std::string& rig :
+         {with(6, "focal_length_mm = 0.01"),
+          with(6, "focal_length_mm = 100000"),
+          with(15, "position_m = [0.5, 0, 2.498]"),
+          with(12,
+               "diffuser_mm = [30, 60]\nfocal_length_mm = 65\ndistance_mm = 40\n"
+               "aperture_mm = 80"),
+          with(11, "[beam.of-no-strobe]\nfwhm_deg = 90\n[beam.wide]")}) {
+        EXPECT_EQ(error_of(rig), "nothing was said") << rig;
+    }
+    // Water that absorbs nothing needs no table.
+    std::string clear = with(7, "range_nm = [390, 750]");
+    clear.replace(clear.find("[water]"), 7, "[water]\nmultiple = 0");
+    EXPECT_EQ(error_of(clear), "nothing was said");
 }
 
-TEST(RigReader, ChecksEveryNumber) {
-    expect_errors({
-        {2, "altitude_m = 0", "sled.altitude_m: found 0; allowed: a number from 0.001 to 10000"},
-        {5,
-         "pixel_pitch_um = 0",
-         "camera.pixel_pitch_um: found 0; allowed: a number from 0.01 to 10000"},
-        {4,
-         "resolution = [0, 1]",
-         "camera.resolution: found [0, 1]; allowed: an array of 2 numbers, each from 1 to 16384"},
-        {4,
-         "resolution = [1, 16385]",
-         "camera.resolution: found [1, 16385]; allowed: an array of 2 numbers, each from 1 to "
-         "16384"},
-        {4,
-         "resolution = [10.5, 10]",
-         "camera.resolution: found [10.5, 10]; allowed: two whole numbers, width and height"},
-        {7,
-         "range_nm = [700, 400]",
-         "camera.range_nm: found [700, 400]; allowed: two wavelengths, the shorter one first"},
-        {7,
-         "range_nm = [0.4, 0.7]",
-         "camera.range_nm: found [0.4, 0.7]; allowed: an array of 2 numbers, each from 100 to "
-         "10000"},
-    });
-}
-
-TEST(RigReader, ChecksArraysOfNumbers) {
-    const std::string allowed = "; allowed: an array of 3 numbers, each from -1000 to 1000";
-    expect_errors({
-        {15, "position_m = 0.5", "strobe[0].position_m: found 0.5" + allowed},
-        {15, "position_m = [0, 0]", "strobe[0].position_m: found [0, 0]" + allowed},
-        {15, "position_m = [0, 0, 0, 0]", "strobe[0].position_m: found [0, 0, 0, 0]" + allowed},
-        {15, "position_m = [0, 0, nan]", "strobe[0].position_m: found [0, 0, nan]" + allowed},
-        {15, "position_m = [0, 0, '1']", "strobe[0].position_m: found [0, 0, '1']" + allowed},
-        {15, "position_m = [0, true, 0]", "strobe[0].position_m: found [0, true, 0]" + allowed},
-        {15, "position_m = [0, 0, 1001]", "strobe[0].position_m: found [0, 0, 1001]" + allowed},
-    });
-}
-
-// One line after another of the tables whose keys may all be left out.
-TEST(RigReader, ChecksTheNumbersThatMayBeLeftOut) {
-    struct Optional {
-        const char* table;
-        std::string text;
-        std::string message;
-    };
-    for (const Optional& bad : {
-             Optional{"[sled]",
-                      "pitch_deg = 90",
-                      "sled.pitch_deg: found 90; allowed: a number from -89.9 to 89.9"},
-             {"[sled]",
-              "roll_deg = -90",
-              "sled.roll_deg: found -90; allowed: a number from -89.9 to 89.9"},
-             {"[sled]",
-              "altitude_is = \"echo\"",
-              "sled.altitude_is: found 'echo'; allowed: \"axis\" or \"plumb\" or \"nearest\""},
-             {"[sled]",
-              "altitude_offset_m = 1001",
-              "sled.altitude_offset_m: found 1001; allowed: a number from -1000 to 1000"},
-             {"[camera]",
-              "position_m = [0, 0]",
-              "camera.position_m: found [0, 0]; allowed: an array of 3 numbers, each from -1000 to "
-              "1000"},
-             {"[camera]",
-              "orientation_deg = [0, 361, 0]",
-              "camera.orientation_deg: found [0, 361, 0]; allowed: an array of 3 numbers, each "
-              "from -360 to 360"},
-             {"[water]",
-              "multiple = -1",
-              "water.multiple: found -1; allowed: a number from 0 to 1000000"},
-             {"[water]",
-              "uniform_loss_per_m = -0.1",
-              "water.uniform_loss_per_m: found -0.1; allowed: a number from 0 to 1000000"},
-             {"[water]",
-              "salinity_psu = 41",
-              "water.salinity_psu: found 41; allowed: a number from 0 to 40"},
-             {"[water]",
-              "temperature_c = -3",
-              "water.temperature_c: found -3; allowed: a number from -2 to 35"},
-             {"[seafloor]",
-              "phong = -1",
-              "seafloor.phong: found -1; allowed: a number from 0 to 1000000"},
-             {"[seafloor]",
-              "phong_size = nan",
-              "seafloor.phong_size: found nan; allowed: a number from 0 to 1000000"},
-             {"[[strobe]]",
-              "power = -1",
-              "strobe[0].power: found -1; allowed: a number from 0 to 1000000000000"},
-             {"[[strobe]]",
-              "emitter_mm = [-1, 1]",
-              "strobe[0].emitter_mm: found [-1, 1]; allowed: an array of 2 numbers, each from 0 "
-              "to 10000"},
-         }) {
-        std::string text(kMinimal);
-        const std::size_t at = text.find(bad.table) + std::string_view(bad.table).size();
-        const auto line = 2 + std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n');
-        text.insert(at, "\n" + bad.text);
-        const std::string message = error_of(text);
-        EXPECT_TRUE(message.starts_with("rig.toml:" + std::to_string(line) + ": " + bad.message))
-            << message;
+TEST(RigReader, RangeThatSeveralTablesDoNotCoverNamesThemAll) {
+    const std::string both = error_of(with(7, "range_nm = [350, 750]"));
+    for (const char* part : {"water absorption 'pope-fry-1997' covers 380 to 727.5 nm",
+                             "lamp spectrum 'xenon-flash' covers 380 to 780 nm",
+                             "sensor response 'nikon-d5100' (red) covers 380 to 780 nm",
+                             "range_nm = [380, 727.5] would do"}) {
+        EXPECT_NE(both.find(part), std::string::npos) << part << "\nin " << both;
     }
 }
 
@@ -495,61 +418,6 @@ TEST(RigReader, ReadsABeamsTableBesideIt) {
     // What it holds counts in the digest.
     write_file(folder.path() / "lamp.csv", "theta_deg,intensity\n0,4\n30,3\n60,0\n");
     EXPECT_NE(parse_rig(rig, "rig.toml", folder.path()).digest, read.digest);
-
-    write_file(folder.path() / "dark.csv", "theta_deg,intensity\n0,0\n30,0\n60,0\n");
-    EXPECT_EQ(error_of(with(12, "table = \"dark.csv\""), folder.path()),
-              "rig.toml:12: beam.wide.table: found 'dark.csv'; allowed: one with light in it");
-    EXPECT_TRUE(error_of(with(12, "table = \"none.ies\""), folder.path())
-                    .starts_with("rig.toml:12: beam.wide.table: "));
-    EXPECT_EQ(
-        error_of(with(12, "table = \"lamp.txt\""), folder.path()),
-        "rig.toml:12: beam.wide.table: found 'lamp.txt'; allowed: the name of a .ies, .ldt or "
-        ".csv file beside the rig");
-}
-
-TEST(RigReader, ChecksBeamsOfOtherKinds) {
-    const std::string kind =
-        "found beside another kind of beam; allowed: one of cones, fwhm_deg, table, or diffuser_mm "
-        "with its lens";
-    const std::string optics =
-        "diffuser_mm = [30, 60]\nfocal_length_mm = 65\ndistance_mm = 40\naperture_mm = 80";
-    struct Bad {
-        int line;
-        std::string text;
-        std::string message;
-    };
-    const std::vector<Bad> all{
-        {12, "cones = []\nfwhm_deg = 90", "beam.wide.cones: " + kind},
-        {13, "table = \"a.ies\"\ndiffuser_mm = [1, 1]", "beam.wide.diffuser_mm: " + kind},
-        {12, "fwhm_deg = 180", "beam.wide.fwhm_deg: found 180; allowed: a number from 1 to 179.9"},
-        {13,
-         "fwhm_deg = 90\nturn_deg = 10",
-         "beam.wide.turn_deg: found for a beam that is round; allowed: for table and diffuser_mm"},
-        {13,
-         "fwhm_deg = 90\nwindow = \"bk7\"",
-         "beam.wide.window: found for a beam in water; allowed: with measured_in = \"air\""},
-        {14,
-         "fwhm_deg = 90\nmeasured_in = \"air\"\nwindow = true",
-         "beam.wide.window: found true; allowed: a built-in glass or its index, 1 to 3"},
-        {13,
-         "fwhm_deg = 90\nweights = \"flux\"",
-         "beam.wide.weights: found for a beam without cones; allowed: for cones"},
-        {12,
-         "cones = [{ part = \"a\", half_angle_deg = 30, weight = 1, edge_deg = 31 }]",
-         "beam.wide.cones[0].edge_deg: found 31; allowed: up to half_angle_deg, where the cone "
-         "ends"},
-        {12, "tabel = \"lamp.ies\"", "beam.wide.tabel: is not a known key; did you mean 'table'?"},
-        {11, "diffuser_mm = [30, 60]", "beam.wide.focal_length_mm: is missing; allowed: "},
-        {13,
-         "diffuser_mm = [30, 60]\nfocal_length_mm = 0.04",
-         "beam.wide.focal_length_mm: found 0.04; allowed: a number from 0.05 to 100000"},
-    };
-    for (const Bad& bad : all) {
-        const std::string found = error_of(with(12, bad.text));
-        EXPECT_TRUE(found.starts_with(fmt::format("rig.toml:{}: {}", bad.line, bad.message)))
-            << found;
-    }
-    EXPECT_EQ(error_of(with(12, optics)), "no error");
 }
 
 // The table's own flux at power 1, by hand: a triangle of 300 nm at its base.
@@ -568,302 +436,12 @@ TEST(RigReader, ALampsFluxIsItsPower) {
     const double per_lumen = power("luminous_flux_lm = 683");
     EXPECT_GT(per_lumen * 300.0, 1.0);
     EXPECT_LT(per_lumen * 300.0, 2.5);
-    EXPECT_EQ(error_of(minimal_and("power = 2\nenergy_j = 3")),
-              "rig.toml:19: strobe[0].energy_j: found beside power; allowed: one of power, "
-              "luminous_flux_lm, radiant_flux_w, energy_j");
-    EXPECT_EQ(error_of(minimal_and("radiant_flux_w = -1")),
-              "rig.toml:18: strobe[0].radiant_flux_w: found -1; allowed: a number from 0 to "
-              "1000000000000");
 }
 
-TEST(RigReader, ChecksConesInTheirArray) {
-    expect_errors({
-        {12,
-         "cones = [{ part = \"all\", half_angle_deg = 91, weight = 1 }]",
-         "beam.wide.cones[0].half_angle_deg: found 91; allowed: a number from 0.001 to 90"},
-        {12,
-         "cones = [{ part = \"all\", half_angle_deg = 90, weight = -1 }]",
-         "beam.wide.cones[0].weight: found -1; allowed: a number from 0 to 1000000000000"},
-        {12,
-         "cones = [{ part = \"all\", half_angle_deg = 90, weight = 1, exponent = 1001 }]",
-         "beam.wide.cones[0].exponent: found 1001; allowed: a number from 0 to 1000"},
-        {12,
-         "cones = [{ half_angle_deg = 90, weight = 1 }]",
-         "beam.wide.cones[0].part: is missing; allowed: a name in quotes"},
-        {12,
-         "cones = []",
-         "beam.wide.cones: found []; allowed: an array of { part, half_angle_deg, weight }"},
-        {12,
-         "cones = [1]",
-         "beam.wide.cones: found [1]; allowed: an array of { part, half_angle_deg, weight }"},
-    });
-}
-
-TEST(RigReader, ChecksWords) {
-    expect_errors({
-        {12,
-         "weights = \"fluxx\"",
-         "beam.wide.weights: found 'fluxx'; allowed: \"flux\" or \"literal\""},
-        {12, "weights = 1", "beam.wide.weights: found 1; allowed: \"flux\" or \"literal\""},
-        {14, "name = 7", "strobe[0].name: found 7; allowed: a name in quotes"},
-        {16,
-         "aim = { tilt_deg = 26, toward = \"bow\" }",
-         "strobe[0].aim.toward: found 'bow'; allowed: \"axis\""},
-        {16,
-         "aim = { tilt_deg = 181, toward = \"axis\" }",
-         "strobe[0].aim.tilt_deg: found 181; allowed: a number from 0 to 180"},
-    });
-    EXPECT_EQ(error_of("title = 7\n" + std::string(kMinimal)),
-              "rig.toml:1: title: found 7; allowed: a text in quotes");
-}
-
-// --- Missing, unknown, misspelt --------------------------------------------------------------
-
-// The line is that of the table which lacks the key.
-TEST(RigReader, NamesEveryKeyThatIsMissing) {
-    const auto missing = [](int line, int table_line, const std::string& key) {
-        const std::string message = error_of(with(line, ""));
-        EXPECT_TRUE(message.starts_with("rig.toml:" + std::to_string(table_line) + ": " + key +
-                                        ": is missing; allowed: "))
-            << message;
-    };
-    missing(2, 1, "sled.altitude_m");
-    missing(4, 3, "camera.resolution");
-    missing(5, 3, "camera.pixel_pitch_um");
-    missing(6, 3, "camera.focal_length_mm");
-    missing(8, 3, "camera.response");
-    missing(9, 1, "water");
-    missing(10, 1, "seafloor");
-    missing(12, 11, "beam.wide.cones");
-    missing(14, 13, "strobe[0].name");
-    missing(15, 13, "strobe[0].position_m");
-    missing(17, 13, "strobe[0].beam");
-    EXPECT_EQ(error_of(""), "rig.toml:1: sled: is missing; allowed: a table [sled]");
-    EXPECT_EQ(error_of(with(2, "")),
-              "rig.toml:1: sled.altitude_m: is missing; allowed: a number from 0.001 to 10000");
-}
-
-TEST(RigReader, NamesMissingTablesOfLists) {
-    const std::string no_strobe(kMinimal.substr(0, kMinimal.find("[[strobe]]")));
-    EXPECT_EQ(error_of(no_strobe),
-              "rig.toml:1: strobe: is missing; allowed: one or more tables [[strobe]]");
-    EXPECT_EQ(error_of("strobe = 7\n" + no_strobe),
-              "rig.toml:1: strobe: found 7; allowed: one or more tables [[strobe]]");
-    EXPECT_EQ(error_of("strobe = []\n" + no_strobe),
-              "rig.toml:1: strobe: found []; allowed: one or more tables [[strobe]]");
-    EXPECT_EQ(error_of(with(12, "[beam.x]")),
-              "rig.toml:11: beam.wide.cones: is missing; allowed: an array of { part, "
-              "half_angle_deg, weight }");
-    EXPECT_EQ(error_of("sled = 7\n" + std::string(kMinimal.substr(kMinimal.find("[camera]")))),
-              "rig.toml:1: sled: found 7; allowed: a table [sled]");
-}
-
-TEST(RigReader, UnknownKeyNamesTheNearest) {
-    EXPECT_EQ(
-        error_of("tittle = \"x\"\n" + std::string(kMinimal)),
-        "rig.toml:1: tittle: is not a known key; did you mean 'title'? Known here: title, sled, "
-        "camera, water, seafloor, beam, strobe, materials, object, scene");
-    EXPECT_EQ(error_of(with(2, "altitude_m = 2\nrol_deg = 1")),
-              "rig.toml:3: sled.rol_deg: is not a known key; did you mean 'roll_deg'? Known here: "
-              "altitude_offset_m, altitude_is, altitude_m, pitch_deg, roll_deg");
-    EXPECT_EQ(
-        error_of(with(9, "[water]\nsalinity_ppt = 35")),
-        "rig.toml:10: water.salinity_ppt: is not a known key; did you mean 'salinity_psu'? Known "
-        "here: type, chlorophyll_mg_m3, absorption, scattering, attenuation, multiple, "
-        "uniform_loss_per_m, salinity_psu, temperature_c, cdom_440_per_m, particles, phase");
-    EXPECT_EQ(
-        error_of(with(10, "[seafloor]\nphong_sice = 35")),
-        "rig.toml:11: seafloor.phong_sice: is not a known key; did you mean 'phong_size'? Known "
-        "here: reflectance, phong, phong_size");
-}
-
-TEST(RigReader, UnknownKeysAreFoundInEveryTable) {
-    struct Unknown {
-        int line;
-        std::string text;
-        std::string start;
-    };
-    for (const Unknown& unknown : {
-             Unknown{
-                 8,
-                 "response = \"nikon-d5100\"\nrange_mm = 1",
-                 "9: camera.range_mm: is not a known key; did you mean 'range_nm'? Known here: "},
-             {9,
-              std::string(kPort) + "shap = 1\n[water]",
-              "14: camera.port.shap: is not a known key; did you mean 'shape'? Known here: "},
-             {11,
-              "[beam.wide]\nweight = \"flux\"",
-              "12: beam.wide.weight: is not a known key; did you mean 'weights'? Known here: "},
-             {17,
-              "beam = \"wide\"\npwer = 1",
-              "18: strobe[0].pwer: is not a known key; did you mean 'power'? Known here: "},
-             {16,
-              "aim = { tilt_deg = 1, toward = \"axis\", towards = 1 }",
-              "16: strobe[0].aim.towards: is not a known key; did you mean 'toward'? Known here: "
-              "tilt_deg, toward"},
-             {12,
-              "cones = [{ part = \"x\", half_angle_deg = 9, weight = 1, weigt = 2 }]",
-              "12: beam.wide.cones[0].weigt: is not a known key; did you mean 'weight'? Known "
-              "here: "
-              "part, half_angle_deg, weight"},
-         }) {
-        const std::string message = error_of(with(unknown.line, unknown.text));
-        EXPECT_TRUE(message.starts_with("rig.toml:" + unknown.start)) << message;
-    }
-}
-
-TEST(RigReader, UnknownKeyFarFromAllListsTheKnown) {
-    EXPECT_EQ(error_of(with(2, "altitude_m = 2\nxyzzy = 1")),
-              "rig.toml:3: sled.xyzzy: is not a known key. Known here: altitude_offset_m, "
-              "altitude_is, altitude_m, pitch_deg, roll_deg");
-}
-
-// The slip of the pen that is made most: a key that must be there, misspelt.
-TEST(RigReader, MisspeltRequiredKeyIsNamed) {
-    EXPECT_EQ(error_of(with(2, "altitud_m = 2")),
-              "rig.toml:2: sled.altitud_m: is not a known key; did you mean 'altitude_m'?");
-    EXPECT_EQ(error_of(with(1, "[sledd]")),
-              "rig.toml:1: sledd: is not a known key; did you mean 'sled'?");
-    EXPECT_EQ(
-        error_of(with(16, "aim = { tilt_de = 26, toward = \"axis\" }")),
-        "rig.toml:16: strobe[0].aim.tilt_de: is not a known key; did you mean 'tilt_deg'? Known "
-        "here: tilt_deg, toward");
-}
-
-TEST(RigReader, UnknownBeamNamesTheBeamsThereAre) {
-    EXPECT_EQ(error_of(with(17, "beam = \"narrow\"")),
-              "rig.toml:17: strobe[0].beam: found 'narrow'; allowed: \"wide\"");
-    const std::string two = with(11,
-                                 "[beam.fresnel]\ncones = [{ part = \"x\", half_angle_deg = 9, "
-                                 "weight = 1 }]\n[beam.wide]");
-    std::string text = two;
-    text.replace(text.find("beam = \"wide\""), 13, "beam = \"fresnell\"");
-    EXPECT_EQ(error_of(text),
-              "rig.toml:19: strobe[0].beam: found 'fresnell'; allowed: \"fresnel\" or \"wide\"");
-    EXPECT_EQ(error_of(two), "no error") << "a beam that no strobe uses";
-}
-
-TEST(RigReader, EveryStrobeHasItsOwnName) {
-    const std::string strobe = std::string(kMinimal.substr(kMinimal.find("[[strobe]]")));
-    EXPECT_EQ(error_of(minimal_and(strobe)),
-              "rig.toml:19: strobe[1].name: found 'fore'; allowed: a name that no other strobe "
-              "has");
-}
-
-// --- Strobes stand above the floor -----------------------------------------------------------
-
-TEST(RigReader, StrobesStandAboveTheFloor) {
-    const std::string allowed = "; allowed: a point at least 0.001 m above the sea floor";
-    EXPECT_EQ(error_of(with(15, "position_m = [0.5, 0, 2.4995]")),
-              "rig.toml:15: strobe[0].position_m: found [0.5, 0, 2.4995]" + allowed);
-    EXPECT_EQ(error_of(with(15, "position_m = [0.5, 0, 2.498]")), "no error");
-}
-
-// Bow up by 45 degrees: the floor is at z = 2.5 + x, so 0.5 m aft it is at 2.0.
-TEST(RigReader, TheFloorIsTiltedWithTheSled) {
-    std::string text = with(2, "altitude_m = 2.5\npitch_deg = 45");
-    const std::string position = "position_m = [0.5, 0, 0]";
-    text.replace(text.find(position), position.size(), "position_m = [-0.5, 0, 2.1]");
-    EXPECT_TRUE(error_of(text).starts_with("rig.toml:16: strobe[0].position_m: found ["))
-        << error_of(text);
-    text.replace(text.find("[-0.5, 0, 2.1]"), 14, "[0.5, 0, 2.9]");
-    EXPECT_EQ(error_of(text), "no error");
-}
-
-// --- Tables ----------------------------------------------------------------------------------
+// --- Tables ---------------------------------------------------------------------------- --------
 
 constexpr const char* kRgb =
     "wavelength_nm,red,green,blue\n400,0.5,0.25,0.125\n700,0.5,0.25,0.125\n";
-
-TEST(RigReader, RangeThatTablesDoNotCoverNamesThemAndTheRangeThatWouldDo) {
-    EXPECT_EQ(error_of(with(7, "range_nm = [390, 750]")),
-              "rig.toml:7: camera.range_nm: water absorption 'pope-fry-1997' covers 380 to 727.5 "
-              "nm, which "
-              "leaves 727.5 to 750 nm of the range 390 to 750 nm without a value; range_nm = "
-              "[390, 727.5] would do");
-    const std::string both = error_of(with(7, "range_nm = [350, 750]"));
-    for (const char* part : {"water absorption 'pope-fry-1997' covers 380 to 727.5 nm",
-                             "lamp spectrum 'xenon-flash' covers 380 to 780 nm",
-                             "sensor response 'nikon-d5100' (red) covers 380 to 780 nm",
-                             "range_nm = [380, 727.5] would do"}) {
-        EXPECT_NE(both.find(part), std::string::npos) << part << "\nin " << both;
-    }
-}
-
-// The range of the response, when none is given, may be more than the water's table covers.
-TEST(RigReader, RangeThatIsLeftOutIsNamedToo) {
-    const std::string message = error_of(with(7, ""));
-    EXPECT_TRUE(
-        message.starts_with("rig.toml:3: camera.range_nm: water absorption "
-                            "'pope-fry-1997' covers 380 to 727.5 nm"))
-        << message;
-    EXPECT_TRUE(message.ends_with("range_nm = [380, 727.5] would do")) << message;
-}
-
-TEST(RigReader, WaterThatAbsorbsNothingNeedsNoTable) {
-    std::string text = with(7, "range_nm = [390, 750]");
-    text.replace(text.find("[water]"), 7, "[water]\nmultiple = 0");
-    EXPECT_EQ(error_of(text), "no error");
-}
-
-TEST(RigReader, GlassMustCoverTheRange) {
-    std::string text = with(9, std::string(kPort) + "[water]");
-    text.replace(text.find("bk7"), 3, "pmma");  // from 420 nm
-    EXPECT_EQ(error_of(text),
-              "rig.toml:7: camera.range_nm: refractive index of 'pmma' covers 420 to 1620 nm, "
-              "which leaves "
-              "400 to 420 nm of the range 400 to 700 nm without a value; range_nm = [420, 700] "
-              "would do");
-    text.replace(text.find("[400, 700]"), 10, "[420, 700]");
-    EXPECT_EQ(error_of(text), "no error");
-}
-
-TEST(RigReader, ChecksThePort) {
-    const auto port = [](std::string_view found, std::string_view instead) {
-        std::string text = with(9, std::string(kPort) + "[water]");
-        text.replace(text.find(found), found.size(), instead);
-        return error_of(text);
-    };
-    EXPECT_EQ(port("shape = \"flat\"", "shape = \"round\""),
-              "rig.toml:10: camera.port.shape: found 'round'; allowed: \"flat\" or \"dome\"");
-    EXPECT_EQ(port("distance_mm", "normal = [2, 0, 1]\ndistance_mm"),
-              "rig.toml:11: camera.port.normal: found [2, 0, 1]; allowed: a direction within 60 "
-              "degrees of the camera's axis, [0, 0, 1]");
-    const auto dome = [&](const std::string& centre) {
-        return port("shape = \"flat\"\ndistance_mm = 50.0",
-                    "shape = \"dome\"\nradius_mm = 50.0\n" + centre);
-    };
-    EXPECT_EQ(dome(""), "no error");
-    EXPECT_EQ(dome("centre_mm = [0, 0, 49]"), "no error");
-    EXPECT_EQ(dome("centre_mm = [0, 40, 30]"),
-              "rig.toml:12: camera.port.centre_mm: found [0, 40, 30]; allowed: the pupil, [0, 0, "
-              "0], within radius_mm of the centre");
-    EXPECT_EQ(port("50.0", "0"),
-              "rig.toml:11: camera.port.distance_mm: found 0; allowed: a number from 1 to 10000");
-    EXPECT_EQ(port("12.0", "0.5"),
-              "rig.toml:12: camera.port.thickness_mm: found 0.5; allowed: a number from 1 to 1000");
-    EXPECT_EQ(port("\"bk7\"", "\"ice\""),
-              "rig.toml:13: camera.port.glass: no built-in glass is called 'ice'; allowed: bk7, "
-              "fused-silica, pmma, polycarbonate, sapphire");
-    EXPECT_EQ(port("\"bk7\"", "7"),
-              "rig.toml:13: camera.port.glass: found 7; allowed: a built-in glass");
-}
-
-TEST(RigReader, UnknownTableNamesTheNearest) {
-    const std::string message = error_of(with(10, "[seafloor]\nreflectance = \"sandd\""));
-    EXPECT_TRUE(
-        message.starts_with("rig.toml:11: seafloor.reflectance: no built-in table is "
-                            "called 'sandd'; did you mean 'sand'?"))
-        << message;
-}
-
-TEST(RigReader, ATableOfAnotherRoleIsRefused) {
-    const std::string message = error_of(with(10, "[seafloor]\nreflectance = \"nikon-d5100\""));
-    EXPECT_TRUE(
-        message.starts_with("rig.toml:11: seafloor.reflectance: 'nikon-d5100' is a built-in table "
-                            "of role sensor response, not reflectance; allowed: "))
-        << message;
-}
 
 TEST(RigReader, ReadsUserTablesBesideTheRig) {
     const TempFolder folder;
@@ -897,44 +475,6 @@ TEST(RigReader, ReadsTheSceneBesideTheRig) {
     write_file(folder.path() / "reef.pov", "");
     const std::string text = "scene = \"reef.pov\"\n" + std::string(kMinimal);
     EXPECT_EQ(parse_rig(text, "rig.toml", folder.path()).scene, folder.path() / "reef.pov");
-    EXPECT_EQ(error_of("scene = \"none.pov\"\n" + std::string(kMinimal)),
-              "rig.toml:1: scene: ./none.pov: cannot be read: No such file or directory");
-    EXPECT_EQ(error_of("scene = 7\n" + std::string(kMinimal)),
-              "rig.toml:1: scene: found 7; allowed: a POV-Ray scene beside the rig");
-}
-
-TEST(RigReader, ChecksMaterials) {
-    const auto message = [](std::string_view materials) {
-        return error_of("materials = " + std::string(materials) + "\n" + std::string(kMinimal));
-    };
-    const std::string allowed =
-        "; allowed: an array of built-in reflectances (aphotic data) or .csv files beside the rig";
-    EXPECT_EQ(message("\"sand\""), "rig.toml:1: materials: found 'sand'" + allowed);
-    EXPECT_EQ(message("7"), "rig.toml:1: materials: found 7" + allowed);
-    EXPECT_EQ(message("[\"sand\", 7]"), "rig.toml:1: materials: found ['sand', 7]" + allowed);
-    EXPECT_EQ(message("[[\"sand\"]]"), "rig.toml:1: materials: found [['sand']]" + allowed);
-    for (const auto& [materials, start] : {
-             std::pair{"[\"sand\", \"green-algea\"]",
-                       "no built-in table is called 'green-algea'; did you mean 'green-algae'?"},
-             {"[\"xenon-arc\"]",
-              "'xenon-arc' is a built-in table of role lamp spectrum, not reflectance; allowed: "},
-             {"[\"nowhere.csv\"]", "./nowhere.csv: cannot be read: No such file or directory"},
-         }) {
-        const std::string found = message(materials);
-        EXPECT_TRUE(found.starts_with("rig.toml:1: materials: " + std::string(start))) << found;
-    }
-}
-
-TEST(RigReader, MaterialsMustCoverTheRange) {
-    const TempFolder folder;
-    write_file(folder.path() / "mud.csv", "wavelength_nm,reflectance\n450,0.25\n690,0.75\n");
-    const std::string message =
-        error_of("materials = [\"mud.csv\"]\n" + std::string(kMinimal), folder.path());
-    EXPECT_TRUE(message.starts_with("rig.toml:8: camera.range_nm: ")) << message;
-    EXPECT_NE(message.find("mud.csv"), std::string::npos) << message;
-    EXPECT_NE(message.find(" covers 450 to 690 nm, which leaves 400 to 450 nm"), std::string::npos)
-        << message;
-    EXPECT_TRUE(message.ends_with("range_nm = [450, 690] would do")) << message;
 }
 
 // lambda / (h c) photons per joule, with the exact h and c of the SI.
@@ -965,13 +505,6 @@ TEST(RigReader, AMonoCameraHasOneResponse) {
     for (const int channel : {1, 2})
         EXPECT_EQ(camera.sensor.response(channel, 550.0), camera.sensor.response(0, 550.0));
     EXPECT_FALSE(parse(kMinimal).camera.sensor.is_mono());
-    EXPECT_EQ(
-        error_of(with(8, mono + "\nbayer = \"RGGB\""), folder.path()),
-        "rig.toml:9: camera.bayer: found 'RGGB'; allowed: \"mono\", as the response is of one "
-        "channel");
-    EXPECT_EQ(error_of(with(8, "response = \"nikon-d5100\"\nbayer = \"mono\"")),
-              "rig.toml:9: camera.bayer: found 'mono'; allowed: a pattern of colours, as the "
-              "response is of three channels");
 }
 
 TEST(RigReader, TellsWhatTheCamerasFilesHold) {
@@ -992,76 +525,9 @@ TEST(RigReader, TellsWhatTheCamerasFilesHold) {
     EXPECT_EQ(all.gain_dn_per_e, 0.25);
     EXPECT_EQ(all.read_noise_e, 8.0);
     EXPECT_EQ(all.saturation_e, 15000.0);
-    const auto refused = [](const std::string& line, const std::string& words) {
-        EXPECT_EQ(error_of(with(7, "range_nm = [400, 700]\n" + line)),
-                  "rig.toml:8: camera." + words);
-    };
-    refused("black_level_dn = -1",
-            "black_level_dn: found -1; allowed: a number from 0 to 1000000000");
-    refused("white_level_dn = 60\nblack_level_dn = 64",
-            "white_level_dn: found 60; allowed: a number over black_level_dn");
-    refused("exposure_ms = 0", "exposure_ms: found 0; allowed: a number from 0.0001 to 1000000");
-    refused("iso = 0", "iso: found 0; allowed: a number from 0.1 to 10000000");
-    refused("f_number = \"2.8\"", "f_number: found '2.8'; allowed: a number from 0.1 to 1000");
-    refused("gain_dn_per_e = 0", "gain_dn_per_e: found 0; allowed: a number from 1e-06 to 1000000");
-    refused("read_noise_e = -1", "read_noise_e: found -1; allowed: a number from 0 to 1000000");
-    refused("saturation_e = 0", "saturation_e: found 0; allowed: a number from 1 to 1000000000");
-    refused("bayer = \"RGB\"",
-            "bayer: found 'RGB'; allowed: \"RGGB\" or \"BGGR\" or \"GRBG\" or \"GBRG\" or "
-            "\"mono\"");
 }
 
-TEST(RigReader, AResponseFileMustSayItsKind) {
-    const TempFolder folder;
-    write_file(folder.path() / "rgb.csv", kRgb);
-    const std::string allowed =
-        "; allowed: a built-in response's name, { table = \"rgb.csv\", kind = \"energy\" } (or "
-        "\"quantum\"), or { filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }, of a mono "
-        "camera without filters";
-    EXPECT_EQ(error_of(with(8, "response = \"rgb.csv\""), folder.path()),
-              "rig.toml:8: camera.response: found 'rgb.csv'" + allowed);
-    EXPECT_EQ(error_of(with(8, "response = 7"), folder.path()),
-              "rig.toml:8: camera.response: found 7" + allowed);
-    EXPECT_EQ(error_of(with(8, "response = { table = \"rgb.csv\" }"), folder.path()),
-              "rig.toml:8: camera.response.kind: is missing; allowed: \"energy\" or \"quantum\"");
-    EXPECT_EQ(
-        error_of(with(8, "response = { table = \"rgb.csv\", kind = \"raw\" }"), folder.path()),
-        "rig.toml:8: camera.response.kind: found 'raw'; allowed: \"energy\" or \"quantum\"");
-    const std::string unknown = error_of(
-        with(8, "response = { table = \"rgb.csv\", kind = \"energy\", kinds = 1 }"), folder.path());
-    EXPECT_TRUE(
-        unknown.starts_with("rig.toml:8: camera.response.kinds: is not a known key; did you "
-                            "mean 'kind'?"))
-        << unknown;
-    const std::string half =
-        error_of(with(8, "response = { filters = \"rgb.csv\" }"), folder.path());
-    EXPECT_TRUE(half.starts_with("rig.toml:8: camera.response.quantum_efficiency: is missing; "))
-        << half;
-}
-
-TEST(RigReader, FaultsInUserTablesNameRigAndTable) {
-    const TempFolder folder;
-    const fs::path mud = folder.path() / "mud.csv";
-    const std::string text = with(10, "[seafloor]\nreflectance = \"mud.csv\"");
-    EXPECT_EQ(error_of(text, folder.path()),
-              "rig.toml:11: seafloor.reflectance: " + mud.string() +
-                  ": cannot be read: No such file or directory");
-    write_file(mud, "wavelength_nm,reflectance\n400,0.25\n700,1.5\n");
-    EXPECT_EQ(error_of(text, folder.path()),
-              "rig.toml:11: seafloor.reflectance: " + mud.string() +
-                  ":3: reflectance: found 1.5; allowed: 0 to 1");
-}
-
-// --- Files and syntax ------------------------------------------------------------------------
-
-TEST(RigReader, SyntaxErrorsNameTheLine) {
-    EXPECT_TRUE(error_of(with(6, "focal_length_mm = ")).starts_with("rig.toml:6: "))
-        << error_of(with(6, "focal_length_mm = "));
-    EXPECT_TRUE(error_of(with(4, "resolution = [1 2]")).starts_with("rig.toml:4: "))
-        << error_of(with(4, "resolution = [1 2]"));
-    EXPECT_TRUE(error_of(with(7, "pixel_pitch_um = 1")).starts_with("rig.toml:7: "))
-        << "a key that stands twice: " << error_of(with(7, "pixel_pitch_um = 1"));
-}
+// --- Files and syntax ------------------------------------------------------------------ --------
 
 // Counted before anything is made of them: one by one, each held against all others, these would
 // take minutes.
@@ -1126,14 +592,14 @@ TEST(RigReader, AnUnreadableRigIsNamed) {
     const fs::path missing = folder.path() / "rig.toml";
     try {
         static_cast<void>(read_rig(missing));
-        FAIL() << "no error";
+        FAIL() << "nothing was said";
     } catch (const InputError& error) {
         EXPECT_EQ(error.what(), missing.string() + ": cannot be read: No such file or directory");
     }
     EXPECT_THROW(static_cast<void>(read_rig(folder.path())), InputError);
 }
 
-// --- Digest ----------------------------------------------------------------------------------
+// --- Digest ---------------------------------------------------------------------------- --------
 
 TEST(RigReader, DigestChangesWithTheTextAndWithUserTables) {
     const TempFolder folder;
@@ -1155,38 +621,30 @@ TEST(RigReader, DigestChangesWithTheTextAndWithUserTables) {
     EXPECT_EQ(digest(folder.path(), text, mud), first) << "a file that the rig does not name";
 }
 
-TEST(RigReader, DigestCountsResponseTables) {
+TEST(RigReader, DigestCountsEveryFileThatIsNamed) {
     const TempFolder folder;
+    const std::map<std::string, std::string> files{
+        {"rgb.csv", kRgb},
+        {"ccd.csv", "wavelength_nm,quantum_efficiency\n400,0.5\n700,0.5\n"},
+        {"mud.csv", "wavelength_nm,reflectance\n400,0.25\n700,0.75\n"},
+        {"rock.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n"}};
     const std::string text =
-        with(8, "response = { filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }");
-    const std::string ccd = "wavelength_nm,quantum_efficiency\n400,0.5\n700,0.5\n";
-    const auto digest = [&](const std::string& rgb, const std::string& efficiency) {
-        write_file(folder.path() / "rgb.csv", rgb);
-        write_file(folder.path() / "ccd.csv", efficiency);
+        "materials = [\"sand\", \"mud.csv\"]\n" +
+        with(8, "response = { filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }") +
+        "[[object]]\nname = \"rock\"\nshape = \"mesh\"\nfile = \"rock.obj\"\n"
+        "reflectance = \"sand\"\n";
+    const auto digest = [&](const std::string& changed) {
+        for (const auto& [name, content] : files) {
+            write_file(folder.path() / name, content + (name == changed ? "\n" : ""));
+        }
         return parse_rig(text, "rig.toml", folder.path()).digest;
     };
-    const std::string first = digest(kRgb, ccd);
-    EXPECT_NE(digest(std::string(kRgb) + "\n", ccd), first);
-    EXPECT_NE(digest(kRgb, ccd + "\n"), first);
-    EXPECT_EQ(digest(kRgb, ccd), first);
+    const std::string first = digest("");
+    for (const auto& [name, content] : files) EXPECT_NE(digest(name), first) << name;
+    EXPECT_EQ(digest(""), first);
 }
 
-TEST(RigReader, DigestCountsMaterials) {
-    const TempFolder folder;
-    const std::string mud = "wavelength_nm,reflectance\n400,0.25\n700,0.75\n";
-    const auto digest = [&](const std::string& materials, const std::string& csv) {
-        write_file(folder.path() / "mud.csv", csv);
-        return parse_rig(
-                   "materials = " + materials + "\n" + std::string(kMinimal), "r", folder.path())
-            .digest;
-    };
-    const std::string first = digest("[\"sand\", \"mud.csv\"]", mud);
-    EXPECT_EQ(digest("[\"sand\", \"mud.csv\"]", mud), first);
-    EXPECT_NE(digest("[\"sand\", \"mud.csv\"]", mud + "\n"), first);
-    EXPECT_NE(digest("[\"sand\"]", mud), first);
-}
-
-// --- Objects ---------------------------------------------------------------------------------
+// --- Objects --------------------------------------------------------------------------- --------
 
 constexpr std::string_view kBall =
     "[[object]]\n"
@@ -1195,10 +653,6 @@ constexpr std::string_view kBall =
     "centre_m = [0.1, 0.2, 2]\n"
     "radius_m = 0.25\n"
     "reflectance = \"sand\"\n";
-
-TEST(RigReader, ReadsNoObjectsUnlessThereAreAny) {
-    EXPECT_TRUE(parse(kMinimal).objects.empty());
-}
 
 TEST(RigReader, ReadsASphereABoxAndAMesh) {
     const TempFolder folder;
@@ -1229,63 +683,7 @@ TEST(RigReader, ReadsASphereABoxAndAMesh) {
     expect_vector(rock.vertices_m.at(1), {1.5, 0.25, 2.0});
 }
 
-// The minimal rig ends in line 17; the ball's lines are 18 to 23.
-TEST(RigReader, TellsWhatIsWrongWithAnObject) {
-    const auto ball_with = [](const std::string& from, const std::string& to) {
-        std::string text(kBall);
-        return minimal_and(text.replace(text.find(from), from.size(), to));
-    };
-    const std::vector<std::pair<std::string, std::string>> wrong{
-        {ball_with("\"sphere\"", "\"cone\""),
-         "rig.toml:20: object[0].shape: found 'cone'; allowed: \"sphere\" or \"box\" or \"mesh\""},
-        {ball_with("0.25", "0"),
-         "rig.toml:22: object[0].radius_m: found 0; allowed: a number from 0.001 to 1000"},
-        {ball_with("radius_m", "radius_mm"),
-         "rig.toml:22: object[0].radius_mm: is not a known key; did you mean 'radius_m'?"},
-        {ball_with("reflectance = \"sand\"", ""),
-         "rig.toml:18: object[0].reflectance: is missing; allowed: a built-in table's name "
-         "(aphotic data) or a .csv file beside the rig"},
-        {ball_with("[0.1, 0.2, 2]", "[0, 0, 0.2]"),
-         "rig.toml:21: object[0].centre_m: found the camera's pupil inside the object; allowed: "
-         "outside"},
-        {ball_with("[0.1, 0.2, 2]", "[0.5, 0.2505, 0]"),
-         "rig.toml:21: object[0].centre_m: found strobe 'fore' inside the object or 0.0005 m "
-         "off "
-         "it; allowed: at least 0.001 m off"},
-        {minimal_and(std::string(kBall) + std::string(kBall)),
-         "rig.toml:25: object[1].name: found 'ball'; allowed: a name that no other object has"},
-        {minimal_and("[[object]]\nname = \"block\"\nshape = \"box\"\nfrom_m = [0, 1, 2]\n"
-                     "to_m = [1, 1, 3]\nreflectance = \"sand\"\n"),
-         "rig.toml:22: object[0].to_m: found [1, 1, 3]; allowed: a corner at least 0.001 m from "
-         "that "
-         "of from_m along every axis"},
-        {minimal_and("[[object]]\nname = \"rock\"\nshape = \"mesh\"\nfile = \"rock.stl\"\n"
-                     "reflectance = \"sand\"\n"),
-         "rig.toml:21: object[0].file: found 'rock.stl'; allowed: the name of a Wavefront .obj "
-         "file "
-         "beside the rig"},
-        {minimal_and("[[object]]\nname = \"rock\"\nshape = \"mesh\"\nfile = \"no.obj\"\n"
-                     "reflectance = \"sand\"\n"),
-         "rig.toml:21: object[0].file: ./no.obj: cannot be read: No such file or directory"}};
-    for (const auto& [toml, message] : wrong) EXPECT_EQ(error_of(toml), message);
-}
-
-TEST(RigReader, CountsAMeshInTheDigest) {
-    const TempFolder folder;
-    const auto digest_with = [&](std::string_view obj) {
-        write_file(folder.path() / "rock.obj", obj);
-        return parse_rig(minimal_and("[[object]]\nname = \"rock\"\nshape = \"mesh\"\n"
-                                     "file = \"rock.obj\"\nreflectance = \"sand\"\n"),
-                         "rig.toml",
-                         folder.path())
-            .digest;
-    };
-    const std::string a = digest_with("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
-    EXPECT_NE(a, digest_with("v 0 0 1\nv 1 0 1\nv 0 2 1\nf 1 2 3\n"));
-    EXPECT_EQ(a, digest_with("v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n"));
-}
-
-// --- Calibrations ------------------------------------------------------------------------------
+// --- Calibrations ------------------------------------------------------------------------
 
 constexpr std::string_view kCamchain =
     "cam0:\n"
@@ -1375,13 +773,6 @@ TEST_F(CalibratedRig, HasThePortOfTheFile) {
     EXPECT_EQ(rig.camera.port->distance_m, 0.02);
     EXPECT_EQ(rig.camera.port->thickness_m, 0.008);
     EXPECT_EQ(rig.camera.port->glass.name(), "bk7");
-    EXPECT_EQ(error(kByCalibration),
-              "rig.toml:3: camera.port: is missing; allowed: a table with the glass of the "
-              "calibration's port");
-    text.replace(text.find("glass"), 5, "distance_mm = 30\nglass");
-    EXPECT_EQ(error(text),
-              "rig.toml:10: camera.port.distance_mm: found beside a calibration that tells the "
-              "port; allowed: glass alone");
     // One that tells of none leaves the port to the rig.
     calibrate(kPinhole);
     text = kByCalibration;
@@ -1389,69 +780,7 @@ TEST_F(CalibratedRig, HasThePortOfTheFile) {
     EXPECT_EQ(read(text).camera.port->distance_m, 0.05);
 }
 
-TEST_F(CalibratedRig, TellsWhatIsWrong) {
-    calibrate(kCamchain);
-    EXPECT_EQ(error(with(6, "focal_length_mm = 12\ncalibration = \"cam\"")),
-              "rig.toml:7: camera.calibration: found beside 'focal_length_mm'; allowed: one of "
-              "them");
-    EXPECT_EQ(error(with(6, "fov_deg = 40\ncalibration = \"cam\"")),
-              "rig.toml:7: camera.calibration: found beside 'fov_deg'; allowed: one of them");
-    EXPECT_EQ(error(with(6, "calibration = 3")),
-              "rig.toml:6: camera.calibration: found 3; allowed: the name of a camera calibration "
-              "beside the rig");
-    EXPECT_TRUE(error(with(6, "calibration = \"none.yaml\""))
-                    .starts_with("rig.toml:6: camera.calibration: "));
-    std::string text = kByCalibration;
-    text.replace(text.find("1360, 1024"), 10, "680, 512");
-    EXPECT_EQ(error(text),
-              "rig.toml:4: camera.resolution: found [680, 512]; allowed: [1360, 1024], that of the "
-              "calibration");
-    calibrate("cam0: [");
-    EXPECT_EQ(error(kByCalibration),
-              "rig.toml:6: camera.calibration: cam:1: is not YAML: end of sequence flow not found");
-    // r - r^3 ends at r = 1/sqrt(3), 30 degrees off the axis; a corner is at 0.77 focal lengths.
-    calibrate("1 SIMPLE_RADIAL 1360 1024 1100 680 512 -1\n");
-    EXPECT_TRUE(error(kByCalibration)
-                    .starts_with("rig.toml:6: camera.calibration: cam: the lens's formula holds to "
-                                 "29.9"))
-        << error(kByCalibration);
-}
-
-// --- Hostile rigs ----------------------------------------------------------------------------
-
-// Each key of a number, with what is no number that a rig may hold.
-TEST(RigReader, RefusesNumbersThatAreNone) {
-    for (const std::string number : {"nan",
-                                     "-nan",
-                                     "inf",
-                                     "-inf",
-                                     "9223372036854775807",
-                                     "-9223372036854775808",
-                                     "1979-05-27",
-                                     "1979-05-27T07:32:00Z",
-                                     "07:32:00",
-                                     "true",
-                                     "\"2\"",
-                                     "[2]",
-                                     "{}"}) {
-        const std::string message = error_of(with(2, "altitude_m = " + number));
-        EXPECT_TRUE(message.starts_with("rig.toml:2: sled.altitude_m: found ")) << message;
-        EXPECT_TRUE(message.ends_with("; allowed: a number from 0.001 to 10000")) << message;
-    }
-    // No double and no 64-bit integer holds these: TOML itself has no such number.
-    for (const std::string number : {"1e400",
-                                     "99999999999999999999",
-                                     "0x1FFFFFFFFFFFFFFFF",
-                                     "0x",
-                                     "1__0",
-                                     "2,5",
-                                     "02",
-                                     ".5",
-                                     "5."}) {
-        const std::string message = error_of(with(2, "altitude_m = " + number));
-        EXPECT_TRUE(message.starts_with("rig.toml:2: ")) << number << ": " << message;
-    }
-}
+// --- Hostile rigs ---------------------------------------------------------------------- --------
 
 TEST(RigReader, UnderstandsEveryNumberOfTomlExactly) {
     const auto altitude_m = [](const std::string& number) {
@@ -1464,8 +793,8 @@ TEST(RigReader, UnderstandsEveryNumberOfTomlExactly) {
     EXPECT_EQ(altitude_m("+2.5e-1"), 0.25);
     EXPECT_EQ(parse(with(2, "altitude_m = 2\npitch_deg = -0.0")).sled.pitch_rad, 0.0);
     EXPECT_EQ(parse(with(9, "[water]\nmultiple = -0.0")).water.attenuation_per_m(550.0), 0.0);
-    EXPECT_NE(error_of(with(2, "altitude_m = -0.0")), "no error");
-    EXPECT_NE(error_of(with(2, "altitude_m = 1e-400")), "no error") << "it is not 0";
+    EXPECT_NE(error_of(with(2, "altitude_m = -0.0")), "nothing was said");
+    EXPECT_NE(error_of(with(2, "altitude_m = 1e-400")), "nothing was said") << "it is not 0";
 }
 
 // Every text of a rig, by the line of the rig that holds it. ESC would steer a terminal, a line's
@@ -1514,42 +843,6 @@ TEST(RigReader, RefusesBytesThatAreNoUtf8) {
     EXPECT_FALSE(has_control_characters(message)) << message;
 }
 
-// The rules are those of file_beside.h; here, that no key goes around them.
-TEST(RigReader, RefusesEveryFileOutsideItsFolder) {
-    const TempFolder folder;
-    fs::create_directory(folder.path() / "rig");
-    write_file(folder.path() / "t.csv", "wavelength_nm,reflectance\n300,1\n900,1\n");
-    write_file(folder.path() / "t.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
-    write_file(folder.path() / "t.pov", "#version 3.7;\n");
-    write_file(folder.path() / "rig" / "rgb.csv",
-               "wavelength_nm,red,green,blue\n300,1,1,1\n900,1,1,1\n");
-    const std::string csv = "\"../t.csv\"";
-    const std::string object = "[[object]]\nname = \"a\"\nshape = ";
-    const std::vector<std::pair<std::string, std::string>> rigs{
-        {"materials = [" + csv + "]\n" + std::string(kMinimal), "rig.toml:1: materials: "},
-        {"scene = \"../t.pov\"\n" + std::string(kMinimal), "rig.toml:1: scene: "},
-        {with(6, "calibration = \"../t.yaml\""), "rig.toml:6: camera.calibration: "},
-        {with(8, "response = { table = " + csv + ", kind = \"energy\" }"),
-         "rig.toml:8: camera.response.table: "},
-        {with(8, "response = { filters = " + csv + ", quantum_efficiency = \"q.csv\" }"),
-         "rig.toml:8: camera.response.filters: "},
-        {with(8, "response = { filters = \"rgb.csv\", quantum_efficiency = " + csv + " }"),
-         "rig.toml:8: camera.response.quantum_efficiency: "},
-        {with(9, "[water]\nabsorption = " + csv), "rig.toml:10: water.absorption: "},
-        {with(10, "[seafloor]\nreflectance = " + csv), "rig.toml:11: seafloor.reflectance: "},
-        {minimal_and("spectrum = " + csv), "rig.toml:18: strobe[0].spectrum: "},
-        {minimal_and(object + "\"mesh\"\nfile = \"../t.obj\"\n"), "rig.toml:21: object[0].file: "},
-        {minimal_and(object +
-                     "\"sphere\"\ncentre_m = [0, 0, 2]\nradius_m = 0.1\nreflectance = " + csv),
-         "rig.toml:23: object[0].reflectance: "}};
-    for (const auto& [rig, place] : rigs) {
-        const std::string message = error_of(rig, folder.path() / "rig");
-        EXPECT_TRUE(message.starts_with(place + "found '../t.")) << message;
-        EXPECT_TRUE(message.ends_with("; allowed: a file in the same folder or below it"))
-            << message;
-    }
-}
-
 TEST(RigReader, ReadsARigThatIsReachedThroughALink) {
     const TempFolder folder;
     fs::create_directories(folder.path() / "elsewhere");
@@ -1570,12 +863,7 @@ TEST(RigReader, RefusesFilesOfAbsurdSizeUnread) {
         fs::resize_file(folder.path() / name, kTebibyte);
     }
     const auto read_error = [](const fs::path& file) {
-        try {
-            static_cast<void>(read_rig(file));
-        } catch (const InputError& error) {
-            return std::string(error.what());
-        }
-        return std::string("no error");
+        return refusal_of([&] { static_cast<void>(read_rig(file)); });
     };
     EXPECT_EQ(
         read_error(folder.path() / "rig.toml"),
