@@ -2,7 +2,7 @@
 //
 // aphotic beam RIG:NAME|FILE: what a data sheet says of a beam, its plot, the beam as a file of
 // other programs, and the sharp cones that come closest.
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 
 #include "base/degrees.h"
 #include "base/error.h"
@@ -12,8 +12,8 @@
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "report/plot.h"
-#include "rig/beam_figures.h"
-#include "rig/cone_fit.h"
+#include "rig/beam/beam_figures.h"
+#include "rig/beam/cone_fit.h"
 #include "spectral/lamp_flux.h"
 
 #include <fmt/format.h>

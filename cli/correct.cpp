@@ -14,9 +14,9 @@
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
 #include "image/exr.h"
-#include "survey/camera_numbers.h"
-#include "survey/correction_run.h"
-#include "survey/ifdo_results.h"
+#include "survey/correct/correction_run.h"
+#include "survey/correct/ifdo_results.h"
+#include "survey/images/camera_numbers.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

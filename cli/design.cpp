@@ -13,7 +13,7 @@
 #include "cli/output_folder.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
-#include "survey/design_files.h"
+#include "lightmap/design_files.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

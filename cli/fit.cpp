@@ -2,7 +2,7 @@
 //
 // aphotic fit RIG --maps MAP... | --images IMAGE... --nav FILE  -o DIR: the rig that explains a
 // survey, with errors.
-#include "survey/fit.h"
+#include "survey/fit/fit.h"
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "base/error.h"
@@ -14,10 +14,10 @@
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
-#include "survey/fit_json.h"
-#include "survey/fit_page.h"
-#include "survey/fit_samples.h"
-#include "survey/fitted_rig.h"
+#include "survey/fit/fit_json.h"
+#include "survey/fit/fit_page.h"
+#include "survey/fit/fit_samples.h"
+#include "survey/fit/fitted_rig.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -8,7 +8,7 @@
 #include "cli/options.h"
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
-#include "survey/observation.h"
+#include "survey/correct/observation.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "cli/terminal.h"
+#include "rig/file/rig_reader.h"
 #include "rig/plausibility.h"
-#include "rig/rig_reader.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

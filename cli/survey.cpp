@@ -3,7 +3,7 @@
 // aphotic survey RIG -o DIR: raw images as the rig's camera writes them, with noise, navigation
 // with errors, and the truth beside both.
 #include "cli/terminal.h"
-#include "survey/simulated_survey.h"
+#include "survey/simulate/simulated_survey.h"
 
 #include "base/error.h"
 #include "base/progress.h"
@@ -17,9 +17,9 @@
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "plugin/survey_render.h"
-#include "survey/camera_numbers.h"
 #include "survey/first_look.h"
-#include "survey/navigation_file.h"
+#include "survey/images/camera_numbers.h"
+#include "survey/navigation/navigation_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

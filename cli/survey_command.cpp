@@ -10,8 +10,8 @@
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
-#include "rig/rig_reader.h"
-#include "survey/image_time.h"
+#include "rig/file/rig_reader.h"
+#include "survey/navigation/image_time.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "cli/command.h"
-#include "survey/image_run.h"
-#include "survey/navigation_file.h"
+#include "survey/correct/image_run.h"
+#include "survey/navigation/navigation_file.h"
 #include "survey/run_watch.h"
 #include "survey/survey.h"
 

@@ -3,7 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/printable.h"
-#include "rig/calibration_doubts.h"
+#include "rig/camera/calibration_doubts.h"
 #include "rig/geometry.h"
 
 #include <fmt/format.h>

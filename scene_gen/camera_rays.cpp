@@ -2,8 +2,8 @@
 #include "scene_gen/camera_rays.h"
 
 #include "image/image_size.h"
+#include "rig/camera/lens.h"
 #include "rig/geometry.h"
-#include "rig/lens.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "scene_gen/pov_scene.h"
 
 #include "base/error.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 #include "rig/solid.h"
 #include "scene_gen/band_sdl.h"
 #include "scene_gen/beam_sdl.h"

@@ -55,7 +55,7 @@ struct SceneOptions {
     std::shared_ptr<const UserScene> user_scene{};  // none: the rig's own floor
     // The share of a pixel's light under which rays between a user's mirrors and glasses end.
     double bailout = kRayShare * kTargetError;
-    // In water that scatters: POV-Ray makes the veil, of so many samples a ray. None: rig/veil.h.
+    // In water that scatters: POV-Ray makes the veil, of so many samples a ray. None: light/veil.h.
     std::optional<int> veil_samples{};
     std::optional<PovrayVeil> povray_veil{};  // as the plan has it
     int antialias = 0;  // n x n rays to a pixel, beside the one through its centre

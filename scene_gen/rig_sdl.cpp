@@ -2,7 +2,7 @@
 #include "scene_gen/rig_sdl.h"
 
 #include "base/degrees.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 #include "scene_gen/beam_sdl.h"
 
 #include <fmt/format.h>

@@ -7,7 +7,6 @@
 #include "image/exr.h"
 #include "lightmap/cone_edge.h"
 #include "spectral/light_family.h"
-#include "survey/flight.h"
 #include "survey/survey_check.h"
 
 #include <fmt/format.h>

@@ -42,7 +42,7 @@
 #pragma once
 
 #include "survey/correction.h"
-#include "survey/raw_image.h"
+#include "survey/images/raw_image.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -5,7 +5,7 @@
 #include "image/preview.h"
 #include "report/html.h"
 #include "report/page.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 #include "spectral/refractive_index.h"
 #include "validation/error_view.h"
 #include "validation/report.h"

@@ -10,7 +10,7 @@
 #include "report/html.h"
 #include "report/page.h"
 #include "report/plot.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 #include "spectral/integrator.h"
 #include "spectral/sensor.h"
 #include "validation/comparison.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Locks, shares, and that nothing comes of nothing; the journal's tests are those of a run of
-// images (survey/image_run_test.cpp).
+// images (survey/correct/image_run_test.cpp).
 #include "base/work_folder.h"
 
 #include "base/error.h"

@@ -9,7 +9,7 @@
 #include "image/exr.h"
 #include "image/preview.h"
 #include "lightmap/cone_edge.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "support/absurd_images.h"
 #include "support/has.h"
 #include "support/png.h"

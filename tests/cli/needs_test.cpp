@@ -5,7 +5,7 @@
 #include "scene_gen/disk_estimate.h"
 
 #include "image/exr.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/manifest.h"
 #include "support/run_command.h"
 

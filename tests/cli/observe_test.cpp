@@ -6,7 +6,7 @@
 #include "support/has.h"
 #include "support/run_command.h"
 #include "support/tiff.h"
-#include "survey/raw_image.h"
+#include "survey/images/raw_image.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -9,7 +9,7 @@
 #include "support/has.h"
 #include "support/run_command.h"
 #include "support/tiff.h"
-#include "survey/raw_image.h"
+#include "survey/images/raw_image.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

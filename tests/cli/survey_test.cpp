@@ -8,8 +8,8 @@
 #include "support/has.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
-#include "survey/flight.h"
-#include "survey/navigation_file.h"
+#include "survey/navigation/navigation_file.h"
+#include "survey/simulate/flight.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -4,7 +4,7 @@
 // not ours tells of none, so every text is taken; those of another survey are refused in words. A
 // gain that comes of it is one to multiply with.
 #include "fuzz.h"
-#include "survey/corrector.h"
+#include "survey/correct/corrector.h"
 
 #include <nlohmann/json.hpp>
 

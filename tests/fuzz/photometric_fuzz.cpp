@@ -3,7 +3,7 @@
 // A measured beam from any text, in each format. What is read is a sound table, and is read again
 // from what is written of it: to the last bit but for .ldt, whose values are rounded on the way.
 #include "fuzz.h"
-#include "rig/photometric_file.h"
+#include "rig/beam/photometric_file.h"
 
 #include <cmath>
 #include <numbers>

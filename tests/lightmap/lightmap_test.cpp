@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "lightmap/row_fit.h"
+#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
-#include "rig/rig_reader.h"
 #include "spectral/curve_loader.h"
 #include "support/effort.h"
 #include "support/random_beam.h"

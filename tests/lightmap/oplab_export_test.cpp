@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lightmap/oplab_export.h"
 
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "support/npy.h"
 #include "support/temp_folder.h"
 

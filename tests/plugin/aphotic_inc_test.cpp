@@ -2,8 +2,8 @@
 //
 // plugin/include/aphotic.inc, by real POV-Ray: every macro in a scene, against closed forms; every
 // error provoked.
+#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
-#include "rig/rig_reader.h"
 #include "scene_gen/quick_look.h"
 #include "support/povray_scene.h"
 

@@ -4,7 +4,7 @@
 #include "plugin/probe.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "support/refusal.h"
 #include "support/temp_folder.h"
 

@@ -5,8 +5,8 @@
 #include "rig/plausibility.h"
 
 #include "base/atomic_file.h"
+#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
-#include "rig/rig_reader.h"
 #include "support/effort.h"
 #include "support/random_rig.h"
 #include "support/temp_folder.h"

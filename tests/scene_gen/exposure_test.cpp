@@ -3,7 +3,7 @@
 
 #include "rig/geometry.h"
 
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/manifest.h"
 #include "support/flat.h"
 #include "tests/support/closed_form.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/frame_groups.h"
 
+#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
-#include "rig/rig_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include "scene_gen/pov_scene.h"
 
 #include "base/error.h"
-#include "rig/lens.h"
-#include "rig/rig_reader.h"
+#include "rig/camera/lens.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "support/refusal.h"
 #include "tests/support/closed_form.h"

@@ -4,7 +4,7 @@
 #include "support/random_rig.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/curve_loader.h"
 #include "support/refusal.h"
 #include "tests/support/closed_form.h"

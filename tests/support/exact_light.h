@@ -20,9 +20,9 @@
 // kPanelPoints nodes are exact to 1e-18. What has lost kNothing of depth to the brighter end of its
 // interval is e^-kNothing of it, and left out.
 //
-// I is the sum of A_k cos^n(theta) S over the cones, with the letters of rig/beam.h; the flux of a
-// soft edge is integrated by parts, 2 pi / (n + 1) times the integral of S'(u) (1 - u^(n + 1)) over
-// the cosine u.
+// I is the sum of A_k cos^n(theta) S over the cones, with the letters of rig/beam/beam.h; the flux
+// of a soft edge is integrated by parts, 2 pi / (n + 1) times the integral of S'(u) (1 - u^(n + 1))
+// over the cosine u.
 //
 // The veil of a strobe, by u along the ray from the lamp's nearest point at t_0, h away:
 //

@@ -15,7 +15,7 @@
 #include "cli/rendered_images.h"
 #include "image/frame_check.h"
 #include "plugin/render.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
 #include "spectral/integrator.h"

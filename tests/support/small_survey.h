@@ -8,7 +8,7 @@
 #include "base/degrees.h"
 #include "support/run_command.h"
 #include "support/temp_folder.h"
-#include "survey/flight.h"
+#include "survey/simulate/flight.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "support/exact_light.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "support/closed_form.h"
 
 #include <gtest/gtest.h>

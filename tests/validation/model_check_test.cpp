@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/model_check.h"
 
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "support/flat.h"
 

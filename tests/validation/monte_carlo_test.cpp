@@ -5,7 +5,7 @@
 #include "validation/monte_carlo.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "support/dice.h"
 #include "support/effort.h"

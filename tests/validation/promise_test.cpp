@@ -8,7 +8,7 @@
 // POV-Ray itself, its single-precision colours and its way to the inverse square law, is not in
 // it: kFrameError keeps 2e-6 for these (spectral/quadrature_fit.h).
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
 #include "support/effort.h"

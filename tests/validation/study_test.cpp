@@ -3,7 +3,7 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "support/page.h"
 #include "support/small_scene.h"
 #include "support/temp_folder.h"

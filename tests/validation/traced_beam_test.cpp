@@ -4,8 +4,8 @@
 // hold it to closed forms; and their edges and steepness.
 #include "validation/traced_beam.h"
 
-#include "rig/beam.h"
-#include "rig/beam_optics.h"
+#include "rig/beam/beam.h"
+#include "rig/beam/beam_optics.h"
 #include "support/random_beam.h"
 #include "support/random_rig.h"
 

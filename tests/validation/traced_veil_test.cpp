@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The reference's veil against closed forms, and against rig/veil.h, of which it has no line.
+// The reference's veil against closed forms, and against light/veil.h, of which it has no line.
 #include "validation/traced_veil.h"
 
-#include "rig/rig_reader.h"
-#include "rig/veil.h"
+#include "light/veil.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "support/flat.h"
 #include "support/random_beam.h"

@@ -6,7 +6,7 @@
 #include "validation/tracer.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/light_paths.h"
 #include "spectral/curve_loader.h"
 #include "support/closed_form.h"
