@@ -233,17 +233,9 @@ Veil::Light Veil::light_of(const Strobe& strobe, const Beam& beam, unsigned emit
         for (TablePiece& piece : light.pieces)
             for (double& c : piece.c) c *= beam.per_flux;
     }
-    const bool is_of_cones = std::holds_alternative<std::monostate>(beam.pattern) && !beam.window;
-    for (const Beam& part : is_of_cones ? parts_of(beam) : std::vector<Beam>{}) {
-        const Cone& cone = part.cones.front();
-        light.cones.push_back({.on_axis = most_intensity(part),
-                               .exponent = cone.exponent,
-                               .edge_cosine = std::max(0.0, std::cos(cone.half_angle_rad)),
-                               .full_cosine = cone.edge_rad > 0.0
-                                                  ? std::cos(cone.half_angle_rad - cone.edge_rad)
-                                                  : -1.0});
+    if (!beam.window) light.cones = cone_lights(beam);
+    for (const Cone& cone : beam.cones)
         light.ends_in_a_power |= cone.half_angle_rad >= kPoleRad && !is_whole(cone.exponent);
-    }
     if (strobe.emitter)
         add_lamps_of(strobe, frame, rules_[emitter_side], light.lamps);
     else

@@ -96,18 +96,11 @@ class Veil {
         Eigen::Vector3d position_m;
         double share;
     };
-    // A cone as plain numbers, between its own creases.
-    struct ConeLight {
-        double on_axis;
-        double exponent;
-        double edge_cosine;
-        double full_cosine;  // where its soft edge begins; below edge_cosine: none
-    };
     struct Light {
         Beam beam;
         BeamFrame frame;
         std::vector<Crease> creases;
-        std::vector<ConeLight> cones;    // of a beam that has nothing else
+        std::vector<ConeLight> cones;    // of a beam without pattern and window
         std::vector<TablePiece> pieces;  // of a round table without a window, of a flux of 1
         std::vector<Lamp> lamps;
         double widest_panel_rad;

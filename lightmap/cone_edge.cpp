@@ -2,51 +2,30 @@
 #include "lightmap/cone_edge.h"
 
 #include "image/image_size.h"
+#include "light/floor_ray.h"
+#include "light/tile_cone.h"
 #include "rig/geometry.h"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 namespace aphotic {
 
 namespace {
 
+using Eigen::Vector3d;
+
+constexpr int kTile_px = 32;
+
 // An emitter's rim at its corners and half way between them, and its middle; a point's own
 // position.
-std::vector<LampTerms> places_of(const Strobe& strobe) {
-    LampTerms place{.position_m = strobe.position_m,
-                    .frame = turned_frame(strobe.beam, strobe.axis),
-                    .light = nullptr};
-    if (!strobe.emitter) return {place};
+std::vector<Vector3d> places_of(const Strobe& strobe) {
+    if (!strobe.emitter) return {strobe.position_m};
     // The centres of a grid of three by three cells lie two thirds of the way to the rim.
     constexpr double kToTheRim = 1.5;
-    std::vector<LampTerms> places;
-    for (const Eigen::Vector3d& centre : lamp_positions_m(strobe, {.across = 3, .along = 3})) {
-        place.position_m = strobe.position_m + kToTheRim * (centre - strobe.position_m);
-        places.push_back(place);
-    }
-    return places;
-}
-
-// Bytes of two rows that differ, in bits of their own.
-void note_differences(const std::uint8_t* a,
-                      const std::uint8_t* b,
-                      std::size_t count,
-                      std::uint8_t* noted) {
-    for (std::size_t i = 0; i < count; ++i)
-        noted[i] = static_cast<std::uint8_t>(noted[i] | (a[i] ^ b[i]));
-}
-
-// Counts that are neither none nor all.
-void note_parts(const std::uint8_t* counts,
-                std::uint8_t most,
-                std::size_t count,
-                std::uint8_t* noted) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const bool is_part = (counts[i] > 0) & (counts[i] < most);
-        noted[i] = static_cast<std::uint8_t>(noted[i] | (is_part ? 1 : 0));
-    }
+    std::vector<Vector3d> places_m;
+    for (const Vector3d& centre : lamp_positions_m(strobe, {.across = 3, .along = 3}))
+        places_m.push_back(strobe.position_m + kToTheRim * (centre - strobe.position_m));
+    return places_m;
 }
 
 void take_in(const std::uint8_t* bits, std::size_t count, std::uint8_t* mask) {
@@ -55,76 +34,105 @@ void take_in(const std::uint8_t* bits, std::size_t count, std::uint8_t* mask) {
 
 }  // namespace
 
-ConeEdges::ConeEdges(const Rig& rig) : rig_(rig), ends_nm_{rig.camera.range.first_nm} {
-    if (rig.camera.port) ends_nm_.push_back(rig.camera.range.last_nm);
-    for (const double nm : ends_nm_) ray_tables_.push_back(ray_table(rig, nm, 1));
-    most_.push_back(static_cast<std::uint8_t>(ends_nm_.size()));
-    for (const Strobe& strobe : rig.strobes) {
-        const Lamp lamp{.places = places_of(strobe), .edges = beam_edges(strobe)};
-        if (lamp.edges.count() == 0) continue;
-        most_.insert(most_.end(),
-                     lamp.edges.count(),
-                     static_cast<std::uint8_t>(ends_nm_.size() * lamp.places.size()));
-        lamps_.push_back(lamp);
+// Pixels of the image, and the one after each row and column of them, so that neighbours in two
+// tiles are compared in one.
+struct ConeEdges::Tile {
+    int column;
+    int row;
+    int width;
+    int height;
+};
+
+ConeEdges::ConeEdges(const Rig& rig) : rig_(rig) {
+    ends_.emplace_back(rig, rig.camera.range.first_nm, 1);
+    if (rig.camera.port) ends_.emplace_back(rig, rig.camera.range.last_nm, 1);
+    for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
+        beams_.emplace_back(rig.strobes[s]);
+        for (std::size_t edge = 0; edge < beams_[s].count(); ++edge) {
+            edges_.push_back({.places_m = places_of(rig.strobes[s]),
+                              .strobe = s,
+                              .edge = edge,
+                              .creases = beams_[s].creases(edge)});
+        }
     }
 }
 
-void ConeEdges::count_row(int row, const std::vector<RayTerms>& ends, Counts& counts) const {
-    RayBlock rays;
-    DirectionBlock V;
-    for (auto& thing : counts) std::ranges::fill(thing, 0);
-    for (int column = 0; column < rig_.camera.width_px; column += kRowBlock) {
-        const std::size_t first = size_of(column);
-        for (const RayTerms& end : ends) {
-            look_along(end, {}, row, neighbours(end, column), rays);
-            count_seen(rays, &counts[0][first]);
-            std::size_t thing = 1;
-            for (const Lamp& lamp : lamps_) {
-                for (const LampTerms& place : lamp.places) {
-                    (lamp.edges.has_rim ? aim_turned : aim_round)(rays, place, V);
-                    for (std::size_t k = 0; k < lamp.edges.count(); ++k) {
-                        count_within(lamp.edges, k, rays, V, &counts[thing + k][first]);
+void ConeEdges::mark(const Tile& tile, const Sled& sled, std::vector<std::uint8_t>& mask) const {
+    const Plane floor = floor_plane(sled);
+    const auto ray_at = [&](const RayTable& end, double x, double y) {
+        return floor_ray(end.at(tile.column + x + 0.5, tile.row + y + 0.5), floor);
+    };
+    std::vector<FloorRay> outline;
+    for (const auto& [x, y] : tile_places(tile.width, tile.height))
+        for (const RayTable& end : ends_) outline.push_back(ray_at(end, x, y));
+    const bool has_horizon = std::ranges::any_of(outline, &FloorRay::sees_floor) &&
+                             !std::ranges::all_of(outline, &FloorRay::sees_floor);
+    std::vector<const LampEdge*> near;
+    for (const LampEdge& edge : edges_) {
+        const bool is_near = std::ranges::any_of(edge.places_m, [&](const Vector3d& place_m) {
+            const TileCone cone = tile_cone(place_m, outline);
+            return cone.sees_any && std::ranges::any_of(edge.creases, [&](const Crease& crease) {
+                       return !cone.sees_all || comes_into(cone, crease);
+                   });
+        });
+        if (is_near) near.push_back(&edge);
+    }
+    if (!has_horizon && near.empty()) return;
+
+    // By pixel, how many of the rays and places have its point within a thing that has an edge: the
+    // floor itself, then each of the edges.
+    const std::size_t things = near.size() + 1;
+    std::vector<std::size_t> counts(things * size_of(tile.width) * size_of(tile.height));
+    const auto counts_of = [&](int x, int y) {
+        return &counts[things * (size_of(y) * size_of(tile.width) + size_of(x))];
+    };
+    const auto mark_pixel = [&](int x, int y) {
+        mask[size_of(tile.row + y) * size_of(rig_.camera.width_px) + size_of(tile.column + x)] = 1;
+    };
+    for (int y = 0; y < tile.height; ++y) {
+        for (int x = 0; x < tile.width; ++x) {
+            std::size_t* const here = counts_of(x, y);
+            for (const RayTable& end : ends_) {
+                const FloorRay ray = ray_at(end, x, y);
+                if (!ray.sees_floor()) continue;
+                ++here[0];
+                for (std::size_t k = 0; k < near.size(); ++k) {
+                    for (const Vector3d& place_m : near[k]->places_m) {
+                        here[k + 1] +=
+                            beams_[near[k]->strobe].is_within(near[k]->edge, towards(place_m, ray))
+                                ? 1
+                                : 0;
                     }
                 }
-                thing += lamp.edges.count();
+            }
+            for (std::size_t k = 0; k < things; ++k) {
+                const std::size_t most = ends_.size() * (k == 0 ? 1 : near[k - 1]->places_m.size());
+                if (here[k] > 0 && here[k] < most) mark_pixel(x, y);
+                if (x > 0 && here[k] != counts_of(x - 1, y)[k])
+                    mark_pixel(x, y), mark_pixel(x - 1, y);
+                if (y > 0 && here[k] != counts_of(x, y - 1)[k])
+                    mark_pixel(x, y), mark_pixel(x, y - 1);
             }
         }
     }
 }
 
 std::vector<std::uint8_t> ConeEdges::mask(const Sled& sled, int within_px) const {
-    const std::size_t width = size_of(rig_.camera.width_px);
-    std::vector<std::uint8_t> mask(width * size_of(rig_.camera.height_px));
+    const int width = rig_.camera.width_px;
+    const int height = rig_.camera.height_px;
+    std::vector<std::uint8_t> mask(size_of(width) * size_of(height));
     if (within_px == 0) return mask;
-    const Plane floor = floor_plane(sled);
-    std::vector<RayTerms> ends;
-    for (std::size_t e = 0; e < ends_nm_.size(); ++e) {
-        ends.push_back(ray_terms(rig_, floor, ends_nm_[e], ray_tables_[e]));
-    }
-    const std::size_t blocks = (width + kRowBlock - 1) / kRowBlock;
-    Counts counts(most_.size(), std::vector<std::uint8_t>(blocks * kRowBlock));
-    Counts above(counts);
-    std::vector<std::uint8_t> beside(width);
-    std::vector<std::uint8_t> below(width);
-    for (int row = 0; row < rig_.camera.height_px; ++row) {
-        count_row(row, ends, counts);
-        std::uint8_t* const marks = &mask[size_of(row) * width];
-        std::ranges::fill(beside, 0);
-        std::ranges::fill(below, 0);
-        for (std::size_t k = 0; k < counts.size(); ++k) {
-            const std::uint8_t* const now = counts[k].data();
-            if (most_[k] > 1) note_parts(now, most_[k], width, marks);
-            note_differences(now, now + 1, width - 1, beside.data());
-            if (row > 0) note_differences(now, above[k].data(), width, below.data());
+    for (int row = 0; row < height; row += kTile_px) {
+        for (int column = 0; column < width; column += kTile_px) {
+            mark({.column = column,
+                  .row = row,
+                  .width = std::min(kTile_px + 1, width - column),
+                  .height = std::min(kTile_px + 1, height - row)},
+                 sled,
+                 mask);
         }
-        take_in(beside.data(), width - 1, marks);
-        take_in(beside.data(), width - 1, marks + 1);
-        take_in(below.data(), width, marks);
-        if (row > 0) take_in(below.data(), width, marks - width);
-        std::swap(counts, above);
     }
-    for (std::uint8_t& mark : mask) mark = mark != 0 ? 1 : 0;
-    spread(mask, rig_.camera.width_px, within_px - 1);
+    spread(mask, width, within_px - 1);
     return mask;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Where the edges of the strobes' beams fall in the image, by the geometry of lightmaps
-// (row_light.h).
+// (light/floor_ray.h). Pixels are looked at in tiles that an edge may come into alone.
 //
 // A pixel's point of the floor is within a cone of half angle g when its direction from the lamp,
 // v, keeps v.a >= |v| cos g with the strobe's axis a. An edge passes between neighbouring pixels of
@@ -11,9 +11,11 @@
 // ends as cos^n 90 = 0, unless n < 1; nor has a soft one. The horizon is an edge too.
 #pragma once
 
-#include "lightmap/beam_edges.h"
-#include "lightmap/row_light.h"
+#include "light/beam_light.h"
+#include "light/ray_table.h"
 #include "rig/rig.h"
+
+#include <Eigen/Core>
 
 #include <cstdint>
 #include <vector>
@@ -29,22 +31,21 @@ class ConeEdges {
     [[nodiscard]] std::vector<std::uint8_t> mask(const Sled& sled, int within_px) const;
 
   private:
-    // The edges of a strobe's beam, and the places that its light comes from.
-    struct Lamp {
-        std::vector<LampTerms> places;
-        BeamEdges edges;
+    // An edge of a strobe's beam, and the places that its light comes from.
+    struct LampEdge {
+        std::vector<Eigen::Vector3d> places_m;
+        std::size_t strobe = 0;
+        std::size_t edge = 0;
+        std::vector<Crease> creases{};
     };
-    // By pixel of a row, how many of the rays and places have the pixel's point within a thing that
-    // has an edge: the floor itself, then each edge of each strobe.
-    using Counts = std::vector<std::vector<std::uint8_t>>;
+    struct Tile;
 
-    void count_row(int row, const std::vector<RayTerms>& rays, Counts& counts) const;
+    void mark(const Tile& tile, const Sled& sled, std::vector<std::uint8_t>& mask) const;
 
     Rig rig_;
-    std::vector<double> ends_nm_;  // of the range behind a port, else one wavelength
-    std::vector<std::shared_ptr<const RayTable>> ray_tables_;  // at each
-    std::vector<Lamp> lamps_;
-    std::vector<std::uint8_t> most_;  // that a count can be, by thing
+    std::vector<RayTable> ends_;    // of the range behind a port, else of one wavelength
+    std::vector<BeamEdges> beams_;  // by strobe
+    std::vector<LampEdge> edges_;
 };
 
 // Non-zero pixels spread to all within so many pixels along rows and columns: a mask widened.

@@ -25,11 +25,10 @@
 // when all that lies beyond is darker than kDarkShare of the brightest.
 #pragma once
 
+#include "light/floor_light.h"
 #include "light/path_range.h"
-#include "light/path_table.h"
+#include "light/signal_table.h"
 #include "light/veil_map.h"
-#include "lightmap/beam_edges.h"
-#include "lightmap/ray_table.h"
 #include "rig/rig.h"
 #include "spectral/bands.h"
 #include "spectral/veil_share.h"
@@ -43,8 +42,6 @@
 #include <vector>
 
 namespace aphotic {
-
-struct DispersedSpectrum;  // lightmap/dispersed_light.h
 
 struct LightmapOptions {
     // Relative, of the spectral integral and of its table. The rounding of floats comes on top, and
@@ -118,50 +115,23 @@ class LightmapMaker {
     void place(const std::vector<StrobePlace>& by_strobe);
 
     [[nodiscard]] const PathRange& paths() const { return paths_; }
-    [[nodiscard]] std::size_t grid_size() const { return grid_size_; }
-    [[nodiscard]] int table_steps() const { return steps_.count; }
+    [[nodiscard]] std::size_t grid_size() const { return table_.grid_size; }
+    [[nodiscard]] int table_steps() const { return table_.steps.count; }
 
   private:
-    // A lamp spectrum on the floor, and bare where the floor has a highlight, by index node; and
-    // behind a port by wavelength.
-    struct LightTables {
-        std::vector<std::vector<float>> diffuse;
-        std::vector<std::vector<float>> highlight;
-        std::shared_ptr<const DispersedSpectrum> dispersed{};
-    };
-
-    struct Scene;  // what all rows of a map have in common
-
-    void tabulate();
     void make_veil();
-    void tabulate_lamp(const Spectrum& lamp,
-                       const std::vector<WeightedWavelength>& grid,
-                       const std::vector<WeightedWavelength>& dispersed_grid,
-                       LightTables& tables) const;
-    [[nodiscard]] Scene scene_of(const Sled& sled) const;
     void require_served(const Sled& sled, bool is_before, bool is_beyond) const;
+    void take_off_vignetting(int first_row, int count, std::vector<float>& all) const;
 
     Rig rig_;
     LightmapOptions options_;
     PathRange paths_;
     PathRange direct_;  // as they were asked for
-    PathSteps steps_;
-    std::size_t grid_size_ = 0;
-    std::vector<std::vector<double>> shares_;                  // of rays, by wavelength of the grid
-    std::vector<double> index_nodes_nm_;                       // of light; one without a port
-    std::vector<double> dispersed_nodes_nm_;                   // of pixels in doubt
-    std::vector<double> ray_nodes_nm_;                         // whose rays are traced
-    std::vector<std::shared_ptr<const RayTable>> ray_tables_;  // at each; none has a formula
-    std::vector<float> vignetting_;                            // by pixel; empty: none
-    std::vector<LightTables> tables_;                          // by lamp spectrum
-    std::vector<std::size_t> spectrum_of_strobe_;
-    std::vector<BeamEdges> edges_;         // by strobe
+    CameraRays rays_;
+    SignalTable table_;
+    std::vector<float> vignetting_;        // by pixel; empty: none
     std::shared_ptr<const VeilMap> veil_;  // none where the water does not scatter
 };
-
-// Throws InputError, which names the sled's pose and the strobe, unless the sled holds all lamps of
-// the rig over the floor.
-void require_over_floor(const Rig& rig, const Sled& sled);
 
 // The paths that any of these sleds sees, with some room for those between them.
 [[nodiscard]] PathRange paths_of(const Rig& rig, const std::vector<Sled>& sleds);

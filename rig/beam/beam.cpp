@@ -41,13 +41,17 @@ double falloff(double cosine, double exponent) {
     return exponent == 1.0 ? cosine : std::pow(cosine, exponent);
 }
 
-// S: POV-Ray's own step from a spotlight's radius to its falloff.
-double soft_edge(const Cone& cone, double cosine) {
-    if (cone.edge_rad == 0.0) return 1.0;
-    const double full = std::cos(cone.half_angle_rad - cone.edge_rad);
-    const double none = std::cos(cone.half_angle_rad);
+// POV-Ray's own, from a spotlight's falloff to its radius.
+double smooth_step(double cosine, double none, double full) {
     const double t = std::clamp((cosine - none) / (full - none), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
+}
+
+// S.
+double soft_edge(const Cone& cone, double cosine) {
+    if (cone.edge_rad == 0.0) return 1.0;
+    return smooth_step(
+        cosine, std::cos(cone.half_angle_rad), std::cos(cone.half_angle_rad - cone.edge_rad));
 }
 
 // Of cos^n(theta) as far as an angle. 1 - cos^(n + 1) is a small difference for narrow cones: expm1
@@ -86,6 +90,7 @@ double axial_intensity(const Cone& cone, ConeWeights weights) {
 Vector3d turned(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
     const double x = frame.along.dot(towards);
     const double y = frame.across.dot(towards);
+    if (beam.turn_rad == 0.0) return {x, y, frame.axis.dot(towards)};
     const double c = std::cos(beam.turn_rad);
     const double s = std::sin(beam.turn_rad);
     return {c * x + s * y, c * y - s * x, frame.axis.dot(towards)};
@@ -304,7 +309,21 @@ BeamFrame frame_about(const Vector3d& axis) {
 
 double intensity_towards(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
     const auto view = pattern_view(beam, frame, towards);
-    return view ? view->factor * of_pattern(beam, view->direction, view->direction) : 0.0;
+    if (!view) return 0.0;
+    const Vector3d& direction = view->direction;
+    const double intensity =
+        std::visit(Cases{[&](std::monostate) {
+                             const double cosine = direction.z() / direction.norm();
+                             return of_cones(beam, cosine, cosine);
+                         },
+                         [&](const BeamTable& table) {
+                             return beam.per_flux * table_intensity(table, direction);
+                         },
+                         [&](const BeamOptics& optics) {
+                             return beam.per_flux * optics_intensity(optics, direction);
+                         }},
+                   beam.pattern);
+    return view->factor * intensity;
 }
 
 std::optional<PatternView> pattern_view(const Beam& beam,
@@ -315,6 +334,10 @@ std::optional<PatternView> pattern_view(const Beam& beam,
     const auto found = in_air(*beam.window, direction);
     if (!found) return std::nullopt;
     return PatternView{.direction = found->direction, .factor = found->factor};
+}
+
+PatternView continued_view(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
+    return view_of(beam, turned(beam, frame, towards));
 }
 
 double continued_intensity(const Beam& beam,
@@ -415,7 +438,9 @@ bool is_within_rim(const Beam& beam, const BeamFrame& frame, const Vector3d& tow
 }
 
 double steepest_exponent(const Beam& beam) {
-    if (!has_lobes(beam)) return steepest_by_grid(beam);
+    const auto is_sharp = [](const Cone& cone) { return cone.edge_rad == 0.0; };
+    if (is_pattern(beam) || beam.window || !std::ranges::all_of(beam.cones, is_sharp))
+        return steepest_by_grid(beam);
     double steepest = 0.0;
     for (const Cone& cone : beam.cones) steepest = std::max(steepest, cone.exponent);
     return steepest;
@@ -451,20 +476,26 @@ Beam parts_that(const Beam& beam, const std::function<bool(const Beam&)>& is_wan
     return kept;
 }
 
-bool has_lobes(const Beam& beam) {
-    return !is_pattern(beam) && !beam.window &&
-           std::ranges::all_of(beam.cones, [](const Cone& cone) { return cone.edge_rad == 0.0; });
+double ConeLight::at(double cosine, double cosine_from) const {
+    if (cosine <= 0.0) return 0.0;
+    const bool is_sharp = full_cosine < 0.0;
+    if (is_sharp ? cosine_from < edge_cosine : cosine <= edge_cosine) return 0.0;
+    const double intensity = on_axis * falloff(cosine, exponent);
+    return is_sharp ? intensity : intensity * smooth_step(cosine, edge_cosine, full_cosine);
 }
 
-std::vector<Lobe> lobes_of(const Beam& beam) {
-    std::vector<Lobe> lobes;
-    lobes.reserve(beam.cones.size());
+std::vector<ConeLight> cone_lights(const Beam& beam) {
+    std::vector<ConeLight> lights;
+    if (is_pattern(beam)) return lights;
+    lights.reserve(beam.cones.size());
     for (const Cone& cone : beam.cones) {
-        lobes.push_back({.edge_cosine = std::cos(cone.half_angle_rad),
-                         .on_axis = axial_intensity(cone, beam.weights),
-                         .exponent = cone.exponent});
+        const double full_rad = cone.half_angle_rad - cone.edge_rad;
+        lights.push_back({.on_axis = axial_intensity(cone, beam.weights),
+                          .exponent = cone.exponent,
+                          .edge_cosine = std::cos(cone.half_angle_rad),
+                          .full_cosine = cone.edge_rad > 0.0 ? std::cos(full_rad) : -1.0});
     }
-    return lobes;
+    return lights;
 }
 
 std::string beam_signature(const Beam& beam) {

@@ -100,6 +100,10 @@ struct PatternView {
 [[nodiscard]] std::optional<PatternView> pattern_view(const Beam& beam,
                                                       const BeamFrame& frame,
                                                       const Eigen::Vector3d& towards);
+// Beyond what a window lets out: its last.
+[[nodiscard]] PatternView continued_view(const Beam& beam,
+                                         const BeamFrame& frame,
+                                         const Eigen::Vector3d& towards);
 
 // intensity_towards() as though what lights the direction `from` had no edge: where a small turn
 // crosses none, it is I itself.
@@ -146,18 +150,18 @@ inline constexpr double kDimBeamShare = 0.01;
 // The beam of those that are wanted.
 [[nodiscard]] Beam parts_that(const Beam& beam, const std::function<bool(const Beam&)>& is_wanted);
 
-// Cones as plain numbers, for loops over many directions:
-//
-//   I = sum of on_axis cos^exponent(theta) over the lobes with cos(theta) >= edge_cosine
-//
-// Of beams that are such a sum: has_lobes().
-struct Lobe {
-    double edge_cosine = 0.0;
+// A cone as plain numbers, for loops over many directions. Of a beam that is a pattern there are
+// none. Behind a window cosines are those in air.
+struct ConeLight {
     double on_axis = 0.0;  // [1/sr]
     double exponent = 1.0;
+    double edge_cosine = 0.0;
+    double full_cosine = -1.0;  // where its soft edge begins; -1: it has none
+
+    // I at a cosine, as though the direction `from` of the other cosine had no edge.
+    [[nodiscard]] double at(double cosine, double cosine_from) const;
 };
-[[nodiscard]] bool has_lobes(const Beam& beam);
-[[nodiscard]] std::vector<Lobe> lobes_of(const Beam& beam);
+[[nodiscard]] std::vector<ConeLight> cone_lights(const Beam& beam);
 
 // Beams of the same signature shine alike. Names do not count.
 [[nodiscard]] std::string beam_signature(const Beam& beam);

@@ -5,7 +5,7 @@
 #include "lightmap/lightmap.h"
 
 #include "base/error.h"
-#include "lightmap/row_fit.h"
+#include "light/floor_image.h"
 #include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 #include "spectral/curve_loader.h"
@@ -225,7 +225,8 @@ void give_beams(BeamKind kind, Dice& dice, Rig& rig) {
     for (Strobe& strobe : rig.strobes) strobe.beam = random_beam_of(kind, dice);
 }
 
-// Rows of several blocks, of which smooth ones are fitted (row_fit.h), and the last is shorter.
+// Rows of several blocks, of which smooth ones are fitted (light/floor_image.h), and the last is
+// shorter.
 TEST(Lightmap, IsThatOfTheTracerWhereRowsAreFitted) {
     const auto give = [](BeamKind kind, int, Dice& dice, Rig& rig) {
         rig.camera.pixel_pitch_m *= 96.0 / 300.0;
@@ -233,7 +234,7 @@ TEST(Lightmap, IsThatOfTheTracerWhereRowsAreFitted) {
         rig.camera.height_px = 12;
         give_beams(kind, dice, rig);
     };
-    expect_equal_of_every(kBeamKinds, 7200, 12, kWithoutPort + kRowFitError, give);
+    expect_equal_of_every(kBeamKinds, 7200, 12, kWithoutPort + kTileError, give);
 }
 
 TEST(Lightmap, IsThatOfTheTracerForEveryKindOfBeam) {

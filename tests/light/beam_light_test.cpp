@@ -2,11 +2,11 @@
 //
 // Maps of every kind of beam against plain sums over lamps, pixel by pixel, of the closed form of
 // physics.md in water of one K, with rig/beam's intensity and rig/geometry's rays.
-#include "lightmap/beam_light.h"
+#include "light/beam_light.h"
 
+#include "light/floor_image.h"
 #include "lightmap/cone_edge.h"
 #include "lightmap/lightmap.h"
-#include "lightmap/row_fit.h"
 #include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
 #include "support/effort.h"
@@ -28,7 +28,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kLoss_per_m = 0.3;
 // What the maps' tables are asked for, and the rounding of a sum of a dozen floats, twice: the
 // closed form has its unit from a map too.
-constexpr double kError = 2.0 * (4e-6 + 12.0 * 0x1p-24) + kRowFitError;
+constexpr double kError = 2.0 * (4e-6 + 12.0 * 0x1p-24) + kTileError;
 
 // One K and, behind a port, all but one index.
 Rig plain_rig(int width_px, int height_px) {

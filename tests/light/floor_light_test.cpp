@@ -3,10 +3,11 @@
 // Maps behind ports, where every wavelength has its own ray, against the reference tracer: beams
 // with kinks and steep edges, ports of every kind. The printed figure must hold at every pixel off
 // the beams' edges.
-#include "lightmap/lightmap.h"
+#include "light/floor_light.h"
 
 #include "base/error.h"
 #include "light/path_range.h"
+#include "lightmap/lightmap.h"
 #include "rig/file/rig_reader.h"
 #include "support/effort.h"
 #include "support/random_beam.h"
@@ -26,7 +27,7 @@
 #include <utility>
 #include <vector>
 
-namespace aphotic::port_light_test {
+namespace aphotic::floor_light_test {
 namespace {
 
 Rig small_rig(int width_px, int height_px) {
@@ -230,4 +231,4 @@ TEST(PortLight, IsTheSameToTheBitForAnyThreadsAndRows) {
 }
 
 }  // namespace
-}  // namespace aphotic::port_light_test
+}  // namespace aphotic::floor_light_test

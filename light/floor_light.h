@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The light of a rig's strobes on the bare floor, as a place of the image sees it: the one sum.
+//
+//   S_c = sum over lamps of  share I(w) cos(i) / d^2 T_c(d + r)  +  highlight
+//
+// share   the strobe's power over pi and its number of lamps
+// I(w)    beam, per direction (beam_light.h)            cos(i)  at the floor
+// d, r    lamp to floor, floor to camera, in water      T_c     signal by path (signal_table.h)
+//
+// With V the way of the light of a lamp, h its height over the floor, and D, w and H of the ray
+// (floor_ray.h),
+//
+//   d = |V|/w     r = H/w     cos(i) / d^2 = h w^3 / |V|^3
+//
+// and for the highlight, with m the ray mirrored at the floor and l the way to the lamp,
+//
+//   m.l = (2 w^2 h - D.V) / |V|          phong I / d^2 (m.l)^phong_size
+//
+// Behind a port every wavelength has a ray of its own. G, what one lamp counts, is a smooth
+// function of the water's index, so the signal is
+//
+//   S_c = sum_j  G_j T_jc(l_j)
+//
+// over the index nodes (index_nodes.h). Half way between nodes
+//
+//   doubt = max |G(n) - sum_j G(n_j) l_j(n)|
+//
+// tells where it is not: a kink of the beam lies between two nodes, of which a single one shows
+// there at least a third of the most that it does anywhere. What shows nothing is a ray that
+// crosses a kink and comes back; unless the kink is steep that is little, so steep ones are looked
+// for as such (beam_crease.h), on the parabola through the nodes. A place whose doubt is over
+// kMostDoubt of its signal, or where a ray crosses a steep kink, has a ray for each wavelength,
+//
+//   S_c = sum_i w_ci G(n_i) exp(-K_i l(n_i))
+//
+// A beam's edge, which dispersion spreads over several pixels, is sharp and stands where the middle
+// index has it.
+#pragma once
+
+#include "light/beam_light.h"
+#include "light/floor_ray.h"
+#include "light/index_nodes.h"
+#include "light/ray_table.h"
+#include "light/signal_table.h"
+#include "light/steep_crease.h"
+#include "rig/beam/beam_crease.h"
+#include "rig/rig.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr double kMostDoubt = 1e-5;
+
+// Of the middle index, the first and the last; then half way between the middle and either.
+inline constexpr std::size_t kLooks = 2 * kIndexNodes - 1;
+using PlaceRays = std::array<FloorRay, kLooks>;
+
+// The rays of a camera at the indices of light, whatever the sled.
+class CameraRays {
+  public:
+    CameraRays(const Rig& rig, int threads);
+
+    [[nodiscard]] std::size_t nodes() const { return tables_.size() > 1 ? kIndexNodes : 1; }
+    // At pixels' centres and between them. Those that are looked along only if asked for.
+    [[nodiscard]] PlaceRays at(double column, double row, const Plane& floor, bool looks) const;
+
+  private:
+    std::vector<RayTable> tables_;
+};
+
+struct FloorLamp {
+    Eigen::Vector3d position_m;
+    double floor_m = 0.0;  // its height
+    double share = 0.0;
+    std::size_t strobe = 0;
+};
+
+// What a place of the image has of some lamps.
+struct PlaceLight {
+    Signals signals{};
+    Signals doubts{};
+    bool crosses = false;    // a steep kink
+    bool is_before = false;  // light whose path is shorter than the table's
+    bool is_beyond = false;  // or longer
+};
+
+class FloorLight {
+  public:
+    // For one sled of the rig, whose pose this is. All but the sled must outlive it.
+    FloorLight(const Rig& rig, const Sled& sled, const SignalTable& table, const CameraRays& rays);
+
+    [[nodiscard]] const std::vector<FloorLamp>& lamps() const { return lamps_; }
+    [[nodiscard]] const std::vector<Crease>& creases(const FloorLamp& lamp) const {
+        return strobes_[lamp.strobe].creases;
+    }
+    [[nodiscard]] bool has_port() const { return rays_.nodes() > 1; }
+    [[nodiscard]] PlaceRays rays_at(double column, double row, bool looks) const {
+        return rays_.at(column, row, floor_, looks);
+    }
+    // Adds what a lamp gives, with its doubts where the rays were looked along.
+    void add(const FloorLamp& lamp, const PlaceRays& rays, bool looks, PlaceLight& light) const;
+    // By a ray for each wavelength, and for all these lamps.
+    [[nodiscard]] Signals dispersed(std::span<const FloorLamp* const> lamps,
+                                    double column,
+                                    double row,
+                                    const PlaceRays& rays) const;
+
+  private:
+    struct StrobeLight {
+        BeamLight beam;
+        std::vector<Crease> creases;
+        std::vector<Crease> steep;
+        const LampSignal* signal;
+    };
+    // Of one lamp along one ray.
+    struct Arrival {
+        Eigen::Vector3d towards = Eigen::Vector3d::Zero();
+        double diffuse = 0.0;
+        double highlight = 0.0;
+        double path_m = 0.0;
+    };
+    [[nodiscard]] Arrival arrive(const FloorLamp& lamp,
+                                 const FloorRay& ray,
+                                 const Eigen::Vector3d* from) const;
+    [[nodiscard]] double place_in_table(double path_m) const {
+        return (path_m - table_.steps.first_m) * table_.steps.steps_per_m;
+    }
+
+    const Rig& rig_;
+    const SignalTable& table_;
+    const CameraRays& rays_;
+    Plane floor_;
+    std::vector<StrobeLight> strobes_;
+    std::vector<FloorLamp> lamps_;
+};
+
+// An InputError, which names the sled's pose and the strobe, unless the sled holds all lamps of the
+// rig over the floor.
+void require_over_floor(const Rig& rig, const Sled& sled);
+[[nodiscard]] std::string in_words(const Sled& sled);
+
+}  // namespace aphotic

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "light/signal_table.h"
+
+#include "light/index_nodes.h"
+#include "spectral/light_family.h"
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+
+namespace aphotic {
+namespace {
+
+// Shares of the error that is asked for: the rest is dispersion's.
+constexpr double kGridShare = 0.1;
+constexpr double kTableShare = 0.5;
+// What has a ray for each wavelength changes faster over them than light that keeps its path.
+constexpr double kDispersedShare = 1e-4;
+// Lagrange's polynomials of three even points sum, in size, to 5/4 at most.
+constexpr double kLebesgue = 5.0 / 4.0;
+
+using Grid = std::vector<WeightedWavelength>;
+using LightOf = std::function<double(double lambda_nm)>;
+
+SpectralSum spectral_sum(const Rig& rig, const Grid& grid, const LightOf& light) {
+    const auto count = static_cast<Eigen::Index>(grid.size());
+    SpectralSum sum{.K_per_m = Eigen::ArrayXd(count), .weights = Eigen::ArrayXXd(count, kChannels)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const WeightedWavelength& node = grid[static_cast<std::size_t>(i)];
+        sum.K_per_m(i) = rig.water.attenuation_per_m(node.lambda_nm);
+        const double value = light(node.lambda_nm);
+        for (Eigen::Index c = 0; c < kChannels; ++c)
+            sum.weights(i, c) = node.weight[static_cast<std::size_t>(c)] * value;
+    }
+    return sum;
+}
+
+// Of the grid, what any channel sees.
+Grid seen_of(const Grid& grid) {
+    Grid seen;
+    std::ranges::copy_if(grid, std::back_inserter(seen), [](const WeightedWavelength& node) {
+        return std::ranges::any_of(node.weight, [](double weight) { return weight != 0.0; });
+    });
+    return seen;
+}
+
+// The lamp spectra, each once, and which of them each strobe has.
+std::vector<const Spectrum*> lamps_of(const Rig& rig, std::vector<std::size_t>& by_strobe) {
+    std::vector<const Spectrum*> lamps;
+    for (const Strobe& strobe : rig.strobes) {
+        const auto known = std::ranges::find_if(
+            lamps, [&](const Spectrum* lamp) { return is_same_curve(*lamp, strobe.spectrum); });
+        by_strobe.push_back(static_cast<std::size_t>(known - lamps.begin()));
+        if (known == lamps.end()) lamps.push_back(&strobe.spectrum);
+    }
+    return lamps;
+}
+
+// What a lamp's light is on the floor, and bare, of which the floor's highlight is made.
+struct LampLights {
+    LightOf diffuse;
+    LightOf highlight;
+};
+LampLights lights_of(const Rig& rig, const Spectrum& lamp) {
+    return {.diffuse = [&](double nm) { return lamp.at(nm) * rig.seafloor.reflectance.at(nm); },
+            .highlight = [&](double nm) { return lamp.at(nm); }};
+}
+
+LampSignal signal_of(const Rig& rig,
+                     const Spectrum& lamp,
+                     const Grid& grid,
+                     const Grid& dispersed,
+                     const PathSteps& steps) {
+    const LampLights lights = lights_of(rig, lamp);
+    const bool has_highlight = rig.seafloor.phong > 0.0;
+    const std::vector<double> nodes_nm = index_nodes_nm(rig);
+    LampSignal signal;
+    for (std::size_t j = 0; j < nodes_nm.size(); ++j) {
+        const auto tabulate = [&](const LightOf& light) {
+            return path_table(spectral_sum(rig,
+                                           grid,
+                                           [&](double nm) {
+                                               return index_share(rig, nodes_nm, j, nm) * light(nm);
+                                           }),
+                              steps);
+        };
+        signal.diffuse.push_back(tabulate(lights.diffuse));
+        if (has_highlight) signal.highlight.push_back(tabulate(lights.highlight));
+    }
+    if (!rig.camera.port) return signal;
+    signal.dispersed_diffuse = spectral_sum(rig, dispersed, lights.diffuse);
+    if (has_highlight) signal.dispersed_highlight = spectral_sum(rig, dispersed, lights.highlight);
+    return signal;
+}
+
+}  // namespace
+
+SignalTable signal_table(const Rig& rig, const PathRange& paths, double error) {
+    SignalTable table;
+    const std::vector<const Spectrum*> lamps = lamps_of(rig, table.lamp_of_strobe);
+    if (paths.longest_m == 0.0 || lamps.empty()) return table;
+    const bool has_highlight = rig.seafloor.phong > 0.0;
+    LightFamily family{.sources = {},
+                       .water = rig.water,
+                       .shortest_path_m = paths.shortest_m,
+                       .longest_path_m = paths.longest_m};
+    for (const Spectrum* lamp : lamps) {
+        family.sources.push_back({*lamp, rig.seafloor.reflectance});
+        if (has_highlight) family.sources.push_back({*lamp});
+    }
+    const auto grid_of = [&](double grid_error) {
+        return reference_grid(rig.camera.sensor, family, rig.camera.range, grid_error);
+    };
+    const Grid grid = grid_of(kGridShare * error);
+    table.grid_size = grid.size();
+    Grid dispersed;
+    if (rig.camera.port) {
+        dispersed = seen_of(grid_of(kDispersedShare * error));
+        table.ray_nodes_nm = index_nodes_nm(rig, kRayNodes);
+        for (const WeightedWavelength& node : dispersed) {
+            auto& shares = table.ray_shares.emplace_back();
+            for (std::size_t j = 0; j < kRayNodes; ++j)
+                shares[j] = index_share(rig, table.ray_nodes_nm, j, node.lambda_nm);
+        }
+    }
+    const double table_error = kTableShare * error / (rig.camera.port ? kLebesgue : 1.0);
+    const auto take_in = [&](const LightOf& light) {
+        const PathSteps steps = path_steps(spectral_sum(rig, grid, light), paths, table_error);
+        if (steps.count > table.steps.count) table.steps = steps;
+    };
+    for (const Spectrum* lamp : lamps) {
+        const LampLights lights = lights_of(rig, *lamp);
+        take_in(lights.diffuse);
+        if (has_highlight) take_in(lights.highlight);
+    }
+    for (const Spectrum* lamp : lamps)
+        table.lamps.push_back(signal_of(rig, *lamp, grid, dispersed, table.steps));
+    return table;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The floor's signal over the length of light's path, for every lamp of a rig (path_table.h):
+//
+//   T_sjc(l) = int Phi_s rho Q_c l_j(n) exp(-K l) dlambda
+//
+// s    lamp spectrum Phi_s             rho  the floor's reflectance; 1 for its highlight
+// Q_c  response of channel c           l_j  share of an index node (index_nodes.h)
+//
+// Behind a port besides by wavelength, for light whose rays may not be interpolated over the index.
+#pragma once
+
+#include "light/path_table.h"
+#include "rig/rig.h"
+#include "spectral/bands.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace aphotic {
+
+// Of one lamp spectrum.
+struct LampSignal {
+    std::vector<std::vector<float>> diffuse;    // by index node
+    std::vector<std::vector<float>> highlight;  // the same; none where the floor has no highlight
+    SpectralSum dispersed_diffuse;              // by wavelength, behind a port
+    SpectralSum dispersed_highlight;
+};
+
+// Rays at any index behind a port, from those of so many nodes: they move smoothly with the index,
+// but glass and water disperse light by different laws. Nine nodes are right to 1e-9 of a slope,
+// five to 1e-7.
+inline constexpr std::size_t kRayNodes = 9;
+
+struct SignalTable {
+    PathSteps steps;
+    std::size_t grid_size = 0;                // wavelengths
+    std::vector<std::size_t> lamp_of_strobe;  // of `lamps`
+    std::vector<LampSignal> lamps;
+    std::vector<double> ray_nodes_nm;                       // of dispersed light
+    std::vector<std::array<double, kRayNodes>> ray_shares;  // by wavelength
+};
+
+// error: relative, of the spectral integral and of the table. Without paths there is no light.
+[[nodiscard]] SignalTable signal_table(const Rig& rig, const PathRange& paths, double error);
+
+// Adds factor * T at a path of so many steps of a table.
+using Signals = std::array<double, kChannels>;
+inline void add_signal(const std::vector<float>& table,
+                       double place,
+                       double factor,
+                       Signals& signals) {
+    const auto step = static_cast<std::size_t>(place);
+    const double t = place - static_cast<double>(step);
+    const float* const cubic = &table[step * kTableStride];
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const double c_0 = cubic[c];
+        const double c_1 = cubic[c + kTableLanes];
+        const double c_2 = cubic[c + 2 * kTableLanes];
+        const double c_3 = cubic[c + 3 * kTableLanes];
+        signals[c] += factor * (c_0 + t * (c_1 + t * (c_2 + t * c_3)));
+    }
+}
+
+}  // namespace aphotic

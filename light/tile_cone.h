@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The directions in which a lamp's light goes to what a tile of pixels sees of the floor: those
+// within a cone about one of them that takes in the directions to the tile's corners and to the
+// middles of its sides, kTileRoom times as wide for what a lens bends. On a plane, seen through a
+// pinhole, the corners are the farthest off.
+#pragma once
+
+#include "light/floor_ray.h"
+#include "rig/beam/beam_crease.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <span>
+
+namespace aphotic {
+
+inline constexpr double kTileRoom = 1.1;
+
+// Places of a tile in pixels from its first one's centre, as (column, row); its middle first.
+inline constexpr std::size_t kTilePlaces = 9;
+[[nodiscard]] std::array<std::array<double, 2>, kTilePlaces> tile_places(int width, int height);
+
+struct TileCone {
+    Eigen::Vector3d middle = Eigen::Vector3d::UnitZ();
+    double radius_rad = 0.0;
+    bool sees_all = true;  // all of these rays see the floor
+    bool sees_any = false;
+};
+
+// Of a lamp, and of the rays of a tile's places: the first is the middle one's.
+[[nodiscard]] TileCone tile_cone(const Eigen::Vector3d& lamp_m, std::span<const FloorRay> rays);
+
+// Whether a crease may come within the cone. False is certain.
+[[nodiscard]] bool comes_into(const TileCone& cone, const Crease& crease);
+
+}  // namespace aphotic

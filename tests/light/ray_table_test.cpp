@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "light/ray_table.h"
+
+#include "rig/camera/port.h"
+#include "rig/geometry.h"
+#include "support/random_camera.h"
+#include "support/random_rig.h"
+
+#include <gtest/gtest.h>
+
+namespace aphotic::ray_table_test {
+namespace {
+
+constexpr std::uint64_t kSeed = 16'100;
+constexpr double kGreen_nm = 550.0;
+// The header's 1e-9 for formulas that change over a third of f: 3^4 times as much. Places change
+// over a port's size, 0.1 m at most.
+constexpr double kSlopeError = 8.1e-8;
+constexpr double kPlaceError_m = 0.1 * kSlopeError;
+
+Rig rig_of(std::uint64_t seed) {
+    Rig rig = random_rig(seed);
+    rig.camera.port.reset();
+    rig.camera.width_px = 300;
+    rig.camera.height_px = 210;
+    rig.camera.pixel_pitch_m = rig.camera.focal_length_m / 350.0;
+    return rig;
+}
+
+// Against rays of the places themselves, pixels' centres and others.
+void expect_pixel_rays(const Rig& rig) {
+    const RayTable table(rig, kGreen_nm, 2);
+    EXPECT_TRUE(table.has_nodes());
+    constexpr double kStep_px = 7.3;
+    for (double row = 0.5; row < rig.camera.height_px; row += kStep_px) {
+        for (double column = 0.5; column < rig.camera.width_px; column += kStep_px) {
+            const WaterRay found = table.at(column, row);
+            const WaterRay ray = pixel_ray(rig, column, row, kGreen_nm);
+            EXPECT_LT((found.direction - ray.direction).norm(), kSlopeError)
+                << column << ", " << row;
+            EXPECT_LT((found.origin_m - ray.origin_m).norm(), kPlaceError_m)
+                << column << ", " << row;
+        }
+    }
+}
+
+TEST(RayTable, HasTheRaysOfEveryLens) {
+    for (const LensKind kind : kLensKinds) {
+        SCOPED_TRACE(static_cast<int>(kind));
+        Dice dice(kSeed);
+        Rig rig = rig_of(kSeed);
+        give_lens(kind, dice, rig.camera);
+        expect_pixel_rays(rig);
+    }
+}
+
+TEST(RayTable, HasTheRaysThroughEveryPort) {
+    for (const PortKind kind : kPortKinds) {
+        SCOPED_TRACE(static_cast<int>(kind));
+        Dice dice(kSeed + 1);
+        Rig rig = rig_of(kSeed + 1);
+        give_port(kind, dice, rig.camera);
+        if (kind == PortKind::Flat) give_lens(LensKind::RadialTangential, dice, rig.camera);
+        expect_pixel_rays(rig);
+    }
+}
+
+TEST(RayTable, AsksForEachRayWhereItHasAFormulaOrNodesWouldBeAsMany) {
+    const Rig rig = rig_of(kSeed + 2);
+    EXPECT_FALSE(RayTable(rig, kGreen_nm, 1).has_nodes());
+    Dice dice(kSeed + 2);
+    Rig small = rig;
+    small.camera.width_px = 3;
+    small.camera.height_px = 4;
+    give_port(PortKind::Flat, dice, small.camera);
+    const RayTable table(small, kGreen_nm, 1);
+    EXPECT_FALSE(table.has_nodes());
+    EXPECT_EQ(table.at(0.5, 1.5).direction, pixel_ray(small, 0.5, 1.5, kGreen_nm).direction);
+}
+
+}  // namespace
+}  // namespace aphotic::ray_table_test
