@@ -8,26 +8,19 @@ namespace aphotic {
 using Eigen::Vector3d;
 
 BeamLight::BeamLight(const Beam& beam, const Vector3d& axis)
-    : beam_(beam), frame_(frame_about(axis)), cones_(cone_lights(beam)) {}
-
-double BeamLight::of_cones(const PatternView& view, const PatternView& from) const {
-    const double cosine = view.direction.z() / view.direction.norm();
-    const double cosine_from = from.direction.z() / from.direction.norm();
-    double intensity = 0.0;
-    for (const ConeLight& cone : cones_) intensity += cone.at(cosine, cosine_from);
-    return view.factor * intensity;
+    : beam_(beam), frame_(frame_about(axis)) {
+    if (is_round(beam)) profile_.emplace(beam);
 }
 
 double BeamLight::at(const Vector3d& towards) const {
-    if (cones_.empty()) return intensity_towards(beam_, frame_, towards);
-    const auto view = pattern_view(beam_, frame_, towards);
-    return view ? of_cones(*view, *view) : 0.0;
+    if (!profile_) return intensity_towards(beam_, frame_, towards);
+    return profile_->at(frame_.axis.dot(towards) / towards.norm());
 }
 
 double BeamLight::continued(const Vector3d& towards, const Vector3d& from) const {
-    if (cones_.empty()) return continued_intensity(beam_, frame_, towards, from);
-    const auto view_from = pattern_view(beam_, frame_, from);
-    return view_from ? of_cones(continued_view(beam_, frame_, towards), *view_from) : 0.0;
+    if (!profile_) return continued_intensity(beam_, frame_, towards, from);
+    return profile_->continued(frame_.axis.dot(towards) / towards.norm(),
+                               frame_.axis.dot(from) / from.norm());
 }
 
 BeamEdges::BeamEdges(const Strobe& strobe) : beam_(strobe.beam), frame_(frame_about(strobe.axis)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A strobe's beam, made ready to be asked for many directions: rig/beam/beam.h's formulas, with
-// what no direction changes computed once.
+// A strobe's beam, made ready to be asked for many directions: a round one by its profile
+// (rig/beam/round_profile.h), others by rig/beam/beam.h's formulas.
 //
 //   I(w)   intensity in the direction w, per unit of the lamp's power   [1/sr]
 //
@@ -10,11 +10,13 @@
 
 #include "rig/beam/beam.h"
 #include "rig/beam/beam_crease.h"
+#include "rig/beam/round_profile.h"
 #include "rig/rig.h"
 
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace aphotic {
@@ -29,11 +31,9 @@ class BeamLight {
                                    const Eigen::Vector3d& from) const;
 
   private:
-    [[nodiscard]] double of_cones(const PatternView& view, const PatternView& from) const;
-
     Beam beam_;
     BeamFrame frame_;
-    std::vector<ConeLight> cones_;  // none of a pattern
+    std::optional<RoundProfile> profile_;  // of a beam that is round
 };
 
 // Where a strobe's beam ends sharply: circles about its axis, and a rim that is none

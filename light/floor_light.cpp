@@ -22,6 +22,15 @@ constexpr std::array<std::size_t, kLooks> kLookOrder{2, 0, 4, 1, 3};
 constexpr std::array<std::array<double, kIndexNodes>, kLooks - kIndexNodes> kHalfWay{
     {{0.75, 0.375, -0.125}, {0.75, -0.125, 0.375}}};
 
+// The wavelengths of PlaceRays.
+std::vector<double> looks_nm(const Rig& rig) {
+    if (!rig.camera.port) return index_nodes_nm(rig);
+    const std::vector<double> nodes_nm = index_nodes_nm(rig, kLooks);
+    std::vector<double> looks;
+    for (const std::size_t node : kLookOrder) looks.push_back(nodes_nm[node]);
+    return looks;
+}
+
 // As in clear water: of what a signal counts, little is attenuated so much that it asks for more.
 LampGrid grid_of_lamps(const Rig& rig, const Strobe& strobe) {
     constexpr double kMostLamps = 1e5;  // a map adds up the lamps pixel by pixel
@@ -60,17 +69,15 @@ void require_over_floor(const Rig& rig, const Sled& sled) {
     }
 }
 
-CameraRays::CameraRays(const Rig& rig, int threads) {
-    const std::vector<double> nodes_nm =
-        index_nodes_nm(rig, rig.camera.port ? kLooks : kIndexNodes);
-    for (std::size_t k = 0; k < nodes_nm.size(); ++k)
-        tables_.emplace_back(rig, nodes_nm[nodes_nm.size() > 1 ? kLookOrder[k] : k], threads);
-}
+CameraRays::CameraRays(const Rig& rig, int threads)
+    : has_port_(rig.camera.port.has_value()), table_(rig, looks_nm(rig), threads) {}
 
 PlaceRays CameraRays::at(double column, double row, const Plane& floor, bool looks) const {
+    std::array<WaterRay, kLooks> found;
+    const std::size_t count = looks && has_port_ ? kLooks : nodes();
+    table_.look(column, row, std::span(found).first(count));
     PlaceRays rays;
-    const std::size_t count = looks ? tables_.size() : nodes();
-    for (std::size_t k = 0; k < count; ++k) rays[k] = floor_ray(tables_[k].at(column, row), floor);
+    for (std::size_t k = 0; k < count; ++k) rays[k] = floor_ray(found[k], floor);
     return rays;
 }
 

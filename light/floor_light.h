@@ -68,12 +68,13 @@ class CameraRays {
   public:
     CameraRays(const Rig& rig, int threads);
 
-    [[nodiscard]] std::size_t nodes() const { return tables_.size() > 1 ? kIndexNodes : 1; }
+    [[nodiscard]] std::size_t nodes() const { return has_port_ ? kIndexNodes : 1; }
     // At pixels' centres and between them. Those that are looked along only if asked for.
     [[nodiscard]] PlaceRays at(double column, double row, const Plane& floor, bool looks) const;
 
   private:
-    std::vector<RayTable> tables_;
+    bool has_port_;
+    RayTable table_;
 };
 
 struct FloorLamp {

@@ -1,27 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The rays in water of every place of the image at one wavelength. A pinhole's have a formula.
+// The rays in water of every place of the image at some wavelengths. A pinhole's have a formula.
 // Those of calibrated lenses and of ports take long, so they come from pixel_ray() (rig/geometry.h)
-// at the nodes of a grid over the image, a sixty-fourth of the focal length f apart; between these
-// each is a cubic through the four next nodes of either way. Where the formula changes over f, that
-// is right to about (1/64)^4 / 40, 1e-9 of a slope. Where nodes would be closer than pixels, each
-// ray is computed by itself.
+// at the nodes of a grid over the image; between these each is a cubic through the four next nodes
+// of either way. The grid is as fine as keeps rays to kRayTableError in the middles of its cells
+// along the image's rim and its middle lines, where lenses bend most and least. Where nodes would
+// be as many as pixels, each ray is computed by itself.
 #pragma once
 
 #include "rig/rig.h"
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace aphotic {
 
+// Of directions [rad], and of origins as a share of a metre.
+inline constexpr double kRayTableError = 2e-9;
+
 class RayTable {
   public:
-    RayTable(const Rig& rig, double lambda_nm, int threads);
+    RayTable(const Rig& rig, std::vector<double> lambda_nm, int threads);
 
-    // Pixels' centres are at .5.
-    [[nodiscard]] WaterRay at(double column, double row) const;
+    // Of the first of the wavelengths; pixels' centres are at .5.
+    void look(double column, double row, std::span<WaterRay> rays) const;
 
     [[nodiscard]] bool has_nodes() const { return !nodes_.empty(); }
 
@@ -29,16 +33,20 @@ class RayTable {
     // Nodes along one way of the image.
     struct Axis {
         Axis(int pixels, double most_apart_px);
+        [[nodiscard]] double place_px(double node) const;
         double pixels;
         std::size_t nodes;
     };
     using Node = std::array<double, 6>;  // origin and direction
 
+    void make_nodes(int threads);
+    [[nodiscard]] bool is_exact() const;
+
     Rig rig_;
-    double lambda_nm_;
+    std::vector<double> lambda_nm_;
     Axis across_;
     Axis down_;
-    std::vector<Node> nodes_;
+    std::vector<Node> nodes_;  // by place and wavelength
 };
 
 }  // namespace aphotic

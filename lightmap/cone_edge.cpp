@@ -7,6 +7,8 @@
 #include "rig/geometry.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 namespace aphotic {
 
@@ -28,6 +30,11 @@ std::vector<Vector3d> places_of(const Strobe& strobe) {
     return places_m;
 }
 
+std::vector<double> ends_nm(const Rig& rig) {
+    if (!rig.camera.port) return {rig.camera.range.first_nm};
+    return {rig.camera.range.first_nm, rig.camera.range.last_nm};
+}
+
 void take_in(const std::uint8_t* bits, std::size_t count, std::uint8_t* mask) {
     for (std::size_t i = 0; i < count; ++i) mask[i] = static_cast<std::uint8_t>(mask[i] | bits[i]);
 }
@@ -43,9 +50,7 @@ struct ConeEdges::Tile {
     int height;
 };
 
-ConeEdges::ConeEdges(const Rig& rig) : rig_(rig) {
-    ends_.emplace_back(rig, rig.camera.range.first_nm, 1);
-    if (rig.camera.port) ends_.emplace_back(rig, rig.camera.range.last_nm, 1);
+ConeEdges::ConeEdges(const Rig& rig) : rig_(rig), rays_(rig, ends_nm(rig), 1) {
     for (std::size_t s = 0; s < rig.strobes.size(); ++s) {
         beams_.emplace_back(rig.strobes[s]);
         for (std::size_t edge = 0; edge < beams_[s].count(); ++edge) {
@@ -59,12 +64,16 @@ ConeEdges::ConeEdges(const Rig& rig) : rig_(rig) {
 
 void ConeEdges::mark(const Tile& tile, const Sled& sled, std::vector<std::uint8_t>& mask) const {
     const Plane floor = floor_plane(sled);
-    const auto ray_at = [&](const RayTable& end, double x, double y) {
-        return floor_ray(end.at(tile.column + x + 0.5, tile.row + y + 0.5), floor);
+    std::array<WaterRay, 2> found;
+    const std::span<WaterRay> ends = std::span(found).first(rig_.camera.port ? 2 : 1);
+    const auto look = [&](double x, double y) {
+        rays_.look(tile.column + x + 0.5, tile.row + y + 0.5, ends);
     };
     std::vector<FloorRay> outline;
-    for (const auto& [x, y] : tile_places(tile.width, tile.height))
-        for (const RayTable& end : ends_) outline.push_back(ray_at(end, x, y));
+    for (const auto& [x, y] : tile_places(tile.width, tile.height)) {
+        look(x, y);
+        for (const WaterRay& end : ends) outline.push_back(floor_ray(end, floor));
+    }
     const bool has_horizon = std::ranges::any_of(outline, &FloorRay::sees_floor) &&
                              !std::ranges::all_of(outline, &FloorRay::sees_floor);
     std::vector<const LampEdge*> near;
@@ -92,8 +101,9 @@ void ConeEdges::mark(const Tile& tile, const Sled& sled, std::vector<std::uint8_
     for (int y = 0; y < tile.height; ++y) {
         for (int x = 0; x < tile.width; ++x) {
             std::size_t* const here = counts_of(x, y);
-            for (const RayTable& end : ends_) {
-                const FloorRay ray = ray_at(end, x, y);
+            look(x, y);
+            for (const WaterRay& end : ends) {
+                const FloorRay ray = floor_ray(end, floor);
                 if (!ray.sees_floor()) continue;
                 ++here[0];
                 for (std::size_t k = 0; k < near.size(); ++k) {
@@ -106,7 +116,7 @@ void ConeEdges::mark(const Tile& tile, const Sled& sled, std::vector<std::uint8_
                 }
             }
             for (std::size_t k = 0; k < things; ++k) {
-                const std::size_t most = ends_.size() * (k == 0 ? 1 : near[k - 1]->places_m.size());
+                const std::size_t most = ends.size() * (k == 0 ? 1 : near[k - 1]->places_m.size());
                 if (here[k] > 0 && here[k] < most) mark_pixel(x, y);
                 if (x > 0 && here[k] != counts_of(x - 1, y)[k])
                     mark_pixel(x, y), mark_pixel(x - 1, y);

@@ -43,7 +43,7 @@ class ConeEdges {
     void mark(const Tile& tile, const Sled& sled, std::vector<std::uint8_t>& mask) const;
 
     Rig rig_;
-    std::vector<RayTable> ends_;    // of the range behind a port, else of one wavelength
+    RayTable rays_;                 // at the ends of the range behind a port, else at one
     std::vector<BeamEdges> beams_;  // by strobe
     std::vector<LampEdge> edges_;
 };

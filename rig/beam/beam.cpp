@@ -336,10 +336,6 @@ std::optional<PatternView> pattern_view(const Beam& beam,
     return PatternView{.direction = found->direction, .factor = found->factor};
 }
 
-PatternView continued_view(const Beam& beam, const BeamFrame& frame, const Vector3d& towards) {
-    return view_of(beam, turned(beam, frame, towards));
-}
-
 double continued_intensity(const Beam& beam,
                            const BeamFrame& frame,
                            const Vector3d& towards,

@@ -100,11 +100,6 @@ struct PatternView {
 [[nodiscard]] std::optional<PatternView> pattern_view(const Beam& beam,
                                                       const BeamFrame& frame,
                                                       const Eigen::Vector3d& towards);
-// Beyond what a window lets out: its last.
-[[nodiscard]] PatternView continued_view(const Beam& beam,
-                                         const BeamFrame& frame,
-                                         const Eigen::Vector3d& towards);
-
 // intensity_towards() as though what lights the direction `from` had no edge: where a small turn
 // crosses none, it is I itself.
 [[nodiscard]] double continued_intensity(const Beam& beam,

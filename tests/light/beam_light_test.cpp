@@ -247,20 +247,6 @@ TEST(BeamLight, IsThePlainSumForOptics) {
     expect_in_water_and_air(of_pattern(sharp), "optics in focus");
 }
 
-// By the C library's.
-TEST(BeamLight, HasTheArctangent) {
-    constexpr double kRounding = 1e-15;
-    for (int i = -200; i <= 200; ++i) {
-        for (const double scale : {1e-9, 1.0, 1e9}) {
-            const double angle = i * std::numbers::pi / 200.0;
-            const double y = scale * std::sin(angle);
-            const double x = scale * std::cos(angle);
-            EXPECT_NEAR(arctangent(y, x), std::atan2(y, x), kRounding) << y << ", " << x;
-        }
-    }
-    EXPECT_EQ(arctangent(0.0, 0.0), 0.0);
-}
-
 // A pixel within a sharp image or a table's rectangle, and its neighbour that is not.
 TEST(BeamLight, MarksTheEdgesOfRimsAndWindows) {
     Rig rig = plain_rig(160, 120);

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rig/beam/round_profile.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <variant>
+
+namespace aphotic {
+namespace {
+
+using Eigen::Vector3d;
+using Coefficients = std::array<double, kProfileOrder>;
+using Fit = Eigen::Matrix<double, kProfileOrder, 1>;
+
+constexpr int kMostHalvings = 24;
+constexpr double kRightAngle_rad = 0.5 * std::numbers::pi;
+
+double chord_of(double theta_rad) {
+    return 2.0 * std::sin(0.5 * theta_rad);
+}
+
+// Chebyshev's points of the first kind, of 0 to 1: none is an end.
+double node(std::size_t i) {
+    const double share = (static_cast<double>(i) + 0.5) / kProfileOrder;
+    return 0.5 - 0.5 * std::cos(std::numbers::pi * share);
+}
+
+// From values at the nodes to coefficients.
+const Eigen::Matrix<double, kProfileOrder, kProfileOrder>& to_coefficients() {
+    static const Eigen::Matrix<double, kProfileOrder, kProfileOrder> matrix = [] {
+        Eigen::Matrix<double, kProfileOrder, kProfileOrder> powers;
+        for (std::size_t i = 0; i < kProfileOrder; ++i)
+            for (std::size_t k = 0; k < kProfileOrder; ++k)
+                powers(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+                    std::pow(node(i), static_cast<double>(k));
+        return Eigen::Matrix<double, kProfileOrder, kProfileOrder>(powers.inverse());
+    }();
+    return matrix;
+}
+
+double polynomial(const Coefficients& c, double x) {
+    double value = 0.0;
+    for (std::size_t k = kProfileOrder; k-- > 0;) value = c[k] + x * value;
+    return value;
+}
+
+// Angles off the axis where the beam bends or ends, in air behind a window, rising from 0.
+std::vector<double> breaks_of(const Beam& beam) {
+    std::vector<double> breaks_rad{0.0};
+    if (const auto* table = std::get_if<BeamTable>(&beam.pattern)) {
+        breaks_rad = table->vertical_rad;
+        if (breaks_rad.front() > 0.0) breaks_rad.insert(breaks_rad.begin(), 0.0);
+    } else {
+        for (const Cone& cone : beam.cones) {
+            breaks_rad.push_back(cone.half_angle_rad);
+            if (cone.edge_rad > 0.0) breaks_rad.push_back(cone.half_angle_rad - cone.edge_rad);
+        }
+    }
+    if (beam.window) {
+        std::erase_if(breaks_rad, [](double theta_rad) { return theta_rad > kRightAngle_rad; });
+        breaks_rad.push_back(kRightAngle_rad);
+    }
+    std::ranges::sort(breaks_rad);
+    const auto repeated = std::ranges::unique(breaks_rad);
+    breaks_rad.erase(repeated.begin(), repeated.end());
+    return breaks_rad;
+}
+
+// I over the angle in air, with the window's factor.
+std::function<double(double)> intensity_of(const Beam& beam) {
+    Beam in_air = beam;
+    in_air.window.reset();
+    const BeamFrame frame{Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d::UnitY()};
+    return [=](double theta_rad) {
+        const Vector3d towards(std::sin(theta_rad), 0.0, std::cos(theta_rad));
+        const double intensity = intensity_towards(in_air, frame, towards);
+        if (!beam.window) return intensity;
+        return intensity * window_factor(*beam.window, std::max(0.0, towards.z()));
+    };
+}
+
+}  // namespace
+
+bool is_round(const Beam& beam) {
+    const auto* table = std::get_if<BeamTable>(&beam.pattern);
+    return std::holds_alternative<std::monostate>(beam.pattern) ||
+           (table != nullptr && table->angles == TableAngles::TypeC &&
+            table->horizontal_rad.size() == 1);
+}
+
+RoundProfile::RoundProfile(const Beam& beam)
+    : window_index_(beam.window ? beam.window->water_index : 1.0),
+      has_window_(beam.window.has_value()) {
+    const auto intensity = intensity_of(beam);
+    std::vector<double> steps = edges_rad(beam);
+    if (beam.window)
+        for (double& step_rad : steps) step_rad = angle_in_air_rad(*beam.window, step_rad);
+    const auto value_at = [&](double q) {
+        return intensity(2.0 * std::asin(std::min(1.0, 0.5 * q)));
+    };
+    const std::function<void(double, double, std::size_t, int)> add =
+        [&](double first, double last, std::size_t region, int halvings) {
+            Fit values;
+            for (std::size_t i = 0; i < kProfileOrder; ++i)
+                values(static_cast<Eigen::Index>(i)) = value_at(std::lerp(first, last, node(i)));
+            const Fit fit = to_coefficients() * values;
+            Piece piece{.first = first, .per_width = 1.0 / (last - first), .region = region};
+            std::ranges::copy(fit, piece.c.begin());
+            const double largest = values.maxCoeff();
+            bool is_right = true;
+            for (std::size_t i = 0; i + 1 < kProfileOrder; ++i) {
+                const double x = 0.5 * (node(i) + node(i + 1));
+                const double off = polynomial(piece.c, x) - value_at(std::lerp(first, last, x));
+                is_right &= std::abs(off) <= kProfileError * largest;
+            }
+            if (is_right || halvings == kMostHalvings) {
+                pieces_.push_back(piece);
+                ends_.push_back(last);
+                return;
+            }
+            const double middle = 0.5 * (first + last);
+            add(first, middle, region, halvings + 1);
+            add(middle, last, region, halvings + 1);
+        };
+    const std::vector<double> breaks_rad = breaks_of(beam);
+    for (std::size_t k = 0; k + 1 < breaks_rad.size(); ++k) {
+        const double middle_rad = 0.5 * (breaks_rad[k] + breaks_rad[k + 1]);
+        const auto region =
+            std::ranges::count_if(steps, [&](double step_rad) { return step_rad < middle_rad; });
+        add(chord_of(breaks_rad[k]),
+            chord_of(breaks_rad[k + 1]),
+            static_cast<std::size_t>(region),
+            0);
+    }
+    // Beyond, there is nothing.
+    const double end = ends_.back();
+    const bool ends_in_step = std::ranges::any_of(
+        steps, [&](double step_rad) { return std::abs(chord_of(step_rad) - end) < 1e-9; });
+    pieces_.push_back({.first = end, .region = pieces_.back().region + (ends_in_step ? 1 : 0)});
+}
+
+std::optional<double> RoundProfile::chord(double cosine) const {
+    if (!has_window_) return std::sqrt(std::max(0.0, 2.0 - 2.0 * cosine));
+    const double sine2 = window_index_ * window_index_ * (1.0 - cosine * cosine);
+    if (cosine <= 0.0 || sine2 >= 1.0) return std::nullopt;
+    return std::sqrt(std::max(0.0, 2.0 - 2.0 * std::sqrt(1.0 - sine2)));
+}
+
+std::size_t RoundProfile::piece_at(double q) const {
+    return static_cast<std::size_t>(std::ranges::upper_bound(ends_, q) - ends_.begin());
+}
+
+double RoundProfile::value(const Piece& piece, double q) {
+    return std::max(0.0, polynomial(piece.c, (q - piece.first) * piece.per_width));
+}
+
+double RoundProfile::at(double cosine) const {
+    const auto q = chord(cosine);
+    return q ? value(pieces_[piece_at(*q)], *q) : 0.0;
+}
+
+double RoundProfile::continued(double cosine, double cosine_from) const {
+    const auto q_from = chord(cosine_from);
+    if (!q_from) return 0.0;
+    const double q = chord(cosine).value_or(std::numbers::sqrt2);
+    const std::size_t region = pieces_[piece_at(*q_from)].region;
+    std::size_t own = piece_at(q);
+    while (pieces_[own].region > region) --own;
+    while (pieces_[own].region < region) ++own;
+    return value(pieces_[own], q);
+}
+
+}  // namespace aphotic

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A beam that is the same all about its axis, as polynomials in one variable: cones with their
+// exponents and soft edges, round tables, and either behind a window, whose factor is folded in.
+//
+//   I(theta) = p_k(q),      q = 2 sin(theta / 2) = sqrt(2 - 2 cos(theta))
+//
+// theta  off the axis; behind a window in air, where the beam ends smoothly at 90 degrees
+// k      the piece that q is in: pieces end at each edge and kink, and where a polynomial of degree
+//        kProfileOrder - 1 would be off by more than kProfileError of the largest I in the piece
+//
+// q is as smooth as theta and costs a root. Pieces between two edges are one region: a direction
+// that is asked for as though an edge were not there goes on by its own region's last polynomial.
+#pragma once
+
+#include "rig/beam/beam.h"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr std::size_t kProfileOrder = 6;
+inline constexpr double kProfileError = 1e-9;
+
+class RoundProfile {
+  public:
+    // Of a beam that is round: is_round().
+    explicit RoundProfile(const Beam& beam);
+
+    // By the cosine off the axis in water.
+    [[nodiscard]] double at(double cosine) const;
+    // As though no edge lay between it and the direction of another cosine.
+    [[nodiscard]] double continued(double cosine, double cosine_from) const;
+
+  private:
+    struct Piece {
+        double first = 0.0;
+        double per_width = 0.0;
+        std::array<double, kProfileOrder> c{};  // in 0 to 1 over the piece
+        std::size_t region = 0;
+    };
+    // None where a window lets nothing out, and behind the lamp beyond the last piece.
+    [[nodiscard]] std::optional<double> chord(double cosine) const;
+    [[nodiscard]] std::size_t piece_at(double q) const;
+    [[nodiscard]] static double value(const Piece& piece, double q);
+
+    double window_index_ = 1.0;  // of the water, behind a window
+    bool has_window_ = false;
+    std::vector<double> ends_;  // of pieces, rising
+    std::vector<Piece> pieces_;
+};
+
+[[nodiscard]] bool is_round(const Beam& beam);
+
+}  // namespace aphotic
