@@ -8,7 +8,7 @@
 // l_j  Lagrange's polynomials: what light of node j's ray counts at another wavelength
 //
 // Right to the third order of n where L is smooth. A kink of L lies between two nodes, wherever it
-// is; who cannot rule one out looks half way between nodes (lightmap/dispersed_light.h).
+// is; who cannot rule one out looks half way between nodes (light/floor_light.h).
 //
 // Without a port one node serves, and counts 1.
 #pragma once

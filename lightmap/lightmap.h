@@ -1,24 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The signal of the rig's camera on its bare flat floor, at the camera's pace.
-//
-//   S_c = sum_s sum_k  A_k cos^n(theta) cos(i) / (pi d^2) T_sc(d + r)  +  highlight
-//
-// as docs/physics.md has it, with T the signal over the path's length (light/path_table.h). Once
-// per water T is tabulated; then a map of any altitude and attitude is geometry and a look-up a
-// pixel, written so that compilers vectorise it (row_light.h).
-//
-// Behind a port every wavelength has its own ray. The light of one path, at one K, is a smooth
-// function of the water's index, for the ray moves smoothly with it. So it is interpolated between
-// kIndexNodes indices n_j by Lagrange's polynomials L_j (light/index_nodes.h):
-//
-//   S_c = sum_j  G_j T_jc(l_j),      T_jc(l) = int f Q_c L_j(n(lambda)) exp(-K l) dlambda
-//
-// with G_j and l_j the geometry of the ray of n_j: exact where G exp(-K l) is of degree
-// kIndexNodes - 1 in n over the range. Pixels where it is not, as where a kink of a beam lies
-// between two nodes, are found by looking at two indices more, and have a ray for each wavelength
-// (dispersed_light.h). A beam's edge, which dispersion spreads over several pixels, is sharp here
-// and stands where the middle index has it.
+// The signal of the rig's camera on its bare flat floor, at the camera's pace: light/floor_light.h's
+// sum at every pixel, by tiles of the image (light/floor_image.h). Once per water the signal over
+// the path's length is tabulated (light/signal_table.h); then a map of any altitude and attitude is
+// geometry and a look-up where the light is smooth at few places, and in between a polynomial.
 //
 // An emitter of a size is the grid of lamps of rig/geometry.h. Where the image sees no floor,
 // the map is black; and so it is beyond the longest path when the paths have a horizon, that is
@@ -63,8 +48,8 @@ struct MapPromise {
     bool is_of_lamp_grids = false;
 };
 
-// The error that is asked for, that of fits along a row where all beams are smooth and the rounding
-// of floats, that of a sum of a dozen; behind a port besides 1e-4. Of the sum of both in water that
+// The error that is asked for, that of tiles and the rounding of floats, that of a sum of a dozen;
+// behind a port besides 1e-4. Of the sum of both in water that
 // scatters: kVeilOfSignal and veil_error() (light/veil.h) on top, measured and no bound.
 [[nodiscard]] MapPromise map_promise(const Rig& rig, const LightmapOptions& options);
 

@@ -14,9 +14,8 @@
 //
 // Dome: both faces are spheres about one centre. With the centre in the pupil no ray is bent.
 //
-// Who needs a port's rays asks here. Known besides: to the rig's reader; to scene_gen/ for POV-Ray,
-// which traces the glass itself; and a flat port across the axis to lightmap/row_light.h, whose
-// inner loop has the formula. The reference has ports of its own (validation/).
+// Who needs a port's rays asks here. Known besides: to the rig's reader, and to scene_gen/ for
+// POV-Ray, which traces the glass itself. The reference has ports of its own (validation/).
 #pragma once
 
 #include "spectral/refractive_index.h"

@@ -146,7 +146,12 @@ inline Answer radiance(
             const double highlight =
                 rig.seafloor.phong *
                 std::pow(std::max(0.0, -dot(mirrored, path) / d), rig.seafloor.phong_size);
-            if (!has_lobes(strobe.beam)) {
+            const bool is_sum_of_sharp_cones =
+                std::holds_alternative<std::monostate>(strobe.beam.pattern) &&
+                !strobe.beam.window && std::ranges::all_of(strobe.beam.cones, [](const Cone& cone) {
+                    return cone.edge_rad == 0.0;
+                });
+            if (!is_sum_of_sharp_cones) {
                 const auto eigen = [](const Vector& v) {
                     return Eigen::Vector3d(v[0], v[1], v[2]);
                 };
