@@ -172,7 +172,7 @@ void render_pictures(const PovRay& povray,
                folder,
                frames,
                common.manifest.width_px,
-               common.manifest.height_px + common.manifest.rows_above(),
+               common.manifest.height_px,
                run);
 }
 

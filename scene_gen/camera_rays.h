@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The rays of a calibrated lens for POV-Ray's mesh_camera: a mesh of one triangle a pixel, whose
-// centroid is the pupil and whose normal is the ray. For a ray along (x, y, 1) in POV-Ray's frame,
+// The rays of a calibrated lens for POV-Ray's mesh_camera: a grid of points (column, row) of the
+// image, each with its ray d as the mesh's normal and its place in the image as uv,
 //
-//   (-1, -1, x + y)   (-1, 2, x - 2y)   (2, -1, y - 2x)
+//   u = (column - 1/2) / width,  v = 1 - (row - 1/2) / height
 //
-// POV-Ray 3.7 keeps them as floats, so that directions are right to 1e-7, and takes for each row of
-// the image the faces of the row above: frames have kRowsAbove rows more, and the first ones are
-// not rendered.
+// for POV-Ray looks a pixel up without the half (distribution 3), and interpolates the normals of
+// the face that it finds. In the middle of an edge of the grid that is off by
+//
+//   | (a + b) / |a + b| - d |,
+//
+// which kRayErrorRad bounds: the grid is as fine as the lens demands, and no finer than the pixels,
+// where it is exact. POV-Ray keeps floats, 6e-8 of a slope. The mesh itself is a billionth of a
+// POV-Ray unit to a pixel, since rays begin on it.
 #pragma once
 
 #include "rig/rig.h"
@@ -19,10 +24,7 @@
 namespace aphotic {
 
 inline constexpr std::string_view kCameraRaysFile = "aphotic_rays.inc";
-inline constexpr int kRowsAbove = 1;
-
-// Of a frame; 0 for a pinhole.
-[[nodiscard]] int rows_above(const Camera& camera);
+inline constexpr double kRayErrorRad = 2e-6;
 
 // Of the file, at most.
 [[nodiscard]] std::uint64_t bytes_of_rays(const Camera& camera);

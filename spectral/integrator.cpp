@@ -47,13 +47,9 @@ void read_radiance(const fs::path& folder, const Manifest& manifest, Block& bloc
     for (std::size_t f = 0; f < manifest.direct_frames(); ++f) {
         const fs::path file = image_path(folder, manifest.frames[f]);
         ExrReader reader(file);
-        const int above = manifest.rows_above();
-        check_size(file,
-                   reader.width_px(),
-                   reader.height_px(),
-                   manifest.width_px,
-                   manifest.height_px + above);
-        reader.read_rows(block.first_row + above, block.rows, kFrameChannels, samples);
+        check_size(
+            file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
+        reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
         for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
             const PlannedWavelength& w = manifest.wavelengths[j];
             if (w.frame != f) continue;
@@ -116,13 +112,9 @@ void add_povray_veil(const fs::path& folder,
         for (std::size_t set = 0; set < sets; ++set) {
             const fs::path file = image_path(folder, manifest.frames[(1 + set) * direct + f]);
             ExrReader reader(file);
-            const int above = manifest.rows_above();
-            check_size(file,
-                       reader.width_px(),
-                       reader.height_px(),
-                       manifest.width_px,
-                       manifest.height_px + above);
-            reader.read_rows(block.first_row + above, block.rows, kFrameChannels, samples);
+            check_size(
+                file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
+            reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
             for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
                 const PlannedWavelength& w = manifest.wavelengths[j];
                 if (w.frame != f) continue;
