@@ -9,7 +9,7 @@
 // rms               of the sum's error over the places, less the truth's noise
 // estimate          what `aphotic plan` tells, by kModelPaths
 // cuts              in place of kLossCut: rms of floor's and veil's errors over all rigs of a water
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "validation/model_check.h"
 #include "validation/traced_water.h"

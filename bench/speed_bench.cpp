@@ -11,7 +11,7 @@
 // thread each: its map, division, edges and demosaicing come one after another.
 #include "lightmap/cone_edge.h"
 #include "lightmap/lightmap.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "spectral/curve_loader.h"
 #include "survey/correction.h"

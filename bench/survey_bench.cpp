@@ -13,8 +13,8 @@
 #include "bench/processor_time.h"
 #include "lightmap/lightmap.h"
 #include "plugin/process.h"
-#include "rig/rig_reader.h"
-#include "survey/raw_camera.h"
+#include "rig/file/rig_reader.h"
+#include "survey/simulate/raw_camera.h"
 
 #include <OpenImageIO/imageio.h>
 #include <benchmark/benchmark.h>

@@ -7,7 +7,7 @@
 #include "bench/processor_time.h"
 #include "plugin/frame_runner.h"
 #include "plugin/render.h"
-#include "rig/rig_text.h"
+#include "rig/file/rig_text.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/veil_planes.h"
 

@@ -2,18 +2,18 @@
 //
 // aphotic beam RIG:NAME|FILE: what a data sheet says of a beam, its plot, the beam as a file of
 // other programs, and the sharp cones that come closest.
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/json_text.h"
 #include "cli/command.h"
 #include "cli/options.h"
+#include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "report/plot.h"
-#include "rig/beam_figures.h"
-#include "rig/cone_fit.h"
-#include "rig/rig_reader.h"
+#include "rig/beam/beam_figures.h"
+#include "rig/beam/cone_fit.h"
 #include "spectral/lamp_flux.h"
 
 #include <fmt/format.h>
@@ -60,6 +60,7 @@ struct ShownBeam {
 
 // Of a file, which is as bright as it says: a lamp of its own lumens.
 void take_file(const std::string& file, ShownBeam& shown) {
+    if (rig_settings()) throw InputError("--set: found with {}; allowed: with a rig", file);
     const PhotometricFile read = read_photometric_file(file);
     if (largest_intensity(read.table) == 0.0) {
         throw InputError("{}: found no light in it; allowed: some", file);
@@ -75,7 +76,7 @@ void take_file(const std::string& file, ShownBeam& shown) {
 }
 
 void take_beam_of_rig(const std::string& file, const std::string& name, ShownBeam& shown) {
-    const Rig rig = read_rig(file);
+    const Rig rig = read_rig_as_set(file);
     std::vector<std::string> names;
     for (const Strobe& strobe : rig.strobes) {
         names.push_back(strobe.beam.name);

@@ -73,7 +73,7 @@ Taken taken_by(const CLI::App& app, const CLI::Option& option) {
     } else if (type.find('|') != std::string::npos && !is_word_or_file) {
         taken.kind = Taken::Kind::Words;
         taken.words = split(type, '|');
-    } else if (type == "DIR" || type == "ATLAS") {
+    } else if (type == "DIR") {
         taken.kind = Taken::Kind::Folder;
     } else if (type == "RIG") {
         taken.kind = Taken::Kind::File;
@@ -82,7 +82,7 @@ Taken taken_by(const CLI::App& app, const CLI::Option& option) {
         taken.kind = Taken::Kind::File;
         taken.extension = type.substr(type.find('.') + 1);
     } else if (is_word_or_file ||
-               contains({"FILE", "IMAGE", "IMAGES", "PROGRAM", "SWEEP", "NAME", "A", "B"}, type)) {
+               contains({"FILE", "IMAGE", "IMAGES", "PROGRAM", "NAME", "A", "B"}, type)) {
         taken.kind = Taken::Kind::File;
     }
     return taken;

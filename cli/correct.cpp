@@ -2,51 +2,47 @@
 //
 // aphotic correct IMAGES... --rig RIG --nav FILE -o DIR: survey images divided by the map of their
 // own altitude and attitude.
+// aphotic baseline NAME IMAGES... -o DIR: images corrected without a model of the lamps.
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
-#include "cli/allowed_skips.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
-#include "cli/navigation_options.h"
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
 #include "image/exr.h"
-#include "rig/rig_reader.h"
-#include "survey/camera_of_files.h"
-#include "survey/correction_run.h"
-#include "survey/ifdo_results.h"
+#include "survey/correct/correction_run.h"
+#include "survey/correct/ifdo_results.h"
+#include "survey/images/camera_numbers.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 
 namespace aphotic::cli {
 namespace {
 
 struct CorrectCommandOptions {
-    std::vector<std::string> images;
-    std::string rig;
-    NavigationOptions navigation;
+    std::string baseline;  // empty: by the model
+    SurveyInput input;
     std::string map;
     bool no_veil = false;
     double model_tolerance = kModelTolerance;
     std::string ifdo;
-    CameraNumbers camera;
     std::vector<double> altitudes_m;
     CorrectionOptions correction;
     std::optional<double> electrons;
-    bool strict = false;
-    AllowedSkips allowed_skips;
-    bool json = false;
 };
 
 void print_scale(const LightAt& light) {
@@ -68,12 +64,13 @@ void print_report(const CorrectionReport& report,
                   const Survey& survey,
                   const std::filesystem::path& folder,
                   bool has_page) {
+    const RunOutcome& run = *report.run;
     say("{} corrected in {:.1f} s, {} kept as they were, {} skipped\n",
-        counted(report.run->corrected, "image"),
+        counted(run.corrected, "image"),
         report.seconds,
-        report.run->kept,
-        report.run->skipped.size());
-    print_camera(survey.camera);
+        run.kept,
+        run.skipped.size());
+    print_camera(survey);
     print_scale(survey.light);
     std::string from;
     if (!report.gain.images.empty()) {
@@ -82,13 +79,27 @@ void print_report(const CorrectionReport& report,
     if (!report.gain.folder.empty()) from = ", that of " + report.gain.folder;
     say("  gain {}{}\n", gain_words(report.gain.gain), from);
     if (report.srgb) print_srgb(*report.srgb, folder);
-    print_doubts(*report.run);
+    print_doubts(run);
     if (!report.not_checked.empty()) say("  not checked: {}\n", report.not_checked);
     say("  {}\n", (folder / kCorrectionNotes).string());
     if (has_page) say("  {}\n", (folder / kReportPage).string());
-    for (const Skipped& one : report.run->skipped) {
+    for (const Skipped& one : run.skipped) {
         say("  skipped: {}: {}\n", one.image, one.why);
     }
+    print_navigation(survey);
+}
+
+void print_baseline(const CorrectionReport& report, const Survey& survey) {
+    const RunOutcome& run = *report.run;
+    say("{}: {} corrected by {}, {}{} skipped\n",
+        report.folder,
+        counted(run.corrected, "image"),
+        report.baseline,
+        run.kept > 0 ? fmt::format("{} kept as they were, ", run.kept) : "",
+        run.skipped.size());
+    print_camera(survey);
+    print_navigation(survey);
+    if (report.srgb) print_srgb(*report.srgb, report.folder);
 }
 
 // The planes of one image have the sizes of those of the next: their memory is kept for them. Given
@@ -107,7 +118,7 @@ std::optional<ManifestModel> model_error_of(const CorrectCommandOptions& options
                                             const Survey& survey) {
     if (options.no_veil || !rig.water.scatters()) return std::nullopt;
     rig.sled = highest_pose(*survey.navigation, survey.files).value_or(rig.sled);
-    return model_error(rig, options.rig, options.model_tolerance);
+    return model_error(rig, options.input.rig, options.model_tolerance);
 }
 
 void expect_size_of(const LightAt& light, CameraNumbers& camera) {
@@ -123,48 +134,60 @@ struct Task {
     Readout readout{};  // of the rig
 };
 
-Task task_of(const CorrectCommandOptions& options) {
-    if (options.rig.empty() == options.map.empty()) {
-        throw InputError("--rig with --nav, or --map: one of them is needed");
-    }
-    if (options.rig.empty() != options.navigation.source.empty()) {
-        throw InputError("--rig and --nav go together: the map depends on where the sled was");
-    }
-    const std::vector<double>& altitudes_m = options.altitudes_m;
-    if (!altitudes_m.empty() && altitudes_m[0] > altitudes_m[1]) {
-        throw InputError(
-            "--altitude: found {},{}; allowed: the lower first", altitudes_m[0], altitudes_m[1]);
-    }
-    Survey survey{.files = image_files(options.images, options.correction.run.folder),
-                  .camera = options.camera};
-    if (!options.map.empty()) {
-        survey.camera = camera_of(survey.camera, survey.files, nullptr);
-        const auto& expected = survey.camera.expected;
-        survey.light = light_of_map(options.map,
-                                    !options.no_veil,
-                                    expected ? std::optional(expected->image) : std::nullopt);
-        expect_size_of(survey.light, survey.camera);
-        return {.survey = std::move(survey)};
-    }
-    Rig rig = read_plausible_rig(options.rig, options.strict);
-    survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
+Task baseline_task(const CorrectCommandOptions& options) {
+    const SurveyInput& input = options.input;
+    const std::optional<Rig> rig = rig_of(input);
+    Survey survey = read_survey(input, options.correction.run.folder, rig ? &*rig : nullptr);
+    if (needs_altitude(*options.correction.baseline) && !input.navigation.source.empty())
+        survey.navigation = read_navigation(input, survey.files, rig ? &*rig : nullptr);
+    return {.survey = std::move(survey)};
+}
+
+Task map_task(const CorrectCommandOptions& options) {
+    Survey survey = read_survey(options.input, options.correction.run.folder, nullptr);
+    const auto& expected = survey.camera.expected;
+    survey.light = light_of_map(
+        options.map, !options.no_veil, expected ? std::optional(expected->image) : std::nullopt);
+    expect_size_of(survey.light, survey.camera);
+    return {.survey = std::move(survey)};
+}
+
+Task rig_task(const CorrectCommandOptions& options) {
+    const std::string& file = options.input.rig;
+    Rig rig = read_plausible_rig(file, options.input.strict);
+    Survey survey = read_survey(options.input, options.correction.run.folder, &rig);
     const std::optional<PlaneSize> images = usual_size(survey.files, survey.camera);
     require_whole_view(survey.files, survey.camera, rig.camera);
     const std::optional<PlaneSize> own = images ? fit_to(rig.camera, *images) : std::nullopt;
-    NavigationOptions navigation = options.navigation;
-    navigation.jobs = static_cast<std::size_t>(all_cores());
-    if (!altitudes_m.empty()) {
-        navigation.least_altitude_m = altitudes_m[0];
-        navigation.most_altitude_m = altitudes_m[1];
-    }
-    survey.navigation = read_navigation(navigation, survey.files, &rig);
-    survey.light = naming(options.rig, [&] {
+    survey.navigation = read_navigation(options.input, survey.files, &rig);
+    survey.light = naming(file, [&] {
         return light_of_rig(rig, *survey.navigation, survey.files, !options.no_veil);
     });
     survey.light.rig_size = own;
     expect_size_of(survey.light, survey.camera);
     const auto model = model_error_of(options, rig, survey);
     return {.survey = std::move(survey), .model = model, .readout = rig.camera.readout};
+}
+
+Task task_of(CorrectCommandOptions& options) {
+    if (options.correction.baseline) return baseline_task(options);
+    NavigationOptions& navigation = options.input.navigation;
+    const bool has_rig = !options.input.rig.empty();
+    if (has_rig != options.map.empty()) {
+        throw InputError("--rig with --nav, or --map: one of them is needed");
+    }
+    if (has_rig == navigation.source.empty()) {
+        throw InputError("--rig and --nav go together: the map depends on where the sled was");
+    }
+    if (const std::vector<double>& range = options.altitudes_m; !range.empty()) {
+        if (range[0] > range[1]) {
+            throw InputError(
+                "--altitude: found {},{}; allowed: the lower first", range[0], range[1]);
+        }
+        navigation.least_altitude_m = range[0];
+        navigation.most_altitude_m = range[1];
+    }
+    return has_rig ? rig_task(options) : map_task(options);
 }
 
 void take_noise(CorrectCommandOptions& options, const Readout& readout) {
@@ -191,45 +214,50 @@ void write_ifdo(const IfdoTask& task,
                 const Survey& survey,
                 const CorrectionReport& report) {
     std::optional<Rig> rig;
-    if (!options.rig.empty()) rig = read_rig(options.rig);
+    if (!options.input.rig.empty()) rig = read_rig_as_set(options.input.rig);
     const IfdoResults made = write_ifdo_of_results(
         task.of_raw, task.place, survey, options.correction, report, rig ? &*rig : nullptr);
-    if (!options.json) say("  {}: {}\n", made.file.string(), counted(made.images, "image"));
+    if (!options.input.json) say("  {}: {}\n", made.file.string(), counted(made.images, "image"));
     for (const std::string& image : made.without_item)
         warn("{}: has no item of its own for {}", options.ifdo, image);
 }
 
 ExitStatus correct(CorrectCommandOptions options) {
+    if (!options.baseline.empty()) {
+        const auto* const name = std::ranges::find(kBaselineNames, options.baseline);
+        options.correction.baseline = static_cast<Baseline>(name - kBaselineNames.begin());
+    }
     keep_memory();
     set_exr_threads(0);  // the images themselves are spread over the threads
-    if (options.navigation.source.empty() && !options.rig.empty())
-        options.navigation.source = options.ifdo;
+    if (options.input.navigation.source.empty() && !options.input.rig.empty())
+        options.input.navigation.source = options.ifdo;
     const std::optional<IfdoTask> task = ifdo_task(options);
     const auto [survey, model, readout] = task_of(options);
     CorrectionOptions& correction = options.correction;
     correction.run.folder = share_folder(correction.run.folder, correction.share);
     take_noise(options, readout);
     const CorrectionReport report =
-        correct_survey(survey, options.correction, terminal_watch(options.strict));
-    if (options.json) {
+        correct_survey(survey, correction, terminal_watch(options.input.strict));
+    if (options.input.json) {
         nlohmann::ordered_json json = to_json(report);
-        put_model_error(json, model);
+        if (!correction.baseline) put_model_error(json, model);
         say_text(json_text(json));
+    } else if (correction.baseline) {
+        print_baseline(report, survey);
     } else {
-        print_report(report, survey, options.correction.run.folder, options.correction.report);
-        print_navigation(survey.navigation);
+        print_report(report, survey, correction.run.folder, correction.report);
         print_model_error(model);
     }
     // Of a share it would be of images that are not there.
     if (task && correction.share.is_whole()) write_ifdo(*task, options, survey, report);
     const std::size_t skipped = report.run->skipped.size();
     const std::size_t images = report.run->corrected + report.run->kept + skipped;
-    return status_of_skips(skipped, images, options.allowed_skips);
+    return status_of_skips(skipped, images, options.input);
 }
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
-    app.add_option("--rig", options.rig, "The rig that took the images")->type_name("RIG");
-    add_navigation_options(app, options.navigation);
+    app.add_option("--rig", options.input.rig, "The rig that took the images")->type_name("RIG");
+    add_navigation_options(app, options.input);
     app.add_option(
            "--map", options.map, "Use one lightmap (EXR) for all images instead of --rig and --nav")
         ->type_name("FILE");
@@ -246,11 +274,10 @@ void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
 }
 
 void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
-    add_camera_options(app, options.camera);
+    add_camera_options(app, options.input);
     app.add_flag("--keep-mosaic",
                  options.correction.keep_mosaic,
                  "Write mosaics as mosaics, not as R, G, B");
-    add_white_level_option(app, options.camera);
     app.add_option("--read-noise",
                    options.correction.read_noise,
                    "The camera's noise without light, in its own numbers; by default the rig's, or "
@@ -318,37 +345,101 @@ void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
     return settle;
 }
 
-Action configure_correct(CLI::App& app) {
-    const auto options = std::make_shared<CorrectCommandOptions>();
-    add_images(app, options->images);
-    add_light_options(app, *options);
-    add_output_folder(app, options->correction.run.folder)->required();
-    add_model_tolerance(app, options->model_tolerance);
-    add_raw_options(app, *options);
-    const Settle settle = add_result_options(app, *options);
+void add_baseline_options(CLI::App& app, BaselineOptions& options) {
+    app.add_option(
+           "--sigma",
+           options.sigma,
+           "illumination-reflectance, homomorphic: width of the blur as a share of the image's")
+        ->check(in_range(1e-4, 10.0))
+        ->capture_default_str();
+    app.add_option("--low", options.low, "homomorphic: gain of low frequencies")
+        ->check(in_range(0.0, 10.0))
+        ->capture_default_str();
+    app.add_option("--high", options.high, "homomorphic: gain of high frequencies")
+        ->check(in_range(0.0, 10.0))
+        ->capture_default_str();
+    app.add_option("--tiles", options.tiles, "local-equalisation: tiles across and down")
+        ->check(in_range(1, 256))
+        ->capture_default_str();
+    app.add_option("--clip",
+                   options.clip,
+                   "local-equalisation: clip histograms at N mean bins; 1 changes nothing")
+        ->check(in_range(1.0, 1e6))
+        ->capture_default_str();
+    app.add_option(
+           "--order", options.order, "log-polynomial, binned-polynomial: order of the polynomials")
+        ->check(in_range(0, 12))
+        ->capture_default_str();
+    app.add_option("--bin",
+                   options.bin_m,
+                   "binned-polynomial, altitude-exponential: width of an altitude bin, in metres")
+        ->check(in_range(1e-3, 1e4))
+        ->capture_default_str();
+}
+
+// What both commands take, but for the images and what comes of them.
+Action configure_run(CLI::App& app,
+                     const std::shared_ptr<CorrectCommandOptions>& options,
+                     const Settle& settle,
+                     const std::string& notes) {
     add_jobs(app, options->correction.run.jobs, "Correct N images at a time");
     add_share(app,
               "--share",
               options->correction.share,
               "Correct of each N images the Ith alone, to DIR/share-I-of-N: the same command "
               "without it then joins all shares");
+    add_outcome_options(app, options->input, "Print DIR/" + notes);
+    return [options, settle] {
+        settle();
+        return correct(*options);
+    };
+}
+
+Action configure_correct(CLI::App& app) {
+    const auto options = std::make_shared<CorrectCommandOptions>();
+    add_images(app, options->input);
+    add_light_options(app, *options);
+    add_output_folder(app, options->correction.run.folder)->required();
+    add_model_tolerance(app, options->model_tolerance);
+    add_raw_options(app, *options);
+    const Settle settle = add_result_options(app, *options);
     app.add_flag("--report",
                  options->correction.report,
                  "Also write DIR/report.html: images before and after, light over altitude, gains, "
                  "what was skipped and why");
-    add_strict_option(app, options->strict);
-    add_allow_skipped(app, options->allowed_skips);
-    add_json(app, options->json, "Print DIR/correction.json");
     app.footer(
         "Interrupted, it continues where it stopped when run again. Exit status 0 when every image "
         "is corrected, 1 when more are skipped than --allow-skipped: correction.json lists them. A "
         "mask's pixel is a "
         "sum of 1 dark, 2 saturated, 4 black, 8 on a beam's edge, 16 clipped by the format; 0 is "
         "good.");
-    return [options, settle] {
-        settle();
-        return correct(*options);
-    };
+    return configure_run(app, options, settle, std::string(kCorrectionNotes));
+}
+
+Action configure_baseline(CLI::App& app) {
+    const auto options = std::make_shared<CorrectCommandOptions>();
+    options->correction.run.format.format = "exr";
+    app.add_option("NAME", options->baseline, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
+        ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
+        ->required();
+    add_images(app, options->input);
+    add_output_folder(app, options->correction.run.folder)->required();
+    add_navigation_options(app, options->input);
+    add_baseline_options(app, options->correction.of_baselines);
+    add_survey_rig(app, options->input);
+    add_camera_options(app, options->input);
+    const Settle settle = add_format_options(app, options->correction.run.format);
+    app.footer(
+        "The polynomials and exponentials learn from all images given; the others correct each "
+        "image "
+        "by itself. An EXR holds the camera's own numbers less the black level; a TIFF or PNG has "
+        "65535 where "
+        "the camera saturates. Interrupted, it continues where it stopped when run again. Images "
+        "that cannot be used are reported and skipped; the exit status is 1 when these are more "
+        "than "
+        "--allow-skipped. A mask's pixel "
+        "is a sum of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
+    return configure_run(app, options, settle, std::string(kBaselineNotes));
 }
 
 }  // namespace
@@ -357,5 +448,10 @@ const Command kCorrect{"correct",
                        kSurveyCommands,
                        "Divide survey images by the light they were taken in",
                        configure_correct};
+
+const Command kBaseline{"baseline",
+                        kSurveyCommands,
+                        "Correct images without a model of the lamps, for comparison",
+                        configure_baseline};
 
 }  // namespace aphotic::cli

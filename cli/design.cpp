@@ -13,7 +13,7 @@
 #include "cli/output_folder.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
-#include "survey/design_files.h"
+#include "lightmap/design_files.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -94,7 +94,7 @@ void print_design(const Rig& rig, const DesignRequest& request, const DesignResu
 }
 
 ExitStatus design_rig(const DesignCommandOptions& options) {
-    const RigText text{fs::path(options.rig)};
+    const RigText text = read_rig_text_as_set(options.rig);
     const Rig rig = text.rig();
     check_plausible(rig, options.rig, options.strict);
     DesignRequest request = request_of(options, rig);

@@ -2,24 +2,22 @@
 //
 // aphotic fit RIG --maps MAP... | --images IMAGE... --nav FILE  -o DIR: the rig that explains a
 // survey, with errors.
-#include "survey/fit.h"
+#include "survey/fit/fit.h"
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/json_text.h"
 #include "base/words.h"
-#include "cli/allowed_skips.h"
+#include "base/work_folder.h"
 #include "cli/command.h"
-#include "cli/navigation_options.h"
 #include "cli/options.h"
-#include "cli/output_folder.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
-#include "survey/fit_json.h"
-#include "survey/fit_page.h"
-#include "survey/fit_samples.h"
-#include "survey/fitted_rig.h"
+#include "survey/fit/fit_json.h"
+#include "survey/fit/fit_page.h"
+#include "survey/fit/fit_samples.h"
+#include "survey/fit/fitted_rig.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -41,27 +39,20 @@ const std::map<std::string, FitBeamKind> kBeams{{"table", FitBeamKind::Table},
                                                 {"optics", FitBeamKind::Optics}};
 
 struct FitCommandOptions {
-    std::string rig;
+    SurveyInput input;
     std::vector<std::string> maps;
-    std::vector<std::string> images;
-    NavigationOptions navigation;
-    CameraNumbers camera;
     std::filesystem::path folder;
     FitOptions fit;
     std::vector<std::string> free;
     double attitude_error_deg = 0.5;
     int blocks = kBlocksAcross;
-    bool strict = false;
-    AllowedSkips allowed_skips;
-    bool json = false;
 };
 
 FitSamples samples_for(const FitCommandOptions& options, const Rig& rig, const RunWatch& watch) {
     const PlaneSize size{rig.camera.width_px, rig.camera.height_px};
     if (!options.maps.empty()) return samples_of_maps(options.maps, rig.camera, options.blocks);
-    Survey survey{.files = image_files(options.images, options.folder), .camera = options.camera};
-    survey.camera = camera_of(survey.camera, survey.files, &rig.camera);
-    survey.navigation = read_navigation_with(options.rig, options.navigation, survey.files);
+    Survey survey = read_survey(options.input, options.folder, &rig);
+    survey.navigation = read_navigation(options.input, survey.files, &rig);
     return samples_of_images(
         survey, size, options.blocks, static_cast<std::size_t>(options.fit.threads), watch);
 }
@@ -100,9 +91,9 @@ void require_use(const CLI::App& app, const FitCommandOptions& options) {
 // The rig to begin with is kept.
 void require_other_rig(const FitCommandOptions& options) {
     std::error_code error;
-    if (!std::filesystem::equivalent(options.rig, options.folder / kFittedRig, error)) return;
+    if (!std::filesystem::equivalent(options.input.rig, options.folder / kFittedRig, error)) return;
     throw InputError("--output: found the folder of {}, which would be replaced; allowed: another",
-                     options.rig);
+                     options.input.rig);
 }
 
 void require_one_source(const CLI::App& app) {
@@ -160,12 +151,12 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     require_one_source(app);
     require_use(app, options);
     require_other_rig(options);
-    const RigText text(std::filesystem::path(options.rig));
+    const RigText text = read_rig_text_as_set(options.input.rig);
     const Rig rig = text.rig();
-    naming(options.rig, [&] { require_bare_floor(rig); });
-    check_plausible(rig, options.rig, options.strict);
-    const OutputPlace place(options.folder);
-    const RunWatch watch = terminal_watch(options.strict);
+    naming(options.input.rig, [&] { require_bare_floor(rig); });
+    check_plausible(rig, options.input.rig, options.input.strict);
+    const WorkFolder place(options.folder);
+    const RunWatch watch = terminal_watch(options.input.strict);
     const FitSamples samples = samples_for(options, rig, watch);
     FitOptions fit_options = options.fit;
     fit_options.attitude_error_rad = options.attitude_error_deg * kRadiansPerDegree;
@@ -175,27 +166,26 @@ ExitStatus fit_survey(const CLI::App& app, const FitCommandOptions& options) {
     const nlohmann::ordered_json json = to_json(result);
     write_text_file(options.folder / kFitNumbers, json_text(json));
     write_fit_page(options.folder / kFitPage, text, samples, result);
-    if (options.json) {
+    if (options.input.json) {
         say_text(json_text(json));
     } else {
         print_result(rig.title, result, options.folder);
     }
-    if (options.strict && !result.looks_wrong.empty()) return kAnswerIsNo;
-    return status_of_skips(samples.skipped.size(),
-                           samples.skipped.size() + samples.images.size(),
-                           options.allowed_skips);
+    if (options.input.strict && !result.looks_wrong.empty()) return kAnswerIsNo;
+    return status_of_skips(
+        samples.skipped.size(), samples.skipped.size() + samples.images.size(), options.input);
 }
 
 Action configure_fit(CLI::App& app) {
     const auto options = std::make_shared<FitCommandOptions>();
     options->fit.threads = all_cores();
-    add_rig(app, options->rig);
+    add_rig(app, options->input.rig);
     add_output_folder(app, options->folder)->required();
     app.add_option("--maps", options->maps, "Fit to maps by observe, of several altitudes")
         ->type_name("MAP.exr");
-    app.add_option("--images", options->images, "Fit to images, or folders of them")
+    app.add_option("--images", options->input.images, "Fit to images, or folders of them")
         ->type_name("IMAGES");
-    add_navigation_options(app, options->navigation);
+    add_navigation_options(app, options->input);
     app.add_option("--beam", options->fit.beam, "Fit the beam as table, cones, cosine or optics")
         ->transform(word_of(kBeams))
         ->type_name("table|cones|cosine|optics")
@@ -224,12 +214,9 @@ Action configure_fit(CLI::App& app) {
     app.add_option("--blocks", options->blocks, "Average each image in N blocks across")
         ->check(in_range(8, 1000))
         ->capture_default_str();
-    add_camera_options(app, options->camera);
-    add_white_level_option(app, options->camera);
+    add_camera_options(app, options->input);
     add_jobs(app, options->fit.threads, "Compute with N threads");
-    add_strict_option(app, options->strict);
-    add_allow_skipped(app, options->allowed_skips);
-    add_json(app, options->json);
+    add_outcome_options(app, options->input);
     app.footer(
         "Leaves fitted.toml, a rig with the beam's table beside it, fit.json with errors and "
         "covariance, and report.html. Without --free, fits beam, aim, power, water, vignetting "

@@ -4,7 +4,7 @@
 // to those of a rig of other water, lamps, materials or sensor.
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/share.h"
+#include "base/work_folder.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
 #include "cli/options.h"
@@ -12,7 +12,6 @@
 #include "cli/output_folder.h"
 #include "cli/rig_file.h"
 #include "plugin/render.h"
-#include "rig/rig_reader.h"
 #include "scene_gen/reweighting.h"
 #include "scene_gen/veil_planes.h"
 
@@ -63,7 +62,7 @@ void require_own_folder(const fs::path& images, const IntegrateCommandOptions& o
 Manifest manifest_of(const IntegrateCommandOptions& options) {
     Manifest manifest = read_manifest(options.folder);
     if (options.rig_file.empty()) return manifest;
-    Rig rig = read_rig(options.rig_file);
+    Rig rig = read_rig_as_set(options.rig_file);
     if (manifest.scene) {
         UserScene scene;
         scene.materials = scene_materials(manifest.scene->materials, rig, manifest.scene->file);
@@ -71,6 +70,7 @@ Manifest manifest_of(const IntegrateCommandOptions& options) {
     }
     manifest =
         naming(options.rig_file, [&] { return reintegrate(rig, manifest, options.tolerance); });
+    manifest.rig_settings = rig_settings();
     manifest.model = model_error(rig, options.rig_file, options.model_tolerance);
     return manifest;
 }
@@ -83,6 +83,7 @@ Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest
                  {"tolerance", manifest.tolerance},
                  {"frame_error", manifest.frame_error},
                  {"wavelengths", Json::array()}};
+    if (manifest.rig_settings) account["rig_settings"] = manifest.rig_settings->keys;
     put_promises(account, manifest);
     put_model_error(account, manifest.model);
     for (const PlannedWavelength& w : manifest.wavelengths) {
@@ -93,7 +94,7 @@ Json account_of(const IntegrateCommandOptions& options, const Manifest& manifest
 
 ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     if (!options.rig_file.empty())
-        check_plausible(read_rig(options.rig_file), options.rig_file, options.strict);
+        check_plausible(read_rig_as_set(options.rig_file), options.rig_file, options.strict);
     const fs::path images = images_folder(options);
     require_own_folder(images, options);
     if (!share_folders(options.folder).empty()) {
@@ -106,7 +107,7 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
     Manifest manifest = manifest_of(options);  // as it stands now that nobody changes it
     if (!options.rig_file.empty()) {
         manifest.veil =
-            write_veil_of_signals(images, read_rig(options.rig_file), manifest, all_cores());
+            write_veil_of_signals(images, read_rig_as_set(options.rig_file), manifest, all_cores());
     }
     const Integration integration =
         integrate_folder(options.folder, manifest, options.preview, images);

@@ -5,16 +5,21 @@
 #include "base/error.h"
 #include "base/interruption.h"
 #include "base/printable.h"
+#include "base/words.h"
 #include "cli/command.h"
 #include "cli/completion.h"
 #include "cli/help.h"
+#include "cli/manual.h"
 #include "cli/option_checks.h"
+#include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "cli/unknown_word.h"
+#include "report/page.h"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -28,10 +33,24 @@ namespace {
 using namespace aphotic::cli;
 
 // In the order of --help.
-constexpr std::array kCommands{&kRender, &kPlan,   &kGenerate, &kIntegrate, &kTrace,  &kLightmap,
-                               &kAtlas,  &kDesign, &kCorrect,  &kObserve,   &kFit,    &kBaseline,
-                               &kSurvey, &kSweep,  &kValidate, &kStudy,     &kStress, &kCompare,
-                               &kBeam,   &kData,   &kHelp};
+constexpr std::array kCommands{&kRender,
+                               &kPlan,
+                               &kGenerate,
+                               &kIntegrate,
+                               &kTrace,
+                               &kLightmap,
+                               &kDesign,
+                               &kCorrect,
+                               &kObserve,
+                               &kFit,
+                               &kBaseline,
+                               &kSurvey,
+                               &kValidate,
+                               &kStudy,
+                               &kCompare,
+                               &kBeam,
+                               &kData,
+                               &kHelp};
 
 ExitStatus run(const Action& action) {
     try {
@@ -58,7 +77,21 @@ ExitStatus run(const Action& action) {
     }
 }
 
-// Once parsed, whatever else is on the line.
+// What the parser says of itself, whatever else is on the line.
+void add_manual(CLI::App& app, Action& chosen) {
+    app.add_flag_callback(
+           "--man-page",
+           [&app, &chosen] {
+               chosen = [&app] {
+                   say_text(manual_page(app));
+                   return kDone;
+               };
+               throw CLI::Success();
+           },
+           "Print the manual page of all commands, as man -l takes it")
+        ->trigger_on_parse();
+}
+
 void add_completion(CLI::App& app, Action& chosen) {
     app.add_option_function<std::string>(
            "--completion",
@@ -72,6 +105,22 @@ void add_completion(CLI::App& app, Action& chosen) {
            "Print a script by which bash, zsh or fish completes this command")
         ->check(CLI::IsMember(std::vector<std::string>(kShells.begin(), kShells.end())))
         ->trigger_on_parse();
+}
+
+aphotic::PageOrigin page_origin(int argc, char** argv) {
+    constexpr std::size_t kMostCharacters = 2000;  // of a shell's thousand images the first
+    std::string command = "aphotic";
+    for (int i = 1; i < argc && command.size() < kMostCharacters; ++i)
+        command += " " + aphotic::shell_word(argv[i]);
+    if (command.size() >= kMostCharacters) command += " ...";
+    const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+    const std::chrono::year_month_day day(std::chrono::floor<std::chrono::days>(now));
+    return {.command = std::move(command),
+            .version = APHOTIC_VERSION,
+            .date = fmt::format("{:04}-{:02}-{:02}",
+                                static_cast<int>(day.year()),
+                                static_cast<unsigned>(day.month()),
+                                static_cast<unsigned>(day.day()))};
 }
 
 std::string words_of_failure(const CLI::App* app, const CLI::Error& error) {
@@ -102,11 +151,14 @@ int main(int argc, char** argv) {
         "Exit status: 0 done; 1 ran, and the answer is no; 2 wrong command line or input file; 3 "
         "POV-Ray or the file system failed. Ends by the signal when interrupted.");
 
+    aphotic::set_page_origin(page_origin(argc, argv));
     Action chosen;
     add_completion(app, chosen);
+    add_manual(app, chosen);
     for (const Command* command : kCommands) {
         CLI::App* sub = app.add_subcommand(command->name, command->summary)->group(command->group);
         const Action action = command->configure(*sub);
+        add_set_option(*sub);
         add_common_checks(*sub);
         sub->callback([&chosen, action, sub] {
             chosen = [action, sub] {
@@ -121,8 +173,8 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (chosen && error.get_exit_code() == 0) return run(Action(chosen));
+        if (chosen && error.get_exit_code() == 0) return run(chosen);
         return app.exit(error) == 0 ? kDone : kBadInput;
     }
-    return run(Action(chosen));  // a copy: a sweep's action parses again, which replaces `chosen`
+    return run(chosen);
 }

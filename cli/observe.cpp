@@ -4,14 +4,11 @@
 // pattern of light that they share.
 #include "base/json_text.h"
 #include "base/words.h"
-#include "cli/allowed_skips.h"
 #include "cli/command.h"
-#include "cli/navigation_options.h"
 #include "cli/options.h"
-#include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
-#include "survey/observation.h"
+#include "survey/correct/observation.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -24,15 +21,9 @@ namespace aphotic::cli {
 namespace {
 
 struct ObserveCommandOptions {
-    std::vector<std::string> images;
-    NavigationOptions navigation;
-    std::string rig;
+    SurveyInput input;
     std::string output;
-    CameraNumbers camera;
     ObservationOptions observation;
-    bool strict = false;
-    AllowedSkips allowed_skips;
-    bool json = false;
 };
 
 std::string angle_words(double radians) {
@@ -57,23 +48,24 @@ void print_observation(const Observation& observation, const std::string& map_fi
 }
 
 ExitStatus observe_survey(const ObserveCommandOptions& options) {
-    Survey survey{.files = image_files(options.images, options.output), .camera = options.camera};
-    survey.camera = camera_of(survey.camera, survey.files, options.rig, options.strict);
-    survey.navigation = read_navigation_with(options.rig, options.navigation, survey.files);
+    const SurveyInput& input = options.input;
+    const std::optional<Rig> rig = rig_of(input);
+    Survey survey = read_survey(input, options.output, rig ? &*rig : nullptr);
+    survey.navigation = read_navigation(input, survey.files, rig ? &*rig : nullptr);
     const Observation observation =
-        observe(survey, options.observation, terminal_watch(options.strict));
+        observe(survey, options.observation, terminal_watch(input.strict));
     write_observation(options.output, observation);
-    if (options.json) {
+    if (input.json) {
         nlohmann::ordered_json json = to_json(observation, options.output);
         json["camera"] = to_json(survey.camera);
         if (survey.navigation->notes()) json["navigation"] = to_json(*survey.navigation->notes());
         say_text(json_text(json));
     } else {
         print_observation(observation, options.output);
-        print_camera(survey.camera);
-        print_navigation(survey.navigation);
+        print_camera(survey);
+        print_navigation(survey);
     }
-    return status_of_skips(observation.skipped.size(), survey.files.size(), options.allowed_skips);
+    return status_of_skips(observation.skipped.size(), survey.files.size(), input);
 }
 
 void add_average_options(CLI::App& app, ObservationOptions& options) {
@@ -95,8 +87,8 @@ void add_average_options(CLI::App& app, ObservationOptions& options) {
 
 Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
-    add_images(app, options->images);
-    add_navigation_options(app, options->navigation)->required();
+    add_images(app, options->input);
+    add_navigation_options(app, options->input)->required();
     app.add_option("-o,--output", options->output, "Write the map to this file")
         ->type_name("MAP.exr")
         ->required();
@@ -111,17 +103,15 @@ Action configure_observe(CLI::App& app) {
         ->check(not_negative())
         ->capture_default_str();
     add_average_options(app, options->observation);
-    add_survey_rig(app, options->rig);
-    add_camera_options(app, options->camera);
+    add_survey_rig(app, options->input);
+    add_camera_options(app, options->input, false);
     app.add_option("--memory",
                    options->observation.memory_mb,
                    "Hold up to N MB of images at a time, for a median or trimmed mean")
         ->check(positive())
         ->capture_default_str();
     add_jobs(app, options->observation.jobs, "Read N images at a time");
-    add_strict_option(app, options->strict);
-    add_allow_skipped(app, options->allowed_skips);
-    add_json(app, options->json);
+    add_outcome_options(app, options->input);
     app.footer(
         "MAP.exr holds the average in R, G, B, the number of images in count.R ..., the standard "
         "error in stderr.R ...; what was never observed is NaN. Images that cannot be used are "

@@ -5,6 +5,8 @@
 // from or under the name of another format.
 #pragma once
 
+#include "base/error.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -35,6 +37,44 @@ template <class Value>
                 return std::string();
             },
             ""};
+}
+
+// What this throws an InputError at.
+template <typename Read>
+[[nodiscard]] CLI::Validator refused_by(const Read& read, const std::string& type = "") {
+    return {[read](const std::string& text) {
+                try {
+                    static_cast<void>(read(text));
+                    return std::string();
+                } catch (const InputError& error) {
+                    return std::string(error.what());
+                }
+            },
+            type};
+}
+
+// An option whose text `read` makes a value of; what that throws an InputError at is refused.
+template <typename Value, typename Read>
+CLI::Option* add_read(CLI::App& app,
+                      const std::string& name,
+                      Value& value,
+                      const Read& read,
+                      const std::string& words,
+                      const std::string& type = "") {
+    return app
+        .add_option_function<std::string>(
+            name, [&value, read](const std::string& text) { value = read(text); }, words)
+        ->check(refused_by(read, type));
+}
+
+// Of a reader that gives nothing where the text is none of what is allowed.
+template <typename Read>
+auto read_by(const Read& read, const std::string& allowed) {
+    return [read, allowed](const std::string& text) {
+        auto value = read(text);
+        if (!value) throw InputError("found '{}'; allowed: {}", text, allowed);
+        return *value;
+    };
 }
 
 // Every option of the command that takes a number refuses NaN, which no range does; one that names

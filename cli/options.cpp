@@ -36,18 +36,7 @@ CLI::Option* add_share(CLI::App& app,
                        const std::string& name,
                        WorkShare& share,
                        const std::string& words) {
-    const auto read = [&share](const std::string& text) { share = parse_share(text); };
-    const auto check = [](const std::string& text) {
-        try {
-            (void)parse_share(text);
-        } catch (const InputError& error) {
-            return std::string(error.what());
-        }
-        return std::string();
-    };
-    return app.add_option_function<std::string>(name, read, words)
-        ->check(CLI::Validator(check, ""))
-        ->option_text("I/N");
+    return add_read(app, name, share, parse_share, words)->option_text("I/N");
 }
 
 void add_json(CLI::App& app, bool& json, const std::string& words) {

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "base/number.h"
-#include "base/share.h"
+#include "base/work_folder.h"
 #include "cli/model_error.h"
 #include "cli/option_checks.h"
 #include "image/preview.h"

@@ -109,38 +109,4 @@ ImageSize image_size(const Manifest& manifest) {
             .frames = manifest.frame_format()};
 }
 
-FolderLock claim_folder(const fs::path& folder) {
-    make_folder(folder);
-    FolderLock lock(folder, FolderUse::Write);
-    for (const char* part :
-         {"", "povray", "povray/frames", "povray/logs", "reference", "settings"}) {
-        remove_abandoned_files(folder / part);
-    }
-    return lock;
-}
-
-OutputPlace::OutputPlace(const fs::path& folder)
-    : folder_(folder), is_new_(!fs::exists(folder)), lock_(claim_folder(folder)) {}
-
-OutputPlace::~OutputPlace() {
-    std::error_code ignored;  // as where it is not empty
-    if (is_new_) fs::remove(folder_, ignored);
-}
-
-FolderLock claim_tree(const fs::path& folder) {
-    FolderLock lock = claim_folder(folder);
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (entry.is_directory()) remove_abandoned_files(entry.path());
-    }
-    return lock;
-}
-
-std::vector<FolderLock> claim_folders(const fs::path& written, const fs::path& read) {
-    std::vector<FolderLock> locks;
-    locks.push_back(claim_folder(written));
-    std::error_code ignored;
-    if (!fs::equivalent(written, read, ignored)) locks.emplace_back(read, FolderUse::Read);
-    return locks;
-}
-
 }  // namespace aphotic::cli

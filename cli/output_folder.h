@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The folder that a command writes to: made, locked, and rid of what killed runs left half written;
-// and whether it has room for all that may come (scene_gen/disk_estimate.h).
+// Whether the folder that a command writes to has room for all that may come
+// (scene_gen/disk_estimate.h).
 #pragma once
 
-#include "base/folder_lock.h"
-#include "base/share.h"
+#include "base/work_folder.h"
 #include "scene_gen/disk_estimate.h"
 #include "scene_gen/scene_set.h"
 
@@ -15,32 +14,6 @@
 #include <vector>
 
 namespace aphotic::cli {
-
-// Until the lock goes no other command takes the folder.
-[[nodiscard]] FolderLock claim_folder(const std::filesystem::path& folder);
-
-// The same for a command that has nothing to write until much later: a folder that cannot be made
-// is found out before. It goes again where nothing came of it.
-class OutputPlace {
-  public:
-    explicit OutputPlace(const std::filesystem::path& folder);
-    ~OutputPlace();
-    OutputPlace(const OutputPlace&) = delete;
-    OutputPlace& operator=(const OutputPlace&) = delete;
-
-  private:
-    std::filesystem::path folder_;
-    bool is_new_;
-    FolderLock lock_;
-};
-
-// The same with all folders below, where a command makes them as it goes.
-[[nodiscard]] FolderLock claim_tree(const std::filesystem::path& folder);
-
-// The same for a command that also reads what stands in another folder, which is not to change
-// meanwhile; it may be the same one.
-[[nodiscard]] std::vector<FolderLock> claim_folders(const std::filesystem::path& written,
-                                                    const std::filesystem::path& read);
 
 void add_needs_option(CLI::App& app, bool& ignore_needs);
 

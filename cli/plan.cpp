@@ -131,6 +131,7 @@ Json to_json(const Planned& made) {
               {"wavelengths", wavelengths_of(manifest)},
               {"omissions", Json::array()},
               {"needs", json_of(planned_needs(scenes))}};
+    if (manifest.rig_settings) json["rig_settings"] = manifest.rig_settings->keys;
     put_promises(json, manifest);
     put_model_error(json, planned.model);
     if (planned.rig.camera.port) {

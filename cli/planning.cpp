@@ -7,7 +7,6 @@
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "plugin/probe.h"
-#include "rig/rig_reader.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -126,7 +125,7 @@ std::shared_ptr<const UserScene> surveyed(const Rig& rig, const PlanningOptions&
 }  // namespace
 
 PlannedRender plan_rig(const PlanningOptions& options) {
-    Rig rig = read_rig(options.rig_file);
+    Rig rig = read_rig_as_set(options.rig_file);
     if (options.sled) {
         rig.sled = *options.sled;
     } else {
@@ -146,6 +145,7 @@ SceneSet scenes_of(const PlannedRender& planned, const PlanningOptions& options)
     SceneSet scenes =
         naming(options.rig_file, [&] { return make_scene_set(planned.rig, planned.plan); });
     scenes.manifest.model = planned.model;
+    scenes.manifest.rig_settings = rig_settings();
     return scenes;
 }
 

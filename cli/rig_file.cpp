@@ -3,12 +3,67 @@
 
 #include "base/error.h"
 #include "cli/terminal.h"
+#include "rig/file/rig_reader.h"
 #include "rig/plausibility.h"
-#include "rig/rig_reader.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
 #include <vector>
 
 namespace aphotic::cli {
+namespace {
+
+std::vector<std::string> set_keys;
+
+std::string setting_fault(const std::string& text) {
+    const std::size_t sign = text.find('=');
+    const bool is_whole = sign != std::string::npos && sign > 0 && sign + 1 < text.size();
+    return is_whole ? "" : fmt::format("found {}; allowed: KEY=VALUE", text);
+}
+
+}  // namespace
+
+void add_set_option(CLI::App& app) {
+    CLI::Option* rig = nullptr;
+    for (CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_positional() ? option->get_name(true) : "";
+        if (name.starts_with("RIG") || option->get_type_name() == "RIG") rig = option;
+    }
+    if (rig == nullptr) return;
+    app.add_option_function<std::vector<std::string>>(
+           "--set",
+           [](const std::vector<std::string>& said) { set_keys = said; },
+           "Set this key of the rig, such as sled.altitude_m=2.5, before it is read; repeatable")
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(setting_fault, ""))
+        ->needs(rig)
+        ->option_text("KEY=VALUE");
+}
+
+std::optional<ManifestSettings> rig_settings() {
+    if (set_keys.empty()) return std::nullopt;
+    return ManifestSettings{.keys = set_keys};
+}
+
+RigText read_rig_text_as_set(const std::string& file) {
+    RigText text{std::filesystem::path(file)};
+    try {
+        for (const std::string& setting : set_keys) {
+            const std::size_t sign = setting.find('=');
+            text.set_toml(setting.substr(0, sign), setting.substr(sign + 1));
+        }
+        if (!set_keys.empty()) static_cast<void>(text.rig());
+    } catch (const InputError& error) {
+        throw InputError("--set {}: {}", fmt::join(set_keys, " --set "), error.what());
+    }
+    return text;
+}
+
+Rig read_rig_as_set(const std::string& file) {
+    return set_keys.empty() ? read_rig(file) : read_rig_text_as_set(file).rig();
+}
 
 void add_strict_option(CLI::App& app, bool& strict) {
     app.add_flag("--strict", strict, "Treat warnings of what looks wrong as errors");
@@ -25,7 +80,7 @@ void check_plausible(const Rig& rig, const std::string& file, bool strict) {
 }
 
 Rig read_plausible_rig(const std::string& file, bool strict) {
-    Rig rig = read_rig(file);
+    Rig rig = read_rig_as_set(file);
     check_plausible(rig, file, strict);
     return rig;
 }

@@ -3,12 +3,18 @@
 // The rig that a command was given, with a warning of whatever is implausible about it
 // (rig/plausibility.h), in the form that warnings about surveys have. With --strict that is an
 // error, before anything is written.
+//
+// --set KEY=VALUE sets keys of its text (rig/file/rig_text.h) before it is read, whatever the
+// command: to all that follows this is the rig, whose digest is of the text with them.
 #pragma once
 
+#include "rig/file/rig_text.h"
 #include "rig/rig.h"
+#include "spectral/manifest.h"
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
 
 namespace aphotic::cli {
@@ -17,6 +23,16 @@ void add_strict_option(CLI::App& app, bool& strict);
 
 // Once what the options change of the rig is changed.
 void check_plausible(const Rig& rig, const std::string& file, bool strict);
+
+// For a command that has an argument or an option for a rig; others are left as they are.
+void add_set_option(CLI::App& app);
+// What --set said, in its order; none: nothing.
+[[nodiscard]] std::optional<ManifestSettings> rig_settings();
+
+// Of the file, with these keys set. Throws InputError as read_rig does (rig/file/rig_reader.h), and
+// one that begins with --set where a key or its value is at fault.
+[[nodiscard]] RigText read_rig_text_as_set(const std::string& file);
+[[nodiscard]] Rig read_rig_as_set(const std::string& file);
 
 [[nodiscard]] Rig read_plausible_rig(const std::string& file, bool strict);
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// aphotic study RIG -o DIR: settings of a render tried side by side, their time here and their
-// error against the reference.
+// aphotic study RIG -o DIR: a render by several choices of wavelengths, the time of each here and
+// its error against the reference.
+#include "validation/study.h"
+
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/progress.h"
@@ -14,16 +16,13 @@
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "image/exr.h"
-#include "scene_gen/pov_scene.h"
 #include "scene_gen/scene_set.h"
-#include "validation/study_run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 namespace aphotic::cli {
@@ -36,49 +35,59 @@ struct StudyCommandOptions {
     std::string folder;
     std::string povray;
     double stall_timeout_s = kStall_s;
-    double tolerance = 1e-3;
+    std::vector<double> tolerances;
+    std::vector<int> fitted;
+    std::vector<int> bands;
     bool quick = false;
     bool strict = false;
     bool json = false;
     bool ignore_needs = false;
 };
 
-RenderPlan plan_for(const Rig& rig, const StudySetting& setting) {
-    PlanRequest request;
-    if (setting.fitted > 0) request.fitted = setting.fitted;
-    if (setting.bands > 0) request.bands = setting.bands;
-    request.scene.wavelengths_per_frame = setting.per_frame;
-    request.scene.soft_edges = setting.one_soft_lamp;
-    if (setting.png) request.scene.format = FrameFormat::Png16;
-    return plan_render(rig, request);
-}
+// A setting and its plan, made before anything is rendered: what cannot be kept is refused at once.
+struct PlannedSetting {
+    StudySetting setting;
+    RenderPlan plan;
+};
 
-// In POV-Ray's settings, which must hold the line.
-void change_setting(std::string& ini, const std::string& line, const std::string& to) {
-    const std::size_t at = ini.find(line + "\n");
-    if (at == std::string::npos) throw std::logic_error("no such line: " + line);
-    ini.replace(at, line.size(), to);
-}
-
-// The frames of one setting by POV-Ray.
-StudyFrames render_setting(const PovRay& povray,
-                           double stall_s,
-                           const Rig& rig,
-                           const StudySetting& setting,
-                           const fs::path& folder) {
-    const RenderPlan plan = plan_for(rig, setting);
-    SceneSet set = make_scene_set(rig, plan);
-    if (setting.antialias) {
-        change_setting(set.ini,
-                       "Antialias=off",
-                       "Antialias=on\nSampling_Method=2\nAntialias_Threshold=0.01\n"
-                       "Antialias_Depth=3\nJitter=off");
+std::vector<PlannedSetting> planned_settings(const StudyCommandOptions& asked, const Rig& rig) {
+    StudyCommandOptions options = asked;
+    if (options.tolerances.empty() && options.fitted.empty() && options.bands.empty()) {
+        options.tolerances = {PlanRequest{}.tolerance};
+        options.fitted = options.quick ? std::vector{3, 6} : std::vector{3, 6, 9};
+        options.bands =
+            options.quick ? std::vector{6, 12} : std::vector{6, 9, 12, 18, 24, 36, 48, 72};
     }
-    RenderedFrames frames =
-        render_frames(povray, folder, set, {.jobs = setting.jobs, .stall_s = stall_s});
-    return {.manifest = std::move(frames.result.manifest),
-            .promise = plan.promise(),
-            .render_s = frames.povray_s};
+    std::vector<PlannedSetting> settings;
+    const auto add = [&](StudySetting setting, auto PlanRequest::*what, auto value) {
+        PlanRequest request;
+        request.*what = value;
+        const bool is_new = std::ranges::none_of(
+            settings, [&](const PlannedSetting& one) { return one.setting.name == setting.name; });
+        if (!is_new) return;
+        settings.push_back({std::move(setting),
+                            naming(options.rig_file, [&] { return plan_render(rig, request); })});
+    };
+    for (const double tolerance : options.tolerances) {
+        add({.name = fmt::format("tolerance-{}", tolerance),
+             .words = fmt::format("tolerance {}", tolerance)},
+            &PlanRequest::tolerance,
+            tolerance);
+    }
+    for (const int count : options.fitted) {
+        add({.name = fmt::format("fitted-{}", count),
+             .words = counted(static_cast<std::size_t>(count), "fitted wavelength")},
+            &PlanRequest::fitted,
+            count);
+    }
+    for (const int count : options.bands) {
+        add({.name = fmt::format("bands-{}", count),
+             .words = counted(static_cast<std::size_t>(count), "equal band"),
+             .equal_bands = true},
+            &PlanRequest::bands,
+            count);
+    }
+    return settings;
 }
 
 void print_study(const Study& study, const fs::path& folder) {
@@ -89,49 +98,31 @@ void print_study(const Study& study, const fs::path& folder) {
         study.height_px,
         counted(study.measures.size(), "setting"),
         counted(static_cast<std::size_t>(study.cores), "core"));
-    say("  {:<48} {:>6} {:>8} {:>10} {:>10} {:>10}\n",
-        "",
-        "frames",
-        "time (s)",
-        "max |e|",
-        "off edges",
-        "on edges");
+    say("{:>34}  time (s)   promised    max |e|   on edges\n", "frames");
     for (std::size_t i = 0; i < study.measures.size(); ++i) {
         const StudyMeasure& m = study.measures[i];
-        say("{} {:<48} {:6} {:8.2f} {:10.2e} {:10.2e} {:10.2e}\n",
+        say("{} {:<24} {:6} {:8.2f} {:10.2e} {:10.2e} {:10.2e}\n",
             front[i] ? "*" : " ",
             m.setting.words,
             m.frames,
             m.total_s(),
-            m.max_error(),
-            m.max_error_off_edges(),
-            m.max_error_on_edges());
+            m.promise,
+            m.max_error,
+            m.max_error_on_edges);
     }
     say("  * on the Pareto front: no other is as fast and as right\n");
-    const auto best = recommended(study.measures, study.tolerance);
-    if (best) {
-        say("  for {}: {}\n", study.tolerance, study.measures[*best].setting.words);
-    } else {
-        say("  for {}: none of these\n", study.tolerance);
-    }
     say("  {}/study.html, study.csv, study.json\n", folder.string());
 }
 
-// Of the setting that has most. Behind a port each wavelength may take a frame of its own.
-DiskNeeds needs_of_renders(const Rig& rig, const std::vector<StudySetting>& settings, int cores) {
-    int wavelengths = 0;
-    int frames = 0;
-    for (const StudySetting& s : settings) {
-        const int count = std::max(s.fitted, s.bands);
-        wavelengths = std::max(wavelengths, count);
-        const int per_frame = rig.camera.port ? 1 : s.per_frame;
-        frames = std::max(frames, (count + per_frame - 1) / per_frame);
+// Of the setting that has most.
+DiskNeeds needs_of_renders(const Rig& rig, const std::vector<PlannedSetting>& settings, int cores) {
+    ImageSize size{.width_px = rig.camera.width_px, .height_px = rig.camera.height_px};
+    std::size_t frames = 0;
+    for (const PlannedSetting& one : settings) {
+        size.wavelengths = std::max(size.wavelengths, one.plan.wavelengths.size());
+        frames = std::max(frames, one.plan.frames());
     }
-    return study_needs({.width_px = rig.camera.width_px,
-                        .height_px = rig.camera.height_px,
-                        .wavelengths = static_cast<std::size_t>(wavelengths)},
-                       static_cast<std::size_t>(frames),
-                       cores);
+    return study_needs(size, frames, cores);
 }
 
 ExitStatus study_rig(const StudyCommandOptions& options) {
@@ -152,30 +143,34 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
                 .height_px = rig.camera.height_px,
                 .aphotic_version = APHOTIC_VERSION,
                 .povray_version = povray.version,
-                .cores = all_cores(),
-                .quick = options.quick,
-                .tolerance = options.tolerance};
-    const std::vector<StudySetting> settings = study_settings(rig, options.quick, study.cores);
-    require_room(needs_of_renders(rig, settings, study.cores), folder, options.ignore_needs);
+                .cores = all_cores()};
+    const std::vector<PlannedSetting> planned = planned_settings(options, rig);
+    require_room(needs_of_renders(rig, planned, study.cores), folder, options.ignore_needs);
     set_exr_threads(study.cores);
     const FolderLock lock = claim_folder(folder);
+    std::vector<StudySetting> settings;
+    for (const PlannedSetting& one : planned) settings.push_back(one.setting);
     StudyHands hands;
-    hands.render = [&](const Rig& small, const StudySetting& setting, const fs::path& its_folder) {
-        return render_setting(povray, options.stall_timeout_s, small, setting, its_folder);
-    };
     std::optional<ProgressLine> line(std::in_place);
-    hands.progress = [&](std::string_view what, double share) {
-        if (line) line->show(what, share);
-    };
-    hands.begins = [&](const StudySetting& setting, std::size_t index) {
+    hands.progress = [&](std::string_view what, double share) { line->show(what, share); };
+    hands.render = [&](std::size_t index, const fs::path& its_folder) {
         line.reset();
-        warn("{} of {}: {}", index + 1, settings.size(), setting.words);
+        warn("{} of {}: {}", index + 1, settings.size(), settings[index].words);
+        const RenderPlan& plan = planned[index].plan;
+        RenderedFrames frames =
+            render_frames(povray,
+                          its_folder,
+                          make_scene_set(rig, plan),
+                          {.jobs = study.cores, .stall_s = options.stall_timeout_s});
+        return StudyFrames{.manifest = std::move(frames.result.manifest),
+                           .promise = plan.promise(),
+                           .render_s = frames.povray_s};
     };
     run_study(study, rig, settings, folder, hands);
     line.reset();
     write_study(study, folder);
     if (options.json) {
-        say_text(read_text_file(folder / "study.json"));
+        say_text(study_json(study));
     } else {
         print_study(study, folder);
     }
@@ -183,19 +178,31 @@ ExitStatus study_rig(const StudyCommandOptions& options) {
 }
 
 Action configure_study(CLI::App& app) {
+    constexpr int kMostFitted = 48;
+    constexpr int kMostBands = 100'000;
     const auto options = std::make_shared<StudyCommandOptions>();
     add_rig(app, options->rig_file);
     add_strict_option(app, options->strict);
     add_output_folder(app, options->folder)->required();
     app.add_option("--tolerance",
-                   options->tolerance,
-                   "Recommend the fastest setting within this relative error")
+                   options->tolerances,
+                   "Try as few fitted wavelengths as keep these relative errors each, such as "
+                   "1e-3,1e-2")
+        ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(in_range(0.0, 1.0))
-        ->option_text("E")
-        ->capture_default_str();
-    app.add_flag("--quick",
-                 options->quick,
-                 "Try only the settings that matter most, small enough for two minutes");
+        ->option_text("LIST");
+    app.add_option("--fitted", options->fitted, "Try so many fitted wavelengths each")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(in_range(1, kMostFitted))
+        ->option_text("LIST");
+    app.add_option("--bands", options->bands, "Try so many equal bands each, such as 12,36")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(in_range(1, kMostBands))
+        ->option_text("LIST");
+    app.add_flag("--quick", options->quick, "Try few settings, small enough for two minutes");
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json, "Print study.json");
     add_povray_options(app, options->povray, options->stall_timeout_s);

@@ -3,7 +3,7 @@
 // aphotic survey RIG -o DIR: raw images as the rig's camera writes them, with noise, navigation
 // with errors, and the truth beside both.
 #include "cli/terminal.h"
-#include "survey/simulated_survey.h"
+#include "survey/simulate/simulated_survey.h"
 
 #include "base/error.h"
 #include "base/progress.h"
@@ -17,9 +17,9 @@
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
 #include "plugin/survey_render.h"
-#include "survey/camera_numbers.h"
 #include "survey/first_look.h"
-#include "survey/navigation_file.h"
+#include "survey/images/camera_numbers.h"
+#include "survey/navigation/navigation_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -250,7 +250,7 @@ ExitStatus make_survey(const SurveyCommandOptions& options) {
     const std::optional<PovRay> povray = povray_for(options, survey);
     require_room(
         {.folder_bytes = missing_bytes(survey)}, survey.folder, options.planning.ignore_needs);
-    const FolderLock lock = claim_tree(survey.folder);
+    const FolderLock lock = claim_folder(survey.folder);
     begin_survey(survey);
     ProgressLine line;
     survey.progress = [&](double share) { line.show("images", share); };
@@ -362,14 +362,7 @@ void add_floor_options(CLI::App& app, SurveyCommandOptions& options) {
                    options.declared,
                    "Declare this in the scene, such as Depth=2 or Floor=\"card\"; repeatable")
         ->option_text("NAME=VALUE")
-        ->check([](const std::string& text) {
-            try {
-                require_declaration(text);
-                return std::string();
-            } catch (const InputError& error) {
-                return std::string(error.what());
-            }
-        });
+        ->check(refused_by(require_declaration));
 }
 
 void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {

@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/survey_command.h"
 
+#include "base/csv.h"
 #include "base/error.h"
+#include "base/number.h"
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/option_checks.h"
+#include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
-#include "rig/rig_reader.h"
-#include "survey/camera_of_files.h"
+#include "rig/file/rig_reader.h"
+#include "survey/navigation/image_time.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -37,30 +42,6 @@ class ProgressOfParts {
     double share_ = 0.0;
 };
 
-void add_crop_options(CLI::App& app, CameraNumbers& camera) {
-    auto* half = app.add_option_function<std::string>(
-                        "--half",
-                        [&camera](const std::string& name) {
-                            camera.half = name == "left" ? Half::Left : Half::Right;
-                        },
-                        "Take the left or the right half of each file, which holds two cameras' "
-                        "images side by side")
-                     ->check(CLI::IsMember({"left", "right"}));
-    const auto wrong = [](const std::string& text) {
-        return crop_named(text)
-                   ? ""
-                   : fmt::format("found '{}'; allowed: X,Y,WIDTH,HEIGHT, whole numbers of pixels",
-                                 text);
-    };
-    app.add_option_function<std::string>(
-           "--crop",
-           [&camera](const std::string& text) { camera.crop = crop_named(text); },
-           "Take this part of each file, from column X and row Y of the top left, which are 0,0")
-        ->check(CLI::Validator(wrong, ""))
-        ->option_text("X,Y,WIDTH,HEIGHT")
-        ->excludes(half);
-}
-
 std::string words_of(const ShotExposure& exposure) {
     std::string words;
     const auto add = [&](std::optional<double> number, std::string_view format, double unit) {
@@ -75,27 +56,164 @@ std::string words_of(const ShotExposure& exposure) {
     return words;
 }
 
+constexpr double kMostOffset_m = 1000.0;  // as a rig has it
+constexpr double kMostClock_s = 1e10;     // a clock that began anew in 1970 is off by 2e9
+
+// "altitude_m=alt [m],roll_deg=phi"
+ColumnNames column_names(const std::string& text) {
+    ColumnNames names;
+    for (const std::string_view one : comma_fields(text)) {
+        const std::size_t equals = one.find('=');
+        const std::string ours(trimmed(one.substr(0, equals)));
+        const bool is_ours =
+            std::ranges::find(kNavigationFields, std::string_view(ours)) != kNavigationFields.end();
+        if (!is_ours || equals == std::string_view::npos || equals + 1 == one.size()) {
+            throw InputError("found '{}'; allowed: NAME=COLUMN, NAME one of {}",
+                             one,
+                             fmt::join(kNavigationFields, ", "));
+        }
+        names[ours] = std::string(trimmed(one.substr(equals + 1)));
+    }
+    return names;
+}
+
+void add_columns(CLI::App& app, NavigationOptions& options) {
+    add_read(app,
+             "--columns",
+             options.columns,
+             column_names,
+             "Take image, time, altitude_m, pitch_deg or roll_deg from other columns, such as "
+             "'altitude_m=alt [m],roll_deg=phi'")
+        ->option_text("NAME=COLUMN,...");
+    app.add_option("--angles-in", options.angles_in, "Unit of pitch and roll: deg or rad")
+        ->transform(word_of<AngleUnit>({{"deg", AngleUnit::Degrees}, {"rad", AngleUnit::Radians}}))
+        ->type_name("deg|rad")
+        ->default_str("deg");
+}
+
+std::string time_mask(const std::string& mask) {
+    require_time_mask(mask);
+    return mask;
+}
+
+void add_times(CLI::App& app, NavigationOptions& options) {
+    add_read(app,
+             "--image-time",
+             options.time_mask,
+             time_mask,
+             "Where images' names have their time, such as xxxYYYYMMDDxhhmmssxfff; by default "
+             "EXIF, or HabCam's names",
+             "MASK");
+    app.add_option("--clock-offset-s",
+                   options.clock_offset_s,
+                   "Add this many seconds to the images' times, to have the navigation's")
+        ->check(in_range(-kMostClock_s, kMostClock_s).description(""))
+        ->capture_default_str();
+    app.add_option("--longest-gap-s",
+                   options.longest_gap_s,
+                   "Interpolate over time between lines up to this many seconds apart")
+        ->check(positive())
+        ->capture_default_str();
+}
+
+void add_altitude_meaning(CLI::App& app, NavigationOptions& options) {
+    std::map<std::string, AltitudeIs> words;
+    for (std::size_t i = 0; i < kAltitudeWords.size(); ++i)
+        words[std::string(kAltitudeWords.at(i))] = static_cast<AltitudeIs>(i);
+    app.add_option("--altitude-is",
+                   options.altitude_is,
+                   "What navigation's altitudes are: along the camera's axis, the vertical height, "
+                   "or to the nearest floor; by default the rig's altitude_is, or axis")
+        ->transform(word_of(words))
+        ->type_name("axis|plumb|nearest");
+    app.add_option("--altitude-offset-m",
+                   options.altitude_offset_m,
+                   "Add this to altitudes, in metres; by default the rig's altitude_offset_m, or 0")
+        ->check(in_range(-kMostOffset_m, kMostOffset_m));
+}
+
+void add_crop_options(CLI::App& app, CameraNumbers& camera) {
+    auto* half = app.add_option_function<std::string>(
+                        "--half",
+                        [&camera](const std::string& name) {
+                            camera.half = name == "left" ? Half::Left : Half::Right;
+                        },
+                        "Take the left or the right half of each file, which holds two cameras' "
+                        "images side by side")
+                     ->check(CLI::IsMember({"left", "right"}));
+    add_read(app,
+             "--crop",
+             camera.crop,
+             read_by(crop_named, "X,Y,WIDTH,HEIGHT, whole numbers of pixels"),
+             "Take this part of each file, from column X and row Y of the top left, which are 0,0")
+        ->option_text("X,Y,WIDTH,HEIGHT")
+        ->excludes(half);
+}
+
+std::optional<AllowedSkips> allowed_skips_in(std::string_view text) {
+    constexpr double kPercent = 0.01;
+    constexpr double kMostImages = 1e9;
+    const bool is_percent = text.ends_with('%');
+    if (is_percent) text.remove_suffix(1);
+    const auto read = read_number<double>(text);
+    if (!read) return std::nullopt;
+    const bool is_share = is_percent || *read != std::floor(*read);
+    const double number = is_percent ? kPercent * *read : *read;
+    const bool is_allowed = number >= 0.0 && number <= (is_share ? 1.0 : kMostImages);
+    return is_allowed ? std::optional(AllowedSkips{number, is_share}) : std::nullopt;
+}
+
 }  // namespace
 
-void add_images(CLI::App& app, std::vector<std::string>& images) {
+void add_images(CLI::App& app, SurveyInput& input) {
     app.add_option("IMAGES",
-                   images,
+                   input.images,
                    "Raw images, or folders of them: TIFF, PNG, EXR, JPEG, DNG, CR2, NEF, ARW")
         ->required();
 }
 
-void add_camera_options(CLI::App& app, CameraNumbers& camera) {
-    const auto wrong = [](const std::string& name) {
-        return mosaic_named(name)
-                   ? ""
-                   : fmt::format("found '{}'; allowed: RGGB, BGGR, GRBG, GBRG, mono", name);
-    };
-    app.add_option_function<std::string>(
-           "--bayer",
-           [&camera](const std::string& name) { camera.mosaic = mosaic_named(name); },
-           "The images are mosaics, named after the four pixels at the file's top left: RGGB, "
-           "BGGR, GRBG or GBRG; or mono, of a mono camera")
-        ->check(CLI::Validator(wrong, "PATTERN"));
+void add_survey_rig(CLI::App& app, SurveyInput& input) {
+    app.add_option(
+           "--rig",
+           input.rig,
+           "Take from this rig what is not given of the camera: its pattern, levels, exposure, and "
+           "its place on the vehicle")
+        ->type_name("RIG");
+}
+
+CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input) {
+    NavigationOptions& options = input.navigation;
+    const OptionGroup group(app, "Navigation");
+    CLI::Option* nav =
+        app.add_option("--nav",
+                       options.source,
+                       "Altitude, pitch and roll of each image: a table of Aphotic's, oplab's, "
+                       "BIIGLE's, SQUIDLE+'s or HabCam's form, or of poses over time; or the word "
+                       "tags, for HabCam's tags in the images")
+            ->type_name("FILE");
+    add_columns(app, options);
+    add_times(app, options);
+    add_altitude_meaning(app, options);
+    for (const char* name : {"--columns",
+                             "--angles-in",
+                             "--image-time",
+                             "--clock-offset-s",
+                             "--longest-gap-s",
+                             "--altitude-is",
+                             "--altitude-offset-m"})
+        app.get_option(name)->needs(nav);
+    return nav;
+}
+
+void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white) {
+    CameraNumbers& camera = input.camera;
+    add_read(app,
+             "--bayer",
+             camera.mosaic,
+             read_by(mosaic_named, "RGGB, BGGR, GRBG, GBRG, mono"),
+             "The images are mosaics, named after the four pixels at the file's top left: RGGB, "
+             "BGGR, GRBG or GBRG; or mono, of a mono camera",
+             "PATTERN");
     add_crop_options(app, camera);
     app.add_option(
         "--black-level", camera.black_level, "The camera's number for no light; by default 0");
@@ -108,13 +226,24 @@ void add_camera_options(CLI::App& app, CameraNumbers& camera) {
         ->transform(word_of(kWays))
         ->type_name("none|exif|flash")
         ->default_str("none");
-}
-
-void add_white_level_option(CLI::App& app, CameraNumbers& camera) {
+    if (!has_white) return;
     app.add_option("--white-level",
                    camera.white_level,
                    "The camera's number at saturation, such as 4095; by default the largest of the "
                    "file's integer type");
+}
+
+void add_outcome_options(CLI::App& app, SurveyInput& input, const std::string& json) {
+    add_strict_option(app, input.strict);
+    add_read(app,
+             "--allow-skipped",
+             input.allowed_skips,
+             read_by(allowed_skips_in, "a number of images, or a share such as 0.01 or 1%"),
+             "End with 0 when no more images are skipped than this: a number, or a share of all "
+             "such as 0.01 or 1%",
+             "N|SHARE")
+        ->default_str("0");
+    add_json(app, input.json, json);
 }
 
 Settle add_format_options(CLI::App& app, ResultFormat& format) {
@@ -180,33 +309,30 @@ Settle add_format_options(CLI::App& app, ResultFormat& format) {
     };
 }
 
-void add_survey_rig(CLI::App& app, std::string& rig) {
-    app.add_option(
-           "--rig",
-           rig,
-           "Take from this rig what is not given of the camera: its pattern, levels, exposure, and "
-           "its place on the vehicle")
-        ->type_name("RIG");
+std::optional<Rig> rig_of(const SurveyInput& input) {
+    return input.rig.empty() ? std::nullopt
+                             : std::optional(read_plausible_rig(input.rig, input.strict));
 }
 
-CameraNumbers camera_of(const CameraNumbers& said,
-                        const std::vector<ImageFile>& files,
-                        const Camera* rig) {
-    CameraNumbers camera = rig != nullptr ? with_rig(said, *rig) : said;
-    camera = with_reference(camera, files);
-    return expecting_usual_size(camera, files);  // a crop that no image has is one mistake
+Survey read_survey(const SurveyInput& input, const std::filesystem::path& output, const Rig* rig) {
+    Survey survey{.files = image_files(input.images, output), .camera = input.camera};
+    if (rig != nullptr) survey.camera = with_rig(survey.camera, rig->camera);
+    survey.camera = with_reference(survey.camera, survey.files);
+    // A crop that no image has is one mistake.
+    survey.camera = expecting_usual_size(survey.camera, survey.files);
+    return survey;
 }
 
-CameraNumbers camera_of(const CameraNumbers& said,
-                        const std::vector<ImageFile>& files,
-                        const std::string& rig,
-                        bool strict) {
-    if (rig.empty()) return camera_of(said, files, nullptr);
-    const Camera camera = read_plausible_rig(rig, strict).camera;
-    return camera_of(said, files, &camera);
+Navigation read_navigation(const SurveyInput& input,
+                           const std::vector<ImageFile>& files,
+                           const Rig* rig) {
+    NavigationOptions options = input.navigation;
+    options.jobs = static_cast<std::size_t>(all_cores());
+    return aphotic::read_navigation(options, files, rig);
 }
 
-void print_camera(const CameraNumbers& camera) {
+void print_camera(const Survey& survey) {
+    const CameraNumbers& camera = survey.camera;
     std::vector<std::string> words;
     if (camera.mosaic) words.emplace_back(mosaic_name(*camera.mosaic));
     if (camera.half) words.emplace_back(*camera.half == Half::Left ? "left half" : "right half");
@@ -222,6 +348,19 @@ void print_camera(const CameraNumbers& camera) {
     if (camera.exposure_by != ExposureBy::Nothing)
         words.push_back("brought to " + words_of(camera.reference));
     if (!words.empty()) say("  camera: {}\n", fmt::join(words, ", "));
+}
+
+void print_navigation(const Survey& survey) {
+    if (!survey.navigation || !survey.navigation->notes()) return;
+    say("  navigation: {}\n", words_of(*survey.navigation->notes()));
+}
+
+std::size_t AllowedSkips::of(std::size_t images) const {
+    // 0.07 of 100 are 7, which their product in doubles misses by its rounding.
+    constexpr double kRounding = 1e-9;
+    const double number_of =
+        is_share ? number * static_cast<double>(images) * (1.0 + kRounding) : number;
+    return static_cast<std::size_t>(number_of);
 }
 
 RunWatch terminal_watch(bool strict) {
@@ -269,6 +408,14 @@ void print_doubts(const RunOutcome& outcome) {
         say(" {} {:.3g} %", name, kPercent * outcome.doubtful_share(name));
     }
     say("\n");
+}
+
+ExitStatus status_of_skips(std::size_t skipped, std::size_t images, const SurveyInput& input) {
+    if (skipped == 0) return kDone;
+    const std::size_t most = input.allowed_skips.of(images);
+    warn(
+        "{} of {} skipped; allowed: {} (--allow-skipped)", skipped, counted(images, "image"), most);
+    return skipped <= most ? kDone : kAnswerIsNo;
 }
 
 }  // namespace aphotic::cli

@@ -1,54 +1,94 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the commands on surveys have in common: options, and what the terminal is told meanwhile.
+// What the commands on surveys have in common: what they take, and what the terminal is told
+// meanwhile.
 #pragma once
 
-#include "survey/camera_numbers.h"
-#include "survey/image_run.h"
+#include "cli/command.h"
+#include "survey/correct/image_run.h"
+#include "survey/navigation/navigation_file.h"
 #include "survey/run_watch.h"
-#include "survey/survey_image.h"
+#include "survey/survey.h"
 
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace aphotic::cli {
 
-void add_images(CLI::App& app, std::vector<std::string>& images);
-// --bayer, --half, --crop, --black-level, --exposure
-void add_camera_options(CLI::App& app, CameraNumbers& camera);
-void add_white_level_option(CLI::App& app, CameraNumbers& camera);
+// How many images may be skipped, and the command still end with 0: a number of them, or a share of
+// all that it was given. A script that works on ten thousand images need not stop for three.
+//
+//   3        three images
+//   0.01     a hundredth of them, rounded down; so does 1%
+struct AllowedSkips {
+    double number = 0.0;
+    bool is_share = false;
+
+    [[nodiscard]] std::size_t of(std::size_t images) const;
+};
+
+struct SurveyInput {
+    std::vector<std::string> images;
+    std::string rig;  // empty: none
+    NavigationOptions navigation;
+    CameraNumbers camera;
+    bool strict = false;
+    AllowedSkips allowed_skips;
+    bool json = false;
+};
+
+void add_images(CLI::App& app, SurveyInput& input);
+// --rig, where the rig tells of its camera alone.
+void add_survey_rig(CLI::App& app, SurveyInput& input);
+// --nav and all that says how it is to be understood.
+CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input);
+// --bayer, --half, --crop, --black-level, --exposure; where brightness has an end, --white-level.
+void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white = true);
+// --strict, --allow-skipped, --json
+void add_outcome_options(CLI::App& app,
+                         SurveyInput& input,
+                         const std::string& json = "Print the result as JSON");
 // --mask, --format, --compression, and how to encode images to look at. Once parsed, the format has
 // all of it, or is refused.
 using Settle = std::function<void()>;
 [[nodiscard]] Settle add_format_options(CLI::App& app, ResultFormat& format);
-// --rig, where the rig tells of its camera alone.
-void add_survey_rig(CLI::App& app, std::string& rig);
 
-// What the options say, then what the rig's camera says, if there is one, then the files. An
-// InputError where these contradict each other, or have no such crop.
-[[nodiscard]] CameraNumbers camera_of(const CameraNumbers& said,
-                                      const std::vector<ImageFile>& files,
-                                      const Camera* rig);
-[[nodiscard]] CameraNumbers camera_of(const CameraNumbers& said,
-                                      const std::vector<ImageFile>& files,
-                                      const std::string& rig,  // empty: none
-                                      bool strict);
+// The input's rig, where it is named for its camera alone.
+[[nodiscard]] std::optional<Rig> rig_of(const SurveyInput& input);
 
-// "camera: RGGB, black level 64, white level 4095"; nothing where there is nothing to say.
-void print_camera(const CameraNumbers& camera);
+// The images but for those that lie in the output; and the camera as the options say, then as the
+// rig's says, if there is one, then as the files. An InputError where these contradict each other,
+// or have no such crop.
+[[nodiscard]] Survey read_survey(const SurveyInput& input,
+                                 const std::filesystem::path& output,
+                                 const Rig* rig);
+[[nodiscard]] Navigation read_navigation(const SurveyInput& input,
+                                         const std::vector<ImageFile>& files,
+                                         const Rig* rig);
 
 // A line of progress, a warning of what looks wrong, or when strict an InputError, and each image
 // that is skipped.
 [[nodiscard]] RunWatch terminal_watch(bool strict);
+
+// "camera: RGGB, black level 64, white level 4095", "navigation: ..."; nothing where there is
+// nothing to say.
+void print_camera(const Survey& survey);
+void print_navigation(const Survey& survey);
 
 // "shown as sRGB ..."
 void print_srgb(const SrgbEncoding& encoding, const std::filesystem::path& folder);
 
 // "doubtful pixels: dark 0.1 % ..."
 void print_doubts(const RunOutcome& outcome);
+
+// kDone when no more were skipped than is allowed. Skips are said, with both numbers.
+[[nodiscard]] ExitStatus status_of_skips(std::size_t skipped,
+                                         std::size_t images,
+                                         const SurveyInput& input);
 
 }  // namespace aphotic::cli

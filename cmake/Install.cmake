@@ -20,11 +20,11 @@ install(FILES
 
 install(DIRECTORY scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/aphotic/scenes)
 install(DIRECTORY plugin/include/ DESTINATION ${CMAKE_INSTALL_DATADIR}/aphotic/include)
-install(FILES docs/aphotic.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN aphotic.1 EXCLUDE)
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY workflow config DESTINATION ${CMAKE_INSTALL_DATADIR}/aphotic)
 
-# The command says itself what a shell should know of it. The names are those that each shell looks for.
+# The command says itself what a shell and man should know of it. The names are those that each shell looks for.
 set(completions ${PROJECT_BINARY_DIR}/completions)
 foreach(completion
         bash:bash-completion/completions/aphotic
@@ -42,4 +42,10 @@ foreach(completion
     list(APPEND completion_scripts ${script})
     install(FILES ${script} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} RENAME ${name})
 endforeach()
-add_custom_target(aphotic_completions ALL DEPENDS ${completion_scripts})
+set(man_page ${PROJECT_BINARY_DIR}/aphotic.1)
+add_custom_command(OUTPUT ${man_page}
+    COMMAND aphotic --man-page > ${man_page}
+    DEPENDS aphotic
+    VERBATIM)
+install(FILES ${man_page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+add_custom_target(aphotic_completions ALL DEPENDS ${completion_scripts} ${man_page})

@@ -73,7 +73,7 @@ function(aphotic_tests label)
             APHOTIC_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
             APHOTIC_COMMAND="$<TARGET_FILE:aphotic>")
         target_link_libraries(${target} PRIVATE
-            aphotic::sweep aphotic::survey aphotic::validation aphotic::plugin
+            aphotic::survey aphotic::validation aphotic::plugin
             fmt::fmt nlohmann_json::nlohmann_json OpenEXR::OpenEXR PkgConfig::cairo
             GTest::gtest_main
             aphotic_sanitizers aphotic_warnings)

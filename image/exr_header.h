@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Headers of OpenEXR files, judged before a library reads them: OpenEXR takes the sizes there at
-// their word and asks for gigabytes on a damaged one.
+// Headers of OpenEXR files, read by OpenEXRCore and judged before OpenEXR reads the image: that
+// takes the sizes there at their word and asks for gigabytes on a damaged one.
 //
-//   magic, version                      4 bytes each, little-endian as all numbers
-//   name \0 type \0 size value ...      attributes, size is 4 bytes, the value as many as it says
-//   \0                                  ends a header; files of several parts end with two
-//
-// Accepted: headers that are as long as the file allows, images of up to kLargestImagePx each way,
-// tiles that hold little more than the image, no deep pixels, and a first part whose data window,
-// the pixels that are there, is its display window, the image. Where the windows differ, the file
-// is a part of its image or has more around it, and pixels would be taken for others; a common
-// origin other than 0, 0 changes nothing.
+// Accepted: headers that OpenEXRCore finds to be as the standard has them, images of up to
+// kLargestImagePx each way, tiles that hold little more than the image, no deep pixels, and a first
+// part whose data window, the pixels that are there, is its display window, the image. Where the
+// windows differ, the file is a part of its image or has more around it, and pixels would be taken
+// for others; a common origin other than 0, 0 changes nothing.
 #pragma once
 
 #include <filesystem>

@@ -3,11 +3,10 @@
 // Whether the pixels of a TIFF file are all in it, by its own directory: libtiff reads the missing
 // rows of one that was cut short as zeros.
 //
-// TIFF 6.0 and BigTIFF. The first directory tells where each strip or tile begins and how many
-// bytes it has: offsets (tags 273, 324) and byte counts (279, 325). The file is whole when it has
-// as many of both as its pixels need, by width, height, rows a strip or the tiles' sizes, and
-// separate planes; when each ends within the file and none is empty. Sizes are held to
-// decoded_size.h. What the bytes mean is left to libtiff.
+// The first directory, as libtiff reads it, tells where each strip or tile begins and how many
+// bytes it has. The file is whole when none that its pixels need is missing or empty and each ends
+// within the file. Of a single strip whose bytes are not told, or too few for its pixels, libtiff
+// makes up how many there are: such a file is refused. Sizes are held to decoded_size.h.
 //
 // Where strips or tiles are deflated, each ends with a checksum of its bytes, Adler-32. libtiff
 // stops at the last pixel, and OpenImageIO 2.4 takes a strip that does not unpack for one of zeros:

@@ -43,18 +43,17 @@ AltitudeFitter::AltitudeFitter(std::vector<double> altitude_m)
             altitude_m_.back(),
             kSlowest / kMostExponent * altitude_m_.back());
     }
-    for (int i = -kRates; i < kRates; ++i) {
-        const double step = (i < 0 ? -i - 1 : i) / (kRates - 1.0);
-        const double size = slowest_per_m * std::pow(fastest_per_m / slowest_per_m, step);
-        rates_.push_back(rate(i < 0 ? -size : size));
+    for (int i = kRates; i-- > 0;) {
+        const double size =
+            slowest_per_m * std::pow(fastest_per_m / slowest_per_m, i / (kRates - 1.0));
+        rates_.push_back(rate(-size));
     }
 }
 
 AltitudeFitter::Rate AltitudeFitter::rate(double b_per_m) const {
-    // Scaled to 1 at the end where it is largest.
-    Rate rate{.b_per_m = b_per_m, .at_m = b_per_m > 0.0 ? altitude_m_.back() : altitude_m_.front()};
+    Rate rate{.b_per_m = b_per_m};
     for (const double h_m : altitude_m_)
-        rate.shape.push_back(std::exp(b_per_m * (h_m - rate.at_m)));
+        rate.shape.push_back(std::exp(b_per_m * (h_m - altitude_m_.front())));
     rate.mean = mean_of(rate.shape);
     for (double& value : rate.shape) value -= rate.mean;
     rate.length = std::sqrt(product(rate.shape, rate.shape));
@@ -72,47 +71,6 @@ void AltitudeFitter::state_residual(AltitudeFit& fit, std::span<const double> si
 }
 
 AltitudeFit AltitudeFitter::fit(std::span<const double> signal) const {
-    const double mean = mean_of(signal);
-    if (mean == 0.0) return {};
-    // What the fit explains of the variance is the square of this.
-    const auto explained = [&](const Rate& rate) {
-        const double part = product(rate.shape, signal);
-        return part * part;
-    };
-    std::size_t best = 0;
-    double most = -1.0;
-    for (std::size_t i = 0; i < rates_.size(); ++i) {
-        const double found = explained(rates_[i]);
-        if (found > most) best = i, most = found;
-    }
-    const double from = rates_[best > 0 ? best - 1 : best].b_per_m;
-    const double to = rates_[std::min(best + 1, rates_.size() - 1)].b_per_m;
-    constexpr int kBits = 16;
-    // From one sign to the other lies the straight line, which has no b.
-    const bool is_one_sign = from * to > 0.0;
-    const double b_per_m = is_one_sign
-                               ? boost::math::tools::brent_find_minima(
-                                     [&](double b) { return -explained(rate(b)); }, from, to, kBits)
-                                     .first
-                               : rates_[best].b_per_m;
-
-    AltitudeFit fit{.a = 0.0, .b_per_m = b_per_m, .c = 0.0, .residual = 0.0};
-    std::vector<double> basis;
-    for (const double h_m : altitude_m_) basis.push_back(std::exp(b_per_m * h_m));
-    const double basis_mean = mean_of(basis);
-    double above = 0.0;
-    double below = 0.0;
-    for (std::size_t i = 0; i < basis.size(); ++i) {
-        above += (basis[i] - basis_mean) * (signal[i] - mean);
-        below += (basis[i] - basis_mean) * (basis[i] - basis_mean);
-    }
-    fit.a = above / below;
-    fit.c = mean - fit.a * basis_mean;
-    state_residual(fit, signal);
-    return fit;
-}
-
-AltitudeFit AltitudeFitter::fit_bounded(std::span<const double> signal) const {
     const double mean = mean_of(signal);
     if (!(mean > 0.0)) return {};
     const auto n = static_cast<double>(signal.size());
@@ -133,25 +91,26 @@ AltitudeFit AltitudeFitter::fit_bounded(std::span<const double> signal) const {
                                2.0 * (a * common + c * n * mean);
         return Line{.a = a, .c = c, .squares = squares};
     };
-    // The negative rates come first.
     std::size_t best = 0;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < kRates; ++i) {
+    for (std::size_t i = 0; i < rates_.size(); ++i) {
         const double found = line_over(rates_[i]).squares;
         if (found < least) best = i, least = found;
     }
     constexpr int kBits = 16;
-    const double b_per_m = boost::math::tools::brent_find_minima(
-                               [&](double b) { return line_over(rate(b)).squares; },
-                               rates_[best > 0 ? best - 1 : best].b_per_m,
-                               rates_[std::min<std::size_t>(best + 1, kRates - 1)].b_per_m,
-                               kBits)
-                               .first;
+    const double b_per_m =
+        boost::math::tools::brent_find_minima([&](double b) { return line_over(rate(b)).squares; },
+                                              rates_[best > 0 ? best - 1 : best].b_per_m,
+                                              rates_[std::min(best + 1, rates_.size() - 1)].b_per_m,
+                                              kBits)
+            .first;
     const Rate found = rate(b_per_m);
     const Line line = line_over(found);
     AltitudeFit fit{.a = mean};
     if (line.squares < -n * mean * mean) {
-        fit = {.a = line.a * std::exp(-b_per_m * found.at_m), .b_per_m = b_per_m, .c = line.c};
+        fit = {.a = line.a * std::exp(-b_per_m * altitude_m_.front()),
+               .b_per_m = b_per_m,
+               .c = line.c};
     }
     state_residual(fit, signal);
     return fit;

@@ -4,21 +4,18 @@
 //
 //   S(h) ~ a exp(b h) + c
 //
-// h  altitude [m]      a, c  in the unit of S      b  1/m, mostly negative
+// h  altitude [m]      a, c  in the unit of S      b  1/m
 //
-// by least squares. For a given b, a and c are those of a straight line over exp(b h), so only b is
-// searched: first over kRates rates of either sign, even in ratio from kSlowest to kFastest over
-// the span of altitudes, but no faster than kMostExponent over the last altitude, from where on a
-// and exp(b h) would not be floats any more; then by golden section between the neighbours of the
-// best. Of the two signs and all rates that is the least, unless the residual has several minima
-// between two rates.
+// by least squares under a >= 0, b <= 0, 0 <= c <= the least S, for a corrector divides by the fit,
+// which must not cross zero. For a given b the problem is that of a straight line over exp(b h): c
+// is cut to its range and a follows, which is exact, as the squares are convex. So only b is
+// searched: first over kRates rates, even in ratio from kSlowest to kFastest over the span of
+// altitudes, but no faster than kMostExponent over the last altitude, from where on a and exp(b h)
+// would not be floats any more; then by golden section between the neighbours of the best. Of all
+// rates that is the least, unless the residual has several minima between two rates. Light that
+// rises with altitude is its mean, at b = 0.
 //
 // residual  root of the mean square of what the fit leaves, over the mean of S
-//
-// A corrector divides by the fit, which must not cross zero. The bounded one is the least squares
-// under a >= 0, b <= 0, 0 <= c <= the least S: for a given b, c is cut to its range and a follows,
-// which is exact, as the squares are convex. Light that rises with altitude is its mean then, at
-// b = 0.
 #pragma once
 
 #include <array>
@@ -41,7 +38,6 @@ class AltitudeFitter {
     explicit AltitudeFitter(std::vector<double> altitude_m);
 
     [[nodiscard]] AltitudeFit fit(std::span<const double> signal) const;
-    [[nodiscard]] AltitudeFit fit_bounded(std::span<const double> signal) const;
 
     static constexpr int kRates = 24;
     static constexpr double kSlowest = 0.1;
@@ -49,11 +45,9 @@ class AltitudeFitter {
     static constexpr double kMostExponent = 80.0;
 
   private:
-    // exp(b (h - at)) = mean + length shape, the shape of mean 0 and length 1, which is all that
-    // b's residual needs.
+    // exp(b (h - the first h)) = mean + length shape, the shape of mean 0 and length 1.
     struct Rate {
         double b_per_m;
-        double at_m;
         double mean = 0.0;
         double length = 0.0;
         std::vector<double> shape{};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Where a strobe's beam ends sharply, over blocks of pixels: circles about its axis, and a rim that
-// is none (rig/beam.h).
+// is none (rig/beam/beam.h).
 #pragma once
 
 #include "lightmap/direction_block.h"
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 #include "rig/rig.h"
 
 #include <cstdint>

@@ -33,8 +33,8 @@ APHOTIC_WIDE void find_let_out(const DirectionBlock& in_air, RowBlock<double>& i
     for (std::size_t i = 0; i < kBlockCount; ++i) is_let_out[i] = in_air.axis[i] > 0.0 ? 1.0 : 0.0;
 }
 
-// Of one polarisation, light / (T / cos(theta)) of what rig/beam_window.cpp has for each face: with
-// the sums and differences of both faces' shares, Fresnel's products have one denominator.
+// Of one polarisation, light / (T / cos(theta)) of what rig/beam/beam_window.cpp has for each face:
+// with the sums and differences of both faces' shares, Fresnel's products have one denominator.
 APHOTIC_IN_LOOP double denominator(double outer_near,
                                    double outer_far,
                                    double inner_near,
@@ -44,7 +44,7 @@ APHOTIC_IN_LOOP double denominator(double outer_near,
     return sums * sums - differences * differences;
 }
 
-// rig/beam_window.h's factor.
+// rig/beam/beam_window.h's factor.
 APHOTIC_WIDE void take_factors(const BeamWindow& window,
                                const DirectionBlock& in_air,
                                RowBlock<double>& factors) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A beam's intensity over blocks of directions: what rig/beam.h says of one, at the camera's pace.
+// A beam's intensity over blocks of directions: what rig/beam/beam.h says of one, at the camera's
+// pace.
 //
 //   I |V| = intensity * reach        V  a direction in the lamp's frame, of any length
 //
-// by rig/beam.h's own formulas; no kind of beam is resampled over directions, so kinks stay where
-// they are. What is smooth along a row and costs much (powers, angles, a window's factor) is
+// by rig/beam/beam.h's own formulas; no kind of beam is resampled over directions, so kinks stay
+// where they are. What is smooth along a row and costs much (powers, angles, a window's factor) is
 // computed at some pixels and fitted in between, where that is right to 1e-8 (row_fit.h), else
 // everywhere. Cones and optics have
 // I/cos(theta) for their intensity and V.a for their reach (a: the axis, theta: off it), which
@@ -17,7 +18,7 @@
 //
 // On which side of a beam's edge a direction is, and whether a window lets it out, may be taken
 // from the directions that were asked for before, as though those of now had no edge: a ray that
-// dispersion turns a little keeps its side (continued_intensity() of rig/beam.h).
+// dispersion turns a little keeps its side (continued_intensity() of rig/beam/beam.h).
 //
 // A further kind is a file beside lobe_light.h, table_light.h and optics_light.h.
 #pragma once
@@ -25,7 +26,7 @@
 #include "lightmap/lobe_light.h"
 #include "lightmap/optics_light.h"
 #include "lightmap/table_light.h"
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 
 #include <optional>
 #include <variant>

@@ -7,8 +7,8 @@
 // v, keeps v.a >= |v| cos g with the strobe's axis a. An edge passes between neighbouring pixels of
 // which one is within and the other is not, and over a pixel where the places of an emitter's rim,
 // or behind a port the two ends of the wavelength range, disagree. What is
-// an edge, rig/beam.h tells (edges_rad, has_rim): a cone of 90 degrees has none, for its light ends
-// as cos^n 90 = 0, unless n < 1; nor has a soft one. The horizon is an edge too.
+// an edge, rig/beam/beam.h tells (edges_rad, has_rim): a cone of 90 degrees has none, for its light
+// ends as cos^n 90 = 0, unless n < 1; nor has a soft one. The horizon is an edge too.
 #pragma once
 
 #include "lightmap/beam_edges.h"

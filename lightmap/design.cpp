@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "lightmap/maximise.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 
 #include <algorithm>
 #include <array>

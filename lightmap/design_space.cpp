@@ -5,9 +5,9 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "base/offered.h"
+#include "light/path_range.h"
+#include "rig/camera/lens.h"
 #include "rig/geometry.h"
-#include "rig/lens.h"
-#include "rig/path_range.h"
 #include "spectral/lamp_flux.h"
 
 #include <fmt/format.h>

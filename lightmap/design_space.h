@@ -22,10 +22,10 @@
 // in every pose, and out of the camera's view, made kRoomAboutView times as large each way.
 #pragma once
 
+#include "light/path_range.h"
 #include "lightmap/lightmap.h"
-#include "rig/path_range.h"
+#include "rig/file/rig_text.h"
 #include "rig/rig.h"
-#include "rig/rig_text.h"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where light behind a port may not be interpolated over the water's index (rig/index_nodes.h), and
-// what it is there.
+// Where light behind a port may not be interpolated over the water's index (light/index_nodes.h),
+// and what it is there.
 //
 //   G(n) = I cos(i) / d^2 of one lamp, by the ray of index n
 //   doubt = max |G(n) - sum_j G(n_j) l_j(n)|       over the indices n half way between nodes
@@ -11,7 +11,7 @@
 // least a third of the most that it does anywhere; G that is smooth but steep shows nearly all.
 // What shows nothing is a ray that crosses a kink and comes back between two of these indices.
 // Unless the kink is steep, that is little, for the way is short: so steep kinks are looked for as
-// such (rig/beam_crease.h), on the parabola through the nodes.
+// such (rig/beam/beam_crease.h), on the parabola through the nodes.
 //
 // Pixels whose doubts are over kMostDoubt of their signal, or where a lamp's ray crosses a steep
 // kink, are computed by a ray for each wavelength of the spectral grid instead:
@@ -21,10 +21,10 @@
 // On which side of a beam's edge such a pixel is, is still the middle index's to say.
 #pragma once
 
+#include "light/index_nodes.h"
+#include "light/path_table.h"
 #include "lightmap/row_light.h"
-#include "rig/beam_crease.h"
-#include "rig/index_nodes.h"
-#include "rig/path_table.h"
+#include "rig/beam/beam_crease.h"
 
 #include <array>
 #include <vector>

@@ -6,10 +6,10 @@
 #include "base/offered.h"
 #include "base/parallel.h"
 #include "image/camera_image.h"
+#include "light/index_nodes.h"
 #include "lightmap/dispersed_light.h"
 #include "lightmap/row_light.h"
 #include "rig/geometry.h"
-#include "rig/index_nodes.h"
 #include "spectral/light_family.h"
 
 #include <fmt/format.h>

@@ -4,13 +4,13 @@
 //
 //   S_c = sum_s sum_k  A_k cos^n(theta) cos(i) / (pi d^2) T_sc(d + r)  +  highlight
 //
-// as docs/physics.md has it, with T the signal over the path's length (rig/path_table.h). Once per
-// water T is tabulated; then a map of any altitude and attitude is geometry and a look-up a pixel,
-// written so that compilers vectorise it (row_light.h).
+// as docs/physics.md has it, with T the signal over the path's length (light/path_table.h). Once
+// per water T is tabulated; then a map of any altitude and attitude is geometry and a look-up a
+// pixel, written so that compilers vectorise it (row_light.h).
 //
 // Behind a port every wavelength has its own ray. The light of one path, at one K, is a smooth
 // function of the water's index, for the ray moves smoothly with it. So it is interpolated between
-// kIndexNodes indices n_j by Lagrange's polynomials L_j (rig/index_nodes.h):
+// kIndexNodes indices n_j by Lagrange's polynomials L_j (light/index_nodes.h):
 //
 //   S_c = sum_j  G_j T_jc(l_j),      T_jc(l) = int f Q_c L_j(n(lambda)) exp(-K l) dlambda
 //
@@ -25,12 +25,12 @@
 // when all that lies beyond is darker than kDarkShare of the brightest.
 #pragma once
 
+#include "light/path_range.h"
+#include "light/path_table.h"
+#include "light/veil_map.h"
 #include "lightmap/beam_edges.h"
 #include "lightmap/ray_table.h"
-#include "rig/path_range.h"
-#include "rig/path_table.h"
 #include "rig/rig.h"
-#include "rig/veil_map.h"
 #include "spectral/bands.h"
 #include "spectral/veil_share.h"
 
@@ -68,7 +68,7 @@ struct MapPromise {
 
 // The error that is asked for, that of fits along a row where all beams are smooth and the rounding
 // of floats, that of a sum of a dozen; behind a port besides 1e-4. Of the sum of both in water that
-// scatters: kVeilOfSignal and veil_error() (rig/veil.h) on top, measured and no bound.
+// scatters: kVeilOfSignal and veil_error() (light/veil.h) on top, measured and no bound.
 [[nodiscard]] MapPromise map_promise(const Rig& rig, const LightmapOptions& options);
 
 // R, G, B planar: all rows of R, then of G, then of B.
@@ -76,7 +76,7 @@ struct Lightmap {
     int width_px = 0;
     int height_px = 0;
     std::vector<float> samples;
-    // What the water scatters into the view (rig/veil_map.h), in the same unit: the signal is
+    // What the water scatters into the view (light/veil_map.h), in the same unit: the signal is
     // samples + veil. Empty where the water does not scatter.
     std::vector<float> veil{};
 };

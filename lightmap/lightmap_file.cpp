@@ -2,6 +2,7 @@
 #include "lightmap/lightmap_file.h"
 
 #include "base/degrees.h"
+#include "base/number.h"
 #include "image/exr.h"
 
 #include <fmt/format.h>
@@ -50,6 +51,29 @@ void write_planes(const Rig& rig, const LightmapRequest& request, const NamedPla
 }
 
 }  // namespace
+
+std::vector<std::string> map_names(const std::vector<double>& altitude_m) {
+    constexpr int kLeast = 2;
+    constexpr int kMost = 9;
+    int digits = kLeast;
+    for (const double h_m : altitude_m) {
+        while (digits < kMost && read_number<double>(fmt::format("{:.{}f}", h_m, digits)) != h_m)
+            ++digits;
+    }
+    std::vector<std::string> names;
+    for (const double h_m : altitude_m)
+        names.push_back(fmt::format("altitude_{:.{}f}m.exr", h_m, digits));
+    return names;
+}
+
+void remove_maps(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> maps;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("altitude_") && name.ends_with("m.exr")) maps.push_back(entry.path());
+    }
+    for (const std::filesystem::path& file : maps) std::filesystem::remove(file);
+}
 
 WrittenLightmap write_lightmap(const Rig& rig, const LightmapRequest& request) {
     const auto start = LightmapClock::now();

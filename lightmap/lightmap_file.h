@@ -37,6 +37,12 @@ struct WrittenLightmap {
     double map_s = 0.0;
 };
 
+// Of maps by altitude in one folder, such as altitude_2.10m.exr: two digits after the point, or as
+// many as tell the altitudes apart.
+[[nodiscard]] std::vector<std::string> map_names(const std::vector<double>& altitude_m);
+// Maps of such names, those of an earlier run.
+void remove_maps(const std::filesystem::path& folder);
+
 // Throws InputError where LightmapMaker does.
 [[nodiscard]] WrittenLightmap write_lightmap(const Rig& rig, const LightmapRequest& request);
 

@@ -4,12 +4,12 @@
 //
 //   I/c = sum of A_k c^(n_k - 1) S_k(c)   over the cones with theta <= gamma_k
 //
-// as rig/beam.h has them. Powers are right to 1e-8; each exponent that is not 1 costs one, however
-// many cones have it.
+// as rig/beam/beam.h has them. Powers are right to 1e-8; each exponent that is not 1 costs one,
+// however many cones have it.
 #pragma once
 
 #include "lightmap/direction_block.h"
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 
 #include <vector>
 

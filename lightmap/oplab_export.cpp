@@ -5,7 +5,6 @@
 #include "base/npy_file.h"
 #include "base/parallel.h"
 #include "lightmap/altitude_fit.h"
-#include "lightmap/atlas_plan.h"
 
 #include <nlohmann/json.hpp>
 
@@ -21,7 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kFolder = "oplab";
 constexpr const char* kParameters = "attenuation_parameters.npy";
 constexpr const char* kGains = "correction_gains.npy";
 constexpr const char* kMean = "image_corrected_mean.npy";
@@ -50,7 +48,7 @@ class Fitter {
 
     // Of the sample's light at every altitude.
     void fit(std::size_t sample, const std::vector<double>& signal) {
-        AltitudeFit fit = fitter_.fit_bounded(signal);
+        AltitudeFit fit = fitter_.fit(signal);
         if (fit.a == 0.0 && fit.c == 0.0) fit = {.a = 1.0};
         const std::array<double, kParts> parts{fit.a, fit.b_per_m, fit.c};
         std::ranges::copy(parts, &fits_.parameters[kParts * sample]);
@@ -72,20 +70,25 @@ class Fitter {
     Fits fits_;
 };
 
+std::vector<Sled> sleds_at(const Rig& rig, const std::vector<double>& altitude_m) {
+    std::vector<Sled> sleds(altitude_m.size(), rig.sled);
+    for (std::size_t i = 0; i < sleds.size(); ++i) sleds[i].altitude_m = altitude_m[i];
+    return sleds;
+}
+
 Fits fits_of(const Rig& rig, const AltitudeExport& request) {
     constexpr int kRows = 32;  // of all altitudes at once
     const auto width = static_cast<std::size_t>(rig.camera.width_px);
     const auto height = static_cast<std::size_t>(rig.camera.height_px);
-    const MapAxes axes = axes_at_own_pose(rig, request.altitude_m);
-    MapSource source(rig, axes, request.map);
+    const std::vector<Sled> sleds = sleds_at(rig, request.altitude_m);
+    const LightmapMaker maker(rig, paths_of(rig, {sleds.front(), sleds.back()}), request.map);
     Fitter fitter(request.altitude_m, kChannels * width * height);
     for (int row = 0; row < rig.camera.height_px; row += kRows) {
         request.progress(static_cast<double>(row) / rig.camera.height_px);
         const int rows = std::min(kRows, rig.camera.height_px - row);
-        std::vector<Lightmap> maps;
-        for (const MapPoint& point : points_of(axes)) {
-            maps.push_back(source.rows(point, row, rows));
-        }
+        std::vector<Lightmap> maps(sleds.size());
+        for (std::size_t i = 0; i < sleds.size(); ++i)
+            maker.rows_into(sleds[i], row, rows, maps[i]);
         const auto fit_row = [&](std::size_t part, std::size_t) {
             const std::size_t channel = part / static_cast<std::size_t>(rows);
             const std::size_t at = part % static_cast<std::size_t>(rows);
@@ -113,6 +116,8 @@ bool is_lit(const Residual& residual) {
 }  // namespace
 
 ExportedOplab export_oplab(const fs::path& folder, const Rig& rig, const AltitudeExport& request) {
+    const std::array files{kParameters, kGains, kMean, kDeviation};
+    for (const char* file : files) fs::remove(folder / file);
     const Fits fits = fits_of(rig, request);
     const auto width = static_cast<std::size_t>(rig.camera.width_px);
     const auto height = static_cast<std::size_t>(rig.camera.height_px);
@@ -123,7 +128,7 @@ ExportedOplab export_oplab(const fs::path& folder, const Rig& rig, const Altitud
     std::vector<float> gains(samples);
     std::vector<float> mean(samples);
     std::vector<float> deviation(samples);
-    ExportedOplab made{.folder = kFolder};
+    ExportedOplab made;
     double squares = 0.0;
     double lit = 0.0;
     double off = 0.0;
@@ -143,28 +148,15 @@ ExportedOplab export_oplab(const fs::path& folder, const Rig& rig, const Altitud
     }
     made.rms = std::sqrt(squares / static_cast<double>(samples));
     made.share_off = lit > 0.0 ? off / lit : 0.0;
-    const fs::path to = folder / kFolder;
-    make_folder(to);
-    write_npy(to / kParameters, {kChannels, height, width, kParts}, fits.parameters);
-    write_npy(to / kGains, {kChannels, height, width}, gains);
-    write_npy(to / kMean, {height, width, kChannels}, mean);
-    write_npy(to / kDeviation, {height, width, kChannels}, deviation);
+    write_npy(folder / kParameters, {kChannels, height, width, kParts}, fits.parameters);
+    write_npy(folder / kGains, {kChannels, height, width}, gains);
+    write_npy(folder / kMean, {height, width, kChannels}, mean);
+    write_npy(folder / kDeviation, {height, width, kChannels}, deviation);
     return made;
 }
 
 nlohmann::ordered_json to_json(const ExportedOplab& made) {
-    return {{"folder", made.folder},
-            {"rms", made.rms},
-            {"worst", made.worst},
-            {"share_off_by_10_percent", made.share_off}};
-}
-
-void remove_oplab_export(const fs::path& folder) {
-    const fs::path from = folder / kFolder;
-    if (!fs::is_directory(from)) return;
-    remove_abandoned_files(from);
-    for (const char* file : {kParameters, kGains, kMean, kDeviation}) fs::remove(from / file);
-    if (fs::is_empty(from)) fs::remove(from);
+    return {{"rms", made.rms}, {"worst", made.worst}, {"share_off_by_10_percent", made.share_off}};
 }
 
 }  // namespace aphotic

@@ -24,17 +24,26 @@
 // github.com/ocean-perception/oplab_pipeline, correct_images.
 #pragma once
 
-#include "lightmap/atlas_export.h"
+#include "lightmap/lightmap.h"
 
 #include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <vector>
 
 namespace aphotic {
 
 inline constexpr double kContrastOverBrightness = 3.0 / 30.0;
 inline constexpr double kOplabOff = 0.1;
 
+struct AltitudeExport {
+    std::vector<double> altitude_m;  // four or more, increasing
+    LightmapOptions map;
+    std::function<void(double)> progress;  // share of the work
+};
+
 struct ExportedOplab {
-    std::string folder;
     // The residuals of all fits: relative to the mean of a pixel over altitude.
     double rms = 0.0;
     double worst = 0.0;
@@ -42,13 +51,11 @@ struct ExportedOplab {
     double share_off = 0.0;
 };
 
+// Of an earlier run nothing is left in the folder, which is there.
 ExportedOplab export_oplab(const std::filesystem::path& folder,
                            const Rig& rig,
                            const AltitudeExport& request);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const ExportedOplab& made);
-
-// Files of these names that are there.
-void remove_oplab_export(const std::filesystem::path& folder);
 
 }  // namespace aphotic

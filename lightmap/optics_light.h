@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a lens makes of a diffuser over blocks of directions (beam_light.h): the closed form of
-// rig/beam_optics.h,
+// rig/beam/beam_optics.h,
 //
 //   I/cos(theta) = Area{ x in the lens : |x (1 - s/f) - s m| within the rectangle }
 //
@@ -9,7 +9,7 @@
 #pragma once
 
 #include "lightmap/direction_block.h"
-#include "rig/beam_optics.h"
+#include "rig/beam/beam_optics.h"
 
 namespace aphotic {
 

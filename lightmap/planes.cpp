@@ -68,12 +68,6 @@ std::vector<std::string> plane_names(const std::string& layer, bool has_veil) {
     return names;
 }
 
-std::vector<float> all_planes(const Lightmap& map) {
-    std::vector<float> planes = map.samples;
-    planes.insert(planes.end(), map.veil.begin(), map.veil.end());
-    return planes;
-}
-
 std::array<float, kChannels> peaks_of(const Lightmap& map) {
     std::array<float, kChannels> peaks{};
     for (std::size_t c = 0; c < kChannels; ++c) {

@@ -29,9 +29,8 @@ struct RigPart {
 // "collimated" of the strobe "fore".
 void require_different_names(const std::vector<RigPart>& parts);
 
-// Of a map in a file: R, G, B, and veil.R, veil.G, veil.B where it has a veil; and in their order.
+// Of a map in a file: R, G, B, and veil.R, veil.G, veil.B where it has a veil.
 [[nodiscard]] std::vector<std::string> plane_names(const std::string& layer, bool has_veil);
-[[nodiscard]] std::vector<float> all_planes(const Lightmap& map);
 
 // The largest sample of each channel.
 [[nodiscard]] std::array<float, kChannels> peaks_of(const Lightmap& map);

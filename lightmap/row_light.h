@@ -34,13 +34,13 @@
 // the table or in two, whose cubics need no look-up pixel by pixel.
 #pragma once
 
+#include "light/index_nodes.h"
+#include "light/path_table.h"
 #include "lightmap/beam_light.h"
 #include "lightmap/ray_table.h"
 #include "lightmap/row_block.h"
 #include "lightmap/row_fit.h"
 #include "rig/geometry.h"
-#include "rig/index_nodes.h"
-#include "rig/path_table.h"
 #include "rig/rig.h"
 
 #include <Eigen/Core>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A measured table over blocks of directions (beam_light.h): the angles of rig/beam_table.h, and I
-// bilinear between the same nodes.
+// A measured table over blocks of directions (beam_light.h): the angles of rig/beam/beam_table.h,
+// and I bilinear between the same nodes.
 #pragma once
 
 #include "lightmap/direction_block.h"
-#include "rig/beam_table.h"
+#include "rig/beam/beam_table.h"
 
 #include <cstdint>
 #include <limits>

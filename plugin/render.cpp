@@ -3,8 +3,8 @@
 
 #include "base/atomic_file.h"
 #include "base/error.h"
-#include "base/folder_lock.h"
 #include "base/sha256.h"
+#include "base/work_folder.h"
 #include "image/frame_check.h"
 #include "image/png_frame.h"
 #include "image/traced_image.h"
@@ -140,8 +140,7 @@ void run_noted(const PovRay& povray,
         }
         write_manifest(folder, manifest);
     };
-    run_frames(
-        povray, folder, frames, manifest.width_px, manifest.height_px, run);
+    run_frames(povray, folder, frames, manifest.width_px, manifest.height_px, run);
 }
 
 // The digest of a user's scene that scenes were written for.

@@ -14,7 +14,7 @@
 // those noted before belong to the scene as it was, so the next run renders them again.
 #pragma once
 
-#include "base/share.h"
+#include "base/work_folder.h"
 #include "plugin/frame_runner.h"
 #include "plugin/povray.h"
 #include "scene_gen/scene_set.h"
@@ -37,7 +37,7 @@ RenderResult render(const PovRay& povray,
                     const SceneSet& set,
                     const RunOptions& options);
 
-// A share (base/share.h) of the frames of a folder whose scenes are there, by render() or
+// A share (base/work_folder.h) of the frames of a folder whose scenes are there, by render() or
 // generate(): into its own folder, and no image is made of them. Frames that the folder has stay
 // there. The folder itself is only read: of a scene of the user's own, options name the includes.
 RenderResult render_share(const PovRay& povray,

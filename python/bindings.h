@@ -8,7 +8,7 @@
 #pragma once
 
 #include "lightmap/lightmap.h"
-#include "rig/rig_text.h"
+#include "rig/file/rig_text.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>

@@ -5,13 +5,13 @@
 #include "base/printable.h"
 #include "lightmap/cone_edge.h"
 #include "python/bindings.h"
-#include "survey/camera_of_files.h"
 #include "survey/correction.h"
-#include "survey/fit.h"
-#include "survey/fit_json.h"
-#include "survey/fitted_rig.h"
+#include "survey/fit/fit.h"
+#include "survey/fit/fit_json.h"
+#include "survey/fit/fitted_rig.h"
+#include "survey/images/camera_numbers.h"
 #include "survey/light_at.h"
-#include "survey/navigation_file.h"
+#include "survey/navigation/navigation_file.h"
 
 #include <fmt/format.h>
 #include <nanobind/stl/array.h>

@@ -2,14 +2,11 @@
 #include "report/html.h"
 
 #include "base/number.h"
-#include "report/page_style.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace aphotic {
 namespace {
@@ -73,10 +70,6 @@ std::string escaped(std::string_view text) {
     return result;
 }
 
-std::string user_text(std::string_view text) {
-    return "<bdi>" + escaped(text) + "</bdi>";
-}
-
 std::string scientific(double value) {
     if (std::isnan(value)) return "not a number";
     if (std::isinf(value)) return value > 0.0 ? "∞" : std::string(kMinus) + "∞";
@@ -115,108 +108,6 @@ std::string grouped(std::size_t count) {
     for (auto i = static_cast<std::ptrdiff_t>(digits.size()) - 3; i > 0; i -= 3)
         digits.insert(static_cast<std::size_t>(i), kNarrowBlank);
     return digits;
-}
-
-std::string html_paragraph(std::string_view content) {
-    return fmt::format("<p>{}</p>\n", content);
-}
-
-std::string html_section(std::string_view id, std::string_view heading, std::string_view content) {
-    return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n\n", id, heading, content);
-}
-
-std::string html_header(std::string_view kind, std::string_view heading, std::string_view content) {
-    return fmt::format(
-        "<header>\n<p class=\"eyebrow\">Aphotic · {}</p>\n<h1>{}</h1>\n{}</header>\n\n",
-        kind,
-        heading,
-        content);
-}
-
-std::string html_verdict(bool holds, std::string_view word, std::string_view content) {
-    return fmt::format(
-        "<div class=\"verdict {}\" id=\"verdict\">\n<p class=\"word\">{}</p>\n{}</div>\n",
-        holds ? "holds" : "fails",
-        word,
-        content);
-}
-
-std::string html_key(std::string_view drawing, std::string_view words) {
-    return fmt::format("<span class=\"key\">{} {}</span>\n", drawing, words);
-}
-
-std::string html_stroke_key(std::string_view style, std::string_view words) {
-    return html_key(
-        fmt::format(
-            R"(<svg class="stroke" viewBox="0 0 34 12"><path class="{}" d="M2 6L32 6"/></svg>)",
-            style),
-        words);
-}
-
-std::string html_legend(std::string_view keys) {
-    return fmt::format("<p class=\"legend\">\n{}</p>\n", keys);
-}
-
-std::string html_source(std::string_view text) {
-    std::string lines;
-    while (!text.empty()) {
-        const std::size_t end = text.find('\n');
-        std::string_view line = text.substr(0, end);
-        if (line.ends_with('\r')) line.remove_suffix(1);
-        lines += escaped(line) + '\n';
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    }
-    return "<pre>" + lines + "</pre>\n";
-}
-
-std::string html_list(std::string_view id, std::span<const HtmlItem> items) {
-    std::string list;
-    for (const auto& [term, meaning] : items)
-        list += fmt::format("<dt>{}</dt><dd>{}</dd>\n", term, meaning);
-    return fmt::format("<dl id=\"{}\">\n{}</dl>\n", id, list);
-}
-
-std::string html_table(std::string_view id,
-                       std::string_view columns,
-                       std::span<const HtmlRow> rows) {
-    std::vector<std::string_view> marks;  // by column
-    std::string head;
-    for (std::size_t from = 0; from <= columns.size();) {
-        const std::size_t to = std::min(columns.find(';', from), columns.size());
-        const std::string_view heading = columns.substr(from, to - from);
-        from = to + 1;
-        marks.push_back(heading.empty() ? R"( class="mark")" : "");
-        head += fmt::format("<th{}>{}</th>", marks.back(), escaped(heading));
-    }
-    std::string body;
-    for (const HtmlRow& row : rows) {
-        body +=
-            fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th>", row.style, row.cells.front());
-        for (std::size_t i = 1; i < row.cells.size(); ++i)
-            body += fmt::format("<td{}>{}</td>", marks.at(i), row.cells[i]);
-        body += "</tr>\n";
-    }
-    return fmt::format(
-        "<div class=\"wide\"><table id=\"{}\">\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody>\n"
-        "</table></div>\n",
-        id,
-        head,
-        body);
-}
-
-std::string html_page(std::string_view title, std::string_view content) {
-    return fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n"
-        "<meta charset=\"utf-8\"/>\n"
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-        "img-src data:; style-src 'unsafe-inline'\"/>\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-        "<title>{}</title>\n<style>\n{}{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n"
-        "</html>\n",
-        escaped(title),
-        kSvgStyle,
-        kPageStyle,
-        content);
 }
 
 }  // namespace aphotic

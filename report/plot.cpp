@@ -77,6 +77,23 @@ SvgPanel panel_of(const Plot& plot) {
     return panel;
 }
 
+// A dot for each point, and its name above it to the right.
+std::string named_points(const SvgPanel& panel, const PlotCurve& curve) {
+    std::string svg =
+        svg_dots(panel,
+                 curve.x,
+                 curve.y,
+                 fmt::format(R"(class="dots" style="stroke-width: 9px" {})", svg_tone(curve.tone)));
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+        svg += svg_text(panel.x_px(curve.x.at(i)) + 5.0,
+                        panel.y_px(curve.y.at(i)) - 7.0,
+                        SvgAnchor::Start,
+                        R"(class="label")",
+                        curve.points[i]);
+    }
+    return svg;
+}
+
 std::string drawing_of(const Plot& plot, double top) {
     constexpr double kTitle_px = 18.0;
     constexpr double kBold = 1.15;  // as much wider
@@ -98,12 +115,27 @@ std::string drawing_of(const Plot& plot, double top) {
         const double x = panel.x_px(mark);
         svg += svg_line(x, panel.top, x, panel.bottom(), R"(class="guide")");
     }
-    for (const PlotCurve& curve : plot.curves)
+    for (const PlotCurve& curve : plot.curves) {
         svg += svg_curve(panel, curve.x, curve.y, curve_style(curve));
+        if (!curve.points.empty()) svg += named_points(panel, curve);
+    }
     return svg + '\n';
 }
 
 }  // namespace
+
+std::string plots_svg(std::span<const Plot> panels) {
+    if (panels.empty()) throw InputError("plot: found no panel to draw; allowed: one or more");
+    std::string svg =
+        fmt::format("<style>{}svg {{ font-family: sans-serif; }}</style>\n", kSvgStyle);
+    svg += R"(<rect width="100%" height="100%" fill="#ffffff"/>)";
+    double height = 0.0;
+    for (const Plot& plot : panels) {
+        svg += drawing_of(plot, height);
+        height += kHeight;
+    }
+    return svg_drawing("plot", panels.front().title, kWidth, height + kEdge, svg);
+}
 
 void write_plots(std::span<const Plot> panels, const std::filesystem::path& file) {
     if (file.extension() != ".svg") {
@@ -113,18 +145,7 @@ void write_plots(std::span<const Plot> panels, const std::filesystem::path& file
             file.string(),
             file.extension().string());
     }
-    if (panels.empty()) {
-        throw InputError("{}: found no panel to draw; allowed: one or more", file.string());
-    }
-    std::string svg =
-        fmt::format("<style>{}svg {{ font-family: sans-serif; }}</style>\n", kSvgStyle);
-    svg += R"(<rect width="100%" height="100%" fill="#ffffff"/>)";
-    double height = 0.0;
-    for (const Plot& plot : panels) {
-        svg += drawing_of(plot, height);
-        height += kHeight;
-    }
-    write_text_file(file, svg_drawing("plot", panels.front().title, kWidth, height + kEdge, svg));
+    write_text_file(file, plots_svg(panels));
 }
 
 }  // namespace aphotic

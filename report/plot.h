@@ -21,6 +21,7 @@ struct PlotCurve {
     std::vector<double> y;
     std::size_t tone = 0;  // of kTones
     bool dashed = false;
+    std::vector<std::string> points = {};  // names of the points, which are then marked
 };
 
 struct Plot {
@@ -33,9 +34,12 @@ struct Plot {
     std::vector<double> marks_x = {};
 };
 
-// The panels from top to bottom. Throws InputError for another extension than .svg, when there is
-// no panel, or when no point can be drawn in one of them; RunError when the file cannot be written.
-// The file is whole or not there.
+// The panels from top to bottom, as one <svg>. Throws InputError when there is no panel, or when no
+// point can be drawn in one of them.
+[[nodiscard]] std::string plots_svg(std::span<const Plot> panels);
+
+// The same in a file. Throws InputError for another extension than .svg too; RunError when the file
+// cannot be written. The file is whole or not there.
 void write_plots(std::span<const Plot> panels, const std::filesystem::path& file);
 
 }  // namespace aphotic

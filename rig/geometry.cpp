@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/offered.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 #include "rig/solid.h"
 
 #include <fmt/format.h>

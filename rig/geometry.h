@@ -35,7 +35,8 @@ struct Plane {
 // Height of a point above the floor, measured along its normal [m].
 [[nodiscard]] double height_above(const Plane& floor, const Eigen::Vector3d& point_m);
 
-// The ray in water of the point (column, row) of the image: rig/lens.h's, through rig/port.h.
+// The ray in water of the point (column, row) of the image: rig/camera/lens.h's, through
+// rig/camera/port.h.
 [[nodiscard]] WaterRay pixel_ray(const Rig& rig, double column, double row, double lambda_nm);
 
 // Corners of the image, as (column, row), of which one is as far from the axis as any: one of them

@@ -2,7 +2,7 @@
 #include "rig/geometry_signature.h"
 
 #include "base/sha256.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,7 +3,7 @@
 
 #include "base/degrees.h"
 #include "base/printable.h"
-#include "rig/calibration_doubts.h"
+#include "rig/camera/calibration_doubts.h"
 #include "rig/geometry.h"
 
 #include <fmt/format.h>
@@ -154,34 +154,6 @@ constexpr std::array kUsual{
           {{{"millijoules", 1e-3}, {"kilojoules", 1e3}}},
           "typical of flashes",
           false},
-};
-
-// Judged together with others below, or free to be anything that the reader takes.
-constexpr std::array<std::string_view, 24> kElsewhere{
-    "camera.pixel_pitch_um",          // field of view
-    "camera.focal_length_mm",         // field of view
-    "camera.orientation_deg",         // quarter turns in radians
-    "camera.black_level_dn",          // beside the white level
-    "camera.white_level_dn",          // beside the black level
-    "beam.*.turn_deg",                // quarter turns in radians
-    "beam.*.cones[].half_angle_deg",  // all cones of the beam
-    "beam.*.cones[].weight",          // their sum
-    "strobe[].aim.tilt_deg",          // all strobes
-    "strobe[].direction",             // geometry
-    "camera.resolution",              // of whole pixels, and the calibration has it too
-    "camera.vignetting.radial",       // the reader keeps the image bright
-    "camera.port.normal",             // a direction
-    "water.salinity_psu",             // the reader's bounds are the sea's
-    "water.temperature_c",            // the reader's bounds are the sea's, and exclude kelvin
-    "water.particles",                // a share of what is usual
-    "water.phase.henyey_greenstein",  // a mean cosine
-    "water.phase.fournier_forand.backscatter_ratio",
-    "water.phase.fournier_forand.index",
-    "water.phase.fournier_forand.slope",
-    "beam.*.cones[].exponent",
-    "beam.*.cones[].edge_deg",  // any, from a sharp edge up
-    "beam.*.window",            // an index
-    "materials",
 };
 
 // A number of the rig's file, where it stands.
@@ -662,8 +634,8 @@ std::string in_words(const Doubt& doubt, std::string_view rig_file) {
     return fmt::format("{}{}: {}: {}", rig_file, line, doubt.key, doubt.what);
 }
 
-bool is_judged(std::string_view key) {
-    return usual_of(key) != nullptr || std::ranges::find(kElsewhere, key) != kElsewhere.end();
+bool is_judged_alone(std::string_view key) {
+    return usual_of(key) != nullptr;
 }
 
 }  // namespace aphotic

@@ -42,8 +42,7 @@ struct Doubt {
 // Of a beam's largest intensity: what is fainter lights nothing.
 inline constexpr double kNoLight = 1e-6;
 
-// Whether there is an entry for a key, such as "strobe[].position_m" or "beam.*.fwhm_deg", or a
-// reason why there is none.
-[[nodiscard]] bool is_judged(std::string_view key);
+// Whether the table has what is usual of a key, such as "strobe[].position_m" or "beam.*.fwhm_deg".
+[[nodiscard]] bool is_judged_alone(std::string_view key);
 
 }  // namespace aphotic

@@ -9,11 +9,8 @@
 // Both renderers start from this struct and share nothing else of geometry or light.
 #pragma once
 
-#include "rig/beam.h"
-#include "rig/lens_model.h"
-#include "rig/port.h"
-#include "rig/vignetting.h"
-#include "spectral/sensor.h"
+#include "rig/beam/beam.h"
+#include "rig/camera/camera.h"
 #include "spectral/spectrum.h"
 #include "spectral/water.h"
 
@@ -23,7 +20,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -36,48 +32,6 @@ struct Sled {
     double altitude_m = 0.0;
     double pitch_rad = 0.0;
     double roll_rad = 0.0;
-};
-
-// What the camera's files hold, as it was set for the survey; none: not told.
-struct Readout {
-    std::string bayer{};  // "RGGB", "BGGR", "GRBG", "GBRG" or "mono"
-    std::optional<double> black_level_dn{};
-    std::optional<double> white_level_dn{};
-    std::optional<double> exposure_ms{};
-    std::optional<double> iso{};
-    std::optional<double> f_number{};
-    // Of EMVA 1288, for simulated surveys and for the noise of real ones.
-    std::optional<double> gain_dn_per_e{};
-    std::optional<double> read_noise_e{};
-    std::optional<double> saturation_e{};
-};
-
-// What an altitude of the navigation is: along the axis of the frame that pitch and roll tilt, the
-// vertical height, or the distance to the nearest point of the floor.
-enum class AltitudeIs { Axis, Plumb, Nearest };
-inline constexpr std::array<std::string_view, 3> kAltitudeWords{"axis", "plumb", "nearest"};
-
-// How the pose that the navigation tells is the camera's (survey/vehicle_pose.h). The vehicle's
-// frame: x forward, y starboard, z down. All else in a rig is relative to the camera.
-struct Mounting {
-    AltitudeIs altitude_is = AltitudeIs::Axis;
-    double altitude_offset_m = 0.0;                                // added to altitudes
-    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();          // of the pupil
-    Eigen::Vector3d roll_pitch_yaw_rad = Eigen::Vector3d::Zero();  // of the camera
-};
-
-struct Camera {
-    int width_px = 0;
-    int height_px = 0;
-    double pixel_pitch_m = 0.0;
-    double focal_length_m = 0.0;
-    WavelengthRange range;
-    Sensor sensor;
-    Port port;
-    // None: a pinhole. Else the pitch is that of the columns, and the focal length fx of these.
-    std::optional<LensModel> lens{};
-    std::optional<Vignetting> vignetting{};
-    Readout readout{};
 };
 
 struct Seafloor {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/solid.h"
 
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 
 #include <algorithm>
 #include <array>

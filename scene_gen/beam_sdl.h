@@ -12,7 +12,7 @@
 //   window   the direction in air, and the factor there
 #pragma once
 
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/camera_rays.h"
 
+#include "rig/camera/lens.h"
 #include "rig/geometry.h"
-#include "rig/lens.h"
 
 #include <fmt/format.h>
 

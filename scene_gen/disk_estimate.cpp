@@ -22,8 +22,6 @@ constexpr std::uint64_t kPixelsOfLogByte = 20;      // POV-Ray says every 0.1 s 
 constexpr std::uint64_t kPovrayPixel_bytes = 20;    // five floats
 constexpr std::uint64_t kPovrayState_bytes = 21;  // these, and a header for each square of 32 x 32
 constexpr std::uint64_t kPovrayBuffer_bytes = 129ULL << 20U;  // from there on an image goes to /tmp
-constexpr std::uint64_t kBinNote_bytes = 1024;                // in atlas.json
-constexpr std::uint64_t kFittedChannels = 12;                 // a, b, c and residual of three
 
 std::uint64_t pixels_of(const ImageSize& size) {
     return static_cast<std::uint64_t>(size.width_px) * static_cast<std::uint64_t>(size.height_px);
@@ -89,23 +87,16 @@ DiskNeeds lightmap_needs(const LightmapWork& work) {
     const FileSizes files = largest_files({.width_px = work.width_px,
                                            .height_px = work.height_px,
                                            .wavelengths = kChannels * work.parts});
-    return {.folder_bytes = files.spectral_bytes + (work.has_preview ? files.preview_bytes : 0)};
+    return {.folder_bytes =
+                work.maps * (files.spectral_bytes + (work.has_preview ? files.preview_bytes : 0))};
 }
 
-DiskNeeds atlas_needs(const AtlasWork& work) {
-    const ImageSize image{.width_px = work.size.width_px, .height_px = work.size.height_px};
-    DiskNeeds needs{.folder_bytes =
-                        work.bins * (kBinNote_bytes + largest_files(image).image_bytes)};
-    if (work.has_mosaics) needs.folder_bytes += work.altitudes * exr_bytes(image, 1, kFloat_bytes);
-    if (work.has_oplab) {
-        constexpr std::uint64_t kArrays = 6;  // a, b, c, gain, mean, deviation
-        constexpr std::uint64_t kHeaders_bytes = 4096;
-        needs.folder_bytes += kHeaders_bytes + kArrays * kChannels * kFloat_bytes *
-                                                   static_cast<std::uint64_t>(image.width_px) *
-                                                   static_cast<std::uint64_t>(image.height_px);
-    }
-    if (work.has_fits) needs.folder_bytes += exr_bytes(image, kFittedChannels, kFloat_bytes);
-    return needs;
+DiskNeeds oplab_needs(int width_px, int height_px) {
+    constexpr std::uint64_t kArrays = 6;  // a, b, c, gain, mean, deviation
+    constexpr std::uint64_t kHeaders_bytes = 4096;
+    return {.folder_bytes =
+                kHeaders_bytes + kArrays * kChannels * kFloat_bytes *
+                                     pixels_of({.width_px = width_px, .height_px = height_px})};
 }
 
 std::string shortage(const DiskNeeds& needs, const FreeDisk& free, const std::string& folder) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How much disk a render, a trace, a study, a lightmap or an atlas takes at most, before any of it
+// How much disk a render, a trace, a study or lightmaps take at most, before any of it
 // is begun; and whether there is so much.
 //
 // As if nothing could be compressed, P pixels, n wavelengths,
@@ -58,8 +58,9 @@ struct RenderWork {
 // frames: of the setting that has most.
 [[nodiscard]] DiskNeeds study_needs(const ImageSize& size, std::size_t frames, int jobs);
 
-// A lightmap in one file (lightmap/lightmap.h), with those of parts of its light.
+// Lightmaps in a file each (lightmap/lightmap_file.h), with those of parts of their light.
 struct LightmapWork {
+    std::size_t maps = 1;
     int width_px = 0;
     int height_px = 0;
     std::size_t parts = 0;
@@ -67,16 +68,8 @@ struct LightmapWork {
 };
 [[nodiscard]] DiskNeeds lightmap_needs(const LightmapWork& work);
 
-// An atlas of lightmaps (lightmap/atlas.h), and what is exported beside it.
-struct AtlasWork {
-    ImageSize size;
-    std::size_t bins = 0;  // that are to be written; those that are kept take no more room
-    std::size_t altitudes = 0;
-    bool has_mosaics = false;  // one an altitude
-    bool has_fits = false;     // over all of them
-    bool has_oplab = false;    // numpy's arrays over all of them
-};
-[[nodiscard]] DiskNeeds atlas_needs(const AtlasWork& work);
+// Of lightmap/oplab_export.h, whatever its altitudes.
+[[nodiscard]] DiskNeeds oplab_needs(int width_px, int height_px);
 
 // Where the work is to be done.
 struct FreeDisk {

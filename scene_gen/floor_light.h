@@ -8,7 +8,7 @@
 //   specular  = power I phong max(0, m.l)^size / (pi d^2)
 //   path      = d + r                                            [m]
 //
-// with the letters of docs/physics.md and I the beam's intensity (rig/beam.h). The strobe is a
+// with the letters of docs/physics.md and I the beam's intensity (rig/beam/beam.h). The strobe is a
 // point.
 #pragma once
 

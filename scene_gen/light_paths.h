@@ -2,7 +2,7 @@
 //
 // The family of light (spectral/light_family.h) that a rig's camera can see: every lamp's
 // spectrum on every material, and bare where the floor has a highlight, over the paths of
-// rig/path_range.h.
+// light/path_range.h.
 //
 // Behind a port, each wavelength shows its own point of the floor: the family's tilt is the largest
 // change of light on the way from the middle wavelength's point to it, over the image. Diffuse
@@ -12,7 +12,7 @@
 // among the edges, for which nothing is promised.
 #pragma once
 
-#include "rig/path_range.h"
+#include "light/path_range.h"
 #include "rig/rig.h"
 #include "spectral/light_family.h"
 #include "spectral/planned_wavelength.h"

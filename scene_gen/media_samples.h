@@ -13,9 +13,9 @@
 // Objects and their shadows are left out.
 #pragma once
 
+#include "light/veil.h"
 #include "rig/geometry.h"
 #include "rig/rig.h"
-#include "rig/veil.h"
 #include "spectral/phase_function.h"
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 #include "scene_gen/pov_scene.h"
 
 #include "base/error.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 #include "rig/solid.h"
 #include "scene_gen/band_sdl.h"
 #include "scene_gen/beam_sdl.h"
@@ -126,14 +126,6 @@ Eigen::AlignedBox3d housing(const Camera& camera) {
         block.max().x(),
         -block.min().z(),
         block.max().z());
-}
-
-// Half the angle that an emitter spans, seen from the floor below it.
-double soft_edge_deg(const Rig& rig, const Strobe& strobe) {
-    if (!strobe.emitter) return 0.0;
-    const double size_m = 0.5 * (strobe.emitter->across_m + strobe.emitter->along_m);
-    const double distance_m = height_above(floor_plane(rig.sled), strobe.position_m);
-    return std::atan(0.5 * size_m / distance_m) * 180.0 / std::numbers::pi;
 }
 
 // Where there is no medium it is patience and memory that end: a scene of this many is 15 MB of
@@ -265,7 +257,6 @@ std::vector<StrobeInScene> strobes_in_scene(const Rig& rig,
                                .lamps = lamps[strobes.size()]};
         // All cones behind a window are one light.
         if (needs_shell(in_scene.beam)) in_scene.beam = strobe.beam;
-        if (options.soft_edges) in_scene.soft_edge_deg = soft_edge_deg(rig, strobe);
         strobes.push_back(std::move(in_scene));
     }
     return strobes;
@@ -489,7 +480,6 @@ double fog_m(const Rig& rig, const SceneOptions& options) {
 std::vector<LampGrid> scene_lamps(const Rig& rig,
                                   std::span<const PlannedWavelength> wavelengths,
                                   const SceneOptions& options) {
-    if (options.soft_edges) return std::vector<LampGrid>(rig.strobes.size());
     double K_per_m = 0.0;
     for (const PlannedWavelength& w : wavelengths) {
         K_per_m = std::max(K_per_m, w.light.attenuation_per_m);

@@ -52,13 +52,10 @@ struct SceneOptions {
     bool omit = true;                       // false: what changes nothing is written all the same
     int peak_log2 = kTargetLog2;            // where a frame's brightest pixel goes, or a bit under
     FrameFormat format = FrameFormat::Exr;
-    // One lamp for every emitter: each cone's edge falls from one end of what the emitter spans,
-    // seen from the floor below it, to the other.
-    bool soft_edges = false;
     std::shared_ptr<const UserScene> user_scene{};  // none: the rig's own floor
     // The share of a pixel's light under which rays between a user's mirrors and glasses end.
     double bailout = kRayShare * kTargetError;
-    // In water that scatters: POV-Ray makes the veil, of so many samples a ray. None: rig/veil.h.
+    // In water that scatters: POV-Ray makes the veil, of so many samples a ray. None: light/veil.h.
     std::optional<int> veil_samples{};
     std::optional<PovrayVeil> povray_veil{};  // as the plan has it
     int antialias = 0;  // n x n rays to a pixel, beside the one through its centre

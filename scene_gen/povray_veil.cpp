@@ -2,7 +2,7 @@
 #include "scene_gen/povray_veil.h"
 
 #include "base/degrees.h"
-#include "rig/veil.h"
+#include "light/veil.h"
 #include "spectral/phase_lobes.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The veil (rig/veil.h) as POV-Ray's scattering media make it, with the shadows of objects in it.
+// The veil (light/veil.h) as POV-Ray's scattering media make it, with the shadows of objects in it.
 //
 //   A(lambda) ~ sum_m S_m(lambda) A_m        S_m = sum_i b_i share_im
 //
@@ -13,9 +13,9 @@
 // b_i were a floor's reflectance, on paths from lamp to water to camera.
 //
 // What is known beforehand of its error, in water over the bare floor, is measured over a coarse
-// grid of the image against rig/veil.h: the lobes, the samples (scene_gen/media_samples.h), and how
-// far lobes that cancel amplify the half floats. Light that is turned by less than kVeilCut is not
-// cut off, which the measure includes. It is no bound.
+// grid of the image against light/veil.h: the lobes, the samples (scene_gen/media_samples.h), and
+// how far lobes that cancel amplify the half floats. Light that is turned by less than kVeilCut is
+// not cut off, which the measure includes. It is no bound.
 #pragma once
 
 #include "rig/geometry.h"

@@ -2,16 +2,18 @@
 #include "scene_gen/rig_sdl.h"
 
 #include "base/degrees.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 #include "scene_gen/beam_sdl.h"
-#include "scene_gen/pov_objects.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <variant>
 
 namespace aphotic {
+
+using Eigen::Vector3d;
 
 namespace {
 
@@ -112,10 +114,6 @@ std::string strobe_sdl(const Strobe& strobe,
     } else {
         sdl += beam_sdl(in_scene.beam) + "\n";
     }
-    if (in_scene.soft_edge_deg) {
-        sdl += fmt::format("   #declare Aphotic_Soft_Edge = {};\n",
-                           sdl_number(*in_scene.soft_edge_deg));
-    }
     return sdl + fmt::format("   Aphotic_Strobe ({} / Aphotic_Unit, {}, Beam, {}, {}, {})\n",
                              sdl_point(strobe.position_m),
                              sdl_point(strobe.axis),
@@ -137,6 +135,54 @@ std::string seafloor_sdl(const Rig& rig, std::span<const NamedSpectrum> reflecta
         sdl_number(rig.sled.pitch_rad * kDegreesPerRadian),
         sdl_number(rig.sled.roll_rad * kDegreesPerRadian),
         sdl_text(name_of(floor.reflectance, reflectances)));
+}
+
+// What goes between an object's braces, before its texture.
+struct ShapeText {
+    std::string operator()(const Sphere& sphere) const {
+        return fmt::format(
+            "sphere {{ {}, {}\n", sdl_point(sphere.centre_m), sdl_number(sphere.radius_m));
+    }
+    std::string operator()(const Box& box) const {
+        return fmt::format("box {{ {}, {}\n", sdl_point(box.least_m), sdl_point(box.most_m));
+    }
+    std::string operator()(const Mesh& mesh) const {
+        std::string text = fmt::format("mesh2 {{\n   vertex_vectors {{ {}", mesh.vertices_m.size());
+        for (const Vector3d& vertex_m : mesh.vertices_m) text += ",\n      " + sdl_point(vertex_m);
+        text += fmt::format(" }}\n   face_indices {{ {}", mesh.triangles.size());
+        for (const auto& [a, b, c] : mesh.triangles) {
+            text += fmt::format(",\n      <{}, {}, {}>", a, b, c);
+        }
+        return text + " }\n";
+    }
+};
+
+// The objects of a rig as a macro for POV-Ray, Aphotic_Rig_Objects (): sphere, box, and mesh2 of
+// flat triangles, in POV-Ray's frame (rig/geometry.h), with pigment and finish as the floor has
+// them. POV-Ray turns a normal towards the camera's ray, so a triangle is lit on the side that is
+// seen. Every object casts shadows, which is POV-Ray's default, but for what lies within a
+// millimetre of the lit point or of the lamp.
+std::string pov_objects(const Rig& rig, std::span<const NamedSpectrum> reflectances) {
+    std::string text = "#macro Aphotic_Rig_Objects ()\n";
+    if (!rig.objects.empty()) {
+        text +=
+            "   Aphotic_Require_Unit (\"Aphotic_Rig_Objects\")\n"
+            "   Aphotic_Require_Sled (\"Aphotic_Rig_Objects\")\n";
+    }
+    for (const Object& object : rig.objects) {
+        text += fmt::format("// Object: {}\n", sdl_comment(object.name));
+        text += std::visit(ShapeText{}, object.shape);
+        text += fmt::format(
+            "   pigment {{ Aphotic_Pigment ({}) }}\n"
+            "   finish {{ Aphotic_Finish ({}, {}) }}\n"
+            "   #if (Aphotic_Unit != 1) scale 1 / Aphotic_Unit #end\n"
+            "   #ifdef (Aphotic_Sled) transform {{ Aphotic_Sled }} #end\n"
+            "}}\n",
+            sdl_text(name_of(object.reflectance, reflectances)),
+            sdl_number(object.phong),
+            sdl_number(object.phong_size));
+    }
+    return text + "#end\n";
 }
 
 }  // namespace

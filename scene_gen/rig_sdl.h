@@ -16,7 +16,6 @@
 #include "rig/rig.h"
 #include "scene_gen/band_sdl.h"
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,7 +26,6 @@ namespace aphotic {
 struct StrobeInScene {
     Beam beam;       // what of its own lights the view, if anything does
     LampGrid lamps;  // of its emitter
-    std::optional<double> soft_edge_deg{};
 };
 
 // Whose words follow the rig's: a user may call any of its beams by name, with Aphotic_Beam.

@@ -6,8 +6,8 @@
 #include "base/sha256.h"
 #include "image/exr.h"
 #include "image/frame_check.h"
+#include "rig/camera/lens_model.h"
 #include "rig/geometry_signature.h"
-#include "rig/lens_model.h"
 #include "scene_gen/camera_rays.h"
 #include "scene_gen/include_library.h"
 

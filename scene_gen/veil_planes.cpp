@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "base/sha256.h"
 #include "image/exr.h"
-#include "rig/veil_map.h"
+#include "light/veil_map.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The veil (rig/veil.h) of a render's image, which is added to what POV-Ray's frames hold:
+// The veil (light/veil.h) of a render's image, which is added to what POV-Ray's frames hold:
 //
 //   S_c         = sum_j w_cj 2^-e_j F_j + V_c
 //   L(lambda_j) = 2^-e_j F_j + A(lambda_j)
 //
-// V_c  the veil through channel c: an integral over all of the spectrum (rig/veil_map.h), not over
+// V_c  the veil through channel c: an integral over all of the spectrum (light/veil_map.h), not
+// over
 //      the wavelengths of the frames, whose choice is the floor's light's alone
 // A    the veil at one wavelength, by its own ray, whichever its frame has
 //
@@ -16,7 +17,7 @@
 // kVeilMapPoints a panel, or kVeilPoints where these are not right to a tenth of kVeilOfSignal.
 #pragma once
 
-#include "rig/path_range.h"
+#include "light/path_range.h"
 #include "rig/rig.h"
 #include "spectral/manifest.h"
 

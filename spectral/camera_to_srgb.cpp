@@ -2,6 +2,7 @@
 #include "spectral/camera_to_srgb.h"
 
 #include "base/error.h"
+#include "spectral/colour_difference.h"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -63,17 +64,10 @@ class Observer {
                seen([&](double lambda_nm) { return reflected(surface, lambda_nm); });
     }
 
-    // CIE 015:2018, 8.2.1.
     [[nodiscard]] Vector3d lab_of(const Vector3d& srgb) const {
-        constexpr double kBend = 6.0 / 29.0;
-        const auto f = [](double t) {
-            return t > kBend * kBend * kBend ? std::cbrt(t)
-                                             : t / (3.0 * kBend * kBend) + 4.0 / 29.0;
-        };
-        const Vector3d share = (xyz_of_srgb_ * srgb).cwiseQuotient(white_).unaryExpr(f);
-        return {116.0 * share.y() - 16.0,
-                500.0 * (share.x() - share.y()),
-                200.0 * (share.y() - share.z())};
+        const Vector3d shares = (xyz_of_srgb_ * srgb).cwiseQuotient(white_);
+        const Lab lab = aphotic::lab_of({shares.x(), shares.y(), shares.z()});
+        return {lab.L, lab.a, lab.b};
     }
 
   private:

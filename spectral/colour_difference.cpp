@@ -37,18 +37,23 @@ double chroma_share(double chroma) {
 
 }  // namespace
 
+Lab lab_of(const std::array<double, 3>& shares_of_white) {
+    const double x = lab_curve(shares_of_white[0]);
+    const double y = lab_curve(shares_of_white[1]);
+    const double z = lab_curve(shares_of_white[2]);
+    return {.L = 116.0 * y - 16.0, .a = 500.0 * (x - y), .b = 200.0 * (y - z)};
+}
+
 Lab lab_of_srgb(const std::array<double, 3>& linear_rgb) {
     constexpr std::array<std::array<double, 3>, 3> kXyz{
         {{0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505}}};
-    std::array<double, 3> curve{};
+    std::array<double, 3> shares{};
     for (std::size_t i = 0; i < 3; ++i) {
         const auto& [r, g, b] = kXyz[i];
         const double value = r * linear_rgb[0] + g * linear_rgb[1] + b * linear_rgb[2];
-        curve[i] = lab_curve(value / (r + g + b));
+        shares[i] = value / (r + g + b);
     }
-    return {.L = 116.0 * curve[1] - 16.0,
-            .a = 500.0 * (curve[0] - curve[1]),
-            .b = 200.0 * (curve[1] - curve[2])};
+    return lab_of(shares);
 }
 
 double luminance_of(double L) {

@@ -24,6 +24,8 @@ struct Lab {
     double b = 0.0;
 };
 
+// Of X/Xn, Y/Yn, Z/Zn.
+[[nodiscard]] Lab lab_of(const std::array<double, 3>& shares_of_white);
 [[nodiscard]] Lab lab_of_srgb(const std::array<double, 3>& linear_rgb);
 
 // Y/Yn of an L, and of a grey the other way round.

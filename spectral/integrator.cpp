@@ -38,31 +38,45 @@ struct Block {
     }
 };
 
-// Reads every frame's rows, checks them, and takes the exposures out.
-void read_radiance(const fs::path& folder, const Manifest& manifest, Block& block) {
+// Reads a frame's rows, and hands out the samples of each wavelength in it, checked. frame: of the
+// light itself; the file is this or one of the veil's beside it.
+template <typename Take>
+void read_frame(const fs::path& file,
+                const Manifest& manifest,
+                std::size_t frame,
+                const Block& block,
+                const Take& take) {
     static const std::vector<std::string> kFrameChannels(kChannelNames.begin(),
                                                          kChannelNames.end());
     // All channels at once: OpenEXR unpacks them together, whichever are asked for.
     std::vector<float> samples(kFrameChannels.size() * block.plane);
+    ExrReader reader(file);
+    check_size(file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
+    reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
+    for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
+        const PlannedWavelength& w = manifest.wavelengths[j];
+        if (w.frame != frame) continue;
+        const auto from =
+            std::span<const float>(samples).subspan(w.channel * block.plane, block.plane);
+        check_samples(file, kFrameChannels[w.channel], from, manifest.width_px, block.first_row);
+        take(j, from);
+    }
+}
+
+// Takes the exposures out.
+void read_radiance(const fs::path& folder, const Manifest& manifest, Block& block) {
     for (std::size_t f = 0; f < manifest.direct_frames(); ++f) {
-        const fs::path file = image_path(folder, manifest.frames[f]);
-        ExrReader reader(file);
-        check_size(
-            file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
-        reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
-        for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
-            const PlannedWavelength& w = manifest.wavelengths[j];
-            if (w.frame != f) continue;
-            const auto from =
-                std::span<const float>(samples).subspan(w.channel * block.plane, block.plane);
-            check_samples(
-                file, kFrameChannels[w.channel], from, manifest.width_px, block.first_row);
-            const double scale = std::ldexp(1.0, -w.exposure_log2);
-            std::transform(
-                from.begin(), from.end(), block.radiance(j).begin(), [scale](float sample) {
-                    return static_cast<float>(scale * sample);
-                });
-        }
+        read_frame(image_path(folder, manifest.frames[f]),
+                   manifest,
+                   f,
+                   block,
+                   [&](std::size_t j, std::span<const float> from) {
+                       const double scale = std::ldexp(1.0, -manifest.wavelengths[j].exposure_log2);
+                       std::ranges::transform(
+                           from, block.radiance(j).begin(), [scale](float sample) {
+                               return static_cast<float>(scale * sample);
+                           });
+                   });
     }
 }
 
@@ -100,32 +114,24 @@ void add_povray_veil(const fs::path& folder,
                      const std::vector<float>& vignetting,
                      Block& block) {
     if (!manifest.veil || !manifest.veil->povray) return;
-    static const std::vector<std::string> kFrameChannels(kChannelNames.begin(),
-                                                         kChannelNames.end());
     const auto first_pixel =
         static_cast<std::size_t>(block.first_row) * static_cast<std::size_t>(manifest.width_px);
     const std::size_t direct = manifest.direct_frames();
     const std::size_t sets = manifest.frames.size() / direct - 1;
-    std::vector<float> samples(kFrameChannels.size() * block.plane);
     for (std::size_t f = 0; f < direct; ++f) {
         std::vector<std::vector<double>> veil(manifest.wavelengths.size());
         for (std::size_t set = 0; set < sets; ++set) {
-            const fs::path file = image_path(folder, manifest.frames[(1 + set) * direct + f]);
-            ExrReader reader(file);
-            check_size(
-                file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
-            reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
-            for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
-                const PlannedWavelength& w = manifest.wavelengths[j];
-                if (w.frame != f) continue;
-                const auto from =
-                    std::span<const float>(samples).subspan(w.channel * block.plane, block.plane);
-                check_samples(
-                    file, kFrameChannels[w.channel], from, manifest.width_px, block.first_row);
-                const double sign = signs_of(w, *manifest.veil->povray)[set];
-                veil[j].resize(block.plane);
-                for (std::size_t i = 0; i < block.plane; ++i) veil[j][i] += sign * from[i];
-            }
+            read_frame(image_path(folder, manifest.frames[(1 + set) * direct + f]),
+                       manifest,
+                       f,
+                       block,
+                       [&](std::size_t j, std::span<const float> from) {
+                           const PlannedWavelength& w = manifest.wavelengths[j];
+                           const double sign = signs_of(w, *manifest.veil->povray)[set];
+                           veil[j].resize(block.plane);
+                           for (std::size_t i = 0; i < block.plane; ++i)
+                               veil[j][i] += sign * from[i];
+                       });
         }
         for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
             if (veil[j].empty()) continue;

@@ -307,12 +307,18 @@ void fields(const Visit& visit, Model& model) {
     visit("error", model.error);
 }
 
+template <typename Visit, Is<ManifestSettings> Settings>
+void fields(const Visit& visit, Settings& settings) {
+    visit("keys", settings.keys);
+}
+
 template <typename Visit, Is<Manifest> Whole>
 void fields(const Visit& visit, Whole& manifest) {
     visit("aphotic_version", manifest.aphotic_version);
     visit("povray_version", manifest.povray_version);
     visit("rig_title", manifest.rig_title);
     visit("rig_sha256", manifest.rig_sha256);
+    visit.optional("rig_settings", manifest.rig_settings);
     visit("width_px", manifest.width_px, 1, kLargestImagePx);
     visit("height_px", manifest.height_px, 1, kLargestImagePx);
     visit.optional("camera", manifest.camera);

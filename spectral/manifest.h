@@ -98,11 +98,17 @@ struct ManifestModel {
 inline constexpr const char* kModelErrorAttribute = "aphotic:model_error";
 [[nodiscard]] std::string attribute_of(const ManifestModel& model);
 
+// Keys of the rig's text that the command line set, KEY=VALUE each.
+struct ManifestSettings {
+    std::vector<std::string> keys{};
+};
+
 struct Manifest {
     std::string aphotic_version;
     std::string povray_version;  // empty: not rendered by us
     std::string rig_title;
-    std::string rig_sha256;
+    std::string rig_sha256;  // of the text with its settings
+    std::optional<ManifestSettings> rig_settings{};
     int width_px = 0;
     int height_px = 0;
     std::optional<ManifestCamera> camera{};  // none: frames are as the image is

@@ -31,109 +31,64 @@ constexpr std::size_t kMaxVector = 5;   // POV-Ray's longest
 constexpr std::size_t kMostShown = 80;  // of a text, in a message
 constexpr int kMaxDepth = 100;          // of brackets in brackets
 
+constexpr std::string_view kDigits = "0123456789";
+constexpr std::string_view kOfWords =
+    "_abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+
 struct Token {
-    enum class Kind { End, Number, Word, Text, Symbol };
+    enum class Kind { End, Number, Word, Symbol };
     Kind kind = Kind::End;
     std::string_view text{};
     std::size_t line = 0;
     double number = 0.0;
 };
 
-bool is_letter(char c) {
-    return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_';
+std::size_t comment_end(std::string_view text, std::size_t at) {
+    int depth = 0;
+    do {
+        const bool opens = text.substr(at).starts_with("/*");
+        const bool closes = text.substr(at).starts_with("*/");
+        depth += opens ? 1 : closes ? -1 : 0;
+        at += opens || closes ? 2 : 1;
+    } while (depth > 0 && at < text.size());
+    return depth > 0 ? std::string_view::npos : at;
 }
 
-bool is_digit(char c) {
-    return std::isdigit(static_cast<unsigned char>(c)) != 0;
+std::size_t text_end(std::string_view text, std::size_t at) {
+    for (++at; at < text.size() && text[at] != '"';) at += text[at] == '\\' ? 2 : 1;
+    return at < text.size() ? at + 1 : std::string_view::npos;
 }
 
-// A scene file's tokens, one at a time.
-class Lexer {
-  public:
-    Lexer(const std::string& file, std::string_view text)
-        : file_(file), rest_(without_byte_order_mark(text)) {}
-
-    Token next() {
-        pass_over_blanks();
-        if (rest_.empty()) return {.kind = Token::Kind::End, .line = line_};
-        if (rest_[0] == '"') return text();
-        if (is_letter(rest_[0])) return word();
-        const bool fraction = rest_[0] == '.' && rest_.size() > 1 && is_digit(rest_[1]);
-        if (is_digit(rest_[0]) || fraction) return number();
-        return cut(Token::Kind::Symbol, 1);
-    }
-
-  private:
-    Token cut(Token::Kind kind, std::size_t length) {
-        const Token token{.kind = kind, .text = rest_.substr(0, length), .line = line_};
-        pass_over(length);
-        return token;
-    }
-
-    void pass_over(std::size_t length) {
-        const std::string_view passed = rest_.substr(0, length);
-        line_ += static_cast<std::size_t>(std::count(passed.begin(), passed.end(), '\n'));
-        rest_.remove_prefix(passed.size());
-    }
-
-    void pass_over_blanks() {
-        while (!rest_.empty()) {
-            if (rest_.starts_with("//")) {
-                pass_over(std::min(rest_.find_first_of("\r\n"), rest_.size()));
-            } else if (rest_.starts_with("/*")) {
-                pass_over_comment();
-            } else if (std::isspace(static_cast<unsigned char>(rest_[0])) != 0) {
-                pass_over(1);
-            } else {
-                return;
-            }
+// Blanks for comments, which nest, and for texts after the quote that they begin with.
+std::string without_comments(const std::string& file, std::string_view whole) {
+    std::string text(without_byte_order_mark(whole));
+    for (std::size_t at = 0; at < text.size();) {
+        const bool is_text = text[at] == '"';
+        const bool is_line = text.compare(at, 2, "//") == 0;
+        if (!is_text && !is_line && text.compare(at, 2, "/*") != 0) {
+            ++at;
+            continue;
+        }
+        const std::size_t end = is_text   ? text_end(text, at)
+                                : is_line ? std::min(text.find_first_of("\r\n", at), text.size())
+                                          : comment_end(text, at);
+        if (end == std::string::npos) {
+            fail_at_line(file,
+                         static_cast<std::size_t>(1 + std::ranges::count(text.substr(0, at), '\n')),
+                         "the {} that begins here never ends",
+                         is_text ? "text" : "comment");
+        }
+        for (at += is_text ? 1 : 0; at < end; ++at) {
+            if (text[at] != '\n') text[at] = ' ';
         }
     }
-
-    void pass_over_comment() {
-        const std::size_t first_line = line_;
-        int depth = 0;
-        do {
-            if (rest_.empty())
-                fail_at_line(file_, first_line, "the comment that begins here never ends");
-            const bool opens = rest_.starts_with("/*");
-            const bool closes = rest_.starts_with("*/");
-            depth += opens ? 1 : closes ? -1 : 0;
-            pass_over(opens || closes ? 2 : 1);
-        } while (depth > 0);
-    }
-
-    Token text() {
-        std::size_t end = 1;
-        while (end < rest_.size() && rest_[end] != '"') end += rest_[end] == '\\' ? 2 : 1;
-        if (end >= rest_.size()) fail_at_line(file_, line_, "the text that begins here never ends");
-        return cut(Token::Kind::Text, end + 1);
-    }
-
-    Token word() {
-        std::size_t end = 1;
-        while (end < rest_.size() && (is_letter(rest_[end]) || is_digit(rest_[end]))) ++end;
-        return cut(Token::Kind::Word, end);
-    }
-
-    // One out of range is not a number: it may stand where nobody asks for it.
-    Token number() {
-        std::string_view behind = rest_;
-        const auto value = read_leading_number<double>(behind);
-        Token token = cut(Token::Kind::Number, rest_.size() - behind.size());
-        token.number = value.value_or(std::numeric_limits<double>::quiet_NaN());
-        return token;
-    }
-
-    const std::string& file_;
-    std::string_view rest_;
-    std::size_t line_ = 1;
-};
+    return text;
+}
 
 class Parser {
   public:
     Parser(const std::string& file, std::string_view text, const std::string& only)
-        : file_(file), only_(only), lexer_(file, text) {
+        : file_(file), only_(only), text_(without_comments(file, text)), rest_(text_) {
         advance();
     }
 
@@ -153,7 +108,27 @@ class Parser {
     }
 
   private:
-    void advance() { token_ = lexer_.next(); }
+    void advance() {
+        const std::size_t blanks = std::min(rest_.find_first_not_of(" \t\r\n\f\v"), rest_.size());
+        line_ += static_cast<std::size_t>(std::ranges::count(rest_.substr(0, blanks), '\n'));
+        rest_.remove_prefix(blanks);
+        token_ = {.line = line_};
+        if (rest_.empty()) return;
+        std::string_view behind = rest_;
+        const std::size_t digit = rest_[0] == '.' ? 1 : 0;
+        if (digit < rest_.size() && kDigits.find(rest_[digit]) != std::string_view::npos) {
+            // One out of range is not a number: it may stand where nobody asks for it.
+            token_.kind = Token::Kind::Number;
+            token_.number = read_leading_number<double>(behind).value_or(
+                std::numeric_limits<double>::quiet_NaN());
+        } else {
+            const std::size_t word = std::min(rest_.find_first_not_of(kOfWords), rest_.size());
+            token_.kind = word > 0 ? Token::Kind::Word : Token::Kind::Symbol;
+            behind.remove_prefix(std::max<std::size_t>(word, 1));
+        }
+        token_.text = rest_.substr(0, rest_.size() - behind.size());
+        rest_ = behind;
+    }
 
     bool take(std::string_view text) {
         if (token_.kind == Token::Kind::End || token_.text != text) return false;
@@ -352,7 +327,9 @@ class Parser {
 
     const std::string& file_;
     const std::string& only_;
-    Lexer lexer_;
+    std::string text_;
+    std::string_view rest_;  // of it, behind the token
+    std::size_t line_ = 1;
     Token token_;
     std::string where_;  // the spectrum that is being read
     SplineFile found_;

@@ -33,7 +33,7 @@ namespace aphotic {
 
 // [rad]
 inline constexpr double kLossCut = 45.0 * std::numbers::pi / 180.0;
-// What is turned by less is seen beside its lamp, and no part of the veil (rig/veil.h).
+// What is turned by less is seen beside its lamp, and no part of the veil (light/veil.h).
 inline constexpr double kVeilCut = 10.0 * std::numbers::pi / 180.0;
 
 // One kind of what scatters: the water itself, or the particles in it.

@@ -39,7 +39,7 @@
 #pragma once
 
 #include "lightmap/lightmap.h"
-#include "survey/raw_image.h"
+#include "survey/images/raw_image.h"
 
 #include <array>
 #include <cstdint>

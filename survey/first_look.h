@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A first look at some images of a survey, spread evenly over it: what the gain is taken from
-// (gain.h), and what looks wrong (survey_check.h). How many the gain takes is no matter to the
+// (corrector.h), and what looks wrong (survey_check.h). How many the gain takes is no matter to the
 // check, which needs kEnoughImages.
 #pragma once
 

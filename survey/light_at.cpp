@@ -7,7 +7,6 @@
 #include "image/exr.h"
 #include "lightmap/cone_edge.h"
 #include "spectral/light_family.h"
-#include "survey/flight.h"
 #include "survey/survey_check.h"
 
 #include <fmt/format.h>
@@ -93,9 +92,9 @@ void require_map_for(PlaneSize images, const ExrReader& map, const std::filesyst
                      images.height_px);
 }
 
-// Of all lamps, relative, down and back at the rig's own altitude.
-std::function<double(double)> light_on_its_way(const Rig& rig) {
-    return [&rig, path_m = 2.0 * rig.sled.altitude_m](double lambda_nm) {
+// Of all lamps, relative, after this way through the water.
+std::function<double(double)> light_after(const Rig& rig, double path_m) {
+    return [&rig, path_m](double lambda_nm) {
         double flux = 0.0;
         for (const Strobe& strobe : rig.strobes) {
             flux += strobe.power * strobe.spectrum.at(lambda_nm);
@@ -103,6 +102,29 @@ std::function<double(double)> light_on_its_way(const Rig& rig) {
         return flux * std::exp(-path_m * rig.water.attenuation_per_m(lambda_nm));
     };
 }
+
+// Down and back at the rig's own altitude.
+std::function<double(double)> light_on_its_way(const Rig& rig) {
+    return light_after(rig, 2.0 * rig.sled.altitude_m);
+}
+
+// What the floor gives back of the light that each channel would see of a white one.
+struct GivenBack {
+    const Rig& rig;
+    PerChannel of_floor{};
+    PerChannel of_white{};
+
+    void add(double lambda_nm, std::size_t channel, double seen) {
+        of_white[channel] += seen;
+        of_floor[channel] += seen * rig.seafloor.reflectance.at(lambda_nm);
+    }
+    [[nodiscard]] PerChannel share() const {
+        PerChannel share{};
+        for (std::size_t c = 0; c < kChannels; ++c)
+            share[c] = of_white[c] > 0.0 ? of_floor[c] / of_white[c] : 0.0;
+        return share;
+    }
+};
 
 }  // namespace
 
@@ -191,23 +213,14 @@ PerChannel floor_colour(const Rig& rig) {
         family.sources.push_back({strobe.spectrum});
         family.sources.push_back({strobe.spectrum, rig.seafloor.reflectance});
     }
-    PerChannel given_back{};
-    PerChannel lamps{};
+    const auto light = light_after(rig, 0.0);
+    GivenBack given{rig};
     for (const WeightedWavelength& w :
          reference_grid(rig.camera.sensor, family, rig.camera.range, kError)) {
-        double flux = 0.0;
-        for (const Strobe& strobe : rig.strobes) {
-            flux += strobe.power * strobe.spectrum.at(w.lambda_nm);
-        }
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            lamps[c] += flux * w.weight[c];
-            given_back[c] += flux * w.weight[c] * rig.seafloor.reflectance.at(w.lambda_nm);
-        }
+        const double flux = light(w.lambda_nm);
+        for (std::size_t c = 0; c < kChannels; ++c) given.add(w.lambda_nm, c, flux * w.weight[c]);
     }
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        given_back[c] = lamps[c] > 0.0 ? given_back[c] / lamps[c] : 0.0;
-    }
-    return given_back;
+    return given.share();
 }
 
 CameraToSrgb camera_to_srgb(const Rig& rig) {
@@ -216,20 +229,13 @@ CameraToSrgb camera_to_srgb(const Rig& rig) {
 
 PerChannel floor_colour_in_water(const Rig& rig) {
     const auto light = light_on_its_way(rig);
-    PerChannel given_back{};
-    PerChannel lamps{};
+    GivenBack given{rig};
     for (double nm = std::ceil(rig.camera.range.first_nm); nm <= rig.camera.range.last_nm; ++nm) {
-        for (int c = 0; c < kChannels; ++c) {
-            const double seen = light(nm) * rig.camera.sensor.response(c, nm);
-            const auto i = static_cast<std::size_t>(c);
-            lamps[i] += seen;
-            given_back[i] += seen * rig.seafloor.reflectance.at(nm);
-        }
+        for (int c = 0; c < kChannels; ++c)
+            given.add(
+                nm, static_cast<std::size_t>(c), light(nm) * rig.camera.sensor.response(c, nm));
     }
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        given_back[c] = lamps[c] > 0.0 ? given_back[c] / lamps[c] : 0.0;
-    }
-    return given_back;
+    return given.share();
 }
 
 }  // namespace aphotic

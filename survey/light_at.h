@@ -9,8 +9,8 @@
 #include "rig/rig.h"
 #include "spectral/camera_to_srgb.h"
 #include "survey/correction.h"
-#include "survey/image_files.h"
-#include "survey/navigation.h"
+#include "survey/images/image_files.h"
+#include "survey/navigation/navigation.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -3,10 +3,10 @@
 // A survey: its images, where each was taken, in what light, and by what camera.
 #pragma once
 
-#include "survey/image_files.h"
+#include "survey/images/image_files.h"
+#include "survey/images/survey_image.h"
 #include "survey/light_at.h"
-#include "survey/navigation.h"
-#include "survey/survey_image.h"
+#include "survey/navigation/navigation.h"
 
 #include <optional>
 #include <vector>

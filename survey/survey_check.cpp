@@ -64,9 +64,40 @@ constexpr int kBlocksAcross = 16;
 constexpr int kBlocksDown = 12;
 constexpr std::size_t kBlocks = std::size_t{kBlocksAcross} * kBlocksDown;
 
-std::size_t block_at(const RawImage& raw, int column, int row) {
-    return size_of(row * kBlocksDown / raw.height_px) * size_of(kBlocksAcross) +
-           size_of(column * kBlocksAcross / raw.width_px);
+// Sums over a block's samples.
+struct Block {
+    double image = 0.0;  // over black
+    std::array<double, 2> maps{};
+    double samples = 0.0;
+};
+
+// Of one channel, by the samples that count; a mono camera's are green.
+template <typename Counts>
+std::vector<Block> blocks_of(const RawImage& raw,
+                             const SensorLevels& levels,
+                             std::size_t channel,
+                             const std::array<const Lightmap*, 2>& maps,
+                             const Counts& counts) {
+    std::vector<Block> blocks(kBlocks);
+    const bool is_plane = raw.planes() == 1;
+    const std::size_t of_map = channel * raw.pixels();
+    for (int row = 0; row < raw.height_px; ++row) {
+        for (int column = 0; column < raw.width_px; ++column) {
+            const std::size_t site =
+                is_bayer(raw.mosaic) ? size_of(channel_at(raw.mosaic, column, row)) : kGreenChannel;
+            if (is_plane && site != channel) continue;
+            const std::size_t pixel = size_of(row) * size_of(raw.width_px) + size_of(column);
+            const float sample = raw.samples[is_plane ? pixel : of_map + pixel];
+            if (!counts(sample)) continue;
+            Block& block = blocks[size_of(row * kBlocksDown / raw.height_px) * kBlocksAcross +
+                                  size_of(column * kBlocksAcross / raw.width_px)];
+            block.image += static_cast<double>(sample - levels.black);
+            for (std::size_t m = 0; m < maps.size(); ++m)
+                block.maps[m] += static_cast<double>(maps[m]->samples[of_map + pixel]);
+            block.samples += 1.0;
+        }
+    }
+    return blocks;
 }
 
 struct Line {
@@ -91,6 +122,21 @@ Sums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
     const Eigen::ArrayXd dy = less_mean(y);
     return {.xx = dx.square().sum(), .xy = (dx * dy).sum(), .yy = dy.square().sum()};
 }
+
+// Logarithms of one and the other.
+struct LogPairs {
+    std::vector<double> x{};
+    std::vector<double> y{};
+
+    void add(double one, double other) {
+        x.push_back(std::log(one));
+        y.push_back(std::log(other));
+    }
+    [[nodiscard]] Likeness likeness() const {
+        const Sums sums = sums_of(x, y);
+        return {.xx = sums.xx, .xy = sums.xy, .blocks = x.size()};
+    }
+};
 
 // y = slope x + const by least squares; no line of too few points, or of points too near each
 // other.
@@ -556,89 +602,39 @@ Likeness likeness(const RawImage& raw,
                   const SensorLevels& levels,
                   const Lightmap& map,
                   const Lightmap& other) {
-    struct Block {
-        double image = 0.0;
-        double map = 0.0;
-        double other = 0.0;
-    };
-    std::vector<Block> blocks(kBlocks);
-    const std::size_t green = kGreenChannel * raw.pixels();
-    const bool is_mosaic = is_bayer(raw.mosaic);
-    for (int row = 0; row < raw.height_px; ++row) {
-        for (int column = 0; column < raw.width_px; ++column) {
-            const bool is_green = !is_mosaic || channel_at(raw.mosaic, column, row) ==
-                                                    static_cast<int>(kGreenChannel);
-            const std::size_t pixel = size_of(row) * size_of(raw.width_px) + size_of(column);
-            const float sample = raw.samples[raw.planes() == 1 ? pixel : green + pixel];
-            if (!is_green || !(sample > levels.black && sample < levels.white)) continue;
-            Block& block = blocks[block_at(raw, column, row)];
-            block.image += static_cast<double>(sample - levels.black);
-            block.map += static_cast<double>(map.samples[green + pixel]);
-            block.other += static_cast<double>(other.samples[green + pixel]);
-        }
+    const auto is_lit = [&](float s) { return s > levels.black && s < levels.white; };
+    LogPairs pairs;
+    for (const Block& block : blocks_of(raw, levels, kGreenChannel, {&map, &other}, is_lit)) {
+        const auto [light, of_other] = block.maps;
+        if (light > 0.0 && of_other > 0.0) pairs.add(of_other / light, block.image / light);
     }
-    std::vector<double> x;
-    std::vector<double> y;
-    for (const Block& block : blocks) {
-        if (!(block.map > 0.0 && block.other > 0.0)) continue;
-        x.push_back(std::log(block.other / block.map));
-        y.push_back(std::log(block.image / block.map));
-    }
-    const Sums sums = sums_of(x, y);
-    return {.xx = sums.xx, .xy = sums.xy, .blocks = x.size()};
+    return pairs.likeness();
 }
 
 FrameLook frame_look(const RawImage& raw, const SensorLevels& levels, const Lightmap& map) {
-    struct Block {
-        double image = 0.0;
-        double map = 0.0;
-        double samples = 0.0;
-    };
-    std::array<std::vector<Block>, kChannels> blocks;
-    for (auto& of_channel : blocks) of_channel.resize(kBlocks);
-    const bool is_mosaic = raw.planes() == 1;
-    for (int row = 0; row < raw.height_px; ++row) {
-        for (int column = 0; column < raw.width_px; ++column) {
-            const std::size_t pixel = size_of(row) * size_of(raw.width_px) + size_of(column);
-            const std::size_t site =
-                is_bayer(raw.mosaic) ? size_of(channel_at(raw.mosaic, column, row)) : kGreenChannel;
-            for (std::size_t c = 0; c < kChannels; ++c) {
-                if (is_mosaic && c != site) continue;
-                const float sample = raw.samples[is_mosaic ? pixel : c * raw.pixels() + pixel];
-                if (!(sample < levels.white)) continue;
-                Block& block = blocks[c][block_at(raw, column, row)];
-                block.image += static_cast<double>(sample - levels.black);
-                block.map += static_cast<double>(map.samples[c * raw.pixels() + pixel]);
-                block.samples += 1.0;
-            }
-        }
-    }
+    const auto is_under_white = [&](float s) { return s < levels.white; };
     FrameLook look;
-    std::vector<double> x;
-    std::vector<double> y;
+    LogPairs pairs;
     for (std::size_t c = 0; c < kChannels; ++c) {
         std::vector<float> images;
         std::vector<float> maps;
         double darkest = std::numeric_limits<double>::infinity();
         double map_there = 0.0;
-        for (const Block& block : blocks[c]) {
+        for (const Block& block : blocks_of(raw, levels, c, {&map, &map}, is_under_white)) {
             if (block.samples == 0.0) continue;
             const double image = block.image / block.samples;
-            const double light = block.map / block.samples;
+            const double light = block.maps[0] / block.samples;
             images.push_back(static_cast<float>(image));
             maps.push_back(static_cast<float>(light));
             if (image < darkest) darkest = image, map_there = light;
-            if (c != kGreenChannel || !(image > 0.0 && light > 0.0)) continue;
-            x.push_back(std::log(light));
-            y.push_back(std::log(image));
+            if (c == kGreenChannel && image > 0.0 && light > 0.0) pairs.add(light, image);
         }
         if (images.empty()) continue;
         look.darkest[c] = darkest;
         look.median[c] = double{upper_median(images)};
         look.map_share[c] = map_there / double{upper_median(maps)};
     }
-    const Sums sums = sums_of(x, y);
-    look.to_map = {.xx = sums.xx, .xy = sums.xy, .blocks = x.size()};
+    look.to_map = pairs.likeness();
     return look;
 }
 

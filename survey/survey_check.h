@@ -42,7 +42,7 @@
 #pragma once
 
 #include "survey/correction.h"
-#include "survey/raw_image.h"
+#include "survey/images/raw_image.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -93,7 +93,7 @@ struct FrameLook {
 // What one image tells.
 struct ImageLook {
     std::string name;
-    bool is_for_gain = false;  // the survey's gain is taken from it (gain.h)
+    bool is_for_gain = false;  // the survey's gain is taken from it (corrector.h)
     TopNumber top;
     float white = 0.0F;
     Mosaic mosaic = Mosaic::None;                // of the whole file, from its top left

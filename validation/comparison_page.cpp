@@ -3,6 +3,7 @@
 
 #include "image/preview.h"
 #include "report/html.h"
+#include "report/page.h"
 #include "report/svg.h"
 #include "validation/error_view.h"
 #include "validation/report_pictures.h"
@@ -14,7 +15,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 namespace aphotic {
 namespace {
@@ -46,36 +49,40 @@ Blocks blocks_of(const ComparedChannel& channel, const ComparedImages& images) {
             .reference = block_means(channel.reference, images.width_px, side, channel.marks)};
 }
 
-std::string patterns(const Blocks& blocks, const ComparedImages& images) {
+std::vector<PagePart> patterns(const Blocks& blocks, const ComparedImages& images) {
     ValueRange range;
     range.include(blocks.image);
     range.include(blocks.reference);
-    if (range.is_empty()) return html_paragraph("No sample of both was observed.");
+    if (range.is_empty()) return {"No sample of both was observed."};
     const auto figure = [&](const std::vector<double>& values,
-                            std::string_view words,
-                            const std::string& caption) {
+                            std::string words,
+                            std::string caption) {
         std::vector<std::uint32_t> pixels;
         for (const double value : values) {
             const double share = (value - range.least) / std::max(range.most - range.least, 1e-300);
             pixels.push_back(std::isfinite(value) ? false_colour(share) : kNotFiniteColour);
         }
-        const std::string png = png_of(pixels, blocks.across, blocks.down);
-        return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
-                           picture_html(png, blocks.across, blocks.down, words),
-                           caption);
+        return PageFigure{.pictures = {{.bytes = png_of(pixels, blocks.across, blocks.down),
+                                        .width_px = blocks.across,
+                                        .height_px = blocks.down,
+                                        .words = std::move(words)}},
+                          .caption = std::move(caption)};
     };
-    return fmt::format(
-        "<div class=\"pair\">\n{}{}</div>\n{}",
-        figure(blocks.image,
-               "the image in false colours",
-               user_text(images.image) + (images.scaled ? ", divided by its scale" : "")),
-        figure(blocks.reference, "the reference in false colours", user_text(images.reference)),
-        html_paragraph(fmt::format(
-            "From {:.4g}, dark blue, to {:.4g}, yellow, in both.", range.least, range.most)));
+    return {PageFigures{.figures = {figure(blocks.image,
+                                           "the image in false colours",
+                                           named(images.image) +
+                                               (images.scaled ? ", divided by its scale" : "")),
+                                    figure(blocks.reference,
+                                           "the reference in false colours",
+                                           named(images.reference))}},
+            fmt::format(
+                "From {:.4g}, dark blue, to {:.4g}, yellow, in both.", range.least, range.most)};
 }
 
 // Of each sample, by the rule; what was never observed is set apart.
-std::string differences(const ComparedChannel& channel, const ComparedImages& images, int side) {
+std::vector<PagePart> differences(const ComparedChannel& channel,
+                                  const ComparedImages& images,
+                                  int side) {
     constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
     std::vector<float> errors;
     std::vector<float> image = channel.image;
@@ -90,7 +97,7 @@ std::string differences(const ComparedChannel& channel, const ComparedImages& im
         }
     }
     const Comparison& c = channel.comparison;
-    return error_map_html(
+    return error_map_parts(
         {.comparison = &c,
          .errors = errors,
          .image = image,
@@ -99,11 +106,10 @@ std::string differences(const ComparedChannel& channel, const ComparedImages& im
          .least_side = side,
          .image_name = "the image",
          .set_apart =
-             c.unobserved > 0 ? "not observed: " + grouped_count(c.unobserved, "sample") : "",
-         .bar_id = "colour-bar-" + escaped(c.name)});
+             c.unobserved > 0 ? "not observed: " + grouped_count(c.unobserved, "sample") : ""});
 }
 
-std::string profile(const Blocks& blocks, const std::string& channel, bool is_row, int pixels) {
+PagePlot profile(const Blocks& blocks, const std::string& channel, bool is_row, int pixels) {
     Profile profile{.channel = channel};
     const int count = is_row ? blocks.across : blocks.down;
     for (int i = 0; i < count; ++i) {
@@ -114,81 +120,86 @@ std::string profile(const Blocks& blocks, const std::string& channel, bool is_ro
         profile.reference.push_back(blocks.reference[block]);
     }
     const std::string id = fmt::format("{}-{}", is_row ? "row" : "column", escaped(channel));
-    return profile_html(id, is_row, pixels, {&profile, 1});
+    return profile_plot(id, is_row, pixels, {&profile, 1});
 }
 
-std::string section(const ComparedChannel& channel, const ComparedImages& images) {
+PageSection section(const ComparedImages& images, std::size_t number) {
+    const ComparedChannel& channel = images.channels[number];
+    const std::string& name = channel.comparison.name;
     const Blocks blocks = blocks_of(channel, images);
-    std::string content = patterns(blocks, images);
-    content += "<h3>Relative error</h3>\n" + differences(channel, images, side_of(images));
-    content += "<h3>Profiles through the middle</h3>\n" +
-               html_legend(html_stroke_key("reference", "reference") +
-                           html_stroke_key("rendered", "image"));
-    content += profile(blocks, channel.comparison.name, true, images.width_px);
-    content += profile(blocks, channel.comparison.name, false, images.height_px);
-    return html_section(
-        "channel-" + escaped(channel.comparison.name), escaped(channel.comparison.name), content);
+    PageSection made{.id = fmt::format("channel-{}", number + 1),
+                     .heading = name,
+                     .parts = patterns(blocks, images)};
+    made.parts.emplace_back(PageHeading{"Relative error"});
+    std::ranges::move(differences(channel, images, side_of(images)),
+                      std::back_inserter(made.parts));
+    made.parts.emplace_back(PageHeading{"Profiles through the middle"});
+    made.parts.emplace_back(
+        PageLegend{stroke_key("reference", "reference"), stroke_key("rendered", "image")});
+    made.parts.emplace_back(profile(blocks, name, true, images.width_px));
+    made.parts.emplace_back(profile(blocks, name, false, images.height_px));
+    return made;
 }
 
-std::string table(const ComparedImages& images) {
-    constexpr std::string_view kColumns =
-        "channel;scale;black;largest |e|;at column, row;99.9 %;rms;mean;compared;not observed;"
-        "not finite";
-    std::vector<HtmlRow> rows;
+PageTable table(const ComparedImages& images) {
+    PageTable made{.columns = {"channel",
+                               "scale",
+                               "black",
+                               "largest |e|",
+                               "at column, row",
+                               "99.9 %",
+                               "rms",
+                               "mean",
+                               "compared",
+                               "not observed",
+                               "not finite"}};
     for (const ComparedChannel& channel : images.channels) {
         const Comparison& c = channel.comparison;
-        rows.push_back({.style = c.holds() ? "holds" : "fails",
-                        .cells = {escaped(c.name),
-                                  fmt::format("{:.6g}", channel.scale),
-                                  scientific(channel.black),
-                                  scientific(c.max_error),
-                                  fmt::format("{}, {}", c.column, c.row),
-                                  scientific(c.percentile_999),
-                                  scientific(c.rms_error),
-                                  scientific(c.mean_error),
-                                  grouped(c.compared),
-                                  grouped(c.unobserved),
-                                  grouped(c.not_finite)}});
+        made.rows.push_back({.cells = {c.name,
+                                       fmt::format("{:.6g}", channel.scale),
+                                       scientific(channel.black),
+                                       scientific(c.max_error),
+                                       fmt::format("{}, {}", c.column, c.row),
+                                       scientific(c.percentile_999),
+                                       scientific(c.rms_error),
+                                       scientific(c.mean_error),
+                                       grouped(c.compared),
+                                       grouped(c.unobserved),
+                                       grouped(c.not_finite)},
+                             .tone = c.holds() ? PageTone::Good : PageTone::Bad});
     }
-    return html_table("channels", kColumns, rows);
+    return made;
 }
 
-std::string verdict(const ComparedImages& images) {
-    const std::string partners =
-        images.unpaired() == 0
-            ? ""
-            : html_paragraph(fmt::format("But {} without a partner in the other image.",
-                                         grouped_count(images.unpaired(), "channel")));
-    return html_verdict(images.holds(),
-                        fmt::format("{} is {} {} of {}{}.",
-                                    user_text(images.image),
-                                    images.are_within() ? "within" : "not within",
-                                    scientific(images.channels.front().comparison.bound),
-                                    user_text(images.reference),
-                                    images.scaled ? ", but for its scale" : ""),
-                        partners);
-}
-
-std::string not_compared(const ComparedImages& images) {
-    std::vector<HtmlItem> items;
+PageList not_compared(const ComparedImages& images) {
+    PageList items;
     const auto add = [&](const std::string& term, const std::vector<std::string>& channels) {
         if (!channels.empty())
-            items.emplace_back(term, escaped(fmt::format("{}", fmt::join(channels, ", "))));
+            items.emplace_back(term, fmt::format("{}", fmt::join(channels, ", ")));
     };
-    add("Only in " + user_text(images.image), images.only_in_image);
-    add("Only in " + user_text(images.reference), images.only_in_reference);
+    add("Only in " + named(images.image), images.only_in_image);
+    add("Only in " + named(images.reference), images.only_in_reference);
     add("Left aside", images.left_aside);
-    return items.empty() ? ""
-                         : "<h3>Channels not compared</h3>\n" + html_list("not-compared", items);
+    return items;
 }
 
-std::string image_rule(const ComparedImages& images) {
-    return error_rule(
-        images.scaled ? "the image’s sample, divided by its channel’s scale" : "the image’s sample",
-        "the reference’s sample",
-        fmt::format("what counts as black, {} of the reference’s largest sample: under it a "
-                    "difference is measured against it",
-                    scientific(images.black)));
+PageSection numbers(const ComparedImages& images) {
+    PageSection made{
+        .id = "numbers",
+        .heading = "Errors",
+        .parts = error_rule(
+            images.scaled ? "the image’s sample, divided by its channel’s scale"
+                          : "the image’s sample",
+            "the reference’s sample",
+            fmt::format("what counts as black, {} of the reference’s largest sample: under it a "
+                        "difference is measured against it",
+                        scientific(images.black)))};
+    made.parts.emplace_back(table(images));
+    if (PageList left = not_compared(images); !left.empty()) {
+        made.parts.emplace_back(PageHeading{"Channels not compared"});
+        made.parts.emplace_back(std::move(left));
+    }
+    return made;
 }
 
 }  // namespace
@@ -201,13 +212,24 @@ std::uint32_t false_colour(double share) {
 }
 
 std::string comparison_html(const ComparedImages& images) {
-    std::string content =
-        html_header("comparison",
-                    user_text(images.image) + " and " + user_text(images.reference),
-                    verdict(images)) +
-        image_rule(images) + table(images) + not_compared(images);
-    for (const ComparedChannel& channel : images.channels) content += section(channel, images);
-    return html_page("Comparison of " + images.image, content);
+    Page page{.kind = "comparison",
+              .title = "Comparison of " + images.image,
+              .heading = named(images.image) + " and " + named(images.reference),
+              .is_good = images.holds(),
+              .headline = fmt::format("{} is {} {} of {}{}.",
+                                      named(images.image),
+                                      images.are_within() ? "within" : "not within",
+                                      scientific(images.channels.front().comparison.bound),
+                                      named(images.reference),
+                                      images.scaled ? ", but for its scale" : ""),
+              .sections = {numbers(images)}};
+    if (images.unpaired() > 0) {
+        page.said.push_back(fmt::format("But {} without a partner in the other image.",
+                                        grouped_count(images.unpaired(), "channel")));
+    }
+    for (std::size_t i = 0; i < images.channels.size(); ++i)
+        page.sections.push_back(section(images, i));
+    return page_html(page);
 }
 
 }  // namespace aphotic

@@ -11,6 +11,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -24,46 +26,39 @@ double map_scale(const Comparison& comparison) {
     return 1e-3;
 }
 
-std::string worst_mark(const MappedErrors& mapped) {
+std::optional<std::pair<double, double>> worst_place(const MappedErrors& mapped) {
     const Comparison& comparison = *mapped.comparison;
-    if (comparison.max_error == 0.0) return "";
+    if (comparison.max_error == 0.0) return std::nullopt;
     const double height_px = static_cast<double>(mapped.errors.size()) / mapped.width_px;
-    return fmt::format(R"(<i class="worst" style="left: {:.2f}%; top: {:.2f}%"></i>)",
-                       100.0 * (comparison.column + 0.5) / mapped.width_px,
-                       100.0 * (comparison.row + 0.5) / height_px);
+    return std::pair((comparison.column + 0.5) / mapped.width_px,
+                     (comparison.row + 0.5) / height_px);
 }
 
-std::string swatch(std::uint32_t colour, std::string_view words) {
-    return html_key(fmt::format(R"(<svg class="swatch" viewBox="0 0 12 12"><rect width="12" )"
-                                R"(height="12" fill="#{:06x}"/></svg>)",
-                                colour),
-                    words);
-}
-
-std::string map_legend(const MappedErrors& mapped, double end) {
+PageLegend map_legend(const MappedErrors& mapped, double end) {
     const Comparison& comparison = *mapped.comparison;
-    const auto key = [&](double share, std::string_view words) {
+    const auto key = [&](double share, std::string words) {
         const auto step = std::lround(share * (kColourSteps - 1) / 2);
-        return swatch(error_colour(static_cast<int>(step)), words);
+        return swatch_key(error_colour(static_cast<int>(step)), std::move(words));
     };
-    std::string legend =
-        key(-1.0, fmt::format("−{}: {} is darker", scientific(end), mapped.image_name)) +
-        key(-0.5, fmt::format("−{}", scientific(0.5 * end))) + key(0.0, "0") +
-        key(0.5, fmt::format("+{}", scientific(0.5 * end))) +
-        key(1.0, fmt::format("+{}: {} is brighter", scientific(end), mapped.image_name));
-    if (!mapped.set_apart.empty()) legend += swatch(kEdgeColour, mapped.set_apart);
+    PageLegend legend{
+        key(-1.0, fmt::format("−{}: {} is darker", scientific(end), mapped.image_name)),
+        key(-0.5, fmt::format("−{}", scientific(0.5 * end))),
+        key(0.0, "0"),
+        key(0.5, fmt::format("+{}", scientific(0.5 * end))),
+        key(1.0, fmt::format("+{}: {} is brighter", scientific(end), mapped.image_name))};
+    if (!mapped.set_apart.empty()) legend.push_back(swatch_key(kEdgeColour, mapped.set_apart));
     if (comparison.not_finite > 0) {
-        legend += swatch(kNotFiniteColour,
-                         "not finite: " + grouped_count(comparison.not_finite, "sample"));
+        legend.push_back(swatch_key(
+            kNotFiniteColour, "not finite: " + grouped_count(comparison.not_finite, "sample")));
     }
     if (comparison.max_error > 0.0) {
-        legend += html_key("◯",
-                           fmt::format("the largest, {} at column {}, row {}",
-                                       scientific(comparison.max_error),
-                                       comparison.column,
-                                       comparison.row));
+        legend.push_back({"◯",
+                          fmt::format("the largest, {} at column {}, row {}",
+                                      scientific(comparison.max_error),
+                                      comparison.column,
+                                      comparison.row)});
     }
-    return fmt::format("<div id=\"{}\">{}</div>\n", mapped.bar_id, html_legend(legend));
+    return legend;
 }
 
 std::string map_in_words(const MappedErrors& mapped, const ErrorMap& map, double end) {
@@ -78,7 +73,7 @@ std::string map_in_words(const MappedErrors& mapped, const ErrorMap& map, double
             " Each point of the map shows the largest |e| of {0} × {0} pixels, with its sign.",
             map.side);
     }
-    return html_paragraph(words);
+    return words;
 }
 
 SvgAxis value_axis(const Profile& profile) {
@@ -113,30 +108,29 @@ std::string tone_of(const std::string& channel) {
 
 }  // namespace
 
-std::string error_rule(std::string_view a, std::string_view b, std::string_view black) {
-    const std::array<HtmlItem, 3> symbols{{{"<i>a</i>", std::string(a)},
-                                           {"<i>b</i>", std::string(b)},
-                                           {"<i>b</i><sub>0</sub>", std::string(black)}}};
-    return "<p class=\"formula\"><i>e<sub>i</sub></i> = (<i>a<sub>i</sub></i> − "
-           "<i>b<sub>i</sub></i>) / max( |<i>b<sub>i</sub></i>|, <i>b</i><sub>0</sub> )</p>\n" +
-           html_list("symbols", symbols);
+std::vector<PagePart> error_rule(std::string a, std::string b, std::string black) {
+    return {"e = (a − b) / max(|b|, b₀)",
+            PageList{{"a", std::move(a)}, {"b", std::move(b)}, {"b₀", std::move(black)}}};
 }
 
-std::string error_map_html(const MappedErrors& mapped) {
+std::vector<PagePart> error_map_parts(const MappedErrors& mapped) {
     const double end = map_scale(*mapped.comparison);
     const ErrorMap map = error_map(
         mapped.errors, mapped.image, mapped.reference, mapped.width_px, end, mapped.least_side);
-    return fmt::format(
-               "<div class=\"map\">{}{}</div>\n",
-               picture_html(map.png, map.width_px, map.height_px, "map of the relative error"),
-               worst_mark(mapped)) +
-           map_legend(mapped, end) + map_in_words(mapped, map, end);
+    const PagePicture picture{.bytes = map.png,
+                              .width_px = map.width_px,
+                              .height_px = map.height_px,
+                              .words = "map of the relative error",
+                              .ring = worst_place(mapped)};
+    return {PageFigures{.figures = {{.pictures = {picture}}}},
+            map_legend(mapped, end),
+            map_in_words(mapped, map, end)};
 }
 
-std::string profile_html(std::string_view id,
-                         bool is_row,
-                         int pixels,
-                         std::span<const Profile> profiles) {
+PagePlot profile_plot(std::string_view id,
+                      bool is_row,
+                      int pixels,
+                      std::span<const Profile> profiles) {
     constexpr double kValueHeight = 150.0;
     constexpr double kErrorHeight = 72.0;
     constexpr double kGap = 12.0;
@@ -172,12 +166,11 @@ std::string profile_html(std::string_view id,
         }
         svg += svg_dots(panel, profile.position_px, profile.errors, style("dots"));
     }
-    return fmt::format("<figure class=\"plot\">{}</figure>\n",
-                       svg_drawing(id,
-                                   is_row ? "along the middle row" : "down the middle column",
-                                   panel.right() + 14.0,
-                                   panel.bottom() + kAxisHeight,
-                                   svg));
+    return {svg_drawing(id,
+                        is_row ? "along the middle row" : "down the middle column",
+                        panel.right() + 14.0,
+                        panel.bottom() + kAxisHeight,
+                        svg)};
 }
 
 }  // namespace aphotic

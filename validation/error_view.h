@@ -4,6 +4,7 @@
 // with the worst pixel ringed and what its colours mean, and profiles along a line of pixels.
 #pragma once
 
+#include "report/page.h"
 #include "validation/comparison.h"
 
 #include <span>
@@ -13,10 +14,8 @@
 
 namespace aphotic {
 
-// What a, b and b0 stand for, each as markup.
-[[nodiscard]] std::string error_rule(std::string_view a,
-                                     std::string_view b,
-                                     std::string_view black);
+// With what a, b and b0 stand for.
+[[nodiscard]] std::vector<PagePart> error_rule(std::string a, std::string b, std::string black);
 
 struct MappedErrors {
     const Comparison* comparison = nullptr;
@@ -26,14 +25,13 @@ struct MappedErrors {
     std::span<const float> reference{};
     int width_px = 0;
     int least_side = 1;        // of the blocks of pixels that are shown as one
-    std::string image_name{};  // "POV-Ray", as markup
+    std::string image_name{};  // "POV-Ray"
     std::string set_apart{};   // what is grey: "on edges: 12 pixels"; empty: nothing is
-    std::string bar_id{};      // of the colour scale, on this page
 };
 
-// A whole figure with its legend and a paragraph. The colours run to the 99.9 percentile, rounded
+// The map, its legend and a paragraph. The colours run to the 99.9 percentile, rounded
 // up, so that the details show and not only the largest.
-[[nodiscard]] std::string error_map_html(const MappedErrors& mapped);
+[[nodiscard]] std::vector<PagePart> error_map_parts(const MappedErrors& mapped);
 
 // A channel along the middle row or column of both images.
 struct Profile {
@@ -45,10 +43,10 @@ struct Profile {
     double bound = 0.0;            // of the errors
 };
 
-// A whole figure of all channels below each other. pixels: along the line. id: of the drawing.
-[[nodiscard]] std::string profile_html(std::string_view id,
-                                       bool is_row,
-                                       int pixels,
-                                       std::span<const Profile> profiles);
+// All channels below each other. pixels: along the line. id: of the drawing.
+[[nodiscard]] PagePlot profile_plot(std::string_view id,
+                                    bool is_row,
+                                    int pixels,
+                                    std::span<const Profile> profiles);
 
 }  // namespace aphotic

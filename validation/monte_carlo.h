@@ -2,7 +2,7 @@
 //
 // Light of all orders of scattering over the rig's flat floor, at one wavelength, by random paths
 // from the camera: the truth that the model's K and single scattering (spectral/water.h,
-// rig/veil.h) are held against.
+// light/veil.h) are held against.
 //
 // A path leaves the camera along a pixel's ray. At rate b_t it is turned, by an angle of the phase
 // function; at the floor it goes on as a Lambertian surface reflects; on all of its length it loses

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The page is well-formed XML too, so that a strict reader finds what a browser would forgive.
+// report.html: what a validation found, as a page.
 #include "base/atomic_file.h"
 #include "image/preview.h"
 #include "report/html.h"
-#include "rig/lens.h"
+#include "report/page.h"
+#include "rig/camera/lens.h"
 #include "spectral/refractive_index.h"
 #include "validation/error_view.h"
 #include "validation/report.h"
@@ -13,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -31,20 +31,20 @@ std::string title_of(const ValidationReport& report) {
 std::string name_of(const ValidationReport& report, const Comparison& comparison) {
     const bool is_channel = std::ranges::any_of(
         report.channels, [&](const Comparison& channel) { return &channel == &comparison; });
-    return (is_channel ? "channel " : "") + user_text(comparison.name);
+    return (is_channel ? "channel " : "") + comparison.name;
 }
 
 std::string worst_in_words(const ValidationReport& report) {
     const Comparison& worst = report.worst();
     const std::string name = name_of(report, worst);
     if (worst.not_finite > 0) {
-        return fmt::format("Worst is <strong>{}</strong>: {} {} not finite.",
+        return fmt::format("Worst is {}: {} {} not finite.",
                            name,
                            grouped_count(worst.not_finite, "sample"),
                            worst.not_finite == 1 ? "is" : "are");
     }
     return fmt::format(
-        "{} <strong>{}</strong>: its largest relative error is <strong>{}</strong>, {} times its "
+        "{} {}: its largest relative error is {}, {} times its "
         "bound of {}, at column {}, row {}.",
         report.holds() ? "Closest to its bound is" : "Worst is",
         name,
@@ -63,7 +63,7 @@ std::string edges_in_words(const ValidationReport& report) {
             ? "No pixel is on an edge."
             : fmt::format(
                   "On edges, which have no bound, are up to {} % of the pixels; the largest "
-                  "relative error there is <strong>{}</strong>.",
+                  "relative error there is {}.",
                   scientific(kPercent * edges.share),
                   scientific(edges.max_error));
     if (edges.share_in_penumbrae > 0.0) {
@@ -76,14 +76,16 @@ std::string edges_in_words(const ValidationReport& report) {
     return words;
 }
 
-std::string veil_paragraph(const ValidationReport& report) {
-    if (!report.has_veil()) return "";
-    std::string words = veil_in_words(report.veil_share);
-    words.front() = 'V';
-    return html_paragraph(words + ".");
+// That two different scenes were compared has to be known before any number.
+std::vector<std::string> other_scene(const ValidationReport& report) {
+    if (report.scene_file.empty()) return {};
+    return {fmt::format(
+        "POV-Ray rendered {}, a scene of the user’s own. The reference does not read it: it traced "
+        "the floor and the objects of the rig.",
+        named(report.scene_file))};
 }
 
-std::string verdict(const ValidationReport& report) {
+std::vector<std::string> verdict(const ValidationReport& report) {
     const std::vector<const Comparison*> all = report.all();
     const auto held = static_cast<std::size_t>(std::ranges::count_if(all, &Comparison::holds));
     const std::string summary =
@@ -92,51 +94,40 @@ std::string verdict(const ValidationReport& report) {
                        : fmt::format("POV-Ray’s images and the reference disagree in {} of {}.",
                                      grouped(all.size() - held),
                                      grouped_count(all.size(), "comparison"));
-    return html_verdict(
-        report.holds(),
-        report.holds() ? "✓ Holds" : "✗ Does not hold",
-        fmt::format(
-            "<p>{} {}</p>\n<p>{}</p>\n", summary, worst_in_words(report), edges_in_words(report)) +
-            veil_paragraph(report));
-}
-
-// That two different scenes were compared has to be known before any number.
-std::string other_scene(const ValidationReport& report) {
-    if (report.scene_file.empty()) return "";
-    return html_paragraph(fmt::format(
-        "POV-Ray rendered <code>{}</code>, a scene of the user’s own. The reference does not read "
-        "it: it traced the floor and the objects of the rig.",
-        escaped(report.scene_file)));
+    std::vector<std::string> said{summary + " " + worst_in_words(report), edges_in_words(report)};
+    if (report.has_veil()) {
+        said.push_back(veil_in_words(report.veil_share) + ".");
+        said.back().front() = 'V';
+    }
+    return said;
 }
 
 // Both under the reference's scale.
-std::string images(const ValidationReport& report) {
+std::vector<PagePart> images(const ValidationReport& report) {
     const int side = block_side(report.traced.width_px, report.traced.height_px);
     const CameraImage traced = block_means(report.traced, side);
     const auto scale =
         preview_scale(traced, report.lamp_signal, {.white = PreviewWhite::Lamp, .stops = 0.0});
-    const auto figure =
-        [&](const CameraImage& image, std::string_view alt, std::string_view caption) {
-            return fmt::format(
-                "<figure>{}<figcaption>{}</figcaption></figure>\n",
-                picture_html(preview_png(image, scale), image.width_px, image.height_px, alt),
-                caption);
-        };
-    return fmt::format(
-        "<div class=\"pair\">\n{}{}</div>\n{}",
-        figure(block_means(report.rendered, side),
-               "image through POV-Ray",
-               fmt::format("<strong>POV-Ray</strong>, integrated from {}",
-                           grouped_count(report.wavelengths.size(), "wavelength"))),
-        figure(traced,
-               "image by the reference tracer",
-               fmt::format("<strong>Reference</strong>, over {}",
-                           grouped_count(report.grid_size, "wavelength"))),
-        html_paragraph(fmt::format(
-            "The camera’s signals at the same exposure and white: the lamps’ "
-            "own light is "
-            "grey, channels are shown as sRGB. Top is forward, right is starboard.{}",
-            side > 1 ? fmt::format(" Shown by means of {0} × {0} pixels.", side) : "")));
+    const auto figure = [&](const CameraImage& image, std::string words, std::string caption) {
+        return PageFigure{.pictures = {{.bytes = preview_png(image, scale),
+                                        .width_px = image.width_px,
+                                        .height_px = image.height_px,
+                                        .words = std::move(words)}},
+                          .caption = std::move(caption)};
+    };
+    return {
+        PageFigures{
+            .figures = {figure(block_means(report.rendered, side),
+                               "image through POV-Ray",
+                               fmt::format("POV-Ray, integrated from {}",
+                                           grouped_count(report.wavelengths.size(), "wavelength"))),
+                        figure(traced,
+                               "image by the reference tracer",
+                               fmt::format("Reference, over {}",
+                                           grouped_count(report.grid_size, "wavelength")))}},
+        fmt::format("The camera’s signals at the same exposure and white: the lamps’ own light "
+                    "is grey, channels are shown as sRGB. Top is forward, right is starboard.{}",
+                    side > 1 ? fmt::format(" Shown by means of {0} × {0} pixels.", side) : "")};
 }
 
 std::span<const float> plane(const std::vector<float>& samples, std::size_t channel) {
@@ -144,20 +135,19 @@ std::span<const float> plane(const std::vector<float>& samples, std::size_t chan
     return std::span(samples).subspan(channel * size, size);
 }
 
-std::string map_section(const ValidationReport& report) {
+PageSection map_section(const ValidationReport& report) {
     const std::size_t c = report.worst_channel();
     const Comparison& channel = report.channels[c];
-    return html_section(
-        "error-map",
-        fmt::format("Relative error of channel {}, the worst", escaped(channel.name)),
-        error_map_html({.comparison = &channel,
-                        .errors = plane(report.channel_errors, c),
-                        .image = plane(report.rendered.samples, c),
-                        .reference = plane(report.traced.samples, c),
-                        .width_px = report.traced.width_px,
-                        .image_name = "POV-Ray",
-                        .set_apart = "on edges: " + grouped_count(channel.on_edges, "pixel"),
-                        .bar_id = "colour-bar"}));
+    return {.id = "error-map",
+            .heading = fmt::format("Relative error of channel {}, the worst", channel.name),
+            .parts = error_map_parts(
+                {.comparison = &channel,
+                 .errors = plane(report.channel_errors, c),
+                 .image = plane(report.rendered.samples, c),
+                 .reference = plane(report.traced.samples, c),
+                 .width_px = report.traced.width_px,
+                 .image_name = "POV-Ray",
+                 .set_apart = "on edges: " + grouped_count(channel.on_edges, "pixel")})};
 }
 
 Profile profile_of(const ValidationReport& report, std::size_t c, bool is_row) {
@@ -175,14 +165,13 @@ Profile profile_of(const ValidationReport& report, std::size_t c, bool is_row) {
     return profile;
 }
 
-std::string profiles(const ValidationReport& report) {
-    std::string content =
-        html_paragraph(
-            "Both renderers over each other through the middle of the image; beneath each channel, "
-            "its relative error pixel by pixel.") +
-        html_legend(html_stroke_key("reference", "reference") +
-                    html_stroke_key("rendered", "POV-Ray") +
-                    html_stroke_key("bound", "bound of the error"));
+std::vector<PagePart> profiles(const ValidationReport& report) {
+    std::vector<PagePart> parts{
+        "Both renderers over each other through the middle of the image; beneath each channel, "
+        "its relative error pixel by pixel.",
+        PageLegend{stroke_key("reference", "reference"),
+                   stroke_key("rendered", "POV-Ray"),
+                   stroke_key("bound", "bound of the error")}};
     for (const bool is_row : {true, false}) {
         std::vector<Profile> channels;
         for (std::size_t c = 0; c < kChannels; ++c) {
@@ -190,65 +179,66 @@ std::string profiles(const ValidationReport& report) {
         }
         const int width_px = report.traced.width_px;
         const int height_px = report.traced.height_px;
-        content += fmt::format("<h3>{} {}</h3>\n{}",
-                               is_row ? "Row" : "Column",
-                               (is_row ? height_px : width_px) / 2,
-                               profile_html(is_row ? "profile-row" : "profile-column",
-                                            is_row,
-                                            is_row ? width_px : height_px,
-                                            channels));
+        parts.emplace_back(PageHeading{
+            fmt::format("{} {}", is_row ? "Row" : "Column", (is_row ? height_px : width_px) / 2)});
+        parts.emplace_back(profile_plot(is_row ? "profile-row" : "profile-column",
+                                        is_row,
+                                        is_row ? width_px : height_px,
+                                        channels));
     }
-    return content;
+    return parts;
 }
 
-std::string sample_rule() {
-    return error_rule("POV-Ray’s sample",
-                      "the reference’s sample",
-                      "what counts as black: under it a difference is measured against it") +
-           html_paragraph(
-               "A comparison holds when the largest |<i>e</i>| off the edges is within its bound "
-               "and "
-               "every sample, on edges too, is finite. No factor is fitted: the absolute scale is "
-               "part of it. On the edge of a cone, of a shadow or of an object’s face, where "
-               "rounding or dispersion puts a pixel on both sides, samples are counted and "
-               "measured "
-               "on their own. In the penumbra of an emitter with a size, <i>b</i> is traced with "
-               "the "
-               "render’s own lamps. The 99.9 percentile and the root mean square are of "
-               "|<i>e</i>|, "
-               "the mean is of <i>e</i> with its sign.");
-}
-
-std::string table(std::string_view id,
-                  std::string_view first_column,
-                  const std::vector<Comparison>& comparisons) {
-    const std::string columns =
-        std::string(first_column) +
-        ";largest |e|;at column, row;99.9 %;rms;mean;compared;on edges;largest on edges;not finite;"
-        "bound;largest / bound;";
-    std::vector<HtmlRow> rows;
+PageTable table(std::string first_column, const std::vector<Comparison>& comparisons) {
+    PageTable made{.columns = {std::move(first_column),
+                               "largest |e|",
+                               "at column, row",
+                               "99.9 %",
+                               "rms",
+                               "mean",
+                               "compared",
+                               "on edges",
+                               "largest on edges",
+                               "not finite",
+                               "bound",
+                               "largest / bound",
+                               ""}};
     for (const Comparison& c : comparisons) {
-        rows.push_back({.style = c.holds() ? "holds" : "fails",
-                        .cells = {user_text(c.name),
-                                  scientific(c.max_error),
-                                  fmt::format("{}, {}", c.column, c.row),
-                                  scientific(c.percentile_999),
-                                  scientific(c.rms_error),
-                                  scientific(c.mean_error),
-                                  grouped(c.compared),
-                                  grouped(c.on_edges),
-                                  c.on_edges == 0 ? "–" : scientific(c.max_error_on_edges),
-                                  grouped(c.not_finite),
-                                  scientific(c.bound),
-                                  scientific(share_of_bound(c)),
-                                  c.holds() ? "✓ holds" : "✗ fails"}});
+        made.rows.push_back({.cells = {c.name,
+                                       scientific(c.max_error),
+                                       fmt::format("{}, {}", c.column, c.row),
+                                       scientific(c.percentile_999),
+                                       scientific(c.rms_error),
+                                       scientific(c.mean_error),
+                                       grouped(c.compared),
+                                       grouped(c.on_edges),
+                                       c.on_edges == 0 ? "–" : scientific(c.max_error_on_edges),
+                                       grouped(c.not_finite),
+                                       scientific(c.bound),
+                                       scientific(share_of_bound(c)),
+                                       c.holds() ? "✓ holds" : "✗ fails"},
+                             .tone = c.holds() ? PageTone::Good : PageTone::Bad});
     }
-    return html_table(id, columns, rows);
+    return made;
 }
 
-std::string numbers(const ValidationReport& report) {
-    return sample_rule() + "<h3>Channels</h3>\n" + table("channels", "channel", report.channels) +
-           "<h3>Wavelengths</h3>\n" + table("wavelengths", "wavelength", report.wavelengths);
+std::vector<PagePart> numbers(const ValidationReport& report) {
+    std::vector<PagePart> parts =
+        error_rule("POV-Ray’s sample",
+                   "the reference’s sample",
+                   "what counts as black: under it a difference is measured against it");
+    parts.emplace_back(
+        "A comparison holds when the largest |e| off the edges is within its bound and every "
+        "sample, on edges too, is finite. No factor is fitted: the absolute scale is part of it. "
+        "On the edge of a cone, of a shadow or of an object’s face, where rounding or dispersion "
+        "puts a pixel on both sides, samples are counted and measured on their own. In the "
+        "penumbra of an emitter with a size, b is traced with the render’s own lamps. The 99.9 "
+        "percentile and the root mean square are of |e|, the mean is of e with its sign.");
+    parts.emplace_back(PageHeading{"Channels"});
+    parts.emplace_back(table("channel", report.channels));
+    parts.emplace_back(PageHeading{"Wavelengths"});
+    parts.emplace_back(table("wavelength", report.wavelengths));
+    return parts;
 }
 
 // With the standard error of the truth.
@@ -257,24 +247,25 @@ std::string ratio_to(double model, const Estimate& truth) {
     return fmt::format("{:.4f} ± {:.4f}", model / truth.mean, truth.standard_error / truth.mean);
 }
 
-std::string model_check(const ModelCheck& model) {
-    std::vector<HtmlRow> rows;
+std::vector<PagePart> model_check(const ModelCheck& model) {
+    if (model.places.empty()) return {};
+    PageTable made{
+        .columns = {"channel", "nm", "column, row", "share of the veil", "floor", "veil", "sum"}};
     for (const ModelPlace& place : model.places) {
-        rows.push_back({.style = "holds",
-                        .cells = {std::string(kChannelNames[place.channel]),
-                                  fmt::format("{:.1f}", place.lambda_nm),
-                                  fmt::format("{}, {}", place.column, place.row),
-                                  fmt::format("{:.3f}", place.veil / (place.floor + place.veil)),
-                                  ratio_to(place.floor, place.truth.floor),
-                                  ratio_to(place.veil, place.truth.veil),
-                                  ratio_to(place.floor + place.veil, place.truth.sum)}});
+        made.rows.push_back(
+            {.cells = {std::string(kChannelNames[place.channel]),
+                       fmt::format("{:.1f}", place.lambda_nm),
+                       fmt::format("{}, {}", place.column, place.row),
+                       fmt::format("{:.3f}", place.veil / (place.floor + place.veil)),
+                       ratio_to(place.floor, place.truth.floor),
+                       ratio_to(place.veil, place.truth.veil),
+                       ratio_to(place.floor + place.veil, place.truth.sum)}});
     }
-    return html_paragraph(fmt::format(
-               "The reference’s single scattering over light of all orders, by {} random paths "
-               "for each place: 1 is a model that leaves nothing out. ± is one standard error.",
-               grouped(model.paths))) +
-           html_table(
-               "all-orders", "channel;nm;column, row;share of the veil;floor;veil;sum", rows);
+    return {fmt::format("The reference’s single scattering over light of all orders, by {} random "
+                        "paths for each place: 1 is a model that leaves nothing out. ± is one "
+                        "standard error.",
+                        grouped(model.paths)),
+            std::move(made)};
 }
 
 // What no rig file says: how much of the floor is in view, where that is level.
@@ -318,53 +309,55 @@ std::string field_of_view(const Rig& rig) {
                        floor_m(along_rad(index)));
 }
 
-std::string rig_as_read(const ValidationReport& report) {
-    std::vector<HtmlItem> items{{"Field of view", field_of_view(report.rig)},
-                                {"SHA-256, of the rig and its files",
-                                 fmt::format("<code>{}</code>", escaped(report.rig.digest))}};
+std::vector<PagePart> rig_as_read(const ValidationReport& report) {
+    PageList items{{"Field of view", field_of_view(report.rig)},
+                   {"SHA-256, of the rig and its files", report.rig.digest}};
     for (const auto& [name, sha256] : report.rig.files) {
-        HtmlItem item{user_text(name), fmt::format("SHA-256 <code>{}</code>", sha256)};
+        std::pair<std::string, std::string> item{name, "SHA-256 " + sha256};
         if (std::ranges::find(items, item) == items.end()) items.push_back(std::move(item));
     }
-    return html_list("rig-files", items) + html_source(report.rig.toml);
+    return {std::move(items), PageSource{report.rig.toml}};
 }
 
-std::string made_with(const ValidationReport& report) {
+PageList made_with(const ValidationReport& report) {
     const auto seconds = [](double value) { return fmt::format("{:.2f} s", value); };
-    const std::array<HtmlItem, 5> items{
-        {{"Aphotic", escaped(report.aphotic_version)},
-         {"POV-Ray", escaped(report.povray_version)},
-         {"Rendering",
-          fmt::format("{} for {}, {} at once: {}",
-                      grouped_count(report.frames, "frame"),
-                      grouped_count(report.wavelengths.size(), "wavelength"),
-                      report.jobs,
-                      seconds(report.render_s))},
-         {"Integrating", seconds(report.integrate_s)},
-         {"Tracing",
-          fmt::format("the reference, over {}: {}",
-                      grouped_count(report.grid_size, "wavelength"),
-                      seconds(report.trace_s))}}};
-    return html_list("programs", items);
+    return {{"Aphotic", report.aphotic_version},
+            {"POV-Ray", report.povray_version},
+            {"Rendering",
+             fmt::format("{} for {}, {} at once: {}",
+                         grouped_count(report.frames, "frame"),
+                         grouped_count(report.wavelengths.size(), "wavelength"),
+                         report.jobs,
+                         seconds(report.render_s))},
+            {"Integrating", seconds(report.integrate_s)},
+            {"Tracing",
+             fmt::format("the reference, over {}: {}",
+                         grouped_count(report.grid_size, "wavelength"),
+                         seconds(report.trace_s))}};
 }
 
 }  // namespace
 
 void write_validation_html(const ValidationReport& report, const std::filesystem::path& file) {
     report.check();
-    std::string page = html_header(
-        "validation", user_text(title_of(report)), verdict(report) + other_scene(report));
-    page += html_section("images", "Both images", images(report));
-    page += map_section(report);
-    page += html_section("profiles", "Profiles", profiles(report));
-    page += html_section("numbers", "Errors", numbers(report));
-    if (!report.model.places.empty())
-        page += html_section("model", "Light of all orders", model_check(report.model));
-    page += html_section("rig", "The rig", rig_as_read(report));
-    page += html_section("made-with", "Made with", made_with(report));
-    const std::string title =
-        title_of(report) + (report.holds() ? ": validation holds" : ": validation does not hold");
-    write_text_file(file, html_page(title, page));
+    const Page page{
+        .kind = "validation",
+        .title = title_of(report) +
+                 (report.holds() ? ": validation holds" : ": validation does not hold"),
+        .heading = title_of(report),
+        .is_good = report.holds(),
+        .headline = report.holds() ? "✓ Holds" : "✗ Does not hold",
+        .said = verdict(report),
+        .warnings = other_scene(report),
+        .sections = {
+            {.id = "images", .heading = "Both images", .parts = images(report)},
+            map_section(report),
+            {.id = "profiles", .heading = "Profiles", .parts = profiles(report)},
+            {.id = "numbers", .heading = "Errors", .parts = numbers(report)},
+            {.id = "model", .heading = "Light of all orders", .parts = model_check(report.model)},
+            {.id = "rig", .heading = "The rig", .parts = rig_as_read(report)},
+            {.id = "made-with", .heading = "Made with", .parts = {made_with(report)}}}};
+    write_text_file(file, page_html(page));
 }
 
 }  // namespace aphotic

@@ -4,258 +4,300 @@
 #include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/json_text.h"
-#include "rig/lens.h"
+#include "base/number.h"
+#include "base/sha256.h"
+#include "image/exr.h"
+#include "report/html.h"
+#include "report/page.h"
+#include "report/plot.h"
+#include "rig/camera/lens.h"
+#include "spectral/integrator.h"
 #include "spectral/sensor.h"
-#include "validation/saved_measure.h"
+#include "validation/comparison.h"
+#include "validation/traced_images.h"
+#include "validation/tracer.h"
 #include "validation/validation.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
+#include <optional>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 namespace aphotic {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool has_emitter(const Rig& rig) {
-    return std::ranges::any_of(rig.strobes,
-                               [](const Strobe& strobe) { return strobe.emitter.has_value(); });
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Settings.
+// The numbers of a measure by their names in JSON and CSV.
+struct NamedNumber {
+    const char* name;
+    double StudyMeasure::*number;
+};
+constexpr std::array kNumbers{NamedNumber{"promise", &StudyMeasure::promise},
+                              NamedNumber{"render_s", &StudyMeasure::render_s},
+                              NamedNumber{"integrate_s", &StudyMeasure::integrate_s},
+                              NamedNumber{"max_error", &StudyMeasure::max_error},
+                              NamedNumber{"percentile_999", &StudyMeasure::percentile_999},
+                              NamedNumber{"rms_error", &StudyMeasure::rms_error},
+                              NamedNumber{"max_error_on_edges", &StudyMeasure::max_error_on_edges}};
 
-StudySetting fitted_setting(int count, int cores) {
-    return {.name = fmt::format("fitted-{}", count),
-            .subject = "wavelengths",
-            .words = fmt::format("{} fitted wavelengths", count),
-            .fitted = count,
-            .jobs = cores};
+// What a study is of: measures of another are not its own.
+Json subject_of(const Study& study) {
+    return {{"rig", {{"title", study.rig_title}, {"sha256", study.rig_sha256}}},
+            {"image", {{"width_px", study.width_px}, {"height_px", study.height_px}}},
+            {"versions", {{"aphotic", study.aphotic_version}, {"povray", study.povray_version}}},
+            {"cores", study.cores}};
 }
-
-StudySetting bands_setting(int count, int cores) {
-    return {.name = fmt::format("bands-{}", count),
-            .subject = "wavelengths",
-            .words = fmt::format("{} equal bands", count),
-            .bands = count,
-            .jobs = cores};
-}
-
-// A setting that differs from another in what it is about.
-template <typename Value>
-StudySetting varied(StudySetting setting,
-                    std::string_view subject,
-                    std::string_view suffix,
-                    std::string_view words,
-                    Value StudySetting::*what,
-                    const Value& value) {
-    setting.subject = subject;
-    setting.name += fmt::format("-{}", suffix);
-    setting.words += fmt::format(", {}", words);
-    setting.*what = value;
-    return setting;
-}
-
-StudySetting one_a_frame(const StudySetting& base) {
-    return varied(base, "packing", "mono", "one a frame", &StudySetting::per_frame, 1);
-}
-
-// None where the image's size does not divide.
-void add_shrunk(std::vector<StudySetting>& settings,
-                const Rig& rig,
-                int shrink,
-                std::initializer_list<std::string> filters) {
-    if (rig.camera.width_px % shrink != 0 || rig.camera.height_px % shrink != 0) return;
-    const char* size = shrink == 2 ? "half" : "quarter";
-    for (const std::string& filter : filters) {
-        settings.push_back(varied(settings.front(),
-                                  "resolution",
-                                  fmt::format("{}-{}", size, filter),
-                                  fmt::format("{} size, {}", size, filter),
-                                  &StudySetting::filter,
-                                  filter));
-        settings.back().shrink = shrink;
-    }
-}
-
-void add_coarse_lamps_and_frames(std::vector<StudySetting>& settings, const Rig& rig) {
-    const StudySetting base = settings.front();
-    if (has_emitter(rig)) {
-        settings.push_back(
-            varied(base, "emitters", "soft", "one soft lamp", &StudySetting::one_soft_lamp, true));
-    }
-    settings.push_back(varied(base, "frames", "png", "16-bit PNG", &StudySetting::png, true));
-}
-
-// Measures.
 
 bool beats(const StudyMeasure& a, const StudyMeasure& b) {
-    const bool as_good = a.total_s() <= b.total_s() && a.max_error() <= b.max_error();
-    return as_good && (a.total_s() < b.total_s() || a.max_error() < b.max_error());
+    const bool as_good = a.total_s() <= b.total_s() && a.max_error <= b.max_error;
+    return as_good && (a.total_s() < b.total_s() || a.max_error < b.max_error);
 }
 
-// study.json
+// The reference.
 
-Json ratio_of(const Study& study, std::string_view name) {
-    const auto ratio = time_ratio(study.measures, name, kBaseline);
-    return ratio ? Json(*ratio) : Json();
+struct StudyReference {
+    CameraImage image;
+    std::vector<unsigned char> on_edge;
+};
+
+// The time of a trace is kept in its image: a study that goes on later does not trace again.
+// Nothing when the image is of something else, or not as we wrote it.
+std::optional<std::pair<CameraImage, double>> kept_trace(const fs::path& file,
+                                                         const std::string& key) {
+    if (!fs::exists(file)) return std::nullopt;
+    try {
+        const ExrReader traced(file);
+        if (traced.attribute("aphotic:key") != key) return std::nullopt;
+        const auto trace_s = read_number<double>(traced.attribute("aphotic:trace_s"));
+        if (!trace_s) return std::nullopt;
+        return std::pair(read_signals(file), *trace_s);
+    } catch (const RunError&) {
+        return std::nullopt;
+    }
 }
 
-Json json_of(const Study& study, const StudyMeasure& measure, bool on_front) {
-    return {{"name", measure.setting.name},
-            {"subject", measure.setting.subject},
-            {"words", measure.setting.words},
-            {"setting", setting_json(measure.setting)},
-            {"wavelengths", measure.wavelengths},
-            {"frames", measure.frames},
-            {"promise", measure.promise_applies() ? Json(measure.promise) : Json()},
-            {"time_s",
-             {{"render", measure.render_s},
-              {"integrate", measure.integrate_s},
-              {"total", measure.total_s()}}},
-            {"time_ratio", ratio_of(study, measure.setting.name)},
-            {"on_front", on_front},
-            {"max_error", measure.max_error()},
-            {"percentile_999", measure.percentile_999()},
-            {"rms_error", measure.rms_error()},
-            {"max_error_off_edges", measure.max_error_off_edges()},
-            {"max_error_on_edges", measure.max_error_on_edges()},
-            {"channels", json_of_channels(measure)}};
+StudyReference study_reference(Study& study,
+                               const Rig& rig,
+                               const fs::path& folder,
+                               const StudyHands& hands) {
+    const std::string key = sha256_of_text(subject_of(study).dump());
+    const Tracer tracer(rig, {.signals = true, .planes_nm = {}, .threads = study.cores});
+    study.grid_size = tracer.grid_size();
+    std::vector<unsigned char> on_edge = tracer.on_edges(rig.camera.range);
+    if (auto kept = kept_trace(folder / "image.exr", key)) {
+        study.trace_s = kept->second;
+        return {std::move(kept->first), std::move(on_edge)};
+    }
+    make_folder(folder);
+    const auto start = Clock::now();
+    const std::vector<double> signals =
+        trace_signals(tracer, [&](double share) { hands.progress("tracing", share); });
+    study.trace_s = seconds_since(start);
+    OutputImages images(
+        folder,
+        rig.camera.width_px,
+        rig.camera.height_px,
+        {},
+        {{"aphotic:key", key}, {"aphotic:trace_s", fmt::format("{}", study.trace_s)}});
+    images.write_rows(rig.camera.height_px, {signals.begin(), signals.end()});
+    return {images.finish(), std::move(on_edge)};
 }
 
-Json measures_of(const Study& study) {
+// Renders the setting in the folder, from nothing, and takes the folder away again.
+StudyMeasure measure(const StudySetting& setting,
+                     std::size_t index,
+                     const StudyReference& reference,
+                     const fs::path& folder,
+                     const StudyHands& hands) {
+    fs::remove_all(folder);
+    const StudyFrames frames = hands.render(index, folder);
+    const auto start = Clock::now();
+    const CameraImage image = integrate_signals(folder, frames.manifest, folder);
+    StudyMeasure measure{.setting = setting,
+                         .wavelengths = frames.manifest.wavelengths.size(),
+                         .frames = frames.manifest.frames.size(),
+                         .promise = frames.promise,
+                         .render_s = frames.render_s,
+                         .integrate_s = seconds_since(start)};
+    measure_errors(image, reference.image, reference.on_edge, measure);
+    fs::remove_all(folder);
+    return measure;
+}
+
+// The files.
+
+Json json_of(const StudyMeasure& measure, bool on_front) {
+    Json json{{"name", measure.setting.name},
+              {"words", measure.setting.words},
+              {"equal_bands", measure.setting.equal_bands},
+              {"wavelengths", measure.wavelengths},
+              {"frames", measure.frames},
+              {"time_s", measure.total_s()},
+              {"on_front", on_front}};
+    for (const NamedNumber& one : kNumbers) {
+        const double value = measure.*one.number;
+        json[one.name] = std::isfinite(value) ? Json(value) : Json();
+    }
+    return json;
+}
+
+StudyMeasure measure_of(const nlohmann::json& json) {
+    StudyMeasure measure{
+        .setting = {.name = json.at("name").get<std::string>(),
+                    .words = json.at("words").get<std::string>(),
+                    .equal_bands = json.at("equal_bands").get<bool>()},
+        .wavelengths = static_cast<std::size_t>(whole_number_at(json, "wavelengths")),
+        .frames = static_cast<std::size_t>(whole_number_at(json, "frames"))};
+    for (const NamedNumber& one : kNumbers) {
+        const nlohmann::json& value = json.at(one.name);
+        measure.*one.number = value.is_null() ? kInfinity : value.get<double>();
+    }
+    return measure;
+}
+
+// The measures of study.json; names and words have no commas.
+std::string study_csv(const Study& study) {
+    const Json json = Json::parse(study_json(study));
+    std::string head;
+    std::string rows;
+    for (const Json& measure : json.at("measures")) {
+        head.clear();
+        for (const auto& [name, value] : measure.items()) {
+            head += (head.empty() ? "" : ",") + name;
+            rows += name == measure.items().begin().key() ? "" : ",";
+            rows += value.is_string() ? value.get<std::string>()
+                    : value.is_null() ? "inf"
+                                      : value.dump();
+        }
+        rows += '\n';
+    }
+    return head + '\n' + rows;
+}
+
+PlotCurve curve_of(const Study& study, bool equal_bands) {
+    std::vector<const StudyMeasure*> drawn;
+    for (const StudyMeasure& m : study.measures) {
+        const bool has_logarithm = m.max_error > 0.0 && std::isfinite(m.max_error);
+        if (m.setting.equal_bands == equal_bands && has_logarithm) drawn.push_back(&m);
+    }
+    std::ranges::sort(drawn, {}, &StudyMeasure::total_s);
+    PlotCurve curve{.label = equal_bands ? "equal bands" : "fitted wavelengths",
+                    .x = {},
+                    .y = {},
+                    .tone = equal_bands ? std::size_t{1} : std::size_t{0}};
+    for (const StudyMeasure* m : drawn) {
+        curve.x.push_back(m->total_s());
+        curve.y.push_back(m->max_error);
+        curve.points.push_back(fmt::format("{}", m->wavelengths));
+    }
+    return curve;
+}
+
+std::vector<PagePart> plot_of(const Study& study) {
+    Plot plot{.title = "Largest error over time",
+              .x_label = "time [s]",
+              .y_label = "largest error |e|",
+              .curves = {},
+              .log_y = true};
+    for (const bool equal_bands : {false, true}) {
+        PlotCurve curve = curve_of(study, equal_bands);
+        if (!curve.x.empty()) plot.curves.push_back(std::move(curve));
+    }
+    if (plot.curves.empty()) return {};
+    return {"Each point is a setting, named by its number of wavelengths.",
+            PagePlot{plots_svg({&plot, 1})}};
+}
+
+PageTable table_of(const Study& study) {
+    PageTable table{.columns = {"setting",
+                                "wavelengths",
+                                "frames",
+                                "time [s]",
+                                "× first",
+                                "promised",
+                                "largest error",
+                                "99.9 %",
+                                "rms",
+                                "on edges",
+                                ""}};
     const std::vector<bool> front = pareto_front(study.measures);
-    Json measures = Json::array();
-    for (std::size_t i = 0; i < study.measures.size(); ++i)
-        measures.push_back(json_of(study, study.measures[i], front[i]));
-    return measures;
-}
-
-Json json_of(const Study& study) {
-    const auto best = recommended(study.measures, study.tolerance);
-    return {
-        {"rig", {{"title", study.rig_title}, {"sha256", study.rig_sha256}}},
-        {"image", {{"width_px", study.width_px}, {"height_px", study.height_px}}},
-        {"versions", {{"aphotic", study.aphotic_version}, {"povray", study.povray_version}}},
-        {"cores", study.cores},
-        {"quick", study.quick},
-        {"rule",
-         "e = (a - b) / max(|b|, black), a: a pixel's signal, b: the reference's, black: 1e-8 "
-         "of the channel's brightest; errors are of |e| in the worst channel, off the cones' "
-         "edges unless said otherwise"},
-        {"reference", {{"wavelengths", study.grid_size}, {"time_s", study.trace_s}}},
-        {"tolerance", study.tolerance},
-        {"recommended", best ? Json(study.measures[*best].setting.name) : Json()},
-        {"time_ratios",
-         {{fmt::format("{} / {}", kCustomary, kBaseline), ratio_of(study, kCustomary)},
-          {fmt::format("{} / {}", kCustomaryMono, kBaseline), ratio_of(study, kCustomaryMono)}}},
-        {"measures", measures_of(study)}};
-}
-
-// study.csv
-
-// RFC 4180: quotes where the text would end the field.
-std::string csv_field(const Json& value) {
-    if (value.is_null()) return "";
-    if (value.is_number_float()) return fmt::format("{}", value.get<double>());
-    if (!value.is_string()) return value.dump();
-    const auto& text = value.get_ref<const std::string&>();
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + '"';
-}
-
-// A measure of study.json in one row: settings by their names, times as render_s, and of each
-// channel the largest and the mean error.
-Json flat(const Json& measure) {
-    Json row;
-    for (const auto& [name, value] : measure.items()) {
-        if (name == "setting") {
-            row.update(value);
-        } else if (name == "time_s") {
-            for (const auto& [part, time_s] : value.items()) row[part + "_s"] = time_s;
-        } else if (name == "channels") {
-            for (const Json& channel : value) {
-                for (const std::string quantity : {"max_error", "mean_error"}) {
-                    row[quantity + "_" + channel["name"].get<std::string>()] = channel[quantity];
-                }
-            }
-        } else {
-            row[name] = value;
-        }
+    for (std::size_t i = 0; i < study.measures.size(); ++i) {
+        const StudyMeasure& m = study.measures[i];
+        table.rows.push_back(
+            {.cells = {m.setting.words,
+                       grouped(m.wavelengths),
+                       grouped(m.frames),
+                       fmt::format("{:.2f}", m.total_s()),
+                       fmt::format("{:.2f}", m.total_s() / study.measures.front().total_s()),
+                       scientific(m.promise),
+                       scientific(m.max_error),
+                       scientific(m.percentile_999),
+                       scientific(m.rms_error),
+                       scientific(m.max_error_on_edges),
+                       front[i] ? "✓ front" : ""}});
     }
-    return row;
+    return table;
 }
 
-std::string csv_of(const Study& study) {
-    const auto line = [](const std::vector<std::string>& fields) {
-        return fmt::format("{}\n", fmt::join(fields, ","));
-    };
-    std::string csv;
-    for (const Json& measure : measures_of(study)) {
-        std::vector<std::string> names;
-        std::vector<std::string> fields;
-        const Json row = flat(measure);
-        for (const auto& [name, value] : row.items()) {
-            names.push_back(name);
-            fields.push_back(csv_field(value));
-        }
-        if (csv.empty()) csv = line(names);
-        csv += line(fields);
-    }
-    return csv;
+Page page_of(const Study& study) {
+    const std::string title = study.rig_title.empty() ? "Untitled rig" : study.rig_title;
+    return {.kind = "accuracy against time",
+            .title = title + ": accuracy against time",
+            .heading = title,
+            .headline = fmt::format("{} of {} × {} pixels",
+                                    grouped_count(study.measures.size(), "setting"),
+                                    study.width_px,
+                                    study.height_px),
+            .said = {fmt::format(
+                "With Aphotic {} and POV-Ray {} on {}: the wall time of each, and how far its "
+                "image is from the reference’s over {}, which took {:.1f} s itself.",
+                study.aphotic_version,
+                study.povray_version,
+                grouped_count(static_cast<std::size_t>(study.cores), "core"),
+                grouped_count(study.grid_size, "wavelength"),
+                study.trace_s)},
+            .sections = {
+                {.id = "time", .heading = "Error against time", .parts = plot_of(study)},
+                {.id = "settings",
+                 .heading = "Settings",
+                 .parts = {table_of(study),
+                           "Errors are e = (a − b) / max(|b|, b₀): a a pixel’s signal, b the "
+                           "reference’s, b₀ 10⁻⁸ of the channel’s brightest, in the worst channel "
+                           "and off the edges of beams, shadows and objects, but for the column "
+                           "of edges. Time is POV-Ray’s and the integration’s. On the Pareto "
+                           "front are the settings that no other beats in both time and largest "
+                           "error.",
+                           "Rig: SHA-256 " + study.rig_sha256}}}};
 }
 
 }  // namespace
-
-std::vector<StudySetting> study_settings(const Rig& rig, bool quick, int cores) {
-    std::vector<StudySetting> settings{fitted_setting(3, cores), fitted_setting(6, cores)};
-    if (quick) {
-        for (const int count : {6, 12}) settings.push_back(bands_setting(count, cores));
-        add_shrunk(settings, rig, 2, {"lanczos3"});
-        add_coarse_lamps_and_frames(settings, rig);
-        return settings;
-    }
-    settings.push_back(fitted_setting(9, cores));
-    for (const int count : {3, 6, 9, 12, 18, 24, 36, 48, 72}) {
-        settings.push_back(bands_setting(count, cores));
-    }
-    settings.push_back(one_a_frame(settings.front()));
-    settings.push_back(one_a_frame(bands_setting(36, cores)));
-    for (const int shrink : {2, 4}) {
-        add_shrunk(settings, rig, shrink, {"triangle", "catmull-rom", "lanczos3"});
-    }
-    add_coarse_lamps_and_frames(settings, rig);
-    settings.push_back(varied(settings.front(),
-                              "antialiasing",
-                              "antialias",
-                              "antialiased",
-                              &StudySetting::antialias,
-                              true));
-    if (cores > 1) {
-        settings.push_back(
-            varied(bands_setting(12, cores), "jobs", "jobs-1", "one job", &StudySetting::jobs, 1));
-    }
-    return settings;
-}
 
 Rig quick_rig(Rig rig) {
     // The reference is slower for an emitter's many lamps and behind a port.
     constexpr int kMostPixels = 350'000;
     constexpr int kMostSlowPixels = 90'000;
-    const int most = has_emitter(rig) || rig.camera.port ? kMostSlowPixels : kMostPixels;
+    const bool has_emitter = std::ranges::any_of(
+        rig.strobes, [](const Strobe& strobe) { return strobe.emitter.has_value(); });
+    const int most = has_emitter || rig.camera.port ? kMostSlowPixels : kMostPixels;
     Camera& camera = rig.camera;
     const auto too_large = [&](int d) {
         return std::int64_t{camera.width_px / d} * (camera.height_px / d) > most;
@@ -275,52 +317,37 @@ Rig quick_rig(Rig rig) {
     return rig;
 }
 
-bool StudyMeasure::promise_applies() const {
-    return setting.shrink == 1 && !setting.one_soft_lamp && !setting.png && !setting.antialias;
-}
-
-bool StudyMeasure::blurs_edges() const {
-    return setting.shrink > 1 || setting.one_soft_lamp || setting.antialias;
-}
-
-double StudyMeasure::max_error() const {
-    return blurs_edges() ? std::max(max_error_off_edges(), max_error_on_edges())
-                         : max_error_off_edges();
-}
-
-double StudyMeasure::worst(double Comparison::*error) const {
-    double largest = 0.0;
-    for (const Comparison& channel : channels) {
-        const bool is_measured = channel.compared > 0 && channel.not_finite == 0;
-        largest = std::max(largest, is_measured ? channel.*error : kInfinity);
-    }
-    return largest;
-}
-
-std::array<Comparison, 3> compare_signals(const CameraImage& image,
-                                          const CameraImage& reference,
-                                          std::span<const unsigned char> on_edge) {
+void measure_errors(const CameraImage& image,
+                    const CameraImage& reference,
+                    std::span<const unsigned char> on_edge,
+                    StudyMeasure& measure) {
     const std::size_t pixels = reference.samples.size() / kChannels;
     if (image.width_px != reference.width_px || image.height_px != reference.height_px ||
         image.samples.size() != reference.samples.size() ||
         !(on_edge.empty() || on_edge.size() == pixels)) {
-        throw std::logic_error("compare_signals: images of different sizes");
+        throw std::logic_error("measure_errors: images of different sizes");
     }
-    std::array<Comparison, 3> channels{};
-    for (std::size_t c = 0; c < channels.size(); ++c) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
         const auto a = std::span(image.samples).subspan(c * pixels, pixels);
         const auto plane = std::span(reference.samples).subspan(c * pixels, pixels);
         const std::vector<double> b(plane.begin(), plane.end());
         const double brightest = b.empty() ? 0.0 : std::ranges::max(b);
-        channels[c] = compare_planes(std::string(kChannelNames[c]),
-                                     a,
-                                     b,
-                                     reference.width_px,
-                                     on_edge,
-                                     kBlackShare * brightest,
-                                     kInfinity);
+        const Comparison found = compare_planes(std::string(kChannelNames[c]),
+                                                a,
+                                                b,
+                                                reference.width_px,
+                                                on_edge,
+                                                kBlackShare * brightest,
+                                                kInfinity);
+        const bool is_measured = found.compared > 0 && found.not_finite == 0;
+        const auto take = [&](double StudyMeasure::*to, double error) {
+            measure.*to = std::max(measure.*to, is_measured ? error : kInfinity);
+        };
+        take(&StudyMeasure::max_error, found.max_error);
+        take(&StudyMeasure::percentile_999, found.percentile_999);
+        take(&StudyMeasure::rms_error, found.rms_error);
+        take(&StudyMeasure::max_error_on_edges, found.max_error_on_edges);
     }
-    return channels;
 }
 
 std::vector<bool> pareto_front(std::span<const StudyMeasure> measures) {
@@ -328,43 +355,71 @@ std::vector<bool> pareto_front(std::span<const StudyMeasure> measures) {
     for (const StudyMeasure& measure : measures) {
         const bool beaten = std::ranges::any_of(
             measures, [&](const StudyMeasure& other) { return beats(other, measure); });
-        front.push_back(!beaten && std::isfinite(measure.max_error()));
+        front.push_back(!beaten && std::isfinite(measure.max_error));
     }
     return front;
 }
 
-std::optional<std::size_t> recommended(std::span<const StudyMeasure> measures, double tolerance) {
-    // Of equally fast ones the most accurate.
-    const auto key = [&](std::size_t i) {
-        return std::tuple(measures[i].total_s(), measures[i].max_error());
-    };
-    std::optional<std::size_t> best;
-    for (std::size_t i = 0; i < measures.size(); ++i) {
-        const bool keeps = measures[i].max_error() <= tolerance;
-        if (keeps && (!best || key(i) < key(*best))) best = i;
+void run_study(Study& study,
+               const Rig& rig,
+               const std::vector<StudySetting>& settings,
+               const fs::path& folder,
+               const StudyHands& hands) {
+    const fs::path file = folder / "study.json";
+    const StudyReference reference = study_reference(study, rig, folder / "reference", hands);
+    std::vector<StudyMeasure> kept;
+    if (fs::exists(file)) kept = measures_in(read_text_file(file), study);
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        const auto measured = std::ranges::find(
+            kept, settings[i].name, [](const StudyMeasure& one) { return one.setting.name; });
+        if (measured != kept.end()) {
+            study.measures.push_back(*measured);
+            continue;
+        }
+        study.measures.push_back(
+            measure(settings[i], i, reference, folder / "settings" / settings[i].name, hands));
+        // With those that are still to come: an interruption loses none of them.
+        Study so_far = study;
+        so_far.measures.insert(so_far.measures.end(), kept.begin(), kept.end());
+        write_text_file(file, study_json(so_far));
     }
-    return best;
 }
 
-const StudyMeasure* find_measure(std::span<const StudyMeasure> measures, std::string_view name) {
-    const auto found = std::ranges::find_if(
-        measures, [&](const StudyMeasure& measure) { return measure.setting.name == name; });
-    return found == measures.end() ? nullptr : &*found;
+std::string study_json(const Study& study) {
+    Json json = subject_of(study);
+    json["rule"] =
+        "e = (a - b) / max(|b|, black), a: a pixel's signal, b: the reference's, black: 1e-8 of "
+        "the channel's brightest; errors are of |e| in the worst channel, off the edges unless "
+        "said otherwise";
+    json["reference"] = {{"wavelengths", study.grid_size}, {"time_s", study.trace_s}};
+    const std::vector<bool> front = pareto_front(study.measures);
+    json["measures"] = Json::array();
+    for (std::size_t i = 0; i < study.measures.size(); ++i)
+        json["measures"].push_back(json_of(study.measures[i], front[i]));
+    return json_text(json);
 }
 
-std::optional<double> time_ratio(std::span<const StudyMeasure> measures,
-                                 std::string_view name,
-                                 std::string_view other) {
-    const StudyMeasure* a = find_measure(measures, name);
-    const StudyMeasure* b = find_measure(measures, other);
-    if (a == nullptr || b == nullptr || !(b->total_s() > 0.0)) return std::nullopt;
-    return a->total_s() / b->total_s();
+std::vector<StudyMeasure> measures_in(std::string_view text, const Study& study) {
+    try {
+        const nlohmann::json json = parse_json(text, "study");
+        const nlohmann::json subject(subject_of(study));
+        for (const auto& [name, value] : subject.items()) {
+            if (json.at(name) != value) return {};
+        }
+        std::vector<StudyMeasure> measures;
+        for (const nlohmann::json& one : json.at("measures")) measures.push_back(measure_of(one));
+        return measures;
+    } catch (const nlohmann::json::exception&) {
+        return {};
+    } catch (const InputError&) {
+        return {};
+    }
 }
 
-void write_study(const Study& study, const std::filesystem::path& folder) {
-    write_text_file(folder / "study.csv", csv_of(study));
-    write_text_file(folder / "study.json", json_text(json_of(study)));
-    write_text_file(folder / "study.html", study_page(study));
+void write_study(const Study& study, const fs::path& folder) {
+    write_text_file(folder / "study.csv", study_csv(study));
+    write_text_file(folder / "study.json", study_json(study));
+    write_text_file(folder / "study.html", page_html(page_of(study)));
 }
 
 }  // namespace aphotic

@@ -1,30 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The trade of accuracy for time, measured: settings of a render, the wall time that each takes
-// here, and how far each is from the reference.
+// The trade of accuracy for time, measured: a render by several choices of wavelengths, the wall
+// time that each takes here, and how far each is from the reference.
 //
 //   error  = (a - b) / max(|b|, black)       a a pixel's signal, b the reference's over the full
 //                                            spectrum, channel by channel (comparison.h)
-//   time   = POV-Ray's + integration's, enlarging included
+//   time   = POV-Ray's + integration's
 //
-// The Pareto front is made of the settings that no other beats in both: none is as fast and as
-// right, and better in one. The recommended setting for a tolerance is the fastest whose largest
-// error is within it.
+// The Pareto front is made of the settings that no other beats in both time and largest error.
 //
-// A measure is given by its worst channel. One with a sample that is not finite, or with none off
-// the edges, has an infinite error: it is neither on the front nor recommended.
+// A measure is given by its worst channel, off the edges unless said otherwise. One with a sample
+// that is not finite, or with none off the edges, has an infinite error, and is not on the front.
 //
-// Reduced images stand for the same field of view with fewer pixels; where the size does not
-// divide, that setting is left out.
+// What is measured stays in the folder, so that a study that was stopped goes on:
+//
+//   reference/image.exr     the reference, with the time of its trace
+//   study.json              the measures; settings/NAME/ while one is made
+//
+// Nothing here runs POV-Ray: whoever calls it hands in what renders a setting.
 #pragma once
 
 #include "image/output_images.h"
 #include "rig/rig.h"
-#include "validation/comparison.h"
+#include "spectral/manifest.h"
 
-#include <array>
 #include <filesystem>
-#include <optional>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,60 +33,25 @@
 
 namespace aphotic {
 
-// The settings that others are held against, by name.
-inline constexpr std::string_view kBaseline = "fitted-3";
-inline constexpr std::string_view kCustomary = "bands-36";
-inline constexpr std::string_view kCustomaryMono = "bands-36-mono";  // one wavelength a frame
-
-// What is tried, and against what else.
 struct StudySetting {
-    std::string name{};     // unique and plain, such as "fitted-3": a folder's name
-    std::string subject{};  // what it is about: "wavelengths", "packing", "resolution", ...
-    std::string words{};    // for people: "3 fitted wavelengths"
-    int fitted = 0;         // so many fitted wavelengths, or
-    int bands = 0;          // so many equal bands
-    int per_frame = 3;
-    int shrink = 1;              // resolution divided by this each way, and enlarged again
-    std::string filter{};        // with which it is enlarged, OpenImageIO's name
-    bool one_soft_lamp = false;  // for an emitter: one lamp with softened edges
-    bool png = false;            // 16-bit linear PNG frames instead of half-float EXR
-    bool antialias = false;
-    int jobs = 1;
+    std::string name{};   // unique, of letters, digits, - and ., such as "fitted-3": a folder's
+    std::string words{};  // for people: "3 fitted wavelengths"
+    bool equal_bands = false;
 };
-
-// The settings for a rig, the baseline first. quick: the few that decide. What would repeat
-// another setting is left out: one lamp for an emitter where none is, one job on one core.
-[[nodiscard]] std::vector<StudySetting> study_settings(const Rig& rig, bool quick, int cores);
-
-// The rig with an image so small that a quick study takes under two minutes; itself when it is.
-// Both sizes are divided by the same whole number, by which the pixels grow. Where they do not
-// divide, the last pixels are left off: the field of view then is smaller by under a pixel.
-[[nodiscard]] Rig quick_rig(Rig rig);
 
 struct StudyMeasure {
     StudySetting setting{};
     std::size_t wavelengths = 0;
     std::size_t frames = 0;
-    double promise = 0.0;  // of the plan's worst channel; see promise_applies()
+    double promise = 0.0;  // of the plan's worst channel
     double render_s = 0.0;
     double integrate_s = 0.0;
-    std::array<Comparison, 3> channels{};  // R, G, B
+    double max_error = 0.0;
+    double percentile_999 = 0.0;
+    double rms_error = 0.0;
+    double max_error_on_edges = 0.0;
 
     [[nodiscard]] double total_s() const { return render_s + integrate_s; }
-    // A plan knows of wavelengths and half-float frames, not of what else may be changed.
-    [[nodiscard]] bool promise_applies() const;
-    // Edges come out blurred: then they count in the largest error.
-    [[nodiscard]] bool blurs_edges() const;
-
-    // The worst channel's; off the edges, where these are not blurred.
-    [[nodiscard]] double max_error() const;
-    [[nodiscard]] double worst(double Comparison::*error) const;
-    [[nodiscard]] double max_error_off_edges() const { return worst(&Comparison::max_error); }
-    [[nodiscard]] double percentile_999() const { return worst(&Comparison::percentile_999); }
-    [[nodiscard]] double rms_error() const { return worst(&Comparison::rms_error); }
-    [[nodiscard]] double max_error_on_edges() const {
-        return worst(&Comparison::max_error_on_edges);
-    }
 };
 
 struct Study {
@@ -96,43 +62,55 @@ struct Study {
     std::string aphotic_version{};
     std::string povray_version{};
     int cores = 1;
-    bool quick = false;
-    double tolerance = 1e-3;
     std::size_t grid_size = 0;  // wavelengths of the reference
     double trace_s = 0.0;
-    std::vector<StudyMeasure> measures{};
+    std::vector<StudyMeasure> measures{};  // in the order of their settings
 };
 
-// The image against the reference of the same size, planes R, G, B of each; black is kBlackShare
-// (validation.h) of the channel's brightest, and there is no bound. on_edge: 1 for pixels on edges;
-// may be empty.
-[[nodiscard]] std::array<Comparison, 3> compare_signals(const CameraImage& image,
-                                                        const CameraImage& reference,
-                                                        std::span<const unsigned char> on_edge);
+// The rig with an image so small that a few settings take under two minutes; itself when it is.
+// Both sizes are divided by the same whole number, by which the pixels grow. Where they do not
+// divide, the last pixels are left off: the field of view then is smaller by under a pixel.
+[[nodiscard]] Rig quick_rig(Rig rig);
+
+// The errors of a measure: of the image against the reference of the same size, planes R, G, B of
+// each; black is kBlackShare (validation.h) of the channel's brightest. on_edge: 1 for pixels on
+// edges; may be empty.
+void measure_errors(const CameraImage& image,
+                    const CameraImage& reference,
+                    std::span<const unsigned char> on_edge,
+                    StudyMeasure& measure);
 
 // By measure: whether it is on the front.
 [[nodiscard]] std::vector<bool> pareto_front(std::span<const StudyMeasure> measures);
 
-// The index of the fastest whose largest error is within the tolerance.
-[[nodiscard]] std::optional<std::size_t> recommended(std::span<const StudyMeasure> measures,
-                                                     double tolerance);
+struct StudyFrames {
+    Manifest manifest{};  // of the frames that are in the folder
+    double promise = 0.0;
+    double render_s = 0.0;
+};
 
-// By its name; nullptr when it was not measured.
-[[nodiscard]] const StudyMeasure* find_measure(std::span<const StudyMeasure> measures,
-                                               std::string_view name);
+struct StudyHands {
+    // Renders the frames of the setting with that index into the folder; not called for one that
+    // was measured before.
+    std::function<StudyFrames(std::size_t setting, const std::filesystem::path& folder)> render;
+    std::function<void(std::string_view what, double share)> progress = [](auto, auto) {};
+};
 
-// How many times as long one takes as the other; nothing when either was not measured, or took no
-// time.
-[[nodiscard]] std::optional<double> time_ratio(std::span<const StudyMeasure> measures,
-                                               std::string_view name,
-                                               std::string_view other);
+// Fills in the reference and the measures of a study whose rig, versions and cores are named. The
+// folder is there, and nobody else works in it.
+void run_study(Study& study,
+               const Rig& rig,
+               const std::vector<StudySetting>& settings,
+               const std::filesystem::path& folder,
+               const StudyHands& hands);
 
-// A study for people: the recommendation, the plot of error against time, a table, and how to read
-// them. The same study gives the same page, byte for byte.
-[[nodiscard]] std::string study_page(const Study& study);
+// study.json: all of the study. A number that is not finite is null.
+[[nodiscard]] std::string study_json(const Study& study);
 
-// study.csv, one row a measure; study.json, all of the study; study.html, the page. A number that
-// is not finite is null in JSON and inf in CSV; a promise that does not apply is null and empty.
+// The measures of the same study in such a text; none when it is of another, or not as we wrote it.
+[[nodiscard]] std::vector<StudyMeasure> measures_in(std::string_view json, const Study& study);
+
+// study.csv, one row a measure; study.json; study.html, a page with a table and a plot.
 void write_study(const Study& study, const std::filesystem::path& folder);
 
 }  // namespace aphotic

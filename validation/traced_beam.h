@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A beam as the reference sees it: what the rig says of it (the structs of rig/beam.h), and none of
-// rig/'s functions.
+// A beam as the reference sees it: what the rig says of it (the structs of rig/beam/beam.h), and
+// none of rig/'s functions.
 //
 //   I(w)   intensity in the direction w of the sled's frame, per unit of the lamp's power  [1/sr]
 //
@@ -20,7 +20,7 @@
 // At the limit: one cone of 90 degrees, of exponent 1 and weight 1, is 1 / pi on the axis.
 #pragma once
 
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 
 #include <Eigen/Core>
 

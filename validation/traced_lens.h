@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The reference's own lens: which way a point of the image looks, for a calibration's numbers
-// (rig/lens_model.h has the formula, and no line in common with this). The distance from the axis
-// is found by bracketing, the decentring by going round: what it takes off the point depends on the
-// answer before, and changes less each time.
+// (rig/camera/lens_model.h has the formula, and no line in common with this). The distance from the
+// axis is found by bracketing, the decentring by going round: what it takes off the point depends
+// on the answer before, and changes less each time.
 #pragma once
 
-#include "rig/lens_model.h"
+#include "rig/camera/lens_model.h"
+#include "rig/rig.h"
 
 #include <Eigen/Core>
 
@@ -31,5 +32,13 @@ class TracedLens {
     long double most_r_;  // to which s r grows
     long double most_image_r_;
 };
+
+// The reference's own vignetting: the factor of a pixel's signal, for the numbers of
+// rig/camera/vignetting.h, of which it has no formula.
+// sight: which way the point (column, row) looks in air, of any length. 1 without vignetting.
+[[nodiscard]] double traced_vignetting(const Camera& camera,
+                                       double column,
+                                       double row,
+                                       const Eigen::Matrix<long double, 3, 1>& sight);
 
 }  // namespace aphotic

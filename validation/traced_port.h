@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The reference's own port: what becomes of a ray from the pupil, for the numbers of rig/port.h, of
-// which it has no formula.
+// The reference's own port: what becomes of a ray from the pupil, for the numbers of
+// rig/camera/port.h, of which it has no formula.
 //
 // Flat: across the normal, n times the unit direction's components is the same in every medium.
 // Dome: n times the ray's distance from the dome's centre is (Bouguer). In the plane of ray and
@@ -10,7 +10,7 @@
 // (its direction's angle) - i, and leaves it along that place's angle + i'.
 #pragma once
 
-#include "rig/port.h"
+#include "rig/camera/port.h"
 
 #include <Eigen/Core>
 

@@ -4,7 +4,7 @@
 //
 //   A = Phi power sum_i b_i int p_i(psi) I(w) exp(-K (t + d)) / d^2 dt,     psi >= kVeilCut
 //
-// from t = 0 where the ray enters the water to what it meets; the letters are rig/veil.h's, of
+// from t = 0 where the ray enters the water to what it meets; the letters are light/veil.h's, of
 // which it has no formula. With x the angle at the lamp between its nearest point of the ray, h
 // away at t = t_0, and the point at t,
 //

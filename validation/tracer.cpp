@@ -6,7 +6,6 @@
 #include "spectral/light_family.h"
 #include "spectral/refractive_index.h"
 #include "validation/full_spectrum.h"
-#include "validation/traced_vignetting.h"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>

@@ -2,6 +2,7 @@
 #include "base/printable.h"
 
 #include "base/error.h"
+#include "support/has.h"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +41,7 @@ TEST(Printable, AMessageHasAnEnd) {
     EXPECT_LT(message.size(), kMostMessage_bytes + 100);
     EXPECT_TRUE(message.starts_with("rig.toml: found \\x1b")) << message.substr(0, 30);
     EXPECT_TRUE(message.ends_with("\\x1b\nthe cause")) << message.substr(message.size() - 30);
-    EXPECT_NE(message.find(" bytes] "), std::string::npos);
+    EXPECT_TRUE(has(message, " bytes] "));
 }
 
 TEST(Printable, FailuresSteerNoTerminalAndEnd) {

@@ -3,7 +3,7 @@
 // The 24 patches of scenes/user/chart, in air, against their own integration by hand: the signal of
 // a patch is int Phi rho Q dlambda times what the geometry makes of a white one.
 #include "image/output_images.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/curve_loader.h"
 #include "spectral/manifest.h"
 #include "support/closed_form.h"

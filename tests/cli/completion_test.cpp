@@ -141,7 +141,7 @@ TEST_F(Completion, BashOffersWordsAndFiles) {
     EXPECT_EQ(by_bash({"plan", ""}), (Words{"my-rig.toml", "frames"}));
     EXPECT_EQ(by_bash({"plan", "r.toml", "--tolerance", ""}), Words{});
     EXPECT_EQ(by_bash({"help", "lightm"}), Words{"lightmap"});
-    for (const char* command : {"sweep", "compare", "data", "beam"})
+    for (const char* command : {"compare", "data", "beam"})
         EXPECT_TRUE(by_bash({command, ""}).contains("my-rig.toml")) << command;
     // An old spelling is not offered and goes on working.
     EXPECT_EQ(by_bash({"lightmap", "--altitude-m", ""}), Words{});
@@ -156,7 +156,7 @@ TEST_F(Completion, ZshCompletes) {
     EXPECT_EQ(by_zsh("plan --plo"), "plan,--plot");
     EXPECT_EQ(by_zsh("lightmap --preview-white im"), "lightmap,--preview-white,image");
     EXPECT_EQ(by_zsh("help lightm"), "help,lightmap");
-    EXPECT_EQ(by_zsh("sweep my"), "sweep,my-rig.toml");
+    EXPECT_EQ(by_zsh("beam my"), "beam,my-rig.toml");
 }
 
 TEST_F(Completion, FishCompletes) {
@@ -167,7 +167,7 @@ TEST_F(Completion, FishCompletes) {
     EXPECT_EQ(by_fish("aphotic plan --plo"), Words{"--plot"});
     EXPECT_EQ(by_fish("aphotic lightmap --preview-white "), (Words{"lamp", "image", "none"}));
     EXPECT_EQ(by_fish("aphotic help lightm"), Words{"lightmap"});
-    EXPECT_TRUE(by_fish("aphotic sweep my").contains("my-rig.toml"));
+    EXPECT_TRUE(by_fish("aphotic beam my").contains("my-rig.toml"));
 }
 
 TEST_F(Completion, OfAnotherShellIsRefused) {

@@ -2,8 +2,8 @@
 //
 // What breaks while a command runs, or between two runs (docs/faults.md): disks, folders, frames,
 // manifests, POV-Ray, and users who edit their scene too early.
-#include "base/folder_lock.h"
 #include "base/sha256.h"
+#include "base/work_folder.h"
 #include "image/exr.h"
 #include "image/output_images.h"
 #include "spectral/manifest.h"
@@ -106,7 +106,7 @@ class Faults : public testing::Test {
     TempFolder folder_;
 };
 
-// --- Two at once --------------------------------------------------------------------------------
+// --- Two at once --------------------------------------------------------------------------
 
 TEST_F(Faults, ASecondRunInAFolderIsRefused) {
     ASSERT_EQ(render().status, 0);
@@ -125,8 +125,7 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
                  {"validate", "rig.toml", "-o", "out"},
                  {"validate", "rig.toml", "--rendered", "out", "-o", "elsewhere"},
                  {"study", "rig.toml", "--quick", "-o", "out"},
-                 {"stress", "--only", "altitude", "-o", "out"},
-                 {"atlas", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
+                 {"lightmap", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
                  {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.csv", "-o", "out"},
                  {"baseline", "homomorphic", "raw", "-o", "out"},
                  {"fit", "rig.toml", "--maps", "raw/a.exr", "-o", "out"}}) {
@@ -139,7 +138,7 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
     EXPECT_EQ(render().status, 0) << "and when the first is gone";
 }
 
-// --- Disks --------------------------------------------------------------------------------------
+// --- Disks --------------------------------------------------------------------------------
 
 // So many KiB are left when the command starts: from the first file that does not fit to the last.
 TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
@@ -294,7 +293,7 @@ TEST_F(Faults, AReadOnlyFolderIsSaid) {
     EXPECT_EQ(contents(file("out")), before);
 }
 
-// --- Frames and manifests -----------------------------------------------------------------------
+// --- Frames and manifests -----------------------------------------------------------------
 
 void write_frame(const fs::path& to, int width_px, int height_px, float sample) {
     ExrWriter frame(to, width_px, height_px, {"R", "G", "B"}, {});
@@ -375,16 +374,6 @@ TEST_F(Faults, AFrameThatNobodyNotedIsRenderedAgain) {
     EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
 }
 
-// As SIGKILL leaves it between a frame's note and its place.
-TEST_F(Faults, AFrameThatIsNotedAndNotThereIsRenderedAgain) {
-    ASSERT_EQ(render().status, 0);
-    const std::string image = sha256_of_file(file("out") / "image.exr");
-    fs::remove(frame(1));
-    expect_message(integrate(), kRunFailed, frame(1).filename().string());
-    EXPECT_NE(render().out.find("1 frame rendered, 1 kept"), std::string::npos);
-    EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
-}
-
 // What stands under its name was drawn for a scene that the rig no longer asks for.
 TEST_F(Faults, AFrameOfAnEarlierRigIsNeverKept) {
     ASSERT_EQ(render().status, 0);
@@ -399,22 +388,6 @@ TEST_F(Faults, AFrameOfAnEarlierRigIsNeverKept) {
     EXPECT_NE(sha256_of_file(file("out") / "image.exr"), image);
 }
 
-// A frame of the same size, samples in order, and from another plan.
-TEST_F(Faults, AFrameOfAnotherPlanIsRenderedAgain) {
-    ASSERT_EQ(render().status, 0);
-    ASSERT_EQ(
-        run_aphotic(folder_.path(), {"render", "rig.toml", "-o", "other", "--wavelengths", "650"})
-            .status,
-        0);
-    const std::string image = sha256_of_file(file("out") / "image.exr");
-    fs::copy_file(image_path(file("other"), read_manifest(file("other")).frames[0]),
-                  frame(0),
-                  fs::copy_options::overwrite_existing);
-    expect_message(integrate(), kRunFailed, "is not the image that the manifest notes");
-    EXPECT_NE(render().out.find("1 frame rendered, 1 kept"), std::string::npos);
-    EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
-}
-
 TEST_F(Faults, AClockSetBackChangesNothing) {
     ASSERT_EQ(render().status, 0);
     const auto before = contents(file("out") / "povray" / "frames");
@@ -426,28 +399,6 @@ TEST_F(Faults, AClockSetBackChangesNothing) {
         EXPECT_EQ(contents(file("out") / "povray" / "frames"), before);
         EXPECT_EQ(integrate().status, 0);
     }
-}
-
-// What it says would still mean something: other weights, another promise.
-TEST_F(Faults, AManifestEditedByHandIsRefused) {
-    ASSERT_EQ(render().status, 0);
-    const std::string image = sha256_of_file(file("out") / "image.exr");
-    const std::string good = read_text_file(file("out") / "manifest.json");
-    for (const char* key : {"weight", "exposure_log2", "frame_error", "rig_title"}) {
-        SCOPED_TRACE(key);
-        nlohmann::ordered_json json = nlohmann::ordered_json::parse(good);
-        if (std::string_view(key) == "weight") json["wavelengths"][0][key][1] = 1.0;
-        if (std::string_view(key) == "exposure_log2") json["wavelengths"][0][key] = 3;
-        if (std::string_view(key) == "frame_error") json[key] = 1e-12;
-        if (std::string_view(key) == "rig_title") json[key] = "another";
-        write_file(file("out") / "manifest.json", json.dump());
-        expect_message(integrate(), kBadInput, "manifest.json: sha256: is not that of the rest");
-        expect_message(render(), kBadInput, "manifest.json: sha256: is not that of the rest");
-        EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
-    }
-    // Laid out anew it says what it said.
-    write_file(file("out") / "manifest.json", nlohmann::ordered_json::parse(good).dump());
-    EXPECT_EQ(integrate().status, 0);
 }
 
 TEST_F(Faults, AManifestThatCannotBeReadIsNotWrittenOver) {
@@ -477,23 +428,7 @@ TEST_F(Faults, AManifestThatCannotBeReadIsNotWrittenOver) {
     EXPECT_NE(render().out.find("2 frames rendered, 0 kept"), std::string::npos);
 }
 
-// JSON knows no such numbers; what stands for them is as wrong.
-TEST_F(Faults, AWeightThatIsNoNumberIsRefused) {
-    ASSERT_EQ(render().status, 0);
-    const auto before = contents(file("out"));
-    const std::string good = read_text_file(file("out") / "manifest.json");
-    const std::size_t first = good.find_first_of("-0123456789", good.find("\"weight\": ["));
-    const std::size_t last = good.find_first_of(",\n", first);
-    for (const std::string number : {"NaN", "nan", "Infinity", "1e999", "null", "\"1\""}) {
-        std::string bad = good;
-        write_file(file("out") / "manifest.json", bad.replace(first, last - first, number));
-        expect_message(integrate(), kBadInput, "out/manifest.json: ");
-    }
-    write_file(file("out") / "manifest.json", good);
-    EXPECT_EQ(contents(file("out")), before);
-}
-
-// --- A POV-Ray that misbehaves ------------------------------------------------------------------
+// --- A POV-Ray that misbehaves ------------------------------------------------------------
 
 class BadPovRay : public Faults {
   protected:
@@ -515,10 +450,6 @@ TEST_F(BadPovRay, GarbageForAnImage) {
     expect_failure("for a; do case \"$a\" in +O*) echo garbage > \"${a#+O}\" ;; esac; done\n",
                    "is no readable OpenEXR image",
                    kOneJob);
-}
-
-TEST_F(BadPovRay, NoImage) {
-    expect_failure("exit 0\n", "exited normally without an image", kOneJob);
 }
 
 TEST_F(BadPovRay, ThatHangsAndHeedsNoSignal) {
@@ -547,25 +478,6 @@ TEST_F(BadPovRay, ThatFloodsItsIntroduction) {
     EXPECT_FALSE(fs::exists(file("out")));
 }
 
-TEST_F(BadPovRay, ThatLiesAboutItself) {
-    const std::string much = "head -c 3000000 /dev/zero | tr '\\0' ";
-    struct Lie {
-        std::string body;
-        std::string part;
-    };
-    const std::string no_povray = ": it does not identify itself as POV-Ray";
-    for (const Lie& lie :
-         {Lie{"printf 'POV-Ray 3.7'\n" + much + "7\n", no_povray},
-          Lie{"printf 'POV-Ray '\n" + much + "7\n", no_povray},
-          Lie{"echo 'POV-Ray 99999999999999.7'\n", no_povray},
-          Lie{"echo 'POV-Ray 3.7.0'; printf ' Supported image formats: '\n" + much + "x\n",
-              ": it was built without OpenEXR"}}) {
-        write_script(file("povray"), lie.body);
-        expect_message(render({{"APHOTIC_POVRAY", file("povray").string()}}), kRunFailed, lie.part);
-        EXPECT_FALSE(fs::exists(file("out")));
-    }
-}
-
 // The share of the pixels is looked for where progress is shown: on a terminal, which `script`
 // gives the command.
 TEST_F(BadPovRay, ThatLiesAboutItsProgress) {
@@ -590,7 +502,7 @@ TEST_F(BadPovRay, ThatLiesAboutItsProgress) {
     EXPECT_TRUE(fs::exists(file("out") / "image.exr"));
 }
 
-// --- A scene of the user's own ------------------------------------------------------------------
+// --- A scene of the user's own ------------------------------------------------------------
 
 class OwnScene : public BadPovRay {
   protected:

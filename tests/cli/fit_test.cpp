@@ -2,7 +2,7 @@
 //
 // A survey simulated, a rig fitted to it, and the files that this leaves.
 #include "base/atomic_file.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "support/fit_rig.h"
 #include "support/run_command.h"
 #include "support/temp_folder.h"

@@ -34,16 +34,16 @@ void PrintTo(const Struck& struck, std::ostream* out) {
 }
 
 const std::vector<Struck> kCommands{
-    {"Atlas", {"atlas", "rig.toml", "--altitude", "1:3:0.5", "--pitch", "-2:2:2", "-o", "out"}},
     {"Baseline", {"baseline", "local-equalisation", "raw", "-o", "out"}},
     {"Correct", {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.eic", "-o", "out"}},
     {"Compare", {"compare", "raw/0.exr", "raw/1.exr", "--report", "out/page.html"}},
     {"Generate", {"generate", "rig.toml", "-o", "out", "--bands", "30"}},
     {"Integrate", {"integrate", "render", "-o", "out"}},
     {"Lightmap", {"lightmap", "rig.toml", "--per-cone", "-o", "out/map.exr"}},
+    {"MapsByAltitude", {"lightmap", "rig.toml", "--altitude", "1:3:0.25", "-o", "out"}},
+    {"Oplab", {"lightmap", "rig.toml", "--altitude", "1:3:0.1", "--export", "oplab", "-o", "out"}},
     {"Observe", {"observe", "raw", "--nav", "nav.eic", "--altitude", "2", "-o", "out/map.exr"}},
     {"Plan", {"plan", "rig.toml", "--plot", "out/plan.svg"}},
-    {"Stress", {"stress", "-o", "out", "--width", "6", "--only", "roll-degrees-45"}},
     {"Survey", {"survey", "rig.toml", "--images", "8", "-o", "out"}},
     {"Study", {"study", "rig.toml", "-o", "out", "--quick"}},
     {"Trace", {"trace", "rig.toml", "-o", "out"}},

@@ -178,5 +178,101 @@ TEST_F(CommandLightmap, LeavesNothingWhereItCannotWrite) {
     EXPECT_NE(run.err.find("no-such-folder/map.exr"), std::string::npos) << run.err;
 }
 
+// Each is, bit for bit, the map of that altitude alone.
+TEST_F(CommandLightmap, OfSeveralAltitudesIsAMapEach) {
+    const auto maps = [&](const std::string& altitudes) {
+        const CommandResult run =
+            run_aphotic(folder_.path(),
+                        {"lightmap", "rig.toml", "-o", "maps", "--altitude", altitudes, "--json"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return nlohmann::json::parse(run.out)["maps"];
+    };
+    const auto said = maps("1.5,1.8:2:0.1");
+    const std::vector<std::pair<std::string, std::string>> wanted{
+        {"1.5", "maps/altitude_1.50m.exr"},
+        {"1.8", "maps/altitude_1.80m.exr"},
+        {"1.9", "maps/altitude_1.90m.exr"},
+        {"2", "maps/altitude_2.00m.exr"}};
+    ASSERT_EQ(said.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const auto& [altitude, file] = wanted[i];
+        EXPECT_EQ(said[i]["file"], file);
+        EXPECT_EQ(ExrReader(folder_.path() / file).attribute("aphotic:altitude_m"), altitude);
+        ASSERT_EQ(lightmap({"--altitude", altitude}).status, 0);
+        EXPECT_TRUE(read_text_file(folder_.path() / file) ==
+                    read_text_file(folder_.path() / "map.exr"))
+            << file;
+    }
+    // Names tell altitudes apart; maps of another run go, what is not ours stays.
+    write_file(folder_.path() / "maps/notes.txt", "the user's own");
+    EXPECT_EQ(maps("1.5,1.504")[1]["file"], "maps/altitude_1.504m.exr");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path() / "maps"), {}), 3);
+}
+
+TEST_F(CommandLightmap, ExportsForOplab) {
+    const CommandResult run = run_aphotic(folder_.path(),
+                                          {"lightmap",
+                                           "rig.toml",
+                                           "-o",
+                                           "oplab",
+                                           "--altitude",
+                                           "1.8:2.2:0.1",
+                                           "--export",
+                                           "oplab",
+                                           "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_GT(nlohmann::json::parse(run.out)["oplab"]["rms"], 0.0);
+    for (const char* file : {"attenuation_parameters.npy",
+                             "correction_gains.npy",
+                             "image_corrected_mean.npy",
+                             "image_corrected_std.npy"})
+        EXPECT_TRUE(fs::exists(folder_.path() / "oplab" / file)) << file;
+}
+
+TEST_F(CommandLightmap, RefusesWhatIsByAltitudeBeforeItBegins) {
+    const auto refused = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> arguments{"lightmap", "rig.toml"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const CommandResult run = run_aphotic(folder_.path(), arguments);
+        EXPECT_EQ(run.status, kBadInput) << testing::PrintToString(options);
+        EXPECT_FALSE(fs::exists(folder_.path() / "out")) << testing::PrintToString(options);
+        EXPECT_FALSE(fs::exists(folder_.path() / "out.exr")) << testing::PrintToString(options);
+        return run.err;
+    };
+    for (const char* altitudes : {"4:1:0.1",
+                                  "1:4",
+                                  "1:4:0.7",
+                                  "1:4:0",
+                                  "1:4:-1",
+                                  "one",
+                                  "1:4:0.1x",
+                                  "0:4:1",
+                                  "2,1",
+                                  "1,1",
+                                  "1,,2",
+                                  ",",
+                                  "",
+                                  "1:20000:1",
+                                  "nan"}) {
+        EXPECT_NE(refused({"-o", "out", "--altitude", altitudes}).find("--altitude: "),
+                  std::string::npos)
+            << altitudes;
+    }
+    const auto expect = [&](const std::string& words, const std::vector<std::string>& options) {
+        const std::string said = refused(options);
+        EXPECT_NE(said.find(words), std::string::npos) << said;
+    };
+    expect("--output: found out.exr; allowed: a folder",
+           {"-o", "out.exr", "--altitude", "1:2:0.5"});
+    expect("--output: found out; allowed: a name that ends in .exr",
+           {"-o", "out", "--altitude", "2"});
+    expect("--preview: found with 3 altitudes",
+           {"-o", "out", "--altitude", "1:2:0.5", "--preview", "map.png"});
+    expect("found 3 altitudes; allowed: 4 or more",
+           {"-o", "out", "--altitude", "1:3:1", "--export", "oplab"});
+    expect("strobe 'aft' stands 0.2327 m under the sea floor",
+           {"-o", "out", "--altitude", "0.02:0.1:0.04", "--pitch", "30"});
+}
+
 }  // namespace
 }  // namespace aphotic::lightmap_test

@@ -72,7 +72,7 @@ TEST_F(CommandModelError, IsRefusedOverTheTolerance) {
              {"plan", "rig.toml"},
              {"trace", "rig.toml", "-o", "out"},
              {"lightmap", "rig.toml", "-o", "map.exr"},
-             {"atlas", "rig.toml", "-o", "out", "--altitude", "1:2:1"}}) {
+             {"lightmap", "rig.toml", "-o", "out", "--altitude", "1:2:1"}}) {
         std::vector<std::string> arguments = command;
         arguments.insert(arguments.end(), {"--model-tolerance", "1e-9"});
         const CommandResult refused = run(arguments);
@@ -87,16 +87,18 @@ TEST_F(CommandModelError, IsRefusedOverTheTolerance) {
     }
 }
 
-TEST_F(CommandModelError, IsOfTheHighestMapOfAnAtlas) {
-    const auto error_at = [&](const std::string& altitude) {
-        const CommandResult map =
-            run({"lightmap", "rig.toml", "-o", "map.exr", "--json", "--altitude", altitude});
-        return nlohmann::json::parse(map.out)["model_error"];
+TEST_F(CommandModelError, IsOfEachMapByAltitude) {
+    const auto json_of = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> arguments{"lightmap", "rig.toml", "--json"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const CommandResult made = run(arguments);
+        EXPECT_EQ(made.status, 0) << made.err;
+        return nlohmann::json::parse(made.out);
     };
-    const CommandResult atlas =
-        run({"atlas", "rig.toml", "-o", "out", "--json", "--altitude", "1:3:1"});
-    ASSERT_EQ(atlas.status, 0) << atlas.err;
-    EXPECT_EQ(nlohmann::json::parse(atlas.out)["model_error"], error_at("3"));
+    const auto maps = json_of({"-o", "out", "--altitude", "1,3"})["maps"];
+    ASSERT_EQ(maps.size(), 2U);
+    EXPECT_EQ(maps[1]["model_error"], json_of({"-o", "map.exr", "--altitude", "3"})["model_error"]);
+    EXPECT_NE(maps[0]["model_error"], maps[1]["model_error"]);
 }
 
 TEST_F(CommandModelError, IsNoneOfWaterThatDoesNotScatterNorWithoutItsVeil) {

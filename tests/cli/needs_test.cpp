@@ -5,7 +5,7 @@
 #include "scene_gen/disk_estimate.h"
 
 #include "image/exr.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/manifest.h"
 #include "support/run_command.h"
 
@@ -142,33 +142,31 @@ TEST(MemoryOfTrace, DoesNotGrowWithTheWavelengths) {
     EXPECT_LE(many.peak_bytes, few.peak_bytes + kMostMore_bytes);
 }
 
-// Of bins, mosaics and a fit over altitude.
-TEST(NeedsOfAtlas, AreForetold) {
+TEST(NeedsOfMapsByAltitude, AreForetold) {
     constexpr int kSide_px = 64;
     const TempFolder folder;
     rig_of(folder.path(), kSide_px, kSide_px);
-    const CommandResult made = run_aphotic(folder.path(),
-                                           {"atlas",
-                                            "rig.toml",
-                                            "-o",
-                                            "out",
-                                            "--altitude",
-                                            "1:4:1",
-                                            "--export",
-                                            "bayer,exponential,oplab"});
-    ASSERT_EQ(made.status, 0) << made.err;
-    const DiskNeeds needs = atlas_needs({.size = {.width_px = kSide_px, .height_px = kSide_px},
-                                         .bins = 4,
-                                         .altitudes = 4,
-                                         .has_mosaics = true,
-                                         .has_fits = true,
-                                         .has_oplab = true});
-    std::uint64_t written = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "out")) {
-        if (entry.is_regular_file()) written += entry.file_size();
-    }
-    EXPECT_LE(written, needs.folder_bytes);
-    EXPECT_GE(written, needs.folder_bytes / 4);  // smooth, and floats all the same
+    const auto written_by = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> arguments{
+            "lightmap", "rig.toml", "-o", "out", "--altitude", "1:4:1"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        fs::remove_all(folder.path() / "out");
+        const CommandResult made = run_aphotic(folder.path(), arguments);
+        EXPECT_EQ(made.status, 0) << made.err;
+        std::uint64_t bytes = 0;
+        for (const auto& entry : fs::directory_iterator(folder.path() / "out"))
+            bytes += entry.file_size();
+        return bytes;
+    };
+    const std::uint64_t maps_bytes =
+        lightmap_needs({.maps = 4, .width_px = kSide_px, .height_px = kSide_px}).folder_bytes;
+    const std::uint64_t maps = written_by({});
+    EXPECT_LE(maps, maps_bytes);
+    EXPECT_GE(maps, maps_bytes / 4);  // smooth, and floats all the same
+    const std::uint64_t oplab_bytes = oplab_needs(kSide_px, kSide_px).folder_bytes;
+    const std::uint64_t oplab = written_by({"--export", "oplab"});
+    EXPECT_LE(oplab, oplab_bytes);
+    EXPECT_GE(oplab, oplab_bytes / 2);
 }
 
 // A folder with a disk of its own that holds so much, for one command: its status and what it said.
@@ -206,7 +204,7 @@ TEST(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
     for (const char* command : {"trace rig.toml -o disk/out",
                                 "generate rig.toml --bands 600 -o disk/out",
                                 "render rig.toml -o disk/out",
-                                "atlas rig.toml --altitude 1:4:0.1 -o disk/out",
+                                "lightmap rig.toml --altitude 1:4:0.1 -o disk/out",
                                 "validate rig.toml -o disk/out",
                                 "study rig.toml -o disk/out"}) {
         const OnSmallDisk run = on_small_disk(folder.path(), "64k", command);

@@ -49,7 +49,7 @@ TEST_F(CommandPlausibility, EveryCommandWarnsAndStrictRefusesBeforeItWrites) {
         {"validate", "RIG", "-o", "out"},
         {"study", "RIG", "-o", "out"},
         {"lightmap", "RIG", "-o", "out.exr"},
-        {"atlas", "RIG", "-o", "out", "--altitude", "2:3:0.5"},
+        {"lightmap", "RIG", "-o", "out", "--altitude", "2:3:0.5"},
         {"design", "RIG", "-o", "out", "--vary", "strobe.lamp.power"},
         {"survey", "RIG", "-o", "out"},
         {"correct", "raw", "--rig", "RIG", "--nav", "nav.csv", "-o", "out"},

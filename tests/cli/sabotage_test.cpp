@@ -4,8 +4,8 @@
 // plausible picture; the command must end with status 1 and name the worst wavelength or channel.
 #include "base/sha256.h"
 #include "image/exr.h"
-#include "rig/rig_reader.h"
-#include "rig/veil.h"
+#include "light/veil.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/veil_planes.h"
 #include "spectral/manifest.h"
 #include "support/run_command.h"

@@ -4,7 +4,7 @@
 // Joined, it is bit for bit what one machine makes.
 #include "support/command_under_way.h"
 #include "support/run_command.h"
-#include "support/small_sweep.h"
+#include "support/small_rig.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -73,7 +73,7 @@ class Shares : public testing::Test {
         expect_no_leftovers(path(other));
     }
 
-    SmallSweep small_;
+    SmallRig small_;
 };
 
 TEST_F(Shares, OfARendersFrames) {
@@ -112,49 +112,30 @@ TEST_F(Shares, OfFramesGoOnWhereTheyStopped) {
     expect_same_files("one", "many");
 }
 
-TEST_F(Shares, OfAnAtlassBins) {
-    const Arguments atlas{"atlas",
-                          path("rig.toml").string(),
-                          "--altitude",
-                          "1:2:0.25",
-                          "--water-multiple",
-                          "1:2:0.5",
-                          "-o"};
-    Arguments one = atlas;
-    one.push_back(path("one").string());
-    run_well(one);
-    Arguments many = atlas;
-    many.push_back(path("many").string());
-    run_shares(many, "--share", 4);
-    many.push_back("--json");
-    const CommandResult joined = run(many);
-    EXPECT_EQ(joined.status, 0) << joined.err;
-    EXPECT_EQ(nlohmann::json::parse(joined.out).at("computed"), 0);
-    expect_same_files("one", "many");
-    EXPECT_EQ(read_text_file(path("one/atlas.json")), read_text_file(path("many/atlas.json")));
-}
-
 class SurveyShares : public Shares {
   protected:
     void SetUp() override { run_well({"survey", "rig.toml", "--images", "9", "-o", "survey"}); }
 
-    [[nodiscard]] Arguments correct(const std::string& folder) const {
-        return {"correct",
-                path("survey/raw").string(),
-                "--rig",
-                path("rig.toml").string(),
-                "--nav",
-                path("survey/navigation-measured.txt").string(),
-                "--bayer",
-                "RGGB",
-                "--black-level",
-                "64",
-                "--white-level",
-                "4095",
-                "--format",
-                "exr",
-                "-o",
-                path(folder).string()};
+    [[nodiscard]] Arguments correct(const std::string& folder,
+                                    const Arguments& command = {"correct"}) const {
+        Arguments all = command;
+        for (const auto& argument : Arguments{path("survey/raw").string(),
+                                              "--rig",
+                                              path("rig.toml").string(),
+                                              "--nav",
+                                              path("survey/navigation-measured.txt").string(),
+                                              "--bayer",
+                                              "RGGB",
+                                              "--black-level",
+                                              "64",
+                                              "--white-level",
+                                              "4095",
+                                              "--format",
+                                              "exr",
+                                              "-o",
+                                              path(folder).string()})
+            all.push_back(argument);
+        return all;
     }
 };
 
@@ -174,6 +155,19 @@ TEST_F(SurveyShares, OfASurveysImages) {
     expect_same_files("one", "many");
 }
 
+// Each learns the pattern of the whole survey.
+TEST_F(SurveyShares, OfABaseline) {
+    const Arguments baseline{"baseline", "log-polynomial"};
+    run_well(correct("one", baseline));
+    run_shares(correct("many", baseline), "--share", 2);
+    Arguments join = correct("many", baseline);
+    join.push_back("--json");
+    const auto json = nlohmann::json::parse(run(join).out);
+    EXPECT_EQ(json.at("corrected"), 0);
+    EXPECT_EQ(json.at("kept"), 9);
+    expect_same_files("one", "many");
+}
+
 TEST_F(SurveyShares, WhatNoShareHasDoneIsDoneWhenTheyAreJoined) {
     run_well(correct("one"));
     Arguments share = correct("many");
@@ -187,40 +181,6 @@ TEST_F(SurveyShares, WhatNoShareHasDoneIsDoneWhenTheyAreJoined) {
     expect_same_files("one", "many");
 }
 
-// A sweep's tasks leave shares, which --collect joins.
-TEST_F(SurveyShares, OfASweepAreJoinedWhenTheyAreCollected) {
-    run_well(correct("one"));
-    small_.write("correct", R"(images = ["survey/raw"]
-shares = 3
-arguments = ["--nav", "survey/navigation-measured.txt", "--bayer", "RGGB", "--black-level", "64",
-             "--white-level", "4095", "--format", "exr"]
-)");
-    run_well({"sweep", "sweep.toml", "-o", "out"});
-    for (const char* number : {"3", "1", "2"}) {
-        EXPECT_EQ(run({"sweep", "out", "--collect"}).status, 1);
-        run_well({"sweep", "out", "--task", number});
-    }
-    run_well({"sweep", "out", "--collect"});
-    expect_same_files("one", "out/point-0001");
-    run_well({"sweep", "out", "--collect"});
-}
-
-// An image is skipped, which is an answer of correct's: its task is done, and not done again.
-TEST_F(SurveyShares, OfASweepMayAnswerNo) {
-    write_file(path("survey/raw/broken.tif"), "no image");
-    small_.write("correct", R"(images = ["survey/raw"]
-arguments = ["--nav", "survey/navigation-measured.txt", "--bayer", "RGGB", "--black-level", "64",
-             "--white-level", "4095"]
-)");
-    run_well({"sweep", "sweep.toml", "-o", "out"});
-    run_well({"sweep", "out", "--task", "1"});
-    const std::string result = read_text_file(path("out/task-0001/result.json"));
-    EXPECT_EQ(nlohmann::json::parse(result).at("exit_status"), 1);
-    run_well({"sweep", "out", "--status"});
-    run_well({"sweep", "out", "--task", "1"});
-    EXPECT_EQ(read_text_file(path("out/task-0001/result.json")), result);
-}
-
 TEST_F(Shares, SayWhatIsWrong) {
     const auto expect = [&](const Arguments& arguments, const std::string& part) {
         const CommandResult result = run(arguments);
@@ -232,7 +192,7 @@ TEST_F(Shares, SayWhatIsWrong) {
     expect({"render", "lamps", "--frames", "3/2"}, "found 3/2; allowed: I/N");
     expect({"render", "lamps", "--frames", "1/2", "--bands", "3"},
            "--bands: found with --frames; allowed: with a rig");
-    expect({"atlas", "rig.toml", "--altitude", "2", "-o", "out", "--share", "x"}, "allowed: I/N");
+    expect({"correct", "survey", "-o", "out", "--share", "x"}, "allowed: I/N");
 }
 
 }  // namespace

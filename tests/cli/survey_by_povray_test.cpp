@@ -2,6 +2,7 @@
 //
 // `aphotic survey` of what POV-Ray renders.
 #include "image/output_images.h"
+#include "support/has.h"
 #include "support/small_scene.h"
 #include "support/small_survey.h"
 
@@ -86,7 +87,7 @@ TEST(SurveyByPovray, GoesOnWhereItStoppedAndRefusesAnotherSurvey) {
 
     const CommandResult other = survey.make({"--images", "2", "--seed", "2"});
     EXPECT_EQ(other.status, 2);
-    EXPECT_NE(other.err.find("another folder"), std::string::npos) << other.err;
+    EXPECT_TRUE(has(other.err, "another folder"));
     EXPECT_EQ(read_text_file(first), bytes);
 }
 
@@ -123,7 +124,7 @@ TEST(SurveyByPovray, RefusesARigThatIsNotThereAndLeavesNothing) {
     fs::remove(survey.rig());
     const CommandResult made = survey.make({});
     EXPECT_EQ(made.status, 2);
-    EXPECT_NE(made.err.find("survey.toml"), std::string::npos) << made.err;
+    EXPECT_TRUE(has(made.err, "survey.toml"));
     EXPECT_FALSE(fs::exists(survey.folder() / "out"));
 }
 

@@ -6,9 +6,10 @@
 #include "image/exr.h"
 #include "support/dng.h"
 #include "support/exiftool.h"
+#include "support/has.h"
 #include "support/run_command.h"
 #include "support/tiff.h"
-#include "survey/raw_image.h"
+#include "survey/images/raw_image.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -180,13 +181,10 @@ TEST_F(SurveyInput, LevelsBeyondTheFilesNumbersAreRefused) {
         EXPECT_FALSE(fs::exists(path("out")));
         return result.err;
     };
-    EXPECT_NE(
-        refusal({"--white-level", "65536"})
-            .find("white level: found 65536; allowed: up to 65535, the file's largest number"),
-        std::string::npos);
-    EXPECT_NE(refusal({"--black-level", "4095", "--white-level", "4095"})
-                  .find("black level: found 4095; allowed: less than the white level, 4095"),
-              std::string::npos);
+    EXPECT_TRUE(has(refusal({"--white-level", "65536"}),
+                    "white level: found 65536; allowed: up to 65535, the file's largest number"));
+    EXPECT_TRUE(has(refusal({"--black-level", "4095", "--white-level", "4095"}),
+                    "black level: found 4095; allowed: less than the white level, 4095"));
     EXPECT_EQ(correct("out", {"--bayer", "RGGB", "--white-level", "65535"}).status, 0);
 }
 
@@ -219,8 +217,8 @@ TEST_F(SurveyInput, PartsThatAreNotThereAreOneMistake) {
               {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "out.exr"}}) {
             const CommandResult result = run(command, options);
             EXPECT_EQ(result.status, kBadInput) << command[0] << " " << words;
-            EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
-            EXPECT_EQ(result.err.find("raw/b.tif"), std::string::npos) << result.err;
+            EXPECT_TRUE(has(result.err, words));
+            EXPECT_FALSE(has(result.err, "raw/b.tif"));
             EXPECT_FALSE(fs::exists(path("out")) || fs::exists(path("out.exr")));
         }
     };
@@ -259,9 +257,7 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
 
     const CommandResult three = correct("three", levels({"--bayer", "mono", "--gain", "1,2,3"}));
     EXPECT_EQ(three.status, kBadInput);
-    EXPECT_NE(three.err.find("--gain: found 3 numbers; allowed: 1, of a mono camera"),
-              std::string::npos)
-        << three.err;
+    EXPECT_TRUE(has(three.err, "--gain: found 3 numbers; allowed: 1, of a mono camera"));
 
     write_file(path("nav.csv"), "image,altitude_m\na,2\n");
     const CommandResult observed =
@@ -285,10 +281,9 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
     write_map(false);
     const CommandResult colours = correct("colours", levels({"--bayer", "mono"}));
     EXPECT_EQ(colours.status, kBadInput);
-    EXPECT_NE(colours.err.find("found the image of a mono camera, and a map whose R, G and B "
-                               "differ"),
-              std::string::npos)
-        << colours.err;
+    EXPECT_TRUE(has(colours.err,
+                    "found the image of a mono camera, and a map whose R, G and B "
+                    "differ"));
 }
 
 TEST_F(SurveyInput, ARawFileSaysItsPatternAndLevelsItself) {
@@ -306,15 +301,13 @@ TEST_F(SurveyInput, ARawFileSaysItsPatternAndLevelsItself) {
         EXPECT_NEAR(raw[i] / tiff[i], 1.0, 2.0 * kShareOf16Bits / kLeast) << i;
     const CommandResult other = correct("other", {"--bayer", "GRBG"});
     EXPECT_EQ(other.status, kBadInput);
-    EXPECT_NE(
-        other.err.find("--bayer, or the rig's: found GRBG; allowed: RGGB, as the raw file says"),
-        std::string::npos)
-        << other.err;
+    EXPECT_TRUE(
+        has(other.err, "--bayer, or the rig's: found GRBG; allowed: RGGB, as the raw file says"));
     const std::string bytes = read_text_file(path("raw/a.dng"));
     write_file(path("raw/cut.dng"), bytes.substr(0, bytes.size() / 2));
     const CommandResult cut = correct("cut", {"--gain", "1"});
     EXPECT_EQ(cut.status, kSkipped);
-    EXPECT_NE(cut.err.find("raw/cut.dng: cannot be read: "), std::string::npos) << cut.err;
+    EXPECT_TRUE(has(cut.err, "raw/cut.dng: cannot be read: "));
 }
 
 // One floor in twice the light of exposure: one image, up to the camera's rounding.
@@ -342,7 +335,7 @@ TEST_F(SurveyInput, ImagesAreBroughtToOneExposureByTheirExif) {
     EXPECT_NEAR(ratio("raw-out", "b.exr"), 2.0, 2.0 * kRounding);
     const CommandResult result = correct("exif", {"--exposure", "exif"});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find("brought to 4 ms, ISO 100"), std::string::npos) << result.out;
+    EXPECT_TRUE(has(result.out, "brought to 4 ms, ISO 100"));
     EXPECT_NEAR(ratio("exif", "b.exr"), 1.0, kRounding);
     EXPECT_NEAR(ratio("exif", "c.exr"), 1.0, kRounding);
     // A flash is as bright however long the shutter is open.
@@ -350,7 +343,7 @@ TEST_F(SurveyInput, ImagesAreBroughtToOneExposureByTheirExif) {
     EXPECT_NEAR(ratio("flash", "b.exr"), 2.0, 2.0 * kRounding);
     EXPECT_NEAR(ratio("flash", "c.exr"), 1.0, kRounding);
     const std::string journal = read_text_file(path("exif/corrected.jsonl"));
-    EXPECT_NE(journal.find("\"relative_exposure\":2.0"), std::string::npos) << journal;
+    EXPECT_TRUE(has(journal, "\"relative_exposure\":2.0"));
     const Json notes = Json::parse(read_text_file(path("exif/correction.json")));
     EXPECT_EQ(notes["settings"]["exposure"]["time_s"], 0.004);
 
@@ -363,9 +356,7 @@ TEST_F(SurveyInput, ImagesAreBroughtToOneExposureByTheirExif) {
     write_dng("d.dng", dng(700.0));
     const CommandResult untold = correct("untold", {"--exposure", "exif"});
     EXPECT_EQ(untold.status, kSkipped);
-    EXPECT_NE(untold.err.find("raw/d.dng: --exposure: its Exif has no ExposureTime; skipped"),
-              std::string::npos)
-        << untold.err;
+    EXPECT_TRUE(has(untold.err, "raw/d.dng: --exposure: its Exif has no ExposureTime; skipped"));
 }
 
 TEST_F(SurveyInput, ResultsKeepTheTagsOfTheirSource) {
@@ -447,9 +438,7 @@ TEST_F(RigOfSurvey, TellsItsCamerasNumbersAndOptionsWin) {
     write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
     const CommandResult by_rig = correct_by_rig("rig", {});
     ASSERT_EQ(by_rig.status, 0) << by_rig.err;
-    EXPECT_NE(by_rig.out.find("camera: RGGB, black level 64, white level 4095\n"),
-              std::string::npos)
-        << by_rig.out;
+    EXPECT_TRUE(has(by_rig.out, "camera: RGGB, black level 64, white level 4095\n"));
     ASSERT_EQ(correct_by_rig("options", levels({"--bayer", "RGGB"})).status, 0);
     EXPECT_EQ(read_text_file(path("rig/a.exr")), read_text_file(path("options/a.exr")));
     const CommandResult other = correct_by_rig("other", {"--black-level", "60", "--json"});
@@ -491,8 +480,7 @@ TEST_F(RigOfSurvey, OfAnotherScaleIsScaledToTheImages) {
     write_rig("[128, 96]", "68.53125");
     const CommandResult scaled = correct_by_rig("scaled", levels({"--bayer", "RGGB"}));
     ASSERT_EQ(scaled.status, 0) << scaled.err;
-    EXPECT_NE(scaled.out.find("rig of 128 x 96 pixels scaled to 64 x 48\n"), std::string::npos)
-        << scaled.out;
+    EXPECT_TRUE(has(scaled.out, "rig of 128 x 96 pixels scaled to 64 x 48\n"));
     EXPECT_EQ(read_text_file(path("own/a.exr")), read_text_file(path("scaled/a.exr")));
     const Json notes = Json::parse(read_text_file(path("scaled/correction.json")));
     EXPECT_EQ(notes["settings"]["rig_scale"], 0.5);
@@ -501,21 +489,16 @@ TEST_F(RigOfSurvey, OfAnotherScaleIsScaledToTheImages) {
     const CommandResult part =
         correct_by_rig("part", levels({"--bayer", "RGGB", "--crop", "0,0,32,24"}));
     EXPECT_EQ(part.status, kBadInput);
-    EXPECT_NE(part.err.find("--crop: found 32 x 24 of files that have the rig's 64 x 48 pixels"),
-              std::string::npos)
-        << part.err;
+    EXPECT_TRUE(has(part.err, "--crop: found 32 x 24 of files that have the rig's 64 x 48 pixels"));
     write_rig("[32, 48]", kPitch_um);
     const CommandResult stereo = correct_by_rig("stereo", levels({"--bayer", "RGGB"}));
-    EXPECT_NE(stereo.err.find("found 64 x 48 pixels; allowed: 32 x 48, as the map has; if two "
-                              "cameras' images are side by side, --half"),
-              std::string::npos)
-        << stereo.err;
+    EXPECT_TRUE(has(stereo.err,
+                    "found 64 x 48 pixels; allowed: 32 x 48, as the map has; if two "
+                    "cameras' images are side by side, --half"));
     write_rig("[128, 95]", "68.53125");
     const CommandResult other = correct_by_rig("other", levels({"--bayer", "RGGB"}));
     EXPECT_EQ(other.status, kBadInput);
-    EXPECT_NE(other.err.find("found 64 x 48 pixels; allowed: 128 x 95, as the map has"),
-              std::string::npos)
-        << other.err;
+    EXPECT_TRUE(has(other.err, "found 64 x 48 pixels; allowed: 128 x 95, as the map has"));
 }
 
 TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
@@ -537,7 +520,7 @@ TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
     const CommandResult result =
         correct_by_rig("out", {"--black-level", "64", "--white-level", "4095", "--middle", "0.5"});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find("camera: mono, "), std::string::npos) << result.out;
+    EXPECT_TRUE(has(result.out, "camera: mono, "));
     const std::vector<float> image = samples("out/a.exr", {"Y"});
     for (std::size_t i = 0; i < kPixels; ++i) {
         const double number = numbers[i] - kBlack;
@@ -547,16 +530,12 @@ TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
     }
     const CommandResult colours = correct_by_rig("colours", {"--bayer", "RGGB"});
     EXPECT_EQ(colours.status, kBadInput);
-    EXPECT_NE(colours.err.find(
-                  "--bayer: found RGGB, and the rig's camera has one response; allowed: mono"),
-              std::string::npos)
-        << colours.err;
+    EXPECT_TRUE(has(colours.err,
+                    "--bayer: found RGGB, and the rig's camera has one response; allowed: mono"));
     write_rig("[64, 48]", kPitch_um);
     const CommandResult mono = correct_by_rig("mono", {"--bayer", "mono"});
     EXPECT_EQ(mono.status, kBadInput);
-    EXPECT_NE(mono.err.find("the rig's camera has responses of red, green and blue"),
-              std::string::npos)
-        << mono.err;
+    EXPECT_TRUE(has(mono.err, "the rig's camera has responses of red, green and blue"));
 }
 
 }  // namespace

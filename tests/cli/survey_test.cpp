@@ -5,10 +5,11 @@
 #include "base/degrees.h"
 #include "image/exr.h"
 #include "image/output_images.h"
+#include "support/has.h"
 #include "support/run_command.h"
 #include "support/small_scene.h"
-#include "survey/flight.h"
-#include "survey/navigation_file.h"
+#include "survey/navigation/navigation_file.h"
+#include "survey/simulate/flight.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -329,7 +330,7 @@ TEST_F(SurveyCommand, RefusesWhatMakesNoSurvey) {
         more.insert(more.begin(), {"survey", "rig.toml", "-o", "out"});
         const CommandResult result = run(more);
         EXPECT_EQ(result.status, 2) << words;
-        EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
+        EXPECT_TRUE(has(result.err, words));
         EXPECT_FALSE(fs::exists(path("out")));
     };
     refused({"--altitude", "3,2"}, "the lower first");
@@ -347,7 +348,7 @@ TEST_F(SurveyCommand, WithoutPovRayWritesNothing) {
     const CommandResult result =
         run({"survey", "rig.toml", "--by-povray", "--povray", "nowhere/povray", "-o", "out"});
     EXPECT_EQ(result.status, 3) << result.err;
-    EXPECT_NE(result.err.find("nowhere/povray"), std::string::npos) << result.err;
+    EXPECT_TRUE(has(result.err, "nowhere/povray"));
     EXPECT_FALSE(fs::exists(path("out")));
 }
 

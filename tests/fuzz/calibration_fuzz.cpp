@@ -3,7 +3,7 @@
 // A camera calibration from any text, in each format. A lens that holds all over its image has a
 // direction for each corner, of length 1, and it arrives where it was asked for.
 #include "fuzz.h"
-#include "rig/calibration_file.h"
+#include "rig/camera/calibration_file.h"
 
 #include <cmath>
 #include <optional>

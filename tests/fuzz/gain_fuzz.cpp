@@ -4,7 +4,9 @@
 // not ours tells of none, so every text is taken; those of another survey are refused in words. A
 // gain that comes of it is one to multiply with.
 #include "fuzz.h"
-#include "survey/gain.h"
+#include "survey/correct/corrector.h"
+
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <vector>
@@ -24,8 +26,12 @@ void demand_gain(const aphotic::SurveyGain& noted) {
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto text = aphotic::text_of(data, size);
-    if (const auto kept = aphotic::kept_gain(text, "digest")) demand_gain(*kept);
-    if (const auto balance = aphotic::kept_balance(text, "{}")) {
+    // Its own, where it has some: of others it tells of no gain.
+    const auto notes = nlohmann::ordered_json::parse(text, nullptr, false);
+    const nlohmann::ordered_json settings =
+        notes.is_object() && notes.contains("settings") ? notes["settings"] : nullptr;
+    if (const auto kept = aphotic::kept_gain(text, settings)) demand_gain(*kept);
+    if (const auto balance = aphotic::kept_balance(text, settings)) {
         for (const double number : *balance) {
             if (!std::isfinite(number) || number <= 0.0) std::abort();
         }

@@ -2,7 +2,7 @@
 //
 // The tags of an image from any description: a pose, or its fault on one line.
 #include "fuzz.h"
-#include "survey/habcam_tags.h"
+#include "survey/navigation/navigation_file.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     aphotic::ImagePose pose;

@@ -2,7 +2,7 @@
 //
 // An iFDO from any text, the poses in it, and itself read again.
 #include "fuzz.h"
-#include "survey/navigation_ifdo.h"
+#include "survey/navigation/navigation_ifdo.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string text = aphotic::text_of(data, size);

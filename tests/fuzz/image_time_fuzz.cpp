@@ -3,8 +3,8 @@
 // Times from any mask, the text's first line, and any name and EXIF, the rest.
 #include "base/error.h"
 #include "fuzz.h"
-#include "survey/image_time.h"
-#include "survey/time_text.h"
+#include "survey/navigation/image_time.h"
+#include "survey/navigation/time_text.h"
 
 #include <algorithm>
 

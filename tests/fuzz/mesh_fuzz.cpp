@@ -2,7 +2,7 @@
 //
 // A mesh from any text.
 #include "fuzz.h"
-#include "rig/mesh_reader.h"
+#include "rig/file/mesh_reader.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     aphotic::expect_result_or_placed_error("mesh.obj", [&] {

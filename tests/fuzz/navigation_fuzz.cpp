@@ -3,7 +3,7 @@
 // A navigation file from any text, by images' names and by their times, and the pose of an image
 // that may be in it.
 #include "fuzz.h"
-#include "survey/navigation_file.h"
+#include "survey/navigation/navigation_file.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 // A measured beam from any text, in each format. What is read is a sound table, and is read again
 // from what is written of it: to the last bit but for .ldt, whose values are rounded on the way.
 #include "fuzz.h"
-#include "rig/photometric_file.h"
+#include "rig/beam/photometric_file.h"
 
 #include <cmath>
 #include <numbers>
@@ -12,11 +12,6 @@
 namespace {
 
 using aphotic::BeamTable;
-
-// A file is never found beside.
-std::string no_file(const std::string&) {
-    throw aphotic::InputError("found none");
-}
 
 void demand(bool holds) {
     if (!holds) std::abort();
@@ -55,13 +50,12 @@ void demand_sound_answers(const BeamTable& table) {
 void read_as(const std::string& name, const std::string& text) {
     std::optional<aphotic::PhotometricFile> file;
     aphotic::expect_result_or_placed_error(
-        name, [&] { file = aphotic::parse_photometric_file(name, text, no_file); });
+        name, [&] { file = aphotic::parse_photometric_file(name, text); });
     if (!file) return;
     demand_sound(file->table);
     demand_sound_answers(file->table);
     const auto again = [&] {
-        return aphotic::parse_photometric_file(
-            name, aphotic::photometric_text(*file, name), no_file);
+        return aphotic::parse_photometric_file(name, aphotic::photometric_text(*file, name));
     };
     if (name.ends_with(".ldt")) {
         // Without light, or of too little or too much of it, there are no values per 1000 lm.

@@ -2,7 +2,7 @@
 //
 // A rig from any text. What it names is looked up among the shipped scenes.
 #include "fuzz.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     aphotic::expect_result_or_placed_error("rig.toml", [&] {

@@ -255,7 +255,7 @@ TEST(AnyImage, ATiffIsHeldAgainstItsOwnDirectoryInEitherOrderOfBytes) {
                           whole.size() - 1,
                           whole.size()));
     EXPECT_EQ(fault(big_endian_tiff(0)),
-              ": cannot be read: it is not whole: strip or tile 1 of 1 is empty");
+              ": cannot be read: it is not whole: the bytes of its strip are missing or too few");
 }
 
 // Whether a byte that flips is noticed. Where the format has a checksum of its pixels, always: PNG

@@ -2,6 +2,8 @@
 #include "image/exr.h"
 
 #include "base/error.h"
+#include "support/absurd_images.h"
+#include "support/file_limit.h"
 #include "tests/support/temp_folder.h"
 
 #include <ImfArray.h>
@@ -131,62 +133,6 @@ TEST(Exr, IsWrittenAsZippedFloats) {
     EXPECT_EQ(in.header().channels()["B"].type, Imf::FLOAT);
 }
 
-// A half-float image whose data window does not start at 0, as other programs crop them.
-TEST(Exr, WidensHalfFloatsWhereverTheImageStarts) {
-    const TempFolder folder;
-    const fs::path file = folder.path() / "half.exr";
-    const Imath::Box2i window({-3, 5}, {0, 6});  // 4 x 2 pixels
-    Imf::Header header(window, window);
-    header.channels().insert("R", Imf::Channel(Imf::HALF));
-    Imf::Array2D<half> pixels(2, 4);
-    for (int y = 0; y < 2; ++y) {
-        for (int x = 0; x < 4; ++x) pixels[y][x] = half(0.1F * static_cast<float>(4 * y + x));
-    }
-    {
-        Imf::OutputFile out(file.c_str(), header);
-        Imf::FrameBuffer buffer;
-        buffer.insert("R", Imf::Slice::Make(Imf::HALF, &pixels[0][0], window));
-        out.setFrameBuffer(buffer);
-        out.writePixels(2);
-    }
-    ExrReader in(file);
-    EXPECT_EQ(in.width_px(), 4);
-    EXPECT_EQ(in.height_px(), 2);
-    std::vector<float> row(4);
-    in.read_rows(1, 1, in.channels(), row);
-    for (int x = 0; x < 4; ++x) {
-        EXPECT_EQ(row[static_cast<std::size_t>(x)], static_cast<float>(pixels[1][x])) << x;
-    }
-}
-
-TEST(Exr, ThatWasWrittenAgainIsReadAgain) {
-    const TempFolder folder;
-    const fs::path file = folder.path() / "image.exr";
-    for (const float value : {1.0F, 2.0F}) {
-        ExrWriter out(file, 1, 1, {"Y"}, {});
-        out.write_rows(1, std::vector{value});
-        out.finish();
-        std::vector<float> sample(1);
-        ExrReader in(file);
-        in.read_rows(0, 1, in.channels(), sample);
-        EXPECT_EQ(sample[0], value);
-    }
-}
-
-TEST(Exr, KeepsWhatIsNotANumberForOthersToJudge) {
-    const TempFolder folder;
-    const fs::path file = folder.path() / "image.exr";
-    ExrWriter out(file, 3, 1, {"Y"}, {});
-    out.write_rows(1, std::vector{std::nanf(""), -INFINITY, 65504.0F});
-    out.finish();
-    std::vector<float> samples(3);
-    ExrReader in(file);
-    in.read_rows(0, 1, in.channels(), samples);
-    EXPECT_TRUE(std::isnan(samples[0])) << samples[0];
-    EXPECT_EQ(samples[1], -INFINITY);
-    EXPECT_EQ(samples[2], 65504.0F);
-}
-
 TEST(Exr, LeavesNothingBehindUnlessFinished) {
     const TempFolder folder;
     {
@@ -273,19 +219,6 @@ TEST(Exr, ThatDoesNotFitOnTheDiskIsSaidByItsOwnName) {
             << most_bytes;
     }
     EXPECT_EQ(files_in(folder), 0U);
-}
-
-TEST(Exr, ThatIsCutShortIsARunErrorThatNamesIt) {
-    const TempFolder folder;
-    const fs::path file = folder.path() / "image.exr";
-    write_image(file, {kHeight});
-    fs::resize_file(file, fs::file_size(file) - 100);
-    const std::string message = run_error([&] {
-        ExrReader in(file);
-        std::vector<float> samples = room_for(kHeight);
-        in.read_rows(0, kHeight, in.channels(), samples);
-    });
-    EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
 }
 
 TEST(Exr, WithoutTheChannelIsARunErrorThatNamesBoth) {

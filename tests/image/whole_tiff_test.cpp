@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "support/temp_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -92,42 +93,56 @@ const Directory kTiles{{256, {10}},
                        {324, times(9, kPixelsAt)},
                        {325, times(9, 12)}};
 
+std::string empty(int part, int parts) {
+    return fmt::format("it is not whole: strip or tile {} of {} is empty", part, parts);
+}
+
 TEST(WholeTiff, HasAsManyStripsAndTilesAsThePixelsNeed) {
     EXPECT_EQ(fault_of(kStrips), "");
     EXPECT_EQ(fault_of(kTiles), "");
     EXPECT_EQ(fault_of(with(kStrips, {{278, {8}}, {273, {kPixelsAt}}, {279, {80}}})), "");
     EXPECT_EQ(fault_of(without(with(kStrips, {{273, {kPixelsAt}}, {279, {80}}}), 278)), "");
-    const std::string few =
-        "it is not whole: found 4 offsets and 4 sizes of strips or tiles; needed: ";
-    EXPECT_EQ(fault_of(with(kStrips, {{278, {1}}})), few + "8");
-    EXPECT_EQ(fault_of(with(kStrips, {{257, {9}}})), few + "5");
-    EXPECT_EQ(fault_of(with(kStrips, {{277, {3}}, {284, {2}}})), few + "12");
+    EXPECT_EQ(fault_of(with(kStrips, {{278, {1}}})), empty(5, 8));
+    EXPECT_EQ(fault_of(with(kStrips, {{257, {9}}})), empty(5, 5));
+    EXPECT_EQ(fault_of(with(kStrips, {{277, {3}}, {284, {2}}})), empty(5, 12));
     EXPECT_EQ(fault_of(with(kStrips, {{277, {3}}, {284, {1}}})), "") << "side by side";
-    EXPECT_EQ(fault_of(with(kTiles, {{324, times(4, kPixelsAt)}, {325, times(4, 12)}})), few + "9");
-    EXPECT_EQ(fault_of(with(kTiles, {{277, {3}}, {284, {2}}})),
-              "it is not whole: found 9 offsets and 9 sizes of strips or tiles; needed: 27");
-    EXPECT_EQ(fault_of(with(kStrips, {{279, times(3, 20)}})),
-              "it is not whole: found 4 offsets and 3 sizes of strips or tiles; needed: 4");
-    EXPECT_EQ(fault_of(with(kStrips, {{279, {20, 20, 0, 20}}})),
-              "it is not whole: strip or tile 3 of 4 is empty");
+    EXPECT_EQ(fault_of(with(kTiles, {{324, times(4, kPixelsAt)}, {325, times(4, 12)}})),
+              empty(5, 9));
+    EXPECT_EQ(fault_of(with(kTiles, {{277, {3}}, {284, {2}}})), empty(10, 27));
+    EXPECT_EQ(fault_of(with(kStrips, {{279, times(3, 20)}})), empty(4, 4));
+    EXPECT_EQ(fault_of(with(kStrips, {{279, {20, 20, 0, 20}}})), empty(3, 4));
 }
 
+// libtiff says why, and nothing on the terminal.
 TEST(WholeTiff, WhatIsNotToldIsNotWhole) {
+    const auto is_not_whole = [](const Directory& directory) {
+        return fault_of(directory).starts_with("it is not whole: ");
+    };
+    testing::internal::CaptureStderr();
     for (const auto& [directory, tags] :
          {std::pair{kStrips, std::vector<std::uint16_t>{257, 273, 279}},
           std::pair{kTiles, std::vector<std::uint16_t>{256, 257, 322, 323, 324, 325}}}) {
-        for (const std::uint16_t tag : tags) {
-            EXPECT_NE(fault_of(without(directory, tag)).find(" is missing"), std::string::npos)
-                << tag << ": " << fault_of(without(directory, tag));
-        }
+        for (const std::uint16_t tag : tags)
+            EXPECT_TRUE(is_not_whole(without(directory, tag))) << tag;
     }
-    for (const std::uint16_t tag : std::vector<std::uint16_t>{257, 278}) {
-        EXPECT_NE(fault_of(with(kStrips, {{tag, {0}}})).find(" is 0 or empty"), std::string::npos);
-    }
-    for (const std::uint16_t tag : std::vector<std::uint16_t>{322, 323}) {
-        EXPECT_NE(fault_of(with(kTiles, {{tag, {0}}})).find(" is 0 or empty"), std::string::npos);
-    }
-    EXPECT_EQ(fault_of(with(kStrips, {{258, {}}})), "it is not whole: the tag 258 is empty");
+    for (const std::uint16_t tag : std::vector<std::uint16_t>{257, 278})
+        EXPECT_TRUE(is_not_whole(with(kStrips, {{tag, {0}}}))) << tag;
+    for (const std::uint16_t tag : std::vector<std::uint16_t>{322, 323})
+        EXPECT_TRUE(is_not_whole(with(kTiles, {{tag, {0}}}))) << tag;
+    EXPECT_TRUE(is_not_whole(with(kStrips, {{258, {}}})));
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// Of the only strip libtiff makes up what it holds to be false: 16 bytes are 8 rows of 10 bits.
+TEST(WholeTiff, AStripOfFewerBytesThanItsPixelsIsNotWhole) {
+    const Directory one = with(kStrips, {{278, {8}}, {273, {kPixelsAt}}, {279, {16}}});
+    EXPECT_EQ(fault_of(one), "");
+    const std::string fault = "it is not whole: the bytes of its strip are missing or too few";
+    EXPECT_EQ(fault_of(with(one, {{279, {15}}})), fault);
+    EXPECT_EQ(fault_of(with(one, {{279, {0}}})), fault);
+    EXPECT_EQ(fault_of(without(one, 279)), fault);
+    EXPECT_EQ(fault_of(with(one, {{273, {1985}}})),
+              "it is cut short: found 2000 bytes of 2001 and more");
 }
 
 // Numbers whose sums and products 64 bits do not hold.
@@ -137,20 +152,15 @@ TEST(WholeTiff, NumbersNear2To64AreNoWayRound) {
     EXPECT_EQ(fault_of(with(kStrips, {{279, {20, 20, 20, 1001}}})),
               "it is cut short: found 2000 bytes of 2001 and more");
     // 2^32 x 2^32 tiles are 2^64, and as 64 bits have it, 0.
-    EXPECT_EQ(fault_of(with(kTiles,
+    EXPECT_NE(fault_of(with(kTiles,
                             {{256, {kMost32 + 1}}, {257, {kMost32 + 1}}, {322, {1}}, {323, {1}}})),
-              "found 4294967296 x 4294967296 pixels; allowed: 1 to 32768 each way");
-    EXPECT_EQ(fault_of(with(kStrips, {{257, {kMost}}, {278, {1}}, {277, {kMost}}, {284, {2}}})),
-              "found 10 x 9223372036854775807 pixels; allowed: 1 to 32768 each way");
+              "");
+    EXPECT_EQ(fault_of(with(kTiles, {{256, {32769}}})),
+              "found 32769 x 8 pixels; allowed: 1 to 32768 each way");
+    EXPECT_NE(fault_of(with(kStrips, {{257, {kMost}}, {278, {1}}, {277, {kMost}}, {284, {2}}})),
+              "");
     EXPECT_NE(fault_of(with(kStrips, {{277, {kMost}}, {284, {2}}})), "");
     EXPECT_NE(fault_of(with(kStrips, {{258, {kMost}}, {277, {kMost}}})), "");
-    // 2^61 + 4 numbers of 8 bytes are 2^64 + 32.
-    std::string bytes = file_of(kStrips);
-    const std::size_t entry = 16 + 8 + 2 * 20;
-    bytes[entry + 4 + 7] = '\x20';
-    const TempFolder folder;
-    write_file(folder.path() / "a.tif", bytes);
-    EXPECT_THROW(require_whole_tiff(folder.path() / "a.tif"), InputError);
 }
 
 // Strips of one byte that 64 KiB and more lie in.

@@ -7,8 +7,8 @@
 #include "lightmap/cone_edge.h"
 #include "lightmap/lightmap.h"
 #include "lightmap/row_fit.h"
+#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
-#include "rig/rig_reader.h"
 #include "support/effort.h"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "lightmap/lightmap.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>

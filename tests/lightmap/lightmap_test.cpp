@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "lightmap/row_fit.h"
+#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
-#include "rig/rig_reader.h"
 #include "spectral/curve_loader.h"
 #include "support/effort.h"
 #include "support/random_beam.h"
@@ -156,10 +156,6 @@ TEST(Lightmap, PromisesNoLessThanFloatsRound) {
     EXPECT_GT(difference.worst, least.error) << testing::PrintToString(difference);
 }
 
-TEST(Lightmap, IsThatOfTheTracerBehindAPort) {
-    expect_equal(scene("port", pixels(136), pixels(102)), kPromise, "port");
-}
-
 TEST(Lightmap, IsThatOfTheTracerForRandomRigsBehindPorts) {
     std::mt19937 engine(20240229);
     const auto between = [&](double least, double most) {
@@ -210,94 +206,61 @@ TEST(Lightmap, IsThatOfTheTracerForEmittersThatShineNearlyForeOrAft) {
     }
 }
 
-// Of cones that fall as other powers of the cosine.
-TEST(Lightmap, IsThatOfTheTracerForOtherExponents) {
-    std::mt19937 engine(20260101);
-    for (const double exponent : {0.0, 0.5, 2.0, 3.7, 30.0, 400.0}) {
-        for (const bool has_highlight : {false, true}) {
+// So many rigs of each kind, the same in each run.
+template <typename Kinds, typename Give>
+void expect_equal_of_every(
+    const Kinds& kinds, unsigned seed, int count, double bound, const Give& give) {
+    for (const auto kind : kinds) {
+        std::mt19937 engine(seed);
+        Dice dice(seed);
+        for (int i = 0; i < cases(count); ++i) {
             Rig rig = random_rig(engine);
-            if (has_highlight) rig.seafloor.phong = 0.5;
-            for (Strobe& strobe : rig.strobes) strobe.beam.cones[1].exponent = exponent;
-            rig.strobes[0].beam.cones = {{.part = "",
-                                          .half_angle_rad = 90.0 * kDegree,
-                                          .weight = 1.0,
-                                          .exponent = exponent}};
-            expect_equal(rig, kWithoutPort, "exponent " + std::to_string(exponent));
+            give(kind, i, dice, rig);
+            expect_equal(rig, bound, fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
         }
     }
-    Rig rig = scene("port", 64, 48);
-    for (Strobe& strobe : rig.strobes) {
-        for (Cone& cone : strobe.beam.cones) cone.exponent = 3.0;
-    }
-    expect_equal(rig, kPromise, "exponent 3 behind a port");
-    rig = scene("habcam", 48, 36);
-    for (Strobe& strobe : rig.strobes) {
-        strobe.emitter = {.across_m = 0.0635, .along_m = 0.0302};
-        strobe.beam.cones[2].exponent = 8.0;
-    }
-    expect_equal(rig, kWithoutPort, "emitters of exponent 8");
+}
+
+void give_beams(BeamKind kind, Dice& dice, Rig& rig) {
+    for (Strobe& strobe : rig.strobes) strobe.beam = random_beam_of(kind, dice);
 }
 
 // Rows of several blocks, of which smooth ones are fitted (row_fit.h), and the last is shorter.
 TEST(Lightmap, IsThatOfTheTracerWhereRowsAreFitted) {
-    for (const BeamKind kind : kBeamKinds) {
-        std::mt19937 engine(7200);  // NOLINT(cert-msc51-cpp): the same rigs in each run
-        Dice dice(7200);
-        for (int i = 0; i < cases(12); ++i) {
-            Rig rig = random_rig(engine);
-            rig.camera.pixel_pitch_m *= 96.0 / 300.0;
-            rig.camera.width_px = 300;
-            rig.camera.height_px = 12;
-            for (Strobe& strobe : rig.strobes) strobe.beam = random_beam_of(kind, dice);
-            expect_equal(rig,
-                         kWithoutPort + kRowFitError,
-                         fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
-        }
-    }
+    const auto give = [](BeamKind kind, int, Dice& dice, Rig& rig) {
+        rig.camera.pixel_pitch_m *= 96.0 / 300.0;
+        rig.camera.width_px = 300;
+        rig.camera.height_px = 12;
+        give_beams(kind, dice, rig);
+    };
+    expect_equal_of_every(kBeamKinds, 7200, 12, kWithoutPort + kRowFitError, give);
 }
 
 TEST(Lightmap, IsThatOfTheTracerForEveryKindOfBeam) {
-    for (const BeamKind kind : kBeamKinds) {
-        std::mt19937 engine(7100);  // NOLINT(cert-msc51-cpp): the same rigs in each run
-        Dice dice(7100);
-        for (int i = 0; i < cases(6); ++i) {
-            Rig rig = random_rig(engine);
-            for (Strobe& strobe : rig.strobes) strobe.beam = random_beam_of(kind, dice);
-            expect_equal(
-                rig, kWithoutPort, fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
-        }
-    }
+    const auto give = [](BeamKind kind, int i, Dice& dice, Rig& rig) {
+        give_beams(kind, dice, rig);
+        if (i % 3 == 2) rig.seafloor.phong = 0.5;
+    };
+    expect_equal_of_every(kBeamKinds, 7100, 6, kWithoutPort, give);
 }
 
 TEST(Lightmap, IsThatOfTheTracerThroughEveryKindOfLens) {
-    for (const LensKind kind : kLensKinds) {
-        std::mt19937 engine(7300);  // NOLINT(cert-msc51-cpp): the same rigs in each run
-        Dice dice(7300);
-        for (int i = 0; i < cases(6); ++i) {
-            Rig rig = random_rig(engine);
-            give_lens(kind, dice, rig.camera);
-            give_vignetting(static_cast<std::size_t>(i), dice, rig.camera);
-            constexpr double kOfVignetting = 2.0 * 0x1p-24;  // its factor and the product
-            expect_equal(rig,
-                         kWithoutPort + kOfVignetting,
-                         fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
-        }
-    }
+    constexpr double kOfVignetting = 2.0 * 0x1p-24;  // its factor and the product
+    const auto give = [](LensKind kind, int i, Dice& dice, Rig& rig) {
+        give_lens(kind, dice, rig.camera);
+        give_vignetting(static_cast<std::size_t>(i), dice, rig.camera);
+    };
+    expect_equal_of_every(kLensKinds, 7300, 6, kWithoutPort + kOfVignetting, give);
 }
 
 TEST(Lightmap, IsThatOfTheTracerThroughEveryKindOfPort) {
-    for (const PortKind kind : kPortKinds) {
-        std::mt19937 engine(7400);  // NOLINT(cert-msc51-cpp): the same rigs in each run
-        Dice dice(7400);
-        for (int i = 0; i < cases(3); ++i) {
-            Rig rig = random_rig(engine);
-            rig.camera.width_px = pixels(rig.camera.width_px);
-            rig.camera.height_px = pixels(rig.camera.height_px);
-            give_port(kind, dice, rig.camera);
-            if (i % 2 == 1) give_lens(LensKind::RadialTangential, dice, rig.camera);
-            expect_equal(rig, kPromise, fmt::format("kind {}, rig {}", static_cast<int>(kind), i));
-        }
-    }
+    const auto give = [](PortKind kind, int i, Dice& dice, Rig& rig) {
+        rig.camera.width_px = pixels(rig.camera.width_px);
+        rig.camera.height_px = pixels(rig.camera.height_px);
+        give_port(kind, dice, rig.camera);
+        if (i % 2 == 1) give_lens(LensKind::RadialTangential, dice, rig.camera);
+    };
+    expect_equal_of_every(kPortKinds, 7400, 3, kPromise, give);
 }
 
 TEST(Lightmap, IsThatOfTheTracerForGlossyFloors) {
@@ -409,26 +372,6 @@ TEST(Lightmap, IsTheSameToTheBitForAnyThreads) {
     Rig rig = scene("habcam", 200, 150);
     const Lightmap one = map_of(rig, 1);
     for (const int threads : {2, 3, 7}) EXPECT_EQ(map_of(rig, threads).samples, one.samples);
-}
-
-// Twice the lamps' power is twice the light, to the bit; and strobes add up.
-TEST(Lightmap, IsLinearInTheLamps) {
-    const Rig rig = scene("habcam", 96, 72);
-    const Lightmap map = map_of(rig);
-    Rig doubled = rig;
-    for (Strobe& strobe : doubled.strobes) strobe.power *= 2.0;
-    const Lightmap twice = map_of(doubled);
-    std::vector<double> sum(map.samples.size());
-    for (const Strobe& strobe : rig.strobes) {
-        Rig alone = rig;
-        alone.strobes = {strobe};
-        const Lightmap part = map_of(alone);
-        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part.samples[i];
-    }
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-        EXPECT_EQ(twice.samples[i], 2.0F * map.samples[i]);
-        EXPECT_NEAR(sum[i] / map.samples[i], 1.0, 2.0 * kAsked);
-    }
 }
 
 // The shape of a beam's table counts, not its unit.

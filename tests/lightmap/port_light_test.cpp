@@ -6,8 +6,8 @@
 #include "lightmap/lightmap.h"
 
 #include "base/error.h"
-#include "rig/path_range.h"
-#include "rig/rig_reader.h"
+#include "light/path_range.h"
+#include "rig/file/rig_reader.h"
 #include "support/effort.h"
 #include "support/random_beam.h"
 #include "support/random_camera.h"

@@ -2,8 +2,8 @@
 #include "lightmap/ray_table.h"
 
 #include "lightmap/row_light.h"
+#include "rig/camera/port.h"
 #include "rig/geometry.h"
-#include "rig/port.h"
 #include "support/random_camera.h"
 #include "support/random_rig.h"
 

@@ -2,8 +2,8 @@
 //
 // plugin/include/aphotic.inc, by real POV-Ray: every macro in a scene, against closed forms; every
 // error provoked.
+#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
-#include "rig/rig_reader.h"
 #include "scene_gen/quick_look.h"
 #include "support/povray_scene.h"
 
@@ -62,7 +62,7 @@ constexpr const char* kCamera = "Aphotic_Camera (1, 0.01)\n";
 constexpr const char* kFloor =
     "plane { -z, -2 pigment { Aphotic_Pigment (\"light\") } finish { Aphotic_Finish (0, 40) } }\n";
 
-// --- The closed form ----------------------------------------------------------------------------
+// --- The closed form -------------------------------------------------------------------------
 
 // L = Flux P A cos(theta) / (pi d^2) rho cos(i) exp(-K (d + r)) E at the image's middle.
 TEST_F(AphoticInc, AConeInWaterIsTheClosedForm) {
@@ -267,16 +267,7 @@ TEST_F(AphoticInc, AnEmittersLampsAreTheGenerators) {
     }
 }
 
-TEST_F(AphoticInc, APointStrobeIsAnEmitterOfOneLamp) {
-    const std::string before =
-        std::string("Aphotic_Camera (1, 2)\n") + kFloor + "#declare Beam = array[1][2] {{60, 1}}\n";
-    const std::string strobe = "Aphotic_Strobe (<0.3, 0.1, 0>, <0.1, 0, 1>, Beam, \"flash\", 2, ";
-    expect_equal_images(well(in_band(odd_band(), before + strobe + "0)\n")),
-                        well(in_band(odd_band(), before + strobe + "<0.2, 0.1, 1, 1>)\n")),
-                        0.0);
-}
-
-// --- Places and units ---------------------------------------------------------------------------
+// --- Places and units ------------------------------------------------------------------------
 
 const std::string kSledScene =
     "Aphotic_Camera (1, 1)\nAphotic_Water ()\n"
@@ -399,7 +390,7 @@ TEST_F(AphoticInc, APortIsTheSameInsideOtherObjects) {
     }
 }
 
-// --- Spectra over a surface ---------------------------------------------------------------------
+// --- Spectra over a surface ------------------------------------------------------------------
 
 // A mask of two materials is each of them where it says so, to the last bit.
 TEST_F(AphoticInc, AMaskOfTwoMaterialsIsTheTwoRendersPutTogether) {
@@ -438,7 +429,7 @@ TEST_F(AphoticInc, AMaskOfTwoMaterialsIsTheTwoRendersPutTogether) {
     }
 }
 
-// --- What would spoil ---------------------------------------------------------------------------
+// --- What would spoil ------------------------------------------------------------------------
 
 TEST_F(AphoticInc, TheSceneCannotBringBackPovraysOwnLight) {
     const std::string scene = std::string(kCamera) +
@@ -519,7 +510,7 @@ TEST_F(AphoticInc, TellsOfItselfWhenAsked) {
     EXPECT_NE(result.log.find("including aphotic_quick.inc"), std::string::npos) << result.log;
 }
 
-// --- The quick look -----------------------------------------------------------------------------
+// --- The quick look --------------------------------------------------------------------------
 
 TEST_F(AphoticInc, WithoutABandIsAQuickLookByHabcam) {
     const std::string begin = "#version 3.7;\n#include \"aphotic.inc\"\n";
@@ -564,7 +555,7 @@ TEST(QuickLook, IsWhatTheGeneratorWrites) {
     }
 }
 
-// --- Errors -------------------------------------------------------------------------------------
+// --- Errors ----------------------------------------------------------------------------------
 
 struct Misuse {
     const char* name;

@@ -221,37 +221,5 @@ TEST(Beams, LampsInOnePlaceAreRefused) {
     }
 }
 
-// What POV-Ray would make of it in silence, and the closed form must see.
-struct Trap {
-    const char* name;
-    const char* from;
-    const char* to;
-};
-void PrintTo(const Trap& trap, std::ostream* out) {
-    *out << trap.name;
-}
-class BeamTraps : public testing::TestWithParam<Trap> {};
-
-TEST_P(BeamTraps, IsSeen) {
-    const Rig rig = lit_by(all_about());
-    SceneSet set = scenes_of(rig, kWavelengthsNm);
-    for (FrameScene& scene : set.scenes) {
-        scene.sdl = replaced(with_library(scene.sdl), GetParam().from, GetParam().to);
-    }
-    constexpr double kPlain = 0.05;
-    EXPECT_GT(against_closed_form(rig, set).worst, kPlain);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Traps,
-    BeamTraps,
-    testing::Values(
-        Trap{"ShellTooSmall", "Aphotic_Shell_Radius = 0.0011", "Aphotic_Shell_Radius = 0.0005"},
-        Trap{"OverOneWraps",
-             "min(1, max(0, Intensity (x / r, y / r, z / r) / Most))",
-             "1.5 * Intensity (x / r, y / r, z / r) / Most"},
-        Trap{"TableTurnedTheOtherWay", "atan2(-y, x)", "atan2(y, x)"}),
-    [](const auto& trap) { return std::string(trap.param.name); });
-
 }  // namespace
 }  // namespace aphotic::beams_test

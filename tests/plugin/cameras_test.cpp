@@ -3,7 +3,7 @@
 // Calibrated lenses and ports of every kind through real POV-Ray, against the reference at every
 // pixel: rigs that nobody chose, over tilted floors.
 #include "image/output_images.h"
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 #include "spectral/integrator.h"
 #include "support/effort.h"
 #include "support/random_camera.h"

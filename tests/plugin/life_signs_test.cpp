@@ -81,33 +81,6 @@ bool comes_true(const std::function<bool()>& condition) {
     return true;
 }
 
-TEST(LifeSigns, ProcessorTimeIsThatOfTheWholeGroup) {
-    const Group computing(true);
-    constexpr std::uintmax_t kSomeTicks = 5;
-    EXPECT_TRUE(
-        comes_true([&] { return processor_use_of(computing.number()).ticks > kSomeTicks; }));
-    EXPECT_TRUE(processor_use_of(computing.number()).is_ready);
-    const Group sleeping(false);
-    EXPECT_TRUE(comes_true([&] { return !processor_use_of(sleeping.number()).is_ready; }));
-    EXPECT_LE(processor_use_of(sleeping.number()).ticks, 1U);
-}
-
-TEST(LifeSigns, WaitingForTheProcessorIsToldFromSleeping) {
-    const Group starved(true, come_last);
-    const Group busy(true, stay_on_one_processor);
-    constexpr double kSomeWaiting_s = 0.01;
-    EXPECT_TRUE(
-        comes_true([&] { return processor_use_of(starved.number()).waited_s > kSomeWaiting_s; }));
-    EXPECT_TRUE(processor_use_of(starved.number()).is_ready);
-}
-
-TEST(LifeSigns, AreGoneWhenNothingChanges) {
-    const Group sleeping(false);
-    LifeSigns signs(sleeping.number(), 0.2);
-    EXPECT_FALSE(signs.are_gone(7)) << "at once";
-    EXPECT_TRUE(comes_true([&] { return signs.are_gone(7); }));
-}
-
 // Five times its patience, in which it gets three hundredths of a second: it prints nothing and
 // uses next to nothing, and would if it could.
 TEST(LifeSigns, AreThereWhileOthersHaveTheProcessor) {
@@ -125,17 +98,6 @@ TEST(LifeSigns, AreGoneOfASleeperWhileOthersHaveTheProcessor) {
     const Group busy(true, stay_on_one_processor);
     LifeSigns signs(sleeping.number(), 0.2);
     EXPECT_TRUE(comes_true([&] { return signs.are_gone(7); }));
-}
-
-// Five times its patience.
-TEST(LifeSigns, AreThereWhileSomethingIsWritten) {
-    const Group sleeping(false);
-    LifeSigns signs(sleeping.number(), 0.2);
-    std::uintmax_t written = 0;
-    for (const auto end = Clock::now() + std::chrono::seconds(1); Clock::now() < end;) {
-        EXPECT_FALSE(signs.are_gone(++written));
-        std::this_thread::sleep_for(kPoll);
-    }
 }
 
 TEST(LifeSigns, PatienceWithoutEndHasNoEnd) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The veil that POV-Ray's scattering media make against the quadrature of rig/veil.h, whose own
+// The veil that POV-Ray's scattering media make against the quadrature of light/veil.h, whose own
 // tests hold it against closed forms: at every pixel and wavelength, of the veil alone.
 #include "image/output_images.h"
-#include "rig/veil.h"
+#include "light/veil.h"
 #include "spectral/integrator.h"
 #include "support/random_camera.h"
 #include "support/rendered.h"

@@ -4,7 +4,8 @@
 #include "plugin/probe.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
+#include "support/refusal.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -45,12 +46,7 @@ class SceneSurvey : public testing::Test {
                              .unchecked = unchecked_});
     }
     std::string refusal(const std::string& scene, const Rig& rig = habcam()) {
-        try {
-            static_cast<void>(survey(scene, rig));
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "no error";
+        return refusal_of([&] { static_cast<void>(survey(scene, rig)); });
     }
     void expect_refusal(const std::string& message, const std::string& part) {
         EXPECT_NE(message.find(part), std::string::npos) << message;
@@ -201,7 +197,7 @@ TEST_F(SceneSurvey, OneThatWritesSomethingElseEachTimeIsNamed) {
         static_cast<void>(
             survey("#fopen Log \"log.txt\" append\n#write (Log, \"again\")\n#fclose Log\n"
                    "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n"));
-        FAIL() << "no error";
+        FAIL() << "nothing was said";
     } catch (const RunError& error) {
         EXPECT_NE(std::string(error.what()).find("What it writes itself must be the same"),
                   std::string::npos)
@@ -209,7 +205,7 @@ TEST_F(SceneSurvey, OneThatWritesSomethingElseEachTimeIsNamed) {
     }
 }
 
-// --- Refusals -----------------------------------------------------------------------------------
+// --- Refusals --------------------------------------------------------------------------------
 
 constexpr const char* kScene = "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n";
 
@@ -229,14 +225,14 @@ TEST_F(SceneSurvey, RefusesASceneWithoutWater) {
     expect_refusal(refusal(scene), "found no water");
     Rig clear = habcam();
     clear.water.multiple = 0.0;
-    EXPECT_EQ(refusal(scene, clear), "no error");
+    EXPECT_EQ(refusal(scene, clear), "nothing was said");
 }
 
 TEST_F(SceneSurvey, RefusesASceneWithoutTheRigsPort) {
     Rig rig = habcam();
     rig.camera.port =
         PortWindow{.distance_m = 0.05, .thickness_m = 0.012, .glass = builtin_glass("bk7")};
-    EXPECT_EQ(refusal(kScene, rig), "no error");
+    EXPECT_EQ(refusal(kScene, rig), "nothing was said");
     expect_refusal(refusal("Aphotic_Camera (1, 1)\nAphotic_Water ()\nAphotic_Rig_Strobes ()\n"
                            "Aphotic_Rig_Seafloor ()\n",
                            rig),
@@ -310,7 +306,7 @@ TEST_F(SceneSurvey, RefusesACameraInAnObjectWithoutWater) {
     expect_refusal(refusal(std::string(kScene) + "sphere { 0, 50 pigment { rgbt 1 } }\n"),
                    "found no water between the camera and what it sees");
     EXPECT_EQ(refusal(std::string(kScene) + "sphere { 0, 50 pigment { rgbt 1 } hollow }\n"),
-              "no error");
+              "nothing was said");
 }
 
 TEST_F(SceneSurvey, ColoursByNumbersVoidThePromise) {

@@ -68,6 +68,13 @@ bool runs(pid_t pid) {
     return ::kill(pid, 0) == 0;
 }
 
+// A zombie that nobody has buried yet runs no more.
+bool is_gone(pid_t pid) {
+    if (!runs(pid)) return true;
+    const fs::path stat = "/proc/" + std::to_string(pid) + "/stat";
+    return !fs::exists(stat) || read_text_file(stat).find(") Z ") != std::string::npos;
+}
+
 std::string run_error(const std::function<void()>& action) {
     try {
         action();
@@ -224,20 +231,6 @@ TEST(Process, IsGoneWithItsObject) {
     EXPECT_FALSE(runs(pid)) << pid << " still runs";
 }
 
-TEST(Process, MovesWithItsObject) {
-    Script script("echo $$ > pid; exec sleep 60");
-    pid_t pid = -1;
-    {
-        Process process(script.request());
-        Process moved = std::move(process);
-        pid = pid_in(script.file("pid"));
-        ASSERT_GT(pid, 0);
-        EXPECT_FALSE(moved.poll().has_value());
-        EXPECT_TRUE(runs(pid));
-    }
-    EXPECT_FALSE(runs(pid)) << pid << " still runs";
-}
-
 // A program of ours that is killed takes the child with it, though no destructor runs.
 TEST(Process, IsGoneWhenWeAreKilled) {
     Script script("echo $$ > pid; exec sleep 60");
@@ -253,20 +246,7 @@ TEST(Process, IsGoneWhenWeAreKilled) {
     EXPECT_TRUE(pid > 0 && runs(pid));
     ::kill(ours, SIGKILL);
     ::waitpid(ours, nullptr, 0);
-    // Whoever inherits it may not have buried it yet: a zombie runs no more.
-    const auto is_gone = [pid] {
-        if (!runs(pid)) return true;
-        const fs::path stat = "/proc/" + std::to_string(pid) + "/stat";
-        return !fs::exists(stat) || read_text_file(stat).find(") Z ") != std::string::npos;
-    };
-    EXPECT_TRUE(pid > 0 && comes_true(is_gone)) << pid << " still runs";
-}
-
-// A zombie that nobody has buried yet runs no more.
-bool is_gone(pid_t pid) {
-    if (!runs(pid)) return true;
-    const fs::path stat = "/proc/" + std::to_string(pid) + "/stat";
-    return !fs::exists(stat) || read_text_file(stat).find(") Z ") != std::string::npos;
+    EXPECT_TRUE(pid > 0 && comes_true([&] { return is_gone(pid); })) << pid << " still runs";
 }
 
 // POV-Ray, started by a script around it.

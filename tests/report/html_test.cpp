@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <limits>
 
 namespace aphotic::html_test {
@@ -56,25 +55,6 @@ TEST(Counted, SetsThousandsApart) {
               "1\xE2\x80\xAF"
               "392\xE2\x80\xAF"
               "640");
-}
-
-TEST(HtmlSource, KeepsItsLinesAndNothingThatMarkupIsMadeOf) {
-    EXPECT_EQ(html_source("a <b>\r\n  c & d\n\nlast"),
-              "<pre>a &lt;b&gt;\n  c &amp; d\n\nlast\n</pre>\n");
-    EXPECT_EQ(html_source(""), "<pre></pre>\n");
-}
-
-TEST(HtmlTable, NamesEachCellAfterItsColumn) {
-    const std::array<HtmlRow, 1> rows{{{.style = "best", .cells = {"<i>x</i>", "1", "✓"}}}};
-    const std::string table = html_table("t", "row;a \"b\";", rows);
-    EXPECT_NE(table.find("<th>row</th><th>a &quot;b&quot;</th><th class=\"mark\"></th>"),
-              std::string::npos)
-        << table;
-    EXPECT_NE(table.find("<tr class=\"best\"><th scope=\"row\"><i>x</i></th>"
-                         "<td>1</td>"
-                         "<td class=\"mark\">✓</td></tr>"),
-              std::string::npos)
-        << table;
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/geometry_signature.h"
 
+#include "rig/file/rig_reader.h"
 #include "rig/geometry.h"
-#include "rig/rig_reader.h"
 #include "spectral/curve_loader.h"
 
 #include <gtest/gtest.h>

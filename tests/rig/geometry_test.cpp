@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/geometry.h"
+#include "support/flat.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -17,10 +18,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180.0;
 // Some ten operations on numbers of the order of 1.
 constexpr double kRounding = 1e-14;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
 
 // HabCam's camera 2 m above a level floor; no strobes.
 Rig camera_rig() {
@@ -63,19 +60,13 @@ void expect_near(const Vector3d& found, const Vector3d& wanted, double tolerance
         << "found " << found.transpose() << "; wanted " << wanted.transpose();
 }
 
-// --- Floor -----------------------------------------------------------------------------------
+// --- Floor ----------------------------------------------------------------------------- --------
 
 // z of the floor at (x, y), by the plane's own equation.
 double floor_z(const Plane& floor, double x_m, double y_m) {
     const Vector3d& n = floor.normal;
     const double c = n.dot(floor.point_m);
     return (c - n.x() * x_m - n.y() * y_m) / n.z();
-}
-
-TEST(FloorPlane, IsLevelUnderALevelSled) {
-    const Plane floor = floor_plane({.altitude_m = 2.0, .pitch_rad = 0.0, .roll_rad = 0.0});
-    expect_near(floor.normal, {0.0, 0.0, -1.0});
-    EXPECT_NEAR(floor_z(floor, 3.0, -7.0), 2.0, kRounding);
 }
 
 TEST(FloorPlane, FallsAwayForwardWithTheBowUp) {
@@ -128,17 +119,7 @@ TEST(HeightAbove, IsMeasuredAlongTheNormal) {
     EXPECT_LT(height_above(floor, {0.0, 0.0, 2.1}), 0.0);
 }
 
-// --- Rays ------------------------------------------------------------------------------------
-
-TEST(PixelRay, OfTheImagesCentreLooksStraightDown) {
-    for (const Rig& rig : {camera_rig(), port_rig()}) {
-        const WaterRay ray = pixel_ray(rig, 680.0, 512.0, 550.0);
-        expect_near(ray.direction, {0.0, 0.0, 1.0});
-        EXPECT_NEAR(ray.origin_m.head<2>().norm(), 0.0, kRounding);
-    }
-    expect_near(pixel_ray(camera_rig(), 680.0, 512.0, 550.0).origin_m, Vector3d::Zero());
-    EXPECT_NEAR(pixel_ray(port_rig(), 680.0, 512.0, 550.0).origin_m.z(), 0.062, kRounding);
-}
+// --- Rays ------------------------------------------------------------------------------ --------
 
 // Forward is up in the image, starboard right; half a millimetre on the sensor each way from the
 // centre of an asymmetric point.
@@ -154,14 +135,6 @@ TEST(PixelRay, HasItsTopRowForwardAndItsRightColumnStarboard) {
     EXPECT_GT(ray.direction.y(), 0.0);
     EXPECT_NEAR(ray.direction.y() / ray.direction.x(), 680.0 / 256.0, kRounding);
     EXPECT_NEAR(ray.origin_m.y() / ray.origin_m.x(), 680.0 / 256.0, kRounding);
-}
-
-TEST(PixelRay, DoesNotKnowWavelengthsWithoutAPort) {
-    const Rig rig = camera_rig();
-    const WaterRay blue = pixel_ray(rig, 3.5, 7.5, 400.0);
-    const WaterRay red = pixel_ray(rig, 3.5, 7.5, 700.0);
-    expect_near(blue.direction, red.direction, 0.0);
-    expect_near(blue.origin_m, Vector3d::Zero(), 0.0);
 }
 
 // Snell's law in its vector form, for a unit ray through a face perpendicular to z.
@@ -191,20 +164,6 @@ TEST(PixelRay, ObeysSnellAtBothFacesOfAFlatPort) {
             }
         }
     }
-}
-
-TEST(PixelRay, ThroughAThinPortRefractsAtOnePlane) {
-    Rig rig = port_rig();
-    rig.camera.port->thickness_m = 0.0;
-    const WaterRay ray = pixel_ray(rig, 0.0, 0.0, 550.0);
-    const Vector3d air = pixel_ray(camera_rig(), 0.0, 0.0, 550.0).direction;
-    expect_near(ray.origin_m, air * (0.05 / air.z()));
-    // Glass without thickness only joins air to water.
-    EXPECT_NEAR(air.head<2>().norm() / ray.direction.head<2>().norm(),
-                seawater_index(550.0, 35.0, 10.0),
-                kRounding);
-    rig.camera.port->distance_m = 0.0;
-    expect_near(pixel_ray(rig, 0.0, 0.0, 550.0).origin_m, Vector3d::Zero());
 }
 
 // Column at which the rays of this wavelength run at this angle in the water, by bisection.
@@ -256,7 +215,7 @@ TEST(DistanceTo, IsNothingForRaysThatDoNotComeDown) {
         << "up through it";
 }
 
-// --- Emitters --------------------------------------------------------------------------------
+// --- Emitters -------------------------------------------------------------------------- --------
 
 TEST(LampPositions, OfAPointAreThePoint) {
     const Strobe strobe = strobe_with({0.1, 0.2, 1.0}, std::nullopt);
@@ -315,16 +274,6 @@ TEST(LampPositions, TurnToDownWithinAMillionthOfARadianOfForeAndAft) {
             expect_near((pair[1] - pair[0]).cwiseAbs(), wanted, tolerance);
         }
     }
-}
-
-// Straight down: across is starboard, along is forward.
-TEST(LampPositions, LieAcrossStarboardAndAlongForward) {
-    const Strobe strobe = strobe_with({0.0, 0.0, 1.0}, Emitter{.across_m = 0.08, .along_m = 0.02});
-    const auto pair_across = lamp_positions_m(strobe, {.across = 2, .along = 1});
-    ASSERT_EQ(pair_across.size(), 2U);
-    expect_near((pair_across[1] - pair_across[0]).cwiseAbs(), {0.0, 0.04, 0.0});
-    const auto pair_along = lamp_positions_m(strobe, {.across = 1, .along = 2});
-    expect_near((pair_along[1] - pair_along[0]).cwiseAbs(), {0.01, 0.0, 0.0});
 }
 
 TEST(LampGrid, OfAPointIsOneLamp) {
@@ -444,21 +393,12 @@ TEST(LampGrid, IsFinerInWaterThatAttenuatesMore) {
     EXPECT_NEAR(across(1e3) / static_cast<double>(across(1e2)), 10.0, 0.5);
 }
 
-// --- POV-Ray's frame -------------------------------------------------------------------------
+// --- POV-Ray's frame ------------------------------------------------------------------- --------
 
 TEST(ToPovray, MapsForwardToYStarboardToXAndDownToZ) {
     expect_near(to_povray({1.0, 0.0, 0.0}), {0.0, 1.0, 0.0}, 0.0);
     expect_near(to_povray({0.0, 1.0, 0.0}), {1.0, 0.0, 0.0}, 0.0);
     expect_near(to_povray({0.0, 0.0, 1.0}), {0.0, 0.0, 1.0}, 0.0);
-}
-
-// The sled's frame is right-handed and POV-Ray's is left-handed: seen as numbers, the map is a
-// mirror.
-TEST(ToPovray, ChangesHandedness) {
-    const Vector3d x = to_povray(Vector3d::UnitX());
-    const Vector3d y = to_povray(Vector3d::UnitY());
-    const Vector3d z = to_povray(Vector3d::UnitZ());
-    EXPECT_EQ(x.cross(y).dot(z), -1.0);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/solid.h"
 
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "tests/support/box_mesh.h"
 
 #include <gtest/gtest.h>

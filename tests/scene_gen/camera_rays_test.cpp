@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/camera_rays.h"
 
-#include "rig/lens.h"
+#include "rig/camera/lens.h"
 #include "support/random_camera.h"
 #include "support/random_rig.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/certificate.h"
 
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "support/random_rig.h"
 #include "validation/tracer.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is planned of a veil by POV-Ray, against the quadrature of rig/veil.h and closed forms;
+// What is planned of a veil by POV-Ray, against the quadrature of light/veil.h and closed forms;
 // tests/plugin/povray_veil_test.cpp renders it.
 #include "scene_gen/povray_veil.h"
 
 #include "base/atomic_file.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/pov_scene.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"

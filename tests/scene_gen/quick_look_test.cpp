@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_gen/quick_look.h"
 
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include "scene_gen/scene_set.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 
 #include <gtest/gtest.h>
 

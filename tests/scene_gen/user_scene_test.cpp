@@ -2,7 +2,7 @@
 #include "scene_gen/user_scene.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is added to POV-Ray's frames against rig/veil.h's, whose own tests hold it against closed
+// What is added to POV-Ray's frames against light/veil.h's, whose own tests hold it against closed
 // forms: with twice the points, at the pixel itself, and R, G and B by a rule of their own.
 #include "scene_gen/veil_planes.h"
 
 #include "base/error.h"
 #include "image/exr.h"
-#include "rig/rig_reader.h"
-#include "rig/veil.h"
-#include "rig/veil_map.h"
+#include "light/veil.h"
+#include "light/veil_map.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
 #include "support/temp_folder.h"

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "spectral/refractive_index.h"
+#include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -17,12 +18,7 @@ namespace aphotic::curve_loader_test {
 namespace {
 
 std::string message_of(const auto& action) {
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { action(); });
 }
 
 Spectrum built_in(const std::string& name, CurveRole role) {

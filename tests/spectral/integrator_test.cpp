@@ -243,19 +243,6 @@ TEST(Integrator, LabelsItsFiles) {
     }
 }
 
-TEST(Integrator, WritesFloats) {
-    Render render(2, 2);
-    fill(render);
-    render.integrate();
-    for (const char* file : {"image.exr", "spectral.exr"}) {
-        const Imf::InputFile in((render.folder() / file).c_str());
-        const Imf::ChannelList& channels = in.header().channels();
-        for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
-            EXPECT_EQ(channel.channel().type, Imf::FLOAT) << file << ' ' << channel.name();
-        }
-    }
-}
-
 // Blocks hold at most 64 rows, so every image here but the first is read in several, and the
 // last of them ends in the middle of ZIP's 16 rows.
 TEST(Integrator, KeepsEveryRowOfTallImages) {
@@ -346,32 +333,37 @@ TEST(Integrator, RefusesWhatNoFloatHolds) {
     EXPECT_NE(radiance.error().find(": R comes out as inf at column 0, row 0"), std::string::npos);
 }
 
-TEST(Integrator, RefusesAFrameOfAnotherSize) {
-    Render render(4, 3);
-    fill(render);
-    write_frame(render.image("band_650nm"), 3, 4, ramp);
-    render.manifest().frames[1].image_sha256 = sha256_of_file(render.image("band_650nm"));
-    EXPECT_EQ(render.error(),
-              render.image("band_650nm").string() + ": found 3 x 4 pixels; wanted 4 x 3");
-    EXPECT_EQ(render.files(), std::vector<std::string>{"povray"}) << "left behind";
-}
-
-TEST(Integrator, RefusesAMissingFrame) {
-    Render render(4, 3);
-    fill(render);
-    fs::remove(render.image("band_650nm"));
-    EXPECT_EQ(render.error(),
-              render.image("band_650nm").string() + ": this frame is missing; render it first");
-    EXPECT_EQ(render.files(), std::vector<std::string>{"povray"}) << "left behind";
-}
-
-TEST(Integrator, RefusesAFrameThatIsNotTheOneNoted) {
-    Render render(4, 3);
-    fill(render);
-    write_frame(render.image("band_650nm"), 4, 3, [](int, int, int) { return 1.0F; });
-    EXPECT_EQ(render.error(),
-              render.image("band_650nm").string() + ": is not the image that the manifest notes");
-    EXPECT_EQ(render.files(), std::vector<std::string>{"povray"}) << "left behind";
+TEST(Integrator, RefusesAFrameThatIsNotWhatItShouldBe) {
+    struct Case {
+        std::function<void(const fs::path&)> spoil;
+        bool is_noted;
+        std::string message;  // how it begins, after the frame's name
+    };
+    const auto dark = [](int, int, int) { return 1.0F; };
+    for (const Case& each : {
+             Case{[](const fs::path& f) { fs::remove(f); },
+                  false,
+                  ": this frame is missing; render it first"},
+             {[](const fs::path& f) { write_frame(f, 3, 40, ramp); },
+              true,
+              ": found 3 x 40 pixels; wanted 4 x 40"},
+             {[&](const fs::path& f) { write_frame(f, 4, 40, dark); },
+              false,
+              ": is not the image that the manifest notes"},
+             {[](const fs::path& f) { fs::resize_file(f, fs::file_size(f) - 20); }, true, ": "},
+             {[](const fs::path& f) { write_file(f, "no image"); },
+              true,
+              ": is no readable OpenEXR image: "},
+         }) {
+        Render render(4, 40);
+        fill(render);
+        const fs::path frame = render.image("band_650nm");
+        each.spoil(frame);
+        if (each.is_noted) render.manifest().frames[1].image_sha256 = sha256_of_file(frame);
+        const std::string found = render.error();
+        EXPECT_TRUE(found.starts_with(frame.string() + each.message)) << found;
+        EXPECT_EQ(render.files(), std::vector<std::string>{"povray"}) << "left behind";
+    }
 }
 
 // Frames may be rendered elsewhere: nobody has noted a checksum then.
@@ -380,20 +372,6 @@ TEST(Integrator, TakesFramesWithoutANotedChecksum) {
     fill(render);
     for (ManifestFrame& frame : render.manifest().frames) frame.image_sha256.clear();
     EXPECT_EQ(render.error(), "no error");
-}
-
-TEST(Integrator, RefusesAFrameThatIsNoImageOrCutShort) {
-    Render render(4, 40);
-    fill(render);
-    const fs::path frame = render.image("band_650nm");
-    fs::resize_file(frame, fs::file_size(frame) - 20);
-    render.manifest().frames[1].image_sha256 = sha256_of_file(frame);
-    EXPECT_TRUE(render.error().starts_with(frame.string() + ": ")) << render.error();
-    write_file(frame, "no image");
-    render.manifest().frames[1].image_sha256 = sha256_of_file(frame);
-    EXPECT_TRUE(render.error().starts_with(frame.string() + ": is no readable OpenEXR image: "))
-        << render.error();
-    EXPECT_EQ(render.files(), std::vector<std::string>{"povray"}) << "left behind";
 }
 
 TEST(Integrator, AFailureLeavesTheImagesOfBefore) {

@@ -2,15 +2,15 @@
 #include "spectral/light_family.h"
 
 #include "spectral/curve_loader.h"
+#include "support/flat.h"
+#include "support/simpson.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <random>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -21,10 +21,6 @@ constexpr WavelengthRange kRange{400.0, 700.0};
 constexpr double kWidth_nm = 300.0;
 // What some thousand additions of numbers of one sign may lose.
 constexpr double kRounding = 1e-13;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
 
 // first at 400 nm, last at 700 nm.
 Spectrum line(double first, double last) {
@@ -74,7 +70,7 @@ double total_weight(const std::vector<WeightedWavelength>& rule, std::size_t cha
     return sum;
 }
 
-// --- The reference grid against integrals done by hand -------------------------------------------
+// --- The reference grid against integrals done by hand -------------------------------------
 
 // K a straight line from k0 to k1 over the range, all else flat:
 //   T_c(l) = q_c W (exp(-k0 l) - exp(-k1 l)) / ((k1 - k0) l)
@@ -166,38 +162,6 @@ TEST(ReferenceGrid, IntegratesTheProductOfThreeLinesExactly) {
     EXPECT_NEAR(applied(grid, source, clear_water(), 1.0, 0), kWidth_nm / 4.0, kRounding * 75.0);
     EXPECT_NEAR(applied(grid, source, clear_water(), 1.0, 1), kWidth_nm / 3.0, kRounding * 100.0);
     EXPECT_NEAR(applied(grid, source, clear_water(), 1.0, 2), kWidth_nm / 12.0, kRounding * 25.0);
-}
-
-// Gauss-Legendre of n points is exact up to degree 2 n - 1, and no rule of n points goes further.
-TEST(ReferenceGrid, TakesAsManyPointsAsTheDegreeNeedsAndNoMore) {
-    const auto points = [](int lines, ResponseKind kind) {
-        std::vector<Spectrum> source{flat(1.0)};
-        for (int i = 0; i < lines; ++i) source.push_back(line(0.1, 1.0));
-        const auto family = family_of({source}, clear_water(), 1.0, 2.0);
-        // Two ends and no knot between them.
-        const Sensor sensor({line(1.0, 1.0), line(1.0, 1.0), line(1.0, 1.0)}, kind);
-        return reference_grid(sensor, family, kRange, 1e-11).size();
-    };
-    EXPECT_EQ(points(0, ResponseKind::Energy), 1U);
-    EXPECT_EQ(points(1, ResponseKind::Energy), 1U);
-    EXPECT_EQ(points(2, ResponseKind::Energy), 2U);
-    EXPECT_EQ(points(3, ResponseKind::Energy), 2U);
-    EXPECT_EQ(points(4, ResponseKind::Energy), 3U);
-    EXPECT_EQ(points(7, ResponseKind::Energy), 4U);
-    // Photons per joule are a line through 0, one degree more.
-    EXPECT_EQ(points(1, ResponseKind::Quantum), 2U);
-    EXPECT_EQ(points(3, ResponseKind::Quantum), 3U);
-}
-
-TEST(ReferenceGrid, NeedsMorePointsForASmallerError) {
-    const Water water{.absorption_per_m = line(0.0, 2.0)};
-    const auto family = family_of({{flat(1.0)}}, water, 2.0, 4.0);
-    std::size_t last = 0;
-    for (const double error : {1e-2, 1e-4, 1e-8}) {
-        const std::size_t size = reference_grid(flat_sensor(), family, kRange, error).size();
-        EXPECT_GT(size, last) << "at " << error;
-        last = size;
-    }
 }
 
 // A line of 0.2 nm with an area of 0.1 nm, which no grid finds that does not know the table's
@@ -316,22 +280,7 @@ TEST(ReferenceGrid, BearsAFamilyWithoutSources) {
     EXPECT_NEAR(total_weight(grid, 0), kWidth_nm, kRounding * kWidth_nm);
 }
 
-// --- The reference grid against brute force ------------------------------------------------------
-
-// A table of a few knots that belongs to one factor of the integrand, read by a straight line of
-// the test's own.
-struct Table {
-    std::vector<double> lambda_nm;
-    std::vector<double> value;
-
-    [[nodiscard]] double at(double x_nm) const {
-        std::size_t i = 1;
-        while (i + 1 < lambda_nm.size() && lambda_nm[i] < x_nm) ++i;
-        const double t = (x_nm - lambda_nm[i - 1]) / (lambda_nm[i] - lambda_nm[i - 1]);
-        return (1.0 - t) * value[i - 1] + t * value[i];
-    }
-    [[nodiscard]] Spectrum spectrum() const { return {"random", lambda_nm, value}; }
-};
+// --- The reference grid against brute force ------------------------------------------------
 
 class Dice {
   public:
@@ -339,36 +288,20 @@ class Dice {
     double between(double least, double most) {
         return std::uniform_real_distribution<double>(least, most)(engine_);
     }
-    Table table(double most) {
-        Table table;
+    Spectrum table(double most) {
+        std::vector<double> lambda_nm{400.0 - between(0.0, 5.0)};
+        std::vector<double> value{between(0.0, most)};
         const double spacing_nm = between(8.0, 80.0);
-        double lambda_nm = 400.0 - between(0.0, 5.0);
-        while (true) {
-            table.lambda_nm.push_back(lambda_nm);
-            table.value.push_back(between(0.0, most));
-            if (lambda_nm >= 700.0) return table;
-            lambda_nm += between(0.1, 2.0) * spacing_nm;
+        while (lambda_nm.back() < 700.0) {
+            lambda_nm.push_back(lambda_nm.back() + between(0.1, 2.0) * spacing_nm);
+            value.push_back(between(0.0, most));
         }
+        return {"random", lambda_nm, value};
     }
 
   private:
     std::mt19937_64 engine_;
 };
-
-// Simpson's rule on every stretch between knots.
-template <typename Integrand>
-double simpson(const std::set<double>& knots_nm, int panels, const Integrand& f) {
-    double sum = 0.0;
-    for (auto it = knots_nm.begin(); std::next(it) != knots_nm.end(); ++it) {
-        const double width_nm = *std::next(it) - *it;
-        for (int i = 0; i <= 2 * panels; ++i) {
-            const double simpson_weight = i == 0 || i == 2 * panels ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-            sum +=
-                simpson_weight * width_nm / (6.0 * panels) * f(*it + width_nm * i / (2.0 * panels));
-        }
-    }
-    return sum;
-}
 
 TEST(ReferenceGrid, HoldsItsErrorForRandomFamilies) {
     constexpr double kError = 1e-8;
@@ -379,57 +312,40 @@ TEST(ReferenceGrid, HoldsItsErrorForRandomFamilies) {
     Dice dice(1);
     for (int trial = 0; trial < 12; ++trial) {
         const bool is_quantum = trial % 2 == 1;
-        std::array<Table, kChannels> responses;
-        for (Table& response : responses) response = dice.table(1.0);
-        const Table absorption = dice.table(0.7);
-        std::vector<std::vector<Table>> sources;
-        for (int s = 0; s <= trial % 3; ++s) {
-            sources.push_back({dice.table(5.0), dice.table(0.5)});
-            sources.push_back({sources.back().front()});
-        }
-        const double multiple = trial == 0 ? 0.0 : trial == 1 ? 20.0 : dice.between(0.0, 20.0);
-        const double shortest_m = dice.between(0.2, 3.0);
-        const double longest_m = shortest_m * dice.between(1.0, 6.0);
-
-        std::set<double> knots_nm{kRange.first_nm, kRange.last_nm};
-        const auto note = [&](const Table& table) {
-            for (const double lambda_nm : table.lambda_nm) {
-                if (kRange.contains(lambda_nm)) knots_nm.insert(lambda_nm);
-            }
-        };
-        for (const Table& table : responses) note(table);
-        for (const auto& source : sources) std::ranges::for_each(source, note);
-        note(absorption);
-
+        const Sensor sensor({dice.table(1.0), dice.table(1.0), dice.table(1.0)},
+                            is_quantum ? ResponseKind::Quantum : ResponseKind::Energy);
         LightFamily family = family_of({},
-                                       {.absorption_per_m = absorption.spectrum(),
-                                        .multiple = multiple,
+                                       {.absorption_per_m = dice.table(0.7),
+                                        .multiple = trial == 0 ? 0.0 : dice.between(0.0, 20.0),
                                         .uniform_loss_per_m = 0.1},
-                                       shortest_m,
-                                       longest_m);
-        for (const auto& source : sources) {
-            family.sources.emplace_back();
-            for (const Table& table : source) family.sources.back().push_back(table.spectrum());
+                                       dice.between(0.2, 3.0),
+                                       0.0);
+        family.longest_path_m = family.shortest_path_m * dice.between(1.0, 6.0);
+        std::vector<const Spectrum*> curves = sensor.curves();
+        curves.push_back(&family.water.absorption_per_m);
+        for (int s = 0; s <= trial % 3; ++s) {
+            family.sources.push_back({dice.table(5.0), dice.table(0.5)});
+            family.sources.push_back({family.sources.back().front()});
         }
-        const Sensor sensor(
-            {responses[0].spectrum(), responses[1].spectrum(), responses[2].spectrum()},
-            is_quantum ? ResponseKind::Quantum : ResponseKind::Energy);
+        for (const auto& source : family.sources) {
+            for (const Spectrum& curve : source) curves.push_back(&curve);
+        }
+        const auto nodes = simpson_nodes(knots_within(kRange, curves), kPanels);
         const auto grid = reference_grid(sensor, family, kRange, kError);
-
-        const double path_m = shortest_m + dice.between(0.0, 1.0) * (longest_m - shortest_m);
-        for (std::size_t s = 0; s < sources.size(); ++s) {
-            for (const double l_m : {shortest_m, path_m, longest_m}) {
+        const double path_m = dice.between(family.shortest_path_m, family.longest_path_m);
+        for (std::size_t s = 0; s < family.sources.size(); ++s) {
+            for (const double l_m : {family.shortest_path_m, path_m, family.longest_path_m}) {
                 const std::size_t c = s % kChannels;
-                const double right = simpson(knots_nm, kPanels, [&](double lambda_nm) {
-                    double f = responses[c].at(lambda_nm);
-                    for (const Table& table : sources[s]) f *= table.at(lambda_nm);
-                    if (is_quantum) f *= lambda_nm * 1e-9 / (6.62607015e-34 * 299792458.0);
-                    return f * std::exp(-(multiple * absorption.at(lambda_nm) + 0.1) * l_m);
-                });
+                double right = 0.0;
+                for (const auto& [nm, weight_nm] : nodes) {
+                    double f = weight_nm * sensor.response(static_cast<int>(c), nm);
+                    for (const Spectrum& curve : family.sources[s]) f *= curve.at(nm);
+                    right += f * std::exp(-family.water.attenuation_per_m(nm) * l_m);
+                }
                 const double found = applied(grid, family.sources[s], family.water, l_m, c);
                 EXPECT_NEAR(found / right, 1.0, kError + kSimpsonError)
-                    << "family " << trial << ", source " << s << ", path " << l_m << " m, multiple "
-                    << multiple << ", " << grid.size() << " points";
+                    << "family " << trial << ", source " << s << ", path " << l_m << " m, "
+                    << grid.size() << " points";
             }
         }
     }

@@ -2,16 +2,14 @@
 #include "spectral/quadrature_fit.h"
 
 #include "spectral/curve_loader.h"
+#include "support/flat.h"
 
 #include <gtest/gtest.h>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <random>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,12 +25,6 @@ constexpr double kRounding = 1e-13;
 constexpr double kGridError = 2e-9;
 // Lawson's iteration ends this near the least error there is.
 constexpr double kConverged = 0.01;
-// Between two of kCheckPaths paths an error may peak higher than at both.
-constexpr double kBetweenPaths = 0.02;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
 
 // first at 400 nm, last at 700 nm.
 Spectrum line(double first, double last) {
@@ -116,169 +108,7 @@ std::array<double, kChannels> rule_error(const Sensor& sensor,
     return errors;
 }
 
-// --- Integrals of the test's own -----------------------------------------------------------------
-
-// Which light: source, share of the tilt, path.
-struct Member {
-    std::size_t source = 0;
-    double tilt = 0.0;
-    double path_m = 0.0;
-};
-
-// Simpson's rule on every stretch between knots of any table, in so many panels that light falls by
-// no more than exp(-1/32) over one of them: of a panel over which it falls by exp(-d) Simpson's
-// rule misses d^4 / 2880, here 3e-10. And no fewer than kSmooth or kRough, for the product of the
-// tables alone: of t^4 from 0 to 1, the roughest of products of four, n panels miss 1 / (120 n^4),
-// 2e-9 of it if n is 64; what real tables do over a few nm is smoother by far.
-//
-// Like the fitter it leaves the common factor exp(-K_0 l) away, or black water would be zero.
-constexpr int kSmooth = 8;
-constexpr int kRough = 64;
-
-class Simpson {
-  public:
-    Simpson(const Sensor& sensor, const LightFamily& family, WavelengthRange range, int panels)
-        : family_(family) {
-        std::set<double> knots_nm{range.first_nm, range.last_nm};
-        const auto note = [&](const Spectrum& curve) {
-            for (const double nm : curve.lambda_nm()) {
-                if (range.contains(nm)) knots_nm.insert(nm);
-            }
-        };
-        for (const Spectrum* curve : sensor.curves()) note(*curve);
-        for (const auto& source : family.sources) std::ranges::for_each(source, note);
-        if (family.water.multiple != 0.0) note(family.water.absorption_per_m);
-        if (family.tilt) note(*family.tilt);
-        const auto K_per_m = [&](double nm) { return family.water.attenuation_per_m(nm); };
-        for (const double nm : knots_nm) least_K_per_m_ = std::min(least_K_per_m_, K_per_m(nm));
-        for (auto it = knots_nm.begin(); std::next(it) != knots_nm.end(); ++it) {
-            const double first_nm = *it;
-            const double last_nm = *std::next(it);
-            const double fall =
-                std::abs(K_per_m(last_nm) - K_per_m(first_nm)) * family.longest_path_m;
-            const double depth = (std::min(K_per_m(first_nm), K_per_m(last_nm)) - least_K_per_m_) *
-                                 family.shortest_path_m;
-            // What is as dark as exp(-60) beside the brightest needs no care.
-            const bool is_dark = depth > 60.0;
-            const int n = is_dark
-                              ? panels
-                              : std::max(panels, static_cast<int>(std::ceil(kPanelsPerE * fall)));
-            for (int i = 0; i <= 2 * n; ++i) {
-                const double share = i == 0 || i == 2 * n ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-                const double nm = std::lerp(first_nm, last_nm, i / (2.0 * n));
-                add(sensor, nm, share * (last_nm - first_nm) / (6.0 * n));
-            }
-        }
-    }
-
-    [[nodiscard]] std::array<double, kChannels> signals(const Member& member) const {
-        std::array<double, kChannels> sum{};
-        for (const Node& node : nodes_) {
-            const double f =
-                node.sources[member.source] *
-                std::exp((least_K_per_m_ - node.K_per_m) * member.path_m + member.tilt * node.tilt);
-            for (std::size_t c = 0; c < kChannels; ++c) sum[c] += node.weight[c] * f;
-        }
-        return sum;
-    }
-
-    [[nodiscard]] double in_frame(const FrameLight& frame, const Member& member) const {
-        return frame.sources[member.source] *
-               std::exp((least_K_per_m_ - frame.attenuation_per_m) * member.path_m +
-                        member.tilt * frame.tilt);
-    }
-
-    // The relative error of a rule on a member; 0 where there is no signal.
-    [[nodiscard]] std::array<double, kChannels> errors(const std::vector<WeightedWavelength>& rule,
-                                                       const std::vector<FrameLight>& frames,
-                                                       const Member& member) const {
-        const auto right = signals(member);
-        std::array<double, kChannels> errors{};
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            double found = 0.0;
-            for (std::size_t j = 0; j < rule.size(); ++j) {
-                found += rule[j].weight[c] * in_frame(frames[j], member);
-            }
-            if (right[c] > 0.0) errors[c] = found / right[c] - 1.0;
-        }
-        return errors;
-    }
-
-  private:
-    static constexpr double kPanelsPerE = 32.0;
-
-    struct Node {
-        std::array<double, kChannels> weight{};
-        std::vector<double> sources;
-        double K_per_m = 0.0;
-        double tilt = 0.0;
-    };
-
-    void add(const Sensor& sensor, double nm, double width_nm) {
-        Node node{.sources = {},
-                  .K_per_m = family_.water.attenuation_per_m(nm),
-                  .tilt = family_.tilt ? family_.tilt->at(nm) : 0.0};
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            node.weight[c] = width_nm * sensor.response(static_cast<int>(c), nm);
-        }
-        for (const auto& curves : family_.sources) {
-            double value = 1.0;
-            for (const Spectrum& curve : curves) value *= curve.at(nm);
-            node.sources.push_back(value);
-        }
-        nodes_.push_back(std::move(node));
-    }
-
-    LightFamily family_;
-    std::vector<Node> nodes_;
-    double least_K_per_m_ = std::numeric_limits<double>::infinity();
-};
-
-class Dice {
-  public:
-    explicit Dice(unsigned seed) : engine_(seed) {}
-    double between(double least, double most) {
-        return std::uniform_real_distribution<double>(least, most)(engine_);
-    }
-    Spectrum curve(double least, double most) {
-        std::vector<double> lambda_nm;
-        std::vector<double> value;
-        const double spacing_nm = between(8.0, 80.0);
-        double nm = 400.0 - between(0.0, 5.0);
-        while (true) {
-            lambda_nm.push_back(nm);
-            value.push_back(between(least, most));
-            if (nm >= 700.0) return {"random", lambda_nm, value};
-            nm += between(0.1, 2.0) * spacing_nm;
-        }
-    }
-    Sensor sensor() {
-        return {{curve(0.0, 1.0), curve(0.0, 1.0), curve(0.0, 1.0)}, ResponseKind::Energy};
-    }
-    LightFamily family(int sources) {
-        LightFamily family = family_of({},
-                                       {.absorption_per_m = curve(0.0, 0.7),
-                                        .multiple = between(0.0, 3.0),
-                                        .uniform_loss_per_m = 0.1},
-                                       between(0.2, 3.0),
-                                       0.0);
-        family.longest_path_m = family.shortest_path_m * between(1.0, 6.0);
-        const Spectrum lamp = curve(0.1, 5.0);
-        for (int s = 0; s < sources; ++s) family.sources.push_back({lamp, curve(0.02, 0.5)});
-        return family;
-    }
-    Member member(const LightFamily& family) {
-        const auto sources = static_cast<double>(family.sources.size());
-        return {.source = static_cast<std::size_t>(between(0.0, sources)),
-                .tilt = family.tilt ? between(-1.0, 1.0) : 0.0,
-                .path_m = between(family.shortest_path_m, family.longest_path_m)};
-    }
-
-  private:
-    std::mt19937_64 engine_;
-};
-
-// --- The error of a rule -------------------------------------------------------------------------
+// --- The error of a rule -------------------------------------------------------------------
 
 // All flat but K, a line that rises by k over the range. One wavelength in the middle finds
 // W exp(-K_m l) where W exp(-K_m l) sinh(x) / x is right, x = k l / 2; so it errs by
@@ -363,71 +193,7 @@ TEST(RuleError, IsZeroForAChannelThatSeesNothing) {
     EXPECT_EQ(rule_error(sensor, family, kRange, rule)[0], 0.0);
 }
 
-LightFamily habcam_light() {
-    return family_of(
-        {{load_curve("xenon-flash", CurveRole::LampSpectrum, {}),
-          load_curve("sand", CurveRole::Reflectance, {})}},
-        {.absorption_per_m = load_curve("pope-fry-1997", CurveRole::WaterAbsorption, {})},
-        3.5,
-        6.0);
-}
-
-TEST(RuleError, IsNothingForTheReferenceItself) {
-    // Both grids may be off by their stated error.
-    constexpr double kBothGrids = 1e-8 + 1e-9;
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    const auto grid = reference_grid(sensor, habcam_light(), kRange, 1e-8);
-    for (const double error : rule_error(sensor, habcam_light(), kRange, grid)) {
-        EXPECT_LE(error, kBothGrids);
-    }
-}
-
-// The midpoint rule is of second order once its bands are narrower than the tables' own steps;
-// with straight lines for tables that is from the start: the error of 2 n bands is a quarter.
-TEST(RuleError, OfEqualBandsFallsWithTheSquareOfTheirWidth) {
-    constexpr double kFourthOrder = 0.02;  // what the next term leaves at 16 bands
-    const Sensor sensor({line(0.2, 1.0), line(1.0, 0.3), flat(1.0)}, ResponseKind::Energy);
-    const Water water{.absorption_per_m = line(0.1, 1.0)};
-    const auto family = family_of({{line(1.0, 2.0)}}, water, 1.0, 4.0);
-    const auto at = [&](int count) {
-        return rule_error(sensor, family, kRange, equal_bands(sensor, kRange, count));
-    };
-    const auto coarse = at(16);
-    const auto fine = at(32);
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        EXPECT_NEAR(coarse[c] / fine[c], 4.0, 4.0 * kFourthOrder) << coarse[c] << " " << fine[c];
-    }
-}
-
-TEST(RuleError, OfEqualBandsFallsWithRealTablesToo) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    std::array<double, kChannels> last{1.0, 1.0, 1.0};
-    for (const int count : {12, 48, 192}) {
-        const auto found =
-            rule_error(sensor, habcam_light(), kRange, equal_bands(sensor, kRange, count));
-        // Four times the bands: 16 times less if the tables were smooth; half of that is asked.
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            EXPECT_LT(found[c], last[c] / 8.0) << count << " bands, channel " << c;
-        }
-        last = found;
-    }
-}
-
-// --- The amplification of a rule -----------------------------------------------------------------
-
-// sum |w_j| f_j / T = sum w_j f_j / T = 1 where no weight is negative and the rule is exact: a
-// flat sensor and lamp, and water that takes away alike at every wavelength.
-TEST(RuleAmplification, IsOneForAnExactRuleOfOneSign) {
-    const Water water{.absorption_per_m = flat(1.0), .multiple = 0.0, .uniform_loss_per_m = 0.4};
-    const auto family = family_of({{flat(1.0)}}, water, 1.0, 3.0);
-    for (const int count : {1, 2, 7}) {
-        for (const RuleQuality& q :
-             judged(flat_sensor(), family, kRange, equal_bands(flat_sensor(), kRange, count))) {
-            EXPECT_NEAR(q.error, 0.0, kRounding) << count << " bands";
-            EXPECT_NEAR(q.amplification, 1.0, kRounding) << count << " bands";
-        }
-    }
-}
+// --- The amplification of a rule -----------------------------------------------------------
 
 // Weights 2 W and -W in clear water find 2 - 1 = 1 of what is there, and let in the rounding of
 // 2 + 1 = 3 of it.
@@ -473,7 +239,7 @@ TEST(RuleQuality, PromisesItsErrorAndWhatItLetsInOfTheFrames) {
     EXPECT_EQ(rule.promise(0.125), 0.625);
 }
 
-// --- Fits that are known by hand -----------------------------------------------------------------
+// --- Fits that are known by hand -----------------------------------------------------------
 
 // The lamp rises from 1 to 3, the responses fall, rise and stay: T is the integral of a product
 // of two lines, W (a c + (a d + b c) / 2 + b d / 3) for (a + b t) (c + d t), and the weight makes
@@ -579,29 +345,6 @@ TEST(QuadratureFitter, FindsTheWeightsOfASumOfExponentials) {
     }
 }
 
-// The same of two wavelengths under one step: any split is as good, and even is the smallest.
-TEST(QuadratureFitter, SharesTheLoadBetweenFramesThatTellTheSame) {
-    constexpr double kArea_nm = 36.0;
-    constexpr double kSingular = 1e-2;  // rounding over the square of the ridge
-    const Steps steps{{0.1, 0.9}};
-    const QuadratureFitter fitter(flat_sensor(), steps.family(), kRange);
-    const FittedRule rule = fitter.fit(frames_at(fitter, {410.0, 430.0, 480.0}), kFrameError);
-    EXPECT_LT(rule.error(), kGridError);
-    EXPECT_NEAR(rule.wavelengths[0].weight[0] / kArea_nm, 0.5, kSingular);
-    EXPECT_NEAR(rule.wavelengths[1].weight[0] / kArea_nm, 0.5, kSingular);
-    EXPECT_NEAR(rule.wavelengths[2].weight[0] / kArea_nm, 1.0, kSingular);
-}
-
-// With one path there is one number to match for each source.
-TEST(QuadratureFitter, IsExactForOnePathWithAWavelengthForEachSource) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    const QuadratureFitter fitter(sensor, sea_floor(4.0, 4.0), kRange);
-    EXPECT_LT(fitter.fit(frames_at(fitter, {450.0, 560.0}), 0.0).error(), kGridError);
-    const QuadratureFitter alone(
-        sensor, family_of({lit_by_the_flash("sand")}, pure_water(), 4.0, 4.0), kRange);
-    EXPECT_LT(alone.fit(frames_at(alone, {560.0}), 0.0).error(), kGridError);
-}
-
 TEST(QuadratureFitter, GivesAChannelThatSeesNothingNoWeight) {
     const Sensor sensor({flat(1.0), flat(0.0), line(0.0, 1.0)}, ResponseKind::Energy);
     const QuadratureFitter fitter(sensor, sea_floor(1.0, 3.0), kRange);
@@ -612,104 +355,7 @@ TEST(QuadratureFitter, GivesAChannelThatSeesNothingNoWeight) {
     EXPECT_GT(rule.quality[0].error, 0.0);
 }
 
-TEST(QuadratureFitter, KnowsThatThereIsNoLight) {
-    const QuadratureFitter dark(
-        flat_sensor(), family_of({{flat(0.0)}}, pure_water(), 1.0, 2.0), kRange);
-    EXPECT_TRUE(dark.places_of_light(8).empty());
-    const FittedRule rule = dark.fit(frames_at(dark, {450.0, 550.0}), kFrameError);
-    EXPECT_EQ(rule.error(), 0.0);
-    for (const WeightedWavelength& w : rule.wavelengths) {
-        for (const double weight : w.weight) EXPECT_EQ(weight, 0.0);
-    }
-    const QuadratureFitter none(flat_sensor(), family_of({}, pure_water(), 1.0, 2.0), kRange);
-    EXPECT_TRUE(none.places_of_light(8).empty());
-    // One lamp of two that is out.
-    const QuadratureFitter half(
-        flat_sensor(), family_of({{flat(0.0)}, {flat(1.0)}}, pure_water(), 1.0, 2.0), kRange);
-    EXPECT_FALSE(half.places_of_light(8).empty());
-}
-
-// --- Fits against other ways to weigh ------------------------------------------------------------
-
-// Least squares of the relative errors, on paths and integrals of the test's own.
-std::vector<WeightedWavelength> least_squares(const Simpson& simpson,
-                                              const LightFamily& family,
-                                              const std::vector<FrameLight>& frames) {
-    constexpr int kPaths = 40;
-    const auto rows = static_cast<Eigen::Index>(kPaths * family.sources.size());
-    const auto columns = static_cast<Eigen::Index>(frames.size());
-    std::vector<WeightedWavelength> rule;
-    for (const FrameLight& frame : frames) {
-        rule.push_back({.lambda_nm = frame.lambda_nm, .weight = {}});
-    }
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        Eigen::MatrixXd a(rows, columns);
-        Eigen::Index row = 0;
-        for (std::size_t s = 0; s < family.sources.size(); ++s) {
-            for (int p = 0; p < kPaths; ++p) {
-                const Member member{
-                    .source = s,
-                    .path_m = std::lerp(
-                        family.shortest_path_m, family.longest_path_m, p / (kPaths - 1.0))};
-                const double right = simpson.signals(member)[c];
-                for (Eigen::Index j = 0; j < columns; ++j) {
-                    a(row, j) =
-                        simpson.in_frame(frames[static_cast<std::size_t>(j)], member) / right;
-                }
-                ++row;
-            }
-        }
-        const Eigen::VectorXd x = a.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(rows));
-        for (Eigen::Index j = 0; j < columns; ++j) {
-            rule[static_cast<std::size_t>(j)].weight[c] = x(j);
-        }
-    }
-    return rule;
-}
-
-TEST(QuadratureFitter, NeverErrsMoreThanLeastSquaresOrEqualBands) {
-    // The smallest ridge r: minimising e^2 + r^2 y^2 instead of e^2 it loses r |y| at most, y the
-    // solution, of whose size the amplification is a measure.
-    constexpr double kRidge = 1e-7;
-    Dice dice(21);
-    for (int trial = 0; trial < 15; ++trial) {
-        const Sensor sensor = dice.sensor();
-        const LightFamily family = dice.family(1 + trial % 3);
-        const QuadratureFitter fitter(sensor, family, kRange);
-        const Simpson simpson(sensor, family, kRange, kRough);
-        const int count = 2 + trial % 5;
-        const auto bands = equal_bands(sensor, kRange, count);
-        const auto frames = frames_of(fitter, bands);
-        const FittedRule rule = fitter.fit(frames, 0.0);
-        const auto of_squares = fitter.judge(least_squares(simpson, family, frames), frames);
-        const auto of_bands = fitter.judge(bands, frames);
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            const double found = rule.quality[c].error;
-            EXPECT_LE(found,
-                      (1.0 + kConverged) * of_squares[c].error +
-                          kRidge * of_squares[c].amplification + kGridError)
-                << "family " << trial << ", channel " << c << ", " << count << " wavelengths";
-            EXPECT_LE(found, (1.0 + kConverged) * of_bands[c].error + kGridError)
-                << "family " << trial << ", channel " << c << ", " << count << " wavelengths";
-        }
-    }
-}
-
-TEST(QuadratureFitter, NeverErrsMoreWithAnotherWavelength) {
-    const QuadratureFitter fitter(builtin_sensor("nikon-d5100"), sea_floor(1.0, 8.0), kRange);
-    std::vector<double> lambda_nm;
-    std::array<double, kChannels> last;
-    last.fill(1.0);
-    for (const double nm : {550.0, 610.0, 470.0, 580.0, 640.0, 510.0, 430.0, 690.0}) {
-        lambda_nm.push_back(nm);
-        const FittedRule rule = fitter.fit(frames_at(fitter, lambda_nm), 0.0);
-        for (std::size_t c = 0; c < kChannels; ++c) {
-            EXPECT_LE(rule.quality[c].error, (1.0 + kConverged) * last[c] + kGridError)
-                << "with " << nm << " nm, channel " << c;
-            last[c] = rule.quality[c].error;
-        }
-    }
-}
+// --- Fits against other ways to weigh ------------------------------------------------------
 
 // What a fit says of itself is what a judge says of its weights.
 TEST(QuadratureFitter, JudgesItselfAsItJudgesOthers) {
@@ -740,158 +386,7 @@ TEST(QuadratureFitter, HoldsWeightsDownWhereFramesAreRough) {
     }
 }
 
-// --- Fits against brute force --------------------------------------------------------------------
-
-// The frames' water and lamp are others; what they hold came the same way.
-TEST(QuadratureFitter, FitsFramesOfAnotherWater) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    const LightFamily family = sea_floor(2.0, 6.0);
-    const QuadratureFitter fitter(sensor, family, kRange);
-    const Simpson simpson(sensor, family, kRange, kSmooth);
-    Dice dice(22);
-    for (const double multiple : {0.0, 0.5, 1.7}) {
-        for (const double uniform_per_m : {0.0, 0.2}) {
-            std::vector<FrameLight> frames;
-            for (const double nm : {430.0, 500.0, 560.0, 600.0, 650.0}) {
-                FrameLight frame = fitter.frame_at(nm);
-                frame.attenuation_per_m = multiple * frame.attenuation_per_m + uniform_per_m;
-                for (double& source : frame.sources) source *= 0.1 + 1e-3 * nm;
-                frames.push_back(frame);
-            }
-            const FittedRule rule = fitter.fit(frames, kFrameError);
-            std::array<double, kChannels> worst{};
-            for (int i = 0; i < 60; ++i) {
-                const Member member = dice.member(family);
-                const auto errors = simpson.errors(rule.wavelengths, frames, member);
-                for (std::size_t c = 0; c < kChannels; ++c) {
-                    worst[c] = std::max(worst[c], std::abs(errors[c]));
-                    EXPECT_LE(std::abs(errors[c]),
-                              rule.quality[c].error * (1.0 + kBetweenPaths) + kGridError)
-                        << multiple << " of the water and " << uniform_per_m << " 1/m, path "
-                        << member.path_m << " m, source " << member.source << ", channel " << c;
-                }
-            }
-            // And the error is one that there is, not a bound far above: 60 members come near.
-            for (std::size_t c = 0; c < kChannels; ++c) {
-                EXPECT_GE(worst[c], 0.5 * rule.quality[c].error) << "channel " << c;
-                EXPECT_LT(rule.quality[c].error, 1.0) << "channel " << c;
-            }
-        }
-    }
-}
-
-// Frames of the water itself, scaled each by a number of its own: the weights take it back.
-TEST(QuadratureFitter, TakesBackWhateverFactorAFrameHas) {
-    const QuadratureFitter fitter(builtin_sensor("nikon-d5100"), sea_floor(2.0, 6.0), kRange);
-    auto frames = frames_at(fitter, {450.0, 550.0, 620.0});
-    const FittedRule rule = fitter.fit(frames, kFrameError);
-    // Powers of two round nothing.
-    const std::array factors{0x1p-40, 0x1p30, 0x1p3};
-    for (std::size_t j = 0; j < frames.size(); ++j) {
-        for (double& source : frames[j].sources) source *= factors[j];
-    }
-    const FittedRule scaled = fitter.fit(frames, kFrameError);
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        EXPECT_EQ(scaled.quality[c].error, rule.quality[c].error);
-        for (std::size_t j = 0; j < frames.size(); ++j) {
-            EXPECT_EQ(scaled.wavelengths[j].weight[c] * factors[j], rule.wavelengths[j].weight[c]);
-        }
-    }
-}
-
-// A pixel is a sum of members with factors that are not negative, and each frame is off by up to
-// the frame error, in the worst direction.
-TEST(QuadratureFitter, KeepsItsPromiseToAnyPixel) {
-    Dice dice(23);
-    for (int trial = 0; trial < 12; ++trial) {
-        const Sensor sensor = dice.sensor();
-        LightFamily family = dice.family(1 + trial % 4);
-        const QuadratureFitter fitter(sensor, family, kRange);
-        const Simpson simpson(sensor, family, kRange, kRough);
-        std::vector<double> lambda_nm;
-        for (int j = 0; j <= trial % 5; ++j) lambda_nm.push_back(dice.between(400.0, 700.0));
-        const auto frames = frames_at(fitter, lambda_nm);
-        const double frame_error = std::pow(10.0, dice.between(-6.0, -1.0));
-        const FittedRule rule = fitter.fit(frames, frame_error);
-        for (int pixel = 0; pixel < 10; ++pixel) {
-            std::array<double, kChannels> right{};
-            std::array<double, kChannels> found{};
-            std::array<double, kChannels> off{};
-            for (int m = 0; m < 4; ++m) {
-                const Member member = dice.member(family);
-                const double factor = std::pow(10.0, dice.between(-2.0, 2.0));
-                const auto signals = simpson.signals(member);
-                for (std::size_t c = 0; c < kChannels; ++c) {
-                    right[c] += factor * signals[c];
-                    for (std::size_t j = 0; j < frames.size(); ++j) {
-                        const double light = rule.wavelengths[j].weight[c] * factor *
-                                             simpson.in_frame(frames[j], member);
-                        found[c] += light;
-                        off[c] += std::abs(light) * frame_error;
-                    }
-                }
-            }
-            for (std::size_t c = 0; c < kChannels; ++c) {
-                const double error = (std::abs(found[c] - right[c]) + off[c]) / right[c];
-                EXPECT_LE(error,
-                          rule.quality[c].promise(frame_error) * (1.0 + kBetweenPaths) + kGridError)
-                    << "family " << trial << ", channel " << c << ", frame error " << frame_error;
-            }
-        }
-    }
-}
-
-// --- The tilt behind a port ----------------------------------------------------------------------
-
-// By up to a tenth, up and down over the range, as of light near the edge of a beam.
-Spectrum wavy_tilt(double most) {
-    return {"tilt",
-            {400.0, 470.0, 520.0, 590.0, 640.0, 700.0},
-            {-most, -0.2 * most, 0.6 * most, 0.1 * most, -0.5 * most, most}};
-}
-
-TEST(QuadratureFitter, BoundsEveryTilt) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    Dice dice(24);
-    for (const double most : {0.01, 0.1, 0.3}) {
-        LightFamily family = sea_floor(2.0, 6.0);
-        family.tilt = wavy_tilt(most);
-        const QuadratureFitter fitter(sensor, family, kRange);
-        const Simpson simpson(sensor, family, kRange, kSmooth);
-        for (const std::vector<double>& lambda_nm : {std::vector{550.0},
-                                                     {450.0, 540.0, 610.0},
-                                                     {430.0, 470.0, 520.0, 570.0, 600.0, 650.0}}) {
-            const auto frames = frames_at(fitter, lambda_nm);
-            const FittedRule rule = fitter.fit(frames, kFrameError);
-            for (int i = 0; i < 60; ++i) {
-                const Member member = dice.member(family);
-                const auto errors = simpson.errors(rule.wavelengths, frames, member);
-                for (std::size_t c = 0; c < kChannels; ++c) {
-                    EXPECT_LE(std::abs(errors[c]),
-                              rule.quality[c].error * (1.0 + kBetweenPaths) + kGridError)
-                        << lambda_nm.size() << " wavelengths, tilt of " << most << ", "
-                        << member.tilt << " of it, path " << member.path_m << " m, channel " << c;
-                }
-            }
-        }
-    }
-}
-
-// The same tilt at every wavelength is a factor, which is in the frames too.
-TEST(QuadratureFitter, IgnoresATiltThatIsTheSameEverywhere) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    LightFamily family = sea_floor(2.0, 6.0);
-    const QuadratureFitter plain(sensor, family, kRange);
-    family.tilt = flat(0.5);
-    const QuadratureFitter tilted(sensor, family, kRange);
-    const std::vector<double> lambda_nm{450.0, 540.0, 610.0};
-    const FittedRule without = plain.fit(frames_at(plain, lambda_nm), kFrameError);
-    const FittedRule with = tilted.fit(frames_at(tilted, lambda_nm), kFrameError);
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        // As many rows three times over, so that the iteration ends a little elsewhere.
-        EXPECT_NEAR(with.quality[c].error / without.quality[c].error, 1.0, kConverged);
-    }
-}
+// --- The tilt behind a port ----------------------------------------------------------------
 
 // A tilt of h at the one wavelength's indices and none elsewhere: in clear water the frame holds
 // exp(h), 1 and exp(-h) of the same signal. Best is 1 / cosh(h), which errs by tanh(h).
@@ -909,7 +404,7 @@ TEST(QuadratureFitter, KnowsTheTiltOfAFrameFromItsOwnIndices) {
     }
 }
 
-// --- Light that a channel does not see -----------------------------------------------------------
+// --- Light that a channel does not see -----------------------------------------------------
 
 // Red sees nothing under 600 nm, so nothing of the second lamp. At 450 nm both shine: a weight
 // there would be no error to the first lamp, and show red the second, which may be brighter by any
@@ -960,7 +455,7 @@ TEST(QuadratureFitter, GivesNoWeightToLightThatNoFrameHolds) {
     }
 }
 
-// --- Invariance ----------------------------------------------------------------------------------
+// --- Invariance ----------------------------------------------------------------------------
 
 void expect_equal(const FittedRule& one, const FittedRule& other, double relative) {
     for (std::size_t c = 0; c < kChannels; ++c) {
@@ -978,25 +473,6 @@ void expect_equal(const FittedRule& one, const FittedRule& other, double relativ
 // Rounding to other numbers, passed on by sixty steps of the iteration.
 constexpr double kSixtySteps = 1e-8;
 const std::vector<double> kThree_nm{450.0, 540.0, 610.0};
-
-// The lamp's scale is in the frames and in the signals alike: weights do not know it. A power of
-// two does not even round.
-TEST(QuadratureFitter, DoesNotKnowHowBrightALampIs) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    const auto fitted = [&](double sand, double algae) {
-        LightFamily family = sea_floor(1.0, 5.0);
-        family.sources[0][0] = times(family.sources[0][0], sand);
-        family.sources[1][0] = times(family.sources[1][0], algae);
-        const QuadratureFitter fitter(sensor, family, kRange);
-        return fitter.fit(frames_at(fitter, kThree_nm), kFrameError);
-    };
-    const FittedRule rule = fitted(1.0, 1.0);
-    expect_equal(fitted(0x1p-100, 0x1p-100), rule, 0.0);
-    expect_equal(fitted(0x1p90, 0x1p-90), rule, 0.0);
-    expect_equal(fitted(1e-30, 1e-30), rule, kSixtySteps);
-    expect_equal(fitted(1e30, 1e30), rule, kSixtySteps);
-    expect_equal(fitted(1e30, 1e-30), rule, kSixtySteps);
-}
 
 // The sensor's scale is in the weights.
 TEST(QuadratureFitter, WeighsInTheUnitsOfTheSensor) {
@@ -1019,23 +495,6 @@ TEST(QuadratureFitter, WeighsInTheUnitsOfTheSensor) {
     expect_equal(fitted(1e30), rule, kSixtySteps);
 }
 
-// Paths times s, losses over s: the same K l.
-TEST(QuadratureFitter, DoesNotKnowHowLongAMetreIs) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    const auto fitted = [&](double s) {
-        LightFamily family = sea_floor(1.0 * s, 5.0 * s);
-        family.water.absorption_per_m = times(family.water.absorption_per_m, 1.0 / s);
-        family.water.uniform_loss_per_m = 0.25 / s;
-        const QuadratureFitter fitter(sensor, family, kRange);
-        return fitter.fit(frames_at(fitter, kThree_nm), kFrameError);
-    };
-    const FittedRule rule = fitted(1.0);
-    expect_equal(fitted(0x1p10), rule, 0.0);
-    expect_equal(fitted(0x1p-6), rule, 0.0);
-    expect_equal(fitted(3.7), rule, kSixtySteps);
-    expect_equal(fitted(1000.0), rule, kSixtySteps);
-}
-
 // A loss without colour takes from the frames what it takes from the signals.
 TEST(QuadratureFitter, DoesNotCareForALossWithoutColour) {
     const Sensor sensor = builtin_sensor("nikon-d5100");
@@ -1052,7 +511,7 @@ TEST(QuadratureFitter, DoesNotCareForALossWithoutColour) {
     expect_equal(fitted(2000.0), rule, 100.0 * kSixtySteps);
 }
 
-// --- Black water ---------------------------------------------------------------------------------
+// --- Black water ---------------------------------------------------------------------------
 
 // K rises from 0 to k: T = W (1 - exp(-k l)) / (k l), all of it at 400 nm, where the frame holds
 // 1. So T of the frame runs as 1 / l, from 1 to 3 if the path does: best is half the sum, which
@@ -1068,32 +527,6 @@ TEST(QuadratureFitter, SeesTheLastNanometreOfBlackWater) {
             const double weight_nm = (static_cast<double>(c) + 1.0) * kWidth_nm / k_per_m / 2.0;
             EXPECT_NEAR(rule.wavelengths[0].weight[c] / weight_nm, 1.0, kConverged)
                 << k_per_m << " 1/m";
-        }
-    }
-}
-
-TEST(QuadratureFitter, StaysFiniteInBlackWater) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    for (const double multiple : {1e3, 1e5}) {
-        for (const double uniform_per_m : {0.0, 700.0, 1e4}) {
-            LightFamily family = sea_floor(1.0, 5.0);
-            family.water.multiple = multiple;
-            family.water.uniform_loss_per_m = uniform_per_m;
-            const QuadratureFitter fitter(sensor, family, kRange);
-            for (const std::vector<double>& lambda_nm :
-                 {std::vector{690.0}, {420.0}, {400.0, 417.5, 420.0, 550.0, 690.0}}) {
-                const auto frames = frames_at(fitter, lambda_nm);
-                const FittedRule rule = fitter.fit(frames, kFrameError);
-                for (std::size_t c = 0; c < kChannels; ++c) {
-                    // Without any weight it errs by 1.
-                    EXPECT_LE(rule.quality[c].error, 1.0 + kRounding)
-                        << multiple << " of the water and " << uniform_per_m << " 1/m";
-                    EXPECT_TRUE(std::isfinite(rule.quality[c].amplification));
-                    for (const WeightedWavelength& w : rule.wavelengths) {
-                        EXPECT_TRUE(std::isfinite(w.weight[c])) << w.lambda_nm << " nm";
-                    }
-                }
-            }
         }
     }
 }
@@ -1120,134 +553,7 @@ TEST(QuadratureFitter, StaysFiniteWithFramesOfMuchClearerWater) {
     }
 }
 
-// --- For those who try many ----------------------------------------------------------------------
-
-std::vector<QuadratureFitter::Column> columns_of(const QuadratureFitter& fitter,
-                                                 const std::vector<double>& lambda_nm) {
-    std::vector<QuadratureFitter::Column> columns;
-    for (const double nm : lambda_nm) columns.push_back(fitter.column_of(frames_at(fitter, {nm})));
-    return columns;
-}
-
-std::vector<const QuadratureFitter::Column*> pointers(
-    const std::vector<QuadratureFitter::Column>& columns) {
-    std::vector<const QuadratureFitter::Column*> pointers;
-    for (const QuadratureFitter::Column& column : columns) pointers.push_back(&column);
-    return pointers;
-}
-
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
-// One wavelength, as in ErrsTheLeastThatOneWavelengthCan.
-TEST(RuleFitterQuickCost, ComesNearTheLeastErrorInFewSteps) {
-    constexpr double kRise_per_m = 0.8;
-    constexpr double kQuick = 0.1;
-    const Water water{.absorption_per_m = line(0.1, 0.1 + kRise_per_m)};
-    const QuadratureFitter fitter(flat_sensor(), family_of({{flat(1.0)}}, water, 1.0, 3.0), kRange);
-    const auto r = [&](double l_m) {
-        const double x = 0.5 * kRise_per_m * l_m;
-        return x / std::sinh(x);
-    };
-    const double right = (r(1.0) - r(3.0)) / (r(1.0) + r(3.0));
-    const auto columns = columns_of(fitter, {550.0});
-    QuadratureFitter::Hint hint;
-    const double cost = fitter.quick_cost(pointers(columns), kFrameError, kNoLimit, hint);
-    EXPECT_GE(cost, right - kGridError) << right;
-    EXPECT_LE(cost, right * (1.0 + kQuick)) << right;
-    // Once more, from what it learned: nearer.
-    EXPECT_LE(fitter.quick_cost(pointers(columns), kFrameError, kNoLimit, hint), cost);
-}
-
-TEST(RuleFitterQuickCost, GivesUpOverTheLimitAndOnlyThere) {
-    const QuadratureFitter fitter(builtin_sensor("nikon-d5100"), sea_floor(1.0, 5.0), kRange);
-    for (const std::vector<double>& lambda_nm :
-         {std::vector{550.0}, {450.0, 540.0, 610.0}, {600.0, 601.0, 602.0, 603.0}}) {
-        const auto columns = columns_of(fitter, lambda_nm);
-        const auto cost_under = [&](double give_up) {
-            QuadratureFitter::Hint hint;
-            return fitter.quick_cost(pointers(columns), kFrameError, give_up, hint);
-        };
-        const double cost = cost_under(kNoLimit);
-        EXPECT_EQ(cost_under(cost), cost);
-        EXPECT_EQ(cost_under(2.0 * cost), cost);
-        EXPECT_EQ(cost_under(0.999 * cost), kNoLimit);
-        EXPECT_EQ(cost_under(0.0), kNoLimit);
-    }
-}
-
-TEST(RuleFitterQuickCost, IsNeverUnderTheLeastCost) {
-    Dice dice(25);
-    for (int trial = 0; trial < 10; ++trial) {
-        const Sensor sensor = dice.sensor();
-        const LightFamily family = dice.family(1 + trial % 3);
-        const QuadratureFitter fitter(sensor, family, kRange);
-        std::vector<double> lambda_nm;
-        for (int j = 0; j < trial % 5; ++j) lambda_nm.push_back(dice.between(400.0, 700.0));
-        const auto columns = columns_of(fitter, lambda_nm);
-        std::vector<double> candidates_nm;
-        for (int i = 0; i < 12; ++i) candidates_nm.push_back(dice.between(400.0, 700.0));
-        const auto candidates = fitter.column_of(frames_at(fitter, candidates_nm));
-
-        // Weights that a similar fit has learned.
-        QuadratureFitter::Hint hint;
-        const auto start = columns_of(fitter, {dice.between(400.0, 700.0)});
-        static_cast<void>(fitter.quick_cost(pointers(start), 0.0, kNoLimit, hint));
-        const Eigen::ArrayXd least = fitter.least_costs(pointers(columns), candidates, hint);
-        ASSERT_EQ(least.size(), 12);
-        for (std::size_t i = 0; i < candidates_nm.size(); ++i) {
-            auto both = columns;
-            both.push_back(fitter.column_of(frames_at(fitter, {candidates_nm[i]})));
-            QuadratureFitter::Hint fresh;
-            const double found = fitter.quick_cost(pointers(both), 0.0, kNoLimit, fresh);
-            EXPECT_LE(least(static_cast<Eigen::Index>(i)), found + kGridError)
-                << "family " << trial << ", " << candidates_nm[i] << " nm";
-        }
-    }
-}
-
-// --- Where the light is, and what plots show -----------------------------------------------------
-
-TEST(QuadratureFitter, LooksForLightWhereItIs) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    const QuadratureFitter fitter(sensor, sea_floor(1.0, 5.0), kRange);
-    for (const int count : {1, 3, 64}) {
-        const auto places = fitter.places_of_light(count);
-        EXPECT_FALSE(places.empty());
-        // And three of each lamp's, where so few are asked for that they miss it.
-        EXPECT_LE(places.size(), static_cast<std::size_t>(count < 64 ? count + 6 : count));
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            EXPECT_TRUE(kRange.contains(places[i])) << places[i];
-            if (i > 0) {
-                EXPECT_LT(places[i - 1], places[i]);
-            }
-        }
-    }
-    // A line of 0.1 nm.
-    const Spectrum narrow("line", {300.0, 549.95, 550.0, 550.05, 800.0}, {0.0, 0.0, 1.0, 0.0, 0.0});
-    const QuadratureFitter on_the_line(
-        sensor, family_of({{narrow}}, pure_water(), 1.0, 5.0), kRange);
-    const auto places = on_the_line.places_of_light(16);
-    EXPECT_FALSE(places.empty());
-    for (const double nm : places) EXPECT_NEAR(nm, 550.0, 0.05);
-}
-
-// Two lines of the same width, one a thousand times as bright: each is the most of the light of
-// one source, so they count alike.
-TEST(QuadratureFitter, LooksForTheLightOfEverySource) {
-    const auto peak = [](double nm, double height) {
-        return Spectrum(
-            "peak", {300.0, nm - 5.0, nm, nm + 5.0, 800.0}, {0.0, 0.0, height, 0.0, 0.0});
-    };
-    const QuadratureFitter fitter(
-        flat_sensor(),
-        family_of({{peak(450.0, 1000.0)}, {peak(620.0, 1.0)}}, clear_water(), 1.0, 2.0),
-        kRange);
-    const auto places = fitter.places_of_light(64);
-    const auto blue = std::ranges::count_if(places, [](double nm) { return nm < 500.0; });
-    const auto red = std::ranges::count_if(places, [](double nm) { return nm > 500.0; });
-    EXPECT_GT(blue, 0);
-    EXPECT_EQ(blue, red);
-}
+// --- Where the light is, and what plots show -----------------------------------------------
 
 // Two lines of a thousandth of a nanometre beside a lamp that shines everywhere.
 TEST(QuadratureFitter, LooksForLightInLinesTooNarrowToHaveAShare) {
@@ -1297,28 +603,6 @@ TEST(QuadratureFitter, TellsItsErrorOverThePath) {
             const double x = 0.5 * kRise_per_m * at.path_m;
             for (const double error : at.error) {
                 EXPECT_NEAR(error, x / std::sinh(x) - 1.0, kGridError) << at.path_m << " m";
-            }
-        }
-    }
-}
-
-// Of three tilts it shows the middle one.
-TEST(QuadratureFitter, TellsItsErrorOverThePathWithoutTilt) {
-    const Sensor sensor = builtin_sensor("nikon-d5100");
-    LightFamily family = sea_floor(1.0, 5.0);
-    const QuadratureFitter plain(sensor, family, kRange);
-    family.tilt = wavy_tilt(0.1);
-    const QuadratureFitter tilted(sensor, family, kRange);
-    const FittedRule rule{.wavelengths = equal_bands(sensor, kRange, 5), .quality = {}};
-    for (const std::size_t source : {0U, 1U}) {
-        const auto right = plain.errors_over_path(rule, frames_of(plain, rule.wavelengths), source);
-        const auto found =
-            tilted.errors_over_path(rule, frames_of(tilted, rule.wavelengths), source);
-        ASSERT_EQ(found.size(), right.size());
-        for (std::size_t p = 0; p < right.size(); ++p) {
-            for (std::size_t c = 0; c < kChannels; ++c) {
-                EXPECT_NEAR(found[p].error[c], right[p].error[c], kGridError)
-                    << "source " << source << ", path " << right[p].path_m << " m";
             }
         }
     }

@@ -2,6 +2,7 @@
 #include "spectral/spectrum.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -18,12 +19,7 @@ Spectrum curve(const std::string& name, double first_nm, double last_nm) {
 }
 
 std::string message_of(const auto& action) {
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { action(); });
 }
 
 TEST(Spectrum, IsExactAtItsKnots) {

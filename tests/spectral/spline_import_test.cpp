@@ -2,6 +2,7 @@
 #include "spectral/spline_import.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +10,7 @@ namespace aphotic::spline_import_test {
 namespace {
 
 std::string message_of(const auto& action) {
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { action(); });
 }
 
 SplineSpectrum spline_of(const std::string& body) {
@@ -147,7 +143,7 @@ TEST(ParseSplines, RefusesAFileWithout) {
     EXPECT_EQ(error_of("#declare A = 1; sphere { 0, 1 }"),
               "a.inc: found no spectrum; allowed: #declare NAME = spline { ... } or #declare NAME "
               "= array[36] { ... }");
-    EXPECT_NE(error_of(""), "no error");
+    EXPECT_NE(error_of(""), "nothing was said");
 }
 
 TEST(ParseSplines, RefusesVectorsOfUnequalNumbers) {
@@ -184,7 +180,7 @@ TEST(ParseSplines, RefusesWhatOnlyPovRayCanCompute) {
     EXPECT_EQ(body_error("400, (0.1 500"), "a.inc:1: D_A: found '500'; allowed: ')'");
     EXPECT_EQ(error_of("#declare A = spline { 400, 1\n"),
               "a.inc:2: A: found the end of the file" + allowed);
-    EXPECT_NE(body_error("400, " + std::string(1000000, '(')), "no error");
+    EXPECT_NE(body_error("400, " + std::string(1000000, '(')), "nothing was said");
 }
 
 TEST(ParseSplines, RefusesNumbersOutOfRange) {
@@ -250,7 +246,7 @@ TEST(SplineTable, RefusesValuesThatTheRoleCannotHave) {
               "a.inc:2: D_A: found -0.01 at 500 nm; allowed for reflectance: 0 to 1");
     EXPECT_EQ(error("400, 50\n500, -0.01", CurveRole::LampSpectrum),
               "a.inc:2: D_A: found -0.01 at 500 nm; allowed for lamp spectrum: 0 or more");
-    EXPECT_EQ(error("400, 50\n500, 0", CurveRole::LampSpectrum), "no error");
+    EXPECT_EQ(error("400, 50\n500, 0", CurveRole::LampSpectrum), "nothing was said");
 }
 
 TEST(SplineTable, RefusesAFileNameThatCannotStandInATable) {

@@ -2,6 +2,7 @@
 #include "spectral/table.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -14,12 +15,7 @@ namespace {
 constexpr const char* kSand = "wavelength_nm,reflectance\n400,0.25\n500,0.5\n";
 
 std::string message_of(const auto& action) {
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
+    return refusal_of([&] { action(); });
 }
 
 std::string parse_error(std::string_view text) {
@@ -194,11 +190,11 @@ TEST(CurvesOf, RefusesDaylightsAttenuation) {
     EXPECT_EQ(curve_error("# title: a from Kd by Lee\nwavelength_nm,absorption_per_m\n400,0.1\n"
                           "500,0.1\n",
                           CurveRole::WaterAbsorption),
-              "no error");
+              "nothing was said");
     EXPECT_EQ(curve_error("# quantity: of weekday kdye\nwavelength_nm,absorption_per_m\n400,0.1\n"
                           "500,0.1\n",
                           CurveRole::WaterAbsorption),
-              "no error");
+              "nothing was said");
 }
 
 TEST(CurvesOf, RefusesWavelengthsThatDoNotIncrease) {

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "spectral/bands.h"
 #include "spectral/curve_loader.h"
+#include "support/flat.h"
 
 #include <gtest/gtest.h>
 
@@ -27,10 +28,6 @@ constexpr double kBetweenPaths = 0.02;
 constexpr double kGridError = 1e-9 + 2e-9;
 // Wavelengths closer together than this could not be told apart by the names of their channels.
 constexpr double kLeastDistance_nm = 0.01;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
 
 Spectrum times(const Spectrum& curve, double factor) {
     std::vector<double> values(curve.values().begin(), curve.values().end());
@@ -113,7 +110,7 @@ void expect_sound(const FittedRule& rule, const std::string& what) {
     }
 }
 
-// --- Integrals of the test's own -----------------------------------------------------------------
+// --- Integrals of the test's own --------------------------------------------------------------
 
 // Which light: source, share of the tilt, path.
 struct Member {
@@ -318,7 +315,7 @@ void expect_promise_kept(const Sensor& sensor,
     }
 }
 
-// --- What is known to be feasible ----------------------------------------------------------------
+// --- What is known to be feasible -------------------------------------------------------------
 
 // So many wavelengths can be chosen so that no path and no material errs by more than this: a
 // search is to do as well.
@@ -404,7 +401,7 @@ TEST(Planner, LeavesNoBetterPlaceForOneOrTwoWavelengths) {
     EXPECT_LE(two, best_of_two * (1.0 + kNear));
 }
 
-// --- The fewest ----------------------------------------------------------------------------------
+// --- The fewest -------------------------------------------------------------------------------
 
 TEST(Planner, TakesOneWavelengthInClearWater) {
     LightFamily family = sea_floor(kSand, 1.0, 10.0);
@@ -479,7 +476,7 @@ TEST(Planner, TakesNoMoreInStepsOfOneThanOfThree) {
     }
 }
 
-// --- Determinism and invariance ------------------------------------------------------------------
+// --- Determinism and invariance ---------------------------------------------------------------
 
 void expect_identical(const FittedRule& one, const FittedRule& other, const std::string& what) {
     ASSERT_EQ(one.wavelengths.size(), other.wavelengths.size()) << what;
@@ -516,7 +513,7 @@ TEST(Planner, DoesNotKnowHowBrightALampOrHowLongAMetreIs) {
     }
 }
 
-// --- Awkward light -------------------------------------------------------------------------------
+// --- Awkward light ----------------------------------------------------------------------------
 
 TEST(Planner, FindsALineOfATenthOfANanometre) {
     constexpr double kHalfLine_nm = 0.05;
@@ -630,8 +627,7 @@ TEST(Planner, KeepsItsPromiseBehindAPort) {
     expect_promise_kept(camera(), family, rule, frames_of(fitter, rule), dice, "port");
 }
 
-// --- Tolerances that nothing keeps
-// ------------------------------------------------------------------------------------
+// --- Tolerances that nothing keeps --------------------------------------------------------------
 
 double promise_of(const QuadratureFitter& fitter, const PlanTarget& target) {
     return plan_wavelengths(fitter, kRange, target).promise(kFrameError);
@@ -682,7 +678,7 @@ TEST(Planner, KeepsATinyToleranceWithExactFrames) {
     EXPECT_EQ(rule.wavelengths.size(), 6U);  // 1.3e-7 is feasible with six, 9.5e-4 with three
 }
 
-// --- Beside frames that are there ----------------------------------------------------------------
+// --- Beside frames that are there -------------------------------------------------------------
 
 // Half the water's frames are there: the sum of them and some of its own errs less.
 TEST(Planner, AddsWavelengthsToFramesOfAnotherWater) {
@@ -730,7 +726,7 @@ TEST(Planner, NeedsNoMoreBesideFramesOfItsOwn) {
     EXPECT_LT(fitter.fit(frames, kFrameError).error(), three);
 }
 
-// --- Random families -----------------------------------------------------------------------------
+// --- Random families --------------------------------------------------------------------------
 
 class PlannerOfAnyLight : public testing::TestWithParam<unsigned> {};
 

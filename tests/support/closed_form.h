@@ -10,7 +10,7 @@
 // it to formulas of their own.
 #pragma once
 
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 #include "rig/rig.h"
 #include "spectral/refractive_index.h"
 

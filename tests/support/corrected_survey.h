@@ -6,7 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "support/raw_survey.h"
-#include "survey/correction_run.h"
+#include "survey/correct/correction_run.h"
 
 #include <string>
 

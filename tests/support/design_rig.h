@@ -4,8 +4,8 @@
 // of the cosine.
 #pragma once
 
+#include "rig/file/rig_text.h"
 #include "rig/rig.h"
-#include "rig/rig_text.h"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "lightmap/lightmap.h"
-#include "rig/rig_text.h"
-#include "survey/fit_samples.h"
+#include "rig/file/rig_text.h"
+#include "survey/fit/fit_samples.h"
 
 #include <fmt/format.h>
 

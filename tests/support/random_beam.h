@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Beams that nobody chose, of every kind that rig/beam.h knows.
+// Beams that nobody chose, of every kind that rig/beam/beam.h knows.
 #pragma once
 
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 #include "support/dice.h"
 
 #include <array>

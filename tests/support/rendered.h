@@ -7,7 +7,7 @@
 #include "base/atomic_file.h"
 #include "image/exr.h"
 #include "plugin/render.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/exposure.h"
 #include "scene_gen/include_library.h"
 #include "scene_gen/scene_set.h"

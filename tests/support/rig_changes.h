@@ -14,7 +14,7 @@
 //   with_power   every strobe's power times a factor: so is every sample
 #pragma once
 
-#include "rig/beam.h"
+#include "rig/beam/beam.h"
 #include "rig/rig.h"
 
 #include <Eigen/Geometry>

@@ -4,7 +4,7 @@
 // numbers, and errors that are set by hand.
 #pragma once
 
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "validation/report.h"
 
 #include <cstddef>

@@ -8,7 +8,7 @@
 #include "base/degrees.h"
 #include "support/run_command.h"
 #include "support/temp_folder.h"
-#include "survey/flight.h"
+#include "survey/simulate/flight.h"
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ class SmallSurvey {
         return file;
     }
 
-    // Into folder()/output, by the plan of docs/proof.md.
+    // Into folder()/output, by the plan of docs/accuracy.md.
     [[nodiscard]] CommandResult make(const std::vector<std::string>& arguments,
                                      const std::string& output = "out") const {
         std::vector<std::string> all{"survey", rig().string(), "-o", output};

@@ -2,10 +2,10 @@
 //
 // The answer itself: against formulas that need no program, and in fifty digits, to tell what long
 // double is worth where doubles end.
-#include "validation/exact_light.h"
+#include "support/exact_light.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "support/closed_form.h"
 
 #include <gtest/gtest.h>

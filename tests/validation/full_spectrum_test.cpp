@@ -2,6 +2,7 @@
 #include "validation/full_spectrum.h"
 
 #include "spectral/curve_loader.h"
+#include "support/flat.h"
 
 #include <gtest/gtest.h>
 
@@ -16,10 +17,6 @@ namespace {
 constexpr WavelengthRange kRange{400.0, 700.0};
 constexpr double kWidth_nm = 300.0;
 constexpr double kError = 1e-8;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
 
 Spectrum line(double first, double last) {
     return {"line", {400.0, 700.0}, {first, last}};

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/model_check.h"
 
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
+#include "support/flat.h"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +16,6 @@ namespace aphotic::model_check_test {
 namespace {
 
 constexpr std::size_t kPaths = 100;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 1100.0}, {value, value}};
-}
 
 Rig led_rig(double a, double b) {
     Rig rig = read_rig(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml");

@@ -5,10 +5,11 @@
 #include "validation/monte_carlo.h"
 
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
 #include "support/dice.h"
 #include "support/effort.h"
+#include "support/flat.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
@@ -33,10 +34,6 @@ constexpr double kNm = 500.0;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 // A mean is that far off once in 16,000 times; the seeds are fixed.
 constexpr double kStandardErrors = 4.0;
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 900.0}, {value, value}};
-}
 
 PhaseFunction henyey_greenstein(double g) {
     return {.name = "hg", .kind = HenyeyGreenstein{.g = g}};

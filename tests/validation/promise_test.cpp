@@ -8,10 +8,11 @@
 // POV-Ray itself, its single-precision colours and its way to the inverse square law, is not in
 // it: kFrameError keeps 2e-6 for these (spectral/quadrature_fit.h).
 #include "base/error.h"
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "scene_gen/render_plan.h"
 #include "scene_gen/scene_set.h"
 #include "support/effort.h"
+#include "support/flat.h"
 #include "support/random_rig.h"
 #include "validation/comparison.h"
 #include "validation/tracer.h"
@@ -70,11 +71,7 @@ constexpr double kBetweenPaths = 0.02;
 // What the reference's own spectrum may miss.
 constexpr double kReferenceError = kSpectralError;
 
-// --- Frames --------------------------------------------------------------------------------------
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 800.0}, {value, value}};
-}
+// --- Frames -----------------------------------------------------------------------------------
 
 // The rig whose light is at every wavelength as the given rig's at lambda_nm, so that a frame with
 // the refractive indices of another wavelength is this rig's radiance at that one.
@@ -138,7 +135,7 @@ Signals signals_of(const Rig& rig, const Manifest& manifest, Frames kind) {
     return signals;
 }
 
-// --- Trials --------------------------------------------------------------------------------------
+// --- Trials -----------------------------------------------------------------------------------
 
 struct Trial {
     double tolerance = 0.0;  // 0: none could be kept
@@ -296,7 +293,7 @@ std::vector<Trial> try_out_all(MakeRig& make_rig,
     return trials;
 }
 
-// --- Figures -------------------------------------------------------------------------------------
+// --- Figures ----------------------------------------------------------------------------------
 
 std::string description_of(const std::vector<Trial>& trials, std::size_t i) {
     const Trial& t = trials[i];
@@ -369,7 +366,7 @@ void expect_kept(const std::vector<Trial>& trials, std::size_t i) {
     }
 }
 
-// --- Claims --------------------------------------------------------------------------------------
+// --- Claims -----------------------------------------------------------------------------------
 
 TEST(Promise, HoldsOnRandomRigsAndIsSeldomFarAboveTheError) {
     const auto start = std::chrono::steady_clock::now();

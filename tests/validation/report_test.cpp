@@ -186,13 +186,10 @@ TEST(ReportPage, HasEverySection) {
                            "rig",
                            "images",
                            "error-map",
-                           "colour-bar",
                            "profiles",
                            "profile-row",
                            "profile-column",
                            "numbers",
-                           "channels",
-                           "wavelengths",
                            "made-with"})
         EXPECT_TRUE(contains(page, std::string("id=\"") + id + '"')) << id;
     const std::string words = words_of(page);
@@ -262,7 +259,8 @@ TEST(ReportPage, SaysWhichSceneTheReferenceDoesNotRead) {
     EXPECT_FALSE(contains(page_of(small_report()), "The reference does not read it"));
     ValidationReport report = small_report();
     report.scene_file = "my <reef>.pov";
-    EXPECT_TRUE(contains(page_of(report), "POV-Ray rendered <code>my &lt;reef&gt;.pov</code>"));
+    EXPECT_TRUE(contains(page_of(report),
+                         "POV-Ray rendered \xE2\x81\xA8my &lt;reef&gt;.pov\xE2\x81\xA9, a scene"));
 }
 
 // 10 of 1200 pixels, and 300.
@@ -319,8 +317,8 @@ TEST(ReportPage, EscapesEveryNameOfTheRig) {
     EXPECT_FALSE(contains(page, "\"1\" &"));
     EXPECT_EQ(first_unbalanced(page), "");
     EXPECT_TRUE(contains(page,
-                         "<h1><bdi>&lt;/title&gt;&lt;/bdi&gt;&lt;script&gt;alert(&quot;1&quot; "
-                         "&amp; &#39;2&#39;)&lt;/script&gt;�</bdi></h1>"));
+                         "<h1>&lt;/title&gt;&lt;/bdi&gt;&lt;script&gt;alert(&quot;1&quot; "
+                         "&amp; &#39;2&#39;)&lt;/script&gt;�</h1>"));
 }
 
 TEST(ReportPage, HoldsThreePicturesOfTheStatedSize) {

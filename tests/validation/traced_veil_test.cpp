@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The reference's veil against closed forms, and against rig/veil.h, of which it has no line.
+// The reference's veil against closed forms, and against light/veil.h, of which it has no line.
 #include "validation/traced_veil.h"
 
-#include "rig/rig_reader.h"
-#include "rig/veil.h"
+#include "light/veil.h"
+#include "rig/file/rig_reader.h"
 #include "spectral/phase_loader.h"
+#include "support/flat.h"
 #include "support/random_beam.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>
 #include <boost/math/quadrature/gauss.hpp>
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -34,10 +34,6 @@ constexpr double kOfClosedForms = 1e-10;
 // nodes take four times their points: with their own they are off by up to 6e-6 here.
 constexpr double kOfTwoQuadratures = 1e-6;
 constexpr double kFar = std::numeric_limits<double>::infinity();
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 900.0}, {value, value}};
-}
 
 Beam even(double half_angle_rad = 0.5 * pi) {
     Beam beam{.name = "even", .weights = ConeWeights::Literal, .cones = {}};
@@ -71,85 +67,6 @@ double veil_of(const Rig& rig, const VeilRay& ray) {
 }
 
 }  // namespace
-
-// b I / (4 pi h) (x_1 - x_0): next to no loss, for K has b in it.
-TEST(TracedVeil, OfAnEvenLampAndEvenScatteringIsAnAngle) {
-    const double h = 0.5;
-    const double b = 1e-13;
-    for (const double t_0 : {-0.4, 0.0, 0.7}) {
-        Rig rig = one_lamp({h, 0.0, t_0}, -Vector3d::UnitX(), even(), henyey_greenstein(0.0));
-        rig.water.absorption_per_m = flat(0.0);
-        rig.water.scatterers[0].scattering_per_m = flat(b);
-        for (const double length_m : {0.2, 1.0, 2.0, 30.0}) {
-            const double angle = std::atan((length_m - t_0) / h) - std::atan(-t_0 / h);
-            const double expected = b * angle / (4.0 * pi * h);
-            EXPECT_NEAR(veil_of(rig, down(length_m)) / expected, 1.0, kOfClosedForms) << t_0;
-        }
-    }
-}
-
-// Sun, Ramamoorthi, Narasimhan and Nayar (2005): F(u, v) = int_0^v exp(-u tan xi) dxi.
-TEST(TracedVeil, OfAnEvenLampInLossyWaterIsSunsFunction) {
-    using Kronrod = boost::math::quadrature::gauss_kronrod<double, 61>;
-    const auto F = [](double u, double v) {
-        return Kronrod::integrate(
-            [u](double xi) { return std::exp(-u * std::tan(xi)); }, 0.0, v, 15, 1e-14);
-    };
-    // Even scattering: (1 + cos(cut))/2 is turned by more.
-    const double loss_per_m = 0.2 + 0.3 * 0.5 * (1.0 + std::cos(45.0 * kDegree_rad));
-    for (const double h : {0.02, 0.5, 3.0}) {
-        for (const double t_0 : {-0.3, 0.0, 0.1}) {
-            const Rig rig =
-                one_lamp({0.0, h, t_0}, -Vector3d::UnitY(), even(), henyey_greenstein(0.0));
-            for (const double length_m : {2.5, kFar}) {
-                const double from = std::max(std::atan(-t_0 / h), -80.0 * kDegree_rad);
-                const double to =
-                    std::isfinite(length_m) ? std::atan((length_m - t_0) / h) : 0.5 * pi;
-                const double expected = 0.3 * std::exp(-loss_per_m * t_0) / (4.0 * pi * h) * 2.0 *
-                                        (F(loss_per_m * h, 0.25 * pi + 0.5 * to) -
-                                         F(loss_per_m * h, 0.25 * pi + 0.5 * from));
-                EXPECT_NEAR(veil_of(rig, down(length_m)) / expected, 1.0, kOfClosedForms)
-                    << h << ", " << t_0 << ", " << length_m;
-            }
-        }
-    }
-}
-
-// A cone across the ray lights x within its half angle: without loss, an angle again.
-TEST(TracedVeil, IsOfTheConeAlone) {
-    const double h = 0.7;
-    const double half_angle_rad = 20.0 * kDegree_rad;
-    Rig rig =
-        one_lamp({h, 0.0, 1.0}, -Vector3d::UnitX(), even(half_angle_rad), henyey_greenstein(0.0));
-    rig.water.absorption_per_m = flat(0.0);
-    rig.water.scatterers[0].scattering_per_m = flat(1e-13);
-    const double expected = 1e-13 * 2.0 * half_angle_rad / (4.0 * pi * h);
-    EXPECT_NEAR(veil_of(rig, down(kFar)) / expected, 1.0, kOfClosedForms);
-}
-
-// From aside the light goes on at a right angle and more: forward scatterers show less of it.
-TEST(TracedVeil, OfForwardScatterersIsDimSeenFromTheLampsSide) {
-    const auto veil = [](double g) {
-        return veil_of(one_lamp({0.3, 0.0, 0.0}, Vector3d::UnitZ(), even(), henyey_greenstein(g)),
-                       down(2.0));
-    };
-    EXPECT_LT(veil(0.9), 0.5 * veil(0.0));
-    EXPECT_LT(veil(0.0), veil(-0.5));
-}
-
-TEST(TracedVeil, IsTheSameInTheMirror) {
-    const Rig rig =
-        one_lamp({0.3, 0.4, 0.2}, {-0.3, -0.2, 1.0}, even(0.5), builtin_phase("petzold"));
-    Rig mirrored = rig;
-    mirrored.strobes[0].position_m.y() *= -1.0;
-    mirrored.strobes[0].axis.y() *= -1.0;
-    const Vector3d towards = Vector3d(0.1, 0.2, 1.0).normalized();
-    const double here = veil_of(rig, {Vector3d::Zero(), towards, 2.0});
-    const double there =
-        veil_of(mirrored, {Vector3d::Zero(), {towards.x(), -towards.y(), towards.z()}, 2.0});
-    EXPECT_GT(here, 0.0);
-    EXPECT_NEAR(there / here, 1.0, kOfClosedForms);
-}
 
 TEST(TracedVeil, IsThatOfTheRigsOwnNodes) {
     Dice dice(17);

@@ -3,9 +3,9 @@
 // Images of every kind of beam by the reference: what a pixel has of the beam's intensity, which
 // pixels are on its edges, and how many lamps stand for an emitter.
 #include "rig/geometry.h"
+#include "support/exact_light.h"
 #include "support/random_beam.h"
 #include "support/random_rig.h"
-#include "validation/exact_light.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>

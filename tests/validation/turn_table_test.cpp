@@ -4,6 +4,7 @@
 #include "validation/turn_table.h"
 
 #include "spectral/phase_loader.h"
+#include "support/flat.h"
 
 #include <gtest/gtest.h>
 
@@ -19,10 +20,6 @@ using std::numbers::pi;
 constexpr double kNm = 500.0;
 constexpr double kLeast = 0.02;
 constexpr double kOfNodes = 1e-4;  // as the header says
-
-Spectrum flat(double value) {
-    return {"flat", {300.0, 900.0}, {value, value}};
-}
 
 TracedWater two_scatterers() {
     return TracedWater({.absorption_per_m = flat(0.1),

@@ -4,7 +4,7 @@
 // reference.
 #include "validation/validation.h"
 
-#include "rig/rig_reader.h"
+#include "rig/file/rig_reader.h"
 #include "validation/tracer.h"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "light/path_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace aphotic {
+namespace {
+
+using Eigen::Array3d;
+using Eigen::ArrayXd;
+
+// sum_j w_cj K_j^power exp(-(K_j - K_0) l). Eigen's exponential goes no lower than e^-709.8,
+// whatever it is asked for.
+Array3d moment(const SpectralSum& sum, double path_m, int power, double K_0_per_m) {
+    constexpr double kBlackDepth = 700.0;
+    const ArrayXd depth = (sum.K_per_m - K_0_per_m) * path_m;
+    const ArrayXd left = (depth < kBlackDepth).select((-depth).exp(), 0.0);
+    // Eigen's power of 0 and 1 is as slow as any, and the table asks for these alone.
+    ArrayXd scaled = left;
+    if (power == 1) scaled *= sum.K_per_m;
+    if (power > 1) scaled *= sum.K_per_m.pow(power);
+    return (sum.weights.transpose().matrix() * scaled.matrix()).array();
+}
+
+// The longest step whose bound keeps the error, of one channel.
+double longest_step_m(double m_1, double m_4, double error) {
+    constexpr double kHermite = 384.0;
+    double step_m = std::pow(kHermite * error / m_4, 0.25);
+    while (std::pow(step_m, 4) / kHermite * m_4 * std::exp(step_m * m_1) > error) {
+        constexpr double kShorter = 0.98;
+        step_m *= kShorter;
+    }
+    return step_m;
+}
+
+}  // namespace
+
+PathSteps path_steps(const SpectralSum& sum, const PathRange& paths, double error) {
+    // Scaled by the least loss, for of long paths nothing else would be left.
+    const double K_0_per_m = sum.K_per_m.minCoeff();
+    const Array3d total = moment(sum, paths.shortest_m, 0, K_0_per_m);
+    const Array3d first = moment(sum, paths.shortest_m, 1, K_0_per_m);
+    const Array3d fourth = moment(sum, paths.shortest_m, 4, K_0_per_m);
+    double step_m = std::numeric_limits<double>::infinity();
+    for (Eigen::Index c = 0; c < kChannels; ++c) {
+        if (fourth(c) <= 0.0) continue;  // clear water, or a channel that sees nothing
+        step_m = std::min(step_m, longest_step_m(first(c) / total(c), fourth(c) / total(c), error));
+    }
+    const double length_m = std::max(paths.longest_m - paths.shortest_m,
+                                     paths.shortest_m * std::numeric_limits<float>::epsilon());
+    const int count = std::max(1, static_cast<int>(std::ceil(length_m / step_m)));
+    return {.first_m = paths.shortest_m, .steps_per_m = count / length_m, .count = count};
+}
+
+std::vector<float> path_table(const SpectralSum& sum, const PathSteps& steps) {
+    std::vector<float> table(static_cast<std::size_t>(steps.count) * kTableStride, 0.0F);
+    const double step_m = 1.0 / steps.steps_per_m;
+    Array3d value = moment(sum, steps.first_m, 0, 0.0);
+    Array3d slope = -step_m * moment(sum, steps.first_m, 1, 0.0);
+    auto at = table.begin();
+    for (int i = 1; i <= steps.count; ++i) {
+        const double path_m = steps.first_m + i * step_m;
+        const Array3d next = moment(sum, path_m, 0, 0.0);
+        const Array3d next_slope = -step_m * moment(sum, path_m, 1, 0.0);
+        const Array3d rise = next - value;
+        for (const Array3d& coefficient : {value,
+                                           slope,
+                                           Array3d(3.0 * rise - 2.0 * slope - next_slope),
+                                           Array3d(slope + next_slope - 2.0 * rise)}) {
+            std::copy(coefficient.begin(), coefficient.end(), at);
+            at += kTableLanes;
+        }
+        value = next;
+        slope = next_slope;
+    }
+    return table;
+}
+
+}  // namespace aphotic

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The veil: light that the water scatters into the view, on its way from a lamp to the floor or
+// beside it. Single scattering, along the ray of a pixel:
+//
+//   A(lambda) = Phi(lambda) sum_i b_i(lambda) int p_i(psi) I(w) exp(-K (t + d)) / d^2 dt
+//
+// t         along the ray, from where it enters the water to what it meets      [m]
+// d, w      from the lamp to that point of the ray: distance [m] and direction
+// psi       the angle by which light is turned there, kVeilCut or more: what is turned by less is
+//           seen beside its lamp, and left out
+// b_i, p_i  of each scatterer; K what light loses (spectral/water.h)
+// I         the beam's intensity (rig/beam/beam.h)                                   [1/sr]
+//
+// With h the lamp's distance from the ray, t_0 its foot point on it, and phi the angle at the lamp
+// from there,
+//
+//   t = t_0 + h tan(phi),   d = h / cos(phi),   dt/d^2 = dphi/h,   psi = phi + 90 degrees
+//
+// so that the integrand is smooth, however near the lamp is to the ray, and the lamp's direction is
+// linear in cos(phi) and sin(phi): where a beam has an edge or a kink crosses the ray in closed
+// form (rig/beam/beam_crease.h). Between these, the kinks of a tabulated phase function and the
+// cut, Gauss-Legendre's rule takes panels no wider than kVeilPanelRad, nor than they are far from
+// +-90 degrees, where scattered light has its poles: forward there (Henyey and Greenstein's lies at
+// -90 degrees +- i ln(1/g)), and exp(-K l) an essential one here. So the integrand is analytic
+// within the ellipse of Bernstein of rho = 3 + sqrt(8) about each panel, and n points err by no
+// more than
+//
+//   64/15 M rho^-2n / (1 - rho^-2)       M: the largest there, of a panel of length 2
+//
+// (Trefethen): 3e-12 M of 8 points. Narrower panels take as many points as keep rho^-2n. What M and
+// the few creases without a closed form add up to is measured: veil_error(). The nodes depend on no
+// wavelength: whoever has them has every wavelength, and the signal as well, by a table over the
+// path's length.
+//
+// An emitter of a size is 3 x 3 lamps by Gauss-Legendre's rule, more with more points. Shadows of
+// objects in the veil are left out.
+#pragma once
+
+#include "rig/beam/beam_crease.h"
+#include "rig/beam/table_pieces.h"
+#include "rig/geometry.h"
+#include "rig/rig.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr double kVeilPanelRad = 0.35;
+inline constexpr unsigned kVeilPoints = 8;  // of a panel
+// Enough for images and maps: off by 2e-6, but where light is lost within a panel, as in water like
+// milk. With as few or fewer, a round table is taken as cubics that are off by kVeilBeamOff of its
+// brightest at most (rig/beam/table_pieces.h), so that its panels do not end at each of its rows.
+inline constexpr unsigned kVeilMapPoints = 3;
+inline constexpr double kVeilBeamOff = 1e-4;
+// Light that the water leaves less than e^-kVeilDepth of is left out.
+inline constexpr double kVeilDepth = 40.0;
+
+// What one strobe of power 1 adds: A = Phi sum_n sum_i b_i weight[i][n] exp(-K path_m[n]).
+struct VeilNodes {
+    std::vector<double> path_m;                 // t + d
+    std::vector<std::vector<double>> weight{};  // by scatterer  [1/(m sr)]
+    std::vector<double> cuts_rad{};             // room for Veil
+
+    void clear();
+};
+
+class Veil {
+  public:
+    // points: of a panel; another number than kVeilPoints is for those who measure or state the
+    // error.
+    explicit Veil(const Rig& rig, unsigned points = kVeilPoints);
+
+    // Over the whole length of the ray, which may be infinite; adds nothing to nodes that are
+    // there, it replaces them. Thread safe.
+    void nodes(std::size_t strobe, const WaterRay& ray, double length_m, VeilNodes& nodes) const;
+
+    // The same of a part: each cone of a beam is one, and so is any other beam. Where one has an
+    // edge the others are smooth.
+    void nodes_of_part(std::size_t part,
+                       const WaterRay& ray,
+                       double length_m,
+                       VeilNodes& nodes) const;
+    [[nodiscard]] const std::vector<std::size_t>& strobe_of_part() const { return strobes_; }
+
+    // A of all strobes at one wavelength, powers included.
+    [[nodiscard]] double radiance(const WaterRay& ray, double length_m, double lambda_nm) const;
+
+  private:
+    struct Lamp {
+        Eigen::Vector3d position_m;
+        double share;
+    };
+    // A cone as plain numbers, between its own creases.
+    struct ConeLight {
+        double on_axis;
+        double exponent;
+        double edge_cosine;
+        double full_cosine;  // where its soft edge begins; below edge_cosine: none
+    };
+    struct Light {
+        Beam beam;
+        BeamFrame frame;
+        std::vector<Crease> creases;
+        std::vector<ConeLight> cones;    // of a beam that has nothing else
+        std::vector<TablePiece> pieces;  // of a round table without a window, of a flux of 1
+        std::vector<Lamp> lamps;
+        double widest_panel_rad;
+        bool ends_in_a_power;  // at 90 degrees: a cosine's, not a whole one, or a window's
+        bool is_of_optics;     // whose creases all are of power 3/2
+        std::optional<Eigen::Vector3d> pole;  // about which a table's angles turn
+    };
+    // p over even steps from kVeilCut to pi, where a formula takes long.
+    struct Phase {
+        const PhaseFunction* function;
+        std::vector<double> samples;
+        [[nodiscard]] double at(double psi_rad) const;
+    };
+    struct View;  // of one lamp from one ray
+    struct Rule {
+        std::vector<double> points;  // on 0 to 1
+        std::vector<double> weights;
+    };
+    struct Point {
+        double cosine;  // of phi
+        double sine;
+        double weight;  // of the rule, times the panel's width
+    };
+    // From one kink to the next: the same panel for every ray and lamp. Without points where it
+    // would be too wide.
+    struct KinkPanel {
+        double room_rad = 0.0;
+        std::vector<Point> points{};
+        std::vector<double> phases{};  // by point and scatterer
+    };
+    class Shine;
+
+    [[nodiscard]] Light light_of(const Strobe& strobe,
+                                 const Beam& beam,
+                                 unsigned emitter_side) const;
+    void find_nodes(const Light& light,
+                    const WaterRay& ray,
+                    double length_m,
+                    VeilNodes& nodes) const;
+    void add_lamp(const Light& light,
+                  const Lamp& lamp,
+                  const WaterRay& ray,
+                  double length_m,
+                  VeilNodes& nodes) const;
+    void add_piece(const Light& light,
+                   const Lamp& lamp,
+                   const View& view,
+                   double from,
+                   double to,
+                   VeilNodes& nodes) const;
+    void add_panels(const Shine& shine, double from, double to, VeilNodes& nodes) const;
+    void add_known(const Shine& shine, const KinkPanel& panel, VeilNodes& nodes) const;
+    void add_kink_panels();
+    [[nodiscard]] const Rule& rule_for(double width, double room) const;
+
+    std::shared_ptr<const Rig> rig_;
+    unsigned points_;
+    std::vector<Light> lights_;  // by strobe
+    std::vector<Light> parts_;
+    std::vector<std::size_t> strobes_;  // by part
+    std::vector<Phase> phases_;         // by scatterer
+    std::vector<double> kinks_rad_;     // of all phase functions, as phi, ascending
+    std::vector<KinkPanel> panels_;     // by the kink where they begin
+    double longest_m_ = 0.0;            // path beyond which nothing is left
+    std::vector<Rule> rules_;           // by number of points
+};
+
+// How far kVeilPoints are from twice as many, relative to the veil, or to kDimVeilShare of the
+// brightest where it is less: the largest of a coarse grid of the image, at the ends and in the
+// middle of the camera's range. Measured, no bound. 0 in water that does not scatter.
+inline constexpr double kDimVeilShare = 1e-6;
+[[nodiscard]] double veil_error(const Rig& rig, unsigned points = kVeilPoints);
+
+// The camera's ray of a pixel's centre in water, and how far it goes to the bare floor; infinite
+// when it does not come down on it.
+struct VeilSight {
+    WaterRay ray;
+    double length_m = 0.0;
+};
+[[nodiscard]] VeilSight sight_of(const Rig& rig, double column, double row, double lambda_nm);
+[[nodiscard]] VeilSight sight_of(
+    const Rig& rig, const Plane& floor, double column, double row, double lambda_nm);
+
+}  // namespace aphotic

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A page for people as plain data: what it says at its head, warnings, sections of text, tables,
+// figures and plots, and who made it. Only page_html() makes markup of it.
+//
+// All text is plain, and may hold anything: it is escaped here. Drawings are <svg> as svg.h and
+// plot.h write it, which escape their own labels. Names that users chose are named() within a
+// sentence, so that their direction of writing does not spill over.
+#pragma once
+
+#include "report/picture.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace aphotic {
+
+[[nodiscard]] std::string named(std::string_view text);
+
+enum class PageTone { None, Good, Bad };
+
+struct PageRow {
+    std::vector<std::string> cells{};
+    PageTone tone = PageTone::None;
+};
+
+// The first column names the rows; a column without a heading is that of marks.
+struct PageTable {
+    std::vector<std::string> columns{};
+    std::vector<PageRow> rows{};
+};
+
+// Terms and what they mean.
+using PageList = std::vector<std::pair<std::string, std::string>>;
+
+struct PagePicture {
+    std::string bytes{};
+    int width_px = 0;
+    int height_px = 0;
+    std::string words{};  // for those who do not see it
+    std::string_view type = kPng;
+    std::optional<std::pair<double, double>> ring{};  // around this share of its width and height
+};
+
+// Pictures beside each other, with one caption.
+struct PageFigure {
+    std::vector<PagePicture> pictures{};
+    std::string caption{};
+};
+
+// Beside each other: two in a row, or as many as there is room for.
+struct PageFigures {
+    std::vector<PageFigure> figures{};
+    bool are_small = false;
+};
+
+struct PagePlot {
+    std::string svg{};
+};
+
+// What the marks of a plot or a map mean: drawings, or characters, and words.
+struct PageKey {
+    std::string svg{};  // by stroke_key() and its like, or a character
+    std::string words{};
+};
+using PageLegend = std::vector<PageKey>;
+
+[[nodiscard]] PageKey stroke_key(std::string_view style, std::string words);  // as svg.h's styles
+[[nodiscard]] PageKey tone_key(std::size_t tone, std::string words);  // a curve of that tone
+[[nodiscard]] PageKey dot_key(std::size_t tone, std::string words);
+[[nodiscard]] PageKey swatch_key(std::uint32_t colour, std::string words);  // 0xRRGGBB
+
+struct PageHeading {
+    std::string text{};
+};
+
+// Lines as they are, such as a rig's.
+struct PageSource {
+    std::string text{};
+};
+
+// A string is a paragraph.
+using PagePart = std::variant<std::string,
+                              PageHeading,
+                              PageTable,
+                              PageList,
+                              PageFigures,
+                              PagePlot,
+                              PageLegend,
+                              PageSource>;
+
+struct PageSection {
+    std::string id{};  // lower case letters, digits and -
+    std::string heading{};
+    std::vector<PagePart> parts{};
+};
+
+struct Page {
+    std::string kind{};   // such as "validation"
+    std::string title{};  // of the window; the heading where that is empty
+    std::string heading{};
+    bool is_good = true;              // green or red
+    std::string headline{};           // the answer in a sentence
+    std::vector<std::string> said{};  // more on it
+    std::vector<std::string> warnings{};
+    std::vector<PageSection> sections{};  // those without parts are left out
+};
+
+// What a program's pages say of their making: once, before its first page. Pages of a library's own
+// caller say nothing.
+struct PageOrigin {
+    std::string command{};  // line
+    std::string version{};
+    std::string date{};
+};
+void set_page_origin(PageOrigin origin);
+
+// A file by itself, well-formed as HTML and as XML, that a browser lets neither run nor fetch
+// anything. The same page and origin give the same bytes.
+[[nodiscard]] std::string page_html(const Page& page);
+
+}  // namespace aphotic

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How a strobe's light is spread over directions: all that may be asked of a beam.
+//
+//   I(w)   intensity in the direction w, per unit of the lamp's power   [1/sr]
+//
+// A beam is a sum of cones about the strobe's axis, or a pattern: a measured table
+// (rig/beam/beam_table.h) or what a lens makes of a diffuser (rig/beam/beam_optics.h). Either may
+// have been measured in air, behind a window (rig/beam/beam_window.h). With theta the angle off the
+// axis, cones are
+//
+//   I = sum of A_k cos^n_k(theta) S_k(theta) over the cones with theta <= gamma_k, theta < 90
+//   degrees
+//
+//   S_k       1 to gamma_k - edge_k, from there t^2 (3 - 2 t) down to 0 at gamma_k, with t linear
+//   in
+//             the cosine; 1 as far as gamma_k where edge_k = 0
+//   flux:     A_k = alpha_k / (integral of cos^n S over all directions), so that the cone carries
+//             alpha_k of the flux; for n = 1 without a soft edge, alpha_k / (pi sin^2 gamma_k)
+//   literal:  A_k = alpha_k, as the source paper prints it
+//
+// A pattern is scaled to a flux of 1, in air where it was measured there: what a window reflects is
+// lost.
+//
+// Whoever wants to know of a beam asks here, and knows no kind of it. Three read the kinds
+// themselves: the rig's reader, scene_gen/beam_sdl.h for POV-Ray, and the reference (validation/),
+// which computes light from what the rig says and nothing else. A further kind is a file beside
+// rig/beam/beam_table.h, its case in rig/beam/beam.cpp, and these three.
+#pragma once
+
+#include "rig/beam/beam_optics.h"
+#include "rig/beam/beam_table.h"
+#include "rig/beam/beam_window.h"
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace aphotic {
+
+// Light within half_angle_rad of the axis.
+struct Cone {
+    std::string part;
+    double half_angle_rad = 0.0;
+    double weight = 0.0;    // alpha_k
+    double exponent = 1.0;  // n
+    double edge_rad = 0.0;  // over which it falls to 0, up to half_angle_rad
+
+    [[nodiscard]] bool operator==(const Cone&) const = default;
+};
+
+// What a cone's weight means: its share of the lamp's flux, or its intensity on the axis.
+enum class ConeWeights { Flux, Literal };
+
+using BeamPattern = std::variant<std::monostate, BeamTable, BeamOptics>;
+
+struct Beam {
+    std::string name;
+    ConeWeights weights = ConeWeights::Flux;
+    std::vector<Cone> cones;  // of a beam that has no pattern
+    BeamPattern pattern{};
+    double per_flux = 1.0;               // of the pattern: 1 / its own flux, by scaled_to_flux()
+    double turn_rad = 0.0;               // of the pattern about the axis, from along to across
+    std::optional<BeamWindow> window{};  // measured in air
+
+    [[nodiscard]] bool operator==(const Beam&) const = default;
+};
+
+// A pattern with its per_flux.
+[[nodiscard]] Beam scaled_to_flux(Beam beam);
+
+// How a beam, and an emitter, lies in the sled's frame: unit vectors. `along` is the sled's forward
+// direction as the plane across the axis sees it (down, for an axis within a millionth of a radian
+// of fore or aft, where forward is all but lost in rounding), across = axis x along. aphotic.inc
+// has the same rule.
+struct BeamFrame {
+    Eigen::Vector3d axis;
+    Eigen::Vector3d along;
+    Eigen::Vector3d across;
+};
+[[nodiscard]] BeamFrame frame_about(const Eigen::Vector3d& axis);
+inline constexpr double kForeAndAftSine = 1e-6;
+
+// Directions `towards` are in the sled's frame, of any length.
+
+[[nodiscard]] double intensity_towards(const Beam& beam,
+                                       const BeamFrame& frame,
+                                       const Eigen::Vector3d& towards);
+
+// A direction as the pattern has it: in the lamp's frame, turned, and in air if it was measured
+// there. None where the window lets nothing out.
+struct PatternView {
+    Eigen::Vector3d direction;
+    double factor = 1.0;  // of what the pattern has there
+};
+[[nodiscard]] std::optional<PatternView> pattern_view(const Beam& beam,
+                                                      const BeamFrame& frame,
+                                                      const Eigen::Vector3d& towards);
+
+// intensity_towards() as though what lights the direction `from` had no edge: where a small turn
+// crosses none, it is I itself.
+[[nodiscard]] double continued_intensity(const Beam& beam,
+                                         const BeamFrame& frame,
+                                         const Eigen::Vector3d& towards,
+                                         const Eigen::Vector3d& from);
+
+// Bound of I over all directions within an angle of this one, and over all there are.
+[[nodiscard]] double most_intensity(const Beam& beam,
+                                    const BeamFrame& frame,
+                                    const Eigen::Vector3d& towards,
+                                    double within_rad);
+[[nodiscard]] double most_intensity(const Beam& beam);
+
+// Whether there is light within an angle of this direction, and whether there is any.
+[[nodiscard]] bool reaches(const Beam& beam,
+                           const BeamFrame& frame,
+                           const Eigen::Vector3d& towards,
+                           double within_rad);
+[[nodiscard]] bool is_dark(const Beam& beam);
+
+// The angles off the axis where I has a step, or falls as steeply as one: cos^n goes to 0 at 90
+// degrees, so there a cone has an edge if n < 1 alone. Behind a window, where its light ends.
+[[nodiscard]] std::vector<double> edges_rad(const Beam& beam);
+// Steps that are no circle about the axis: those of a table over a rectangle of angles, or of a
+// sharp image. They bound one region of directions, within which its light is.
+[[nodiscard]] bool has_rim(const Beam& beam);
+[[nodiscard]] bool is_within_rim(const Beam& beam,
+                                 const BeamFrame& frame,
+                                 const Eigen::Vector3d& towards);
+
+// I changes no more steeply with the direction than cos to this power does, nor bends more: for
+// cones without soft edges (ln I)' >= n (ln cos)'. For all others it is found on a grid of a
+// degree, with I taken for no less than kDimBeamShare of the largest, and is an estimate.
+inline constexpr double kDimBeamShare = 0.01;
+[[nodiscard]] double steepest_exponent(const Beam& beam);
+
+// The flux of a lamp of power 1: the integral of I over all directions.
+[[nodiscard]] double flux_of(const Beam& beam);
+
+// What adds up to the beam: its cones, each a beam with the cone's name; a pattern by itself.
+[[nodiscard]] std::vector<Beam> parts_of(const Beam& beam);
+// The beam of those that are wanted.
+[[nodiscard]] Beam parts_that(const Beam& beam, const std::function<bool(const Beam&)>& is_wanted);
+
+// Cones as plain numbers, for loops over many directions:
+//
+//   I = sum of on_axis cos^exponent(theta) over the lobes with cos(theta) >= edge_cosine
+//
+// Of beams that are such a sum: has_lobes().
+struct Lobe {
+    double edge_cosine = 0.0;
+    double on_axis = 0.0;  // [1/sr]
+    double exponent = 1.0;
+};
+[[nodiscard]] bool has_lobes(const Beam& beam);
+[[nodiscard]] std::vector<Lobe> lobes_of(const Beam& beam);
+
+// Beams of the same signature shine alike. Names do not count.
+[[nodiscard]] std::string beam_signature(const Beam& beam);
+
+}  // namespace aphotic

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where a beam is not smooth: steps and kinks of its intensity, as surfaces of directions w of
+// length 1, and where a great circle crosses them.
+//
+//   l.w = at                       a circle about l: a cone's edge, both ends of a soft one, a row
+//                                  of a table; with at = 0 a plane: a column
+//   w.Q w = at                     a plane or circle seen through a window; a corner of what is
+//                                  behind a lens
+//   w(phi) = e cos(phi) + u sin(phi)        e and u unit vectors, one across the other
+//
+// On the circle the first is A cos(phi) + B sin(phi) = at, with A = l.e and B = l.u; the second is
+// the same of 2 phi. Both have closed forms. Between neighbouring crossings I is analytic, but for
+// one kind of beam: the corners of a blurred rectangle behind a window, where the slope of I has no
+// step and its bend has, are left out.
+#pragma once
+
+#include "rig/beam/beam.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace aphotic {
+
+struct Crease {
+    Eigen::Vector3d l = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
+    double at = 0.0;
+    bool is_quadratic = false;  // of Q; else of l
+};
+
+// A surface may carry more than the crease itself: where I is smooth after all.
+[[nodiscard]] std::vector<Crease> creases_of(const Beam& beam, const BeamFrame& frame);
+
+// Adds each phi of a crossing, from -pi to pi.
+void add_crossings(const Crease& crease,
+                   const Eigen::Vector3d& e,
+                   const Eigen::Vector3d& u,
+                   std::vector<double>& phi_rad);
+
+}  // namespace aphotic

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Many images of the sea floor averaged into the pattern of light that they share, sample by
+// sample.
+//
+// Of n samples x_1 <= ... <= x_n of one place, with their standard error E:
+//
+//   mean     E = s / sqrt(n)                                 s: of n - 1
+//   median   E = (x_(n-k+1) - x_k) / (2 z)                   McKean & Schrader 1984, with
+//            k = max(1, round((n+1)/2 - z sqrt(n/4)))        z = 2.5758, of 99 %
+//   trimmed  the mean without the g = floor(trim n) least and as many largest;
+//            E = sqrt(S / (h (h-1))), h = n - 2g             Yuen 1974; S: the sum of squares
+//            about the mean after each sample cut off has become the nearest one kept
+//
+// Both follow as well where x is not normal; the median's is coarse under some ten samples. With
+// trim = 0 the trimmed mean and its error are the mean's. Equal samples give E = 0.
+//
+// A sample that is NaN was not observed. A place never observed is NaN with count 0; the error of
+// fewer than two samples (trimmed: kept) is NaN.
+//
+// J. W. McKean and R. M. Schrader, "A comparison of methods for studentizing the sample median",
+// Communications in Statistics - Simulation and Computation 13(6), 1984; K. K. Yuen, "The
+// two-sample trimmed t for unequal population variances", Biometrika 61(1), 1974.
+#pragma once
+
+#include "survey/images/raw_image.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace aphotic {
+
+enum class Average { Mean, Median, Trimmed };
+
+struct Observed {
+    std::vector<float> average;
+    std::vector<float> standard_error;
+    std::vector<float> count;  // whole numbers, as an EXR holds them
+};
+
+// The mean of images that come one by one (Welford's sums in double): 20 bytes a sample, however
+// many the images. It depends on their order by roundings of doubles alone.
+class RunningMean {
+  public:
+    explicit RunningMean(std::size_t samples);
+
+    void add(std::span<const float> image);  // as many samples as were announced
+    [[nodiscard]] Observed observed() const;
+
+  private:
+    std::vector<double> mean_;
+    std::vector<double> squares_;  // about the mean
+    std::vector<std::uint32_t> count_;
+};
+
+// Any average of images that are all at hand, each of as many samples. Exact: nothing is binned.
+// trim: 0 to below 0.5, of Average::Trimmed. The result does not depend on the threads.
+[[nodiscard]] Observed average_of(std::span<const std::vector<float>> images,
+                                  Average average,
+                                  double trim,
+                                  int threads);
+
+// Planes R, G and B of what was averaged of images like this one: of a mosaic each sample in the
+// plane of its site's channel, and `elsewhere` at the sites of the others; of a mono camera all
+// three alike.
+[[nodiscard]] std::vector<float> by_channel(const std::vector<float>& samples,
+                                            const RawImage& like,
+                                            float elsewhere);
+
+// So that images of brighter and of darker exposures, floors and altitudes count alike: their
+// pattern alone is left. An InputError when the mean of its samples is not above 0.
+void divide_by_own_mean(RawImage& image);
+
+// How many samples of each of so many images fit into so much memory, at least one.
+[[nodiscard]] std::size_t samples_in_memory(std::size_t images, double memory_mb);
+
+}  // namespace aphotic

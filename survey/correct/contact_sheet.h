@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Some images of a corrected survey, spread evenly over it, before and after, small.
+//
+//   before = sRGB( k (raw - black) )     the camera's numbers; k puts the kBrightShare quantile of
+//                                        all samples of all images at kBrightLevel (preview.h)
+//   after  = sRGB( e M b v )             as result_files.h has it, from the files as they were
+//   written
+//
+// Each with one exposure for all images: as dark and bright, and as uneven, as they are.
+#pragma once
+
+#include "survey/correct/correction_run.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+struct SheetPicture {
+    int width_px = 0;
+    int height_px = 0;
+    std::string jpeg{};  // bytes of the file
+};
+
+struct SheetImage {
+    std::string name;
+    std::optional<double> altitude_m{};
+    SheetPicture before{};
+    SheetPicture after{};
+};
+
+inline constexpr std::size_t kMostOnSheet = 24;
+inline constexpr int kSheetPicture_px = 280;  // the longer side, at most
+
+// Of a survey that was corrected by these options. Images that were skipped, or that went since,
+// are left out.
+[[nodiscard]] std::vector<SheetImage> contact_sheet(const Survey& survey,
+                                                    const CorrectionOptions& options,
+                                                    const CorrectionReport& report);
+
+}  // namespace aphotic

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/correct/correction_page.h"
+
+#include "base/upper_median.h"
+#include "report/html.h"
+#include "report/page.h"
+#include "report/svg.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace aphotic {
+namespace {
+
+constexpr std::array kColours{"red", "green", "blue"};
+
+std::string percent(double share) {
+    constexpr double kPercent = 100.0;
+    return fmt::format("{:.3g}\xC2\xA0%", kPercent * share);  // a blank that does not break
+}
+
+std::string per_channel(const PerChannel& numbers) {
+    return fmt::format(
+        "{} red, {} green, {} blue", plain(numbers[0]), plain(numbers[1]), plain(numbers[2]));
+}
+
+// What came out.
+
+std::string headline(const CorrectionReport& report) {
+    const RunOutcome& run = *report.run;
+    std::string words = grouped_count(run.corrected + run.kept, "image") + " corrected";
+    if (!run.skipped.empty()) words += fmt::format(", {} skipped", grouped(run.skipped.size()));
+    if (!report.looks_wrong.empty())
+        words += ", " + grouped_count(report.looks_wrong.size(), "warning");
+    return words;
+}
+
+std::vector<std::string> warnings(const CorrectionReport& report) {
+    std::vector<std::string> words;
+    for (const Suspicion& one : report.looks_wrong)
+        words.push_back(fmt::format("{}: {}", one.about, named(one.what)));
+    if (!report.not_checked.empty()) words.push_back("Not checked: " + report.not_checked);
+    return words;
+}
+
+// Before and after.
+
+PagePicture picture(const SheetPicture& shown, std::string words) {
+    return {.bytes = shown.jpeg,
+            .width_px = shown.width_px,
+            .height_px = shown.height_px,
+            .words = std::move(words),
+            .type = kJpeg};
+}
+
+std::vector<PagePart> before_and_after(std::span<const SheetImage> sheet) {
+    if (sheet.empty()) return {};
+    PageFigures figures{.figures = {}, .are_small = true};
+    for (const SheetImage& image : sheet) {
+        const std::string altitude =
+            image.altitude_m ? fmt::format(", {:.2f}\xC2\xA0m", *image.altitude_m) : "";
+        figures.figures.push_back(
+            {.pictures = {picture(image.before, "before"), picture(image.after, "after")},
+             .caption = named(image.name) + altitude});
+    }
+    return {"Left as taken, right corrected; each under one exposure for all images.",
+            std::move(figures)};
+}
+
+// Light over altitude.
+
+struct LightSeen {
+    std::vector<double> altitude_m;
+    std::array<std::vector<double>, kChannels> map;    // mean light of the image's map
+    std::array<std::vector<double>, kChannels> image;  // the image's own, by its median quotient
+};
+
+// By altitude. The maps are scaled to the images: by the median of what one is of the other.
+LightSeen light_seen(std::span<const ImageLook> looks) {
+    std::vector<const ImageLook*> seen;
+    const auto is_lit = [](double number) { return std::isfinite(number) && number > 0.0; };
+    for (const ImageLook& look : looks) {
+        if (look.altitude_m && std::ranges::all_of(look.quotient, is_lit)) seen.push_back(&look);
+    }
+    std::ranges::sort(seen, {}, [](const ImageLook* look) { return *look->altitude_m; });
+    LightSeen light;
+    if (seen.size() < 2) return light;
+    for (const ImageLook* look : seen) light.altitude_m.push_back(*look->altitude_m);
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        std::vector<double> quotients;
+        for (const ImageLook* look : seen) quotients.push_back(look->quotient[c]);
+        const double middle = upper_median(quotients);
+        for (const ImageLook* look : seen) {
+            light.map[c].push_back(middle * look->map_mean[c]);
+            light.image[c].push_back(look->quotient[c] * look->map_mean[c]);
+        }
+    }
+    return light;
+}
+
+std::vector<PagePart> light_over_altitude(std::span<const ImageLook> looks) {
+    constexpr double kWidth = 960.0;
+    constexpr double kHeight = 420.0;
+    constexpr double kMargin = 16.0;
+    constexpr int kTicks = 6;
+    const LightSeen light = light_seen(looks);
+    if (light.altitude_m.empty()) return {};
+    ValueRange altitudes;
+    altitudes.include(light.altitude_m);
+    ValueRange numbers;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        numbers.include(light.map[c]);
+        numbers.include(light.image[c]);
+    }
+    SvgPanel panel{.left = kAxisWidth,
+                   .top = kMargin,
+                   .width = kWidth - kAxisWidth - kMargin,
+                   .height = kHeight - kAxisHeight - kMargin,
+                   .x = linear_axis_around(altitudes.least, altitudes.most, kTicks),
+                   .y = log_axis(numbers.least, numbers.most)};
+    panel.x.title = "altitude (m)";
+    panel.y.title = "light (the camera’s numbers over black)";
+    std::string elements = svg_axes(panel);
+    PageLegend keys;
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        const std::string tone = svg_tone(kChannelTones.at(c));
+        elements += svg_curve(
+            panel, light.altitude_m, light.map[c], fmt::format("class=\"curve\" {}", tone));
+        elements += svg_dots(panel,
+                             light.altitude_m,
+                             light.image[c],
+                             fmt::format("class=\"dots\" style=\"stroke-width: 7px\" {}", tone));
+        keys.push_back(tone_key(kChannelTones.at(c), kColours.at(c)));
+    }
+    keys.push_back({"", "lines: the maps"});
+    keys.push_back({"", "dots: the images"});
+    return {std::move(keys),
+            PagePlot{svg_drawing("light-plot", "light over altitude", kWidth, kHeight, elements)},
+            fmt::format("{} that were looked at before the run: the mean light of each one’s map, "
+                        "scaled to the images, and the light of the image by its median pixel. "
+                        "Where the rig is right, the images scatter about the lines.",
+                        grouped_count(light.altitude_m.size(), "image"))};
+}
+
+// Numbers.
+
+PageList gains(const CorrectionReport& report) {
+    PageList items{{"gain", per_channel(report.gain.gain)}};
+    if (!report.gain.folder.empty()) {
+        items.emplace_back("taken from", report.gain.folder);
+    } else {
+        items.emplace_back("taken from",
+                           report.gain.images.empty()
+                               ? "the command line"
+                               : grouped_count(report.gain.images.size(), "image"));
+    }
+    items.emplace_back("the survey’s middle becomes", per_channel(report.gain.middle));
+    if (report.srgb) {
+        items.emplace_back("exposure of sRGB", plain(report.srgb->exposure));
+        if (const auto& camera = report.srgb->camera) {
+            items.emplace_back("colours of sRGB",
+                               fmt::format("{:.1f} CIELAB units off in the mean of {}, {:.1f} at "
+                                           "most ({})",
+                                           camera->mean_delta_e(),
+                                           grouped_count(camera->surfaces.size(), "surface"),
+                                           camera->worst().delta_e,
+                                           camera->worst().name));
+        }
+    }
+    return items;
+}
+
+PageList doubts(const RunOutcome& run) {
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords{
+        {{"dark", "the gain is held, so that noise is not amplified"},
+         {"saturated", "the camera saturates"},
+         {"black", "no light"},
+         {"edge", "the edge of a beam is near"},
+         {"clipped", "beyond what the file holds"}}};
+    PageList items;
+    for (const auto& [name, words] : kWords) {
+        items.emplace_back(name, fmt::format("{}: {}", percent(run.doubtful_share(name)), words));
+    }
+    return items;
+}
+
+std::vector<PagePart> skipped(const RunOutcome& run) {
+    constexpr std::size_t kMostRows = 200;
+    if (run.skipped.empty()) return {};
+    PageList items;
+    for (std::size_t i = 0; i < std::min(run.skipped.size(), kMostRows); ++i)
+        items.emplace_back(run.skipped[i].image, run.skipped[i].why);
+    std::vector<PagePart> parts{std::move(items)};
+    if (run.skipped.size() > kMostRows) {
+        parts.emplace_back(fmt::format("The first {} of {}; {} has all.",
+                                       kMostRows,
+                                       grouped(run.skipped.size()),
+                                       kCorrectionNotes));
+    }
+    return parts;
+}
+
+std::vector<PagePart> rig(const LightAt& light) {
+    if (light.toml.empty()) return {};
+    return {PageSource{light.toml}};
+}
+
+std::string title_of(const LightAt& light) {
+    return light.title.empty() ? "Corrected survey" : light.title;
+}
+
+}  // namespace
+
+std::string correction_html(const Survey& survey,
+                            const CorrectionReport& report,
+                            std::span<const SheetImage> sheet) {
+    const RunOutcome& run = *report.run;
+    const std::string title = title_of(survey.light);
+    return page_html(
+        {.kind = "corrected survey",
+         .title = "Correction: " + title,
+         .heading = title,
+         .is_good = run.skipped.empty() && report.looks_wrong.empty(),
+         .headline = headline(report),
+         .said = {fmt::format("{} in this run, which took {} s; {} kept from before.",
+                              grouped(run.corrected),
+                              plain(std::round(10.0 * report.seconds) / 10.0),
+                              grouped(run.kept))},
+         .warnings = warnings(report),
+         .sections = {
+             {.id = "images", .heading = "Before and after", .parts = before_and_after(sheet)},
+             {.id = "light",
+              .heading = "Light over altitude",
+              .parts = light_over_altitude(report.looks)},
+             {.id = "gain", .heading = "Gain", .parts = {gains(report)}},
+             {.id = "doubts", .heading = "Doubtful pixels", .parts = {doubts(run)}},
+             {.id = "skipped", .heading = "Skipped images", .parts = skipped(run)},
+             {.id = "rig", .heading = "Rig", .parts = rig(survey.light)}}});
+}
+
+}  // namespace aphotic

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The iFDO of corrected images, from that of the raw ones: each item under its result's name, those
+// of images that were skipped left out, and all as it was but for
+//
+//   image-uuid, image-set-uuid     others, for these are other images: from the old one and the
+//                                  SHA-256 of the result, of all results for the set's
+//   image-hash-sha256              of the result
+//   image-quality                  processed
+//   image-illumination             artificial light
+//   image-photometric-calibration  gain, white balance, rig and water
+//   image-set-local-path           ".", where the results are
+//   image-entropy, -average-color  left out, with all image-mpeg7: they were of other pixels
+//
+// The schema wants UUIDs of version 4: 122 bits of a SHA-256 take the place of random ones, so the
+// same results have the same.
+#pragma once
+
+#include "rig/rig.h"
+#include "survey/correct/correction_run.h"
+#include "survey/navigation/ifdo.h"
+#include "survey/survey.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+struct IfdoResults {
+    std::filesystem::path file;
+    std::size_t images = 0;
+    std::vector<std::string> without_item{};  // results that the iFDO knows no image of
+};
+
+// Where it goes: into the folder of results, under its own name. An InputError when that is where
+// it came from, or where notes of the correction go.
+[[nodiscard]] std::filesystem::path ifdo_place(const std::filesystem::path& source,
+                                               const std::filesystem::path& folder);
+
+// What became of the survey's images stands in the report. rig: null when one map was for all.
+IfdoResults write_ifdo_of_results(const Ifdo& of_raw,
+                                  const std::filesystem::path& place,
+                                  const Survey& survey,
+                                  const CorrectionOptions& options,
+                                  const CorrectionReport& report,
+                                  const Rig* rig);
+
+// Of version 4, as lower-case hexadecimal digits and hyphens.
+[[nodiscard]] std::string uuid_of(std::string_view text);
+
+}  // namespace aphotic

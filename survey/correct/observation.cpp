@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/correct/observation.h"
+
+#include "base/error.h"
+#include "base/in_order.h"
+#include "base/offered.h"
+#include "image/exr.h"
+#include "survey/first_look.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string_view>
+
+namespace aphotic {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+struct ChosenImage {
+    ImageFile file;
+    Sled sled;
+    bool is_bad = false;
+};
+
+// The images at the altitude, and what became of the others.
+struct Selection {
+    std::vector<ChosenImage> images;
+    std::size_t outside = 0;
+    double nearest_m = std::numeric_limits<double>::infinity();  // from the altitude, of those
+    std::vector<Skipped> skipped;
+};
+
+Selection selected(const Survey& survey, const ObservationOptions& options) {
+    constexpr double kRounding_m = 1e-9;  // 2.1 lies within 0.1 of 2
+    const ToldAngles known = survey.navigation->known();
+    Selection selection;
+    for (const ImageFile& file : survey.files) {
+        try {
+            Sled sled = survey.sled_of(file);
+            if (!known.pitch) sled.pitch_rad = kUnknown;
+            if (!known.roll) sled.roll_rad = kUnknown;
+            const double off_m = std::abs(sled.altitude_m - options.altitude_m);
+            if (off_m > options.within_m + kRounding_m) {
+                ++selection.outside;
+                selection.nearest_m = std::min(selection.nearest_m, off_m - 0.5 * kRounding_m);
+            } else {
+                selection.images.push_back({.file = file, .sled = sled});
+            }
+        } catch (const InputError& error) {
+            selection.skipped.push_back({.image = file.source.string(), .why = error.what()});
+        }
+    }
+    return selection;
+}
+
+// Goes through the images in their order, and drops from the selection what cannot be used.
+struct Pass {
+    const CameraNumbers& camera;
+    const ObservationOptions& options;
+    const RunWatch& watch;
+    Selection& selection;
+    RawImage like{};  // the first image's size and mosaic, without its samples
+
+    // use(image); share: of all passes, where this one begins and ends.
+    template <typename Use>
+    void run(const Use& use, double from, double to) {
+        std::vector<ChosenImage>& images = selection.images;
+        in_order(
+            images.size(),
+            static_cast<int>(options.jobs),
+            [&](std::size_t i) { return read(images[i].file); },
+            [&](std::size_t i, const RawImage& image) {
+                if (like.width_px == 0) {
+                    like = {.width_px = image.width_px,
+                            .height_px = image.height_px,
+                            .mosaic = image.mosaic};
+                }
+                require_like(image, like, "as the first image");
+                use(image);
+                const auto done = static_cast<double>(i + 1) / static_cast<double>(images.size());
+                watch.progress("averaging", from + (to - from) * done);
+            },
+            [&](std::size_t i, const std::string& why) {
+                selection.skipped.push_back({.image = images[i].file.source.string(), .why = why});
+                images[i].is_bad = true;
+            });
+        std::erase_if(images, [](const ChosenImage& image) { return image.is_bad; });
+    }
+
+    [[nodiscard]] RawImage read(const ImageFile& file) const {
+        SurveyImage taken = read_survey_image(file.source, camera);
+        take_off_black(taken);
+        if (std::ranges::any_of(taken.raw.samples, [](float s) { return std::isinf(s); }))
+            throw InputError("a sample is infinite");
+        if (options.normalise) divide_by_own_mean(taken.raw);
+        return std::move(taken.raw);
+    }
+};
+
+Observed running_mean(Pass& pass) {
+    std::optional<RunningMean> mean;
+    pass.run(
+        [&](const RawImage& image) {
+            if (!mean) mean.emplace(image.samples.size());
+            mean->add(image.samples);
+        },
+        0.0,
+        1.0);
+    return mean ? mean->observed() : Observed{};
+}
+
+void append(std::vector<float>& to, const std::vector<float>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+// A first pass finds which images can be used at all.
+Observed average_by_bands(Pass& pass, Selection& selection, const ObservationOptions& options) {
+    constexpr double kFirstPass = 0.1;
+    std::size_t samples = 0;
+    pass.run([&](const RawImage& image) { samples = image.samples.size(); }, 0.0, kFirstPass);
+    const std::size_t band = samples_in_memory(selection.images.size(), options.memory_mb);
+    const auto share = [&](std::size_t at) {
+        return kFirstPass +
+               (1.0 - kFirstPass) * static_cast<double>(at) / static_cast<double>(samples);
+    };
+    Observed observed;
+    for (std::size_t first = 0; first < samples; first += band) {
+        const std::size_t many = std::min(band, samples - first);
+        std::vector<std::vector<float>> images;
+        const std::size_t skipped = selection.skipped.size();
+        pass.run(
+            [&](const RawImage& image) {
+                const auto from = image.samples.begin() + static_cast<std::ptrdiff_t>(first);
+                images.emplace_back(from, from + static_cast<std::ptrdiff_t>(many));
+            },
+            share(first),
+            share(first + many));
+        if (selection.skipped.size() > skipped) {
+            throw RunError("{}: changed while it was read: {}",
+                           selection.skipped.back().image,
+                           selection.skipped.back().why);
+        }
+        const Observed part =
+            average_of(images, options.average, options.trim, static_cast<int>(options.jobs));
+        append(observed.average, part.average);
+        append(observed.standard_error, part.standard_error);
+        append(observed.count, part.count);
+    }
+    return observed;
+}
+
+void require_images(const Selection& selection, const ObservationOptions& options) {
+    if (!selection.images.empty()) return;
+    const std::string others = selection.outside > 0 ? fmt::format("; the nearest is {} m off",
+                                                                   at_least(selection.nearest_m))
+                                                     : "";
+    const std::string first = selection.skipped.empty()
+                                  ? ""
+                                  : fmt::format("; skipped: {}, the first: {}: {}",
+                                                selection.skipped.size(),
+                                                selection.skipped.front().image,
+                                                selection.skipped.front().why);
+    throw InputError("no image to be used within {} m of {} m{}{}",
+                     options.within_m,
+                     options.altitude_m,
+                     others,
+                     first);
+}
+
+Sled mean_sled(const std::vector<ChosenImage>& images) {
+    Sled mean;
+    const auto count = static_cast<double>(images.size());
+    for (const ChosenImage& image : images) {
+        mean.altitude_m += image.sled.altitude_m / count;
+        mean.pitch_rad += image.sled.pitch_rad / count;
+        mean.roll_rad += image.sled.roll_rad / count;
+    }
+    return mean;
+}
+
+double noise_of(const Observed& observed) {
+    double squares = 0.0;
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < observed.average.size(); ++i) {
+        if (std::isnan(observed.standard_error[i])) continue;
+        squares += std::pow(observed.standard_error[i], 2.0);
+        sum += observed.average[i];
+        count += 1.0;
+    }
+    return count > 0.0 ? std::sqrt(squares / count) / (sum / count) : kUnknown;
+}
+
+double degrees(double radians) {
+    return radians * 180.0 / std::numbers::pi;
+}
+
+std::vector<float> planes_of(const Observed& observed, const RawImage& like, bool is_demosaiced) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    std::vector<float> planes =
+        is_demosaiced && is_bayer(like.mosaic)
+            ? demosaiced(observed.average, like.width_px, like.height_px, like.mosaic)
+            : by_channel(observed.average, like, kNone);
+    append(planes, by_channel(observed.count, like, 0.0F));
+    append(planes, by_channel(observed.standard_error, like, kNone));
+    return planes;
+}
+
+}  // namespace
+
+std::string name_of(Average average) {
+    return std::ranges::find(kAverages, average, [](const auto& a) { return a.second; })->first;
+}
+
+Observation observe(const Survey& survey,
+                    const ObservationOptions& options,
+                    const RunWatch& watch) {
+    Selection selection = selected(survey, options);
+    Observation observation;
+    observation.average = options.average;
+    std::vector<ImageFile> files;
+    for (const ChosenImage& image : selection.images) files.push_back(image.file);
+    observation.looks_wrong =
+        suspicions_of(files, survey.camera, survey.navigation, options.jobs, watch);
+    Pass pass{survey.camera, options, watch, selection};
+    const Observed observed = options.average == Average::Mean
+                                  ? running_mean(pass)
+                                  : average_by_bands(pass, selection, options);
+    for (const Skipped& one : selection.skipped) watch.skipped(one);
+    require_images(selection, options);
+    observation.width_px = pass.like.width_px;
+    observation.height_px = pass.like.height_px;
+    observation.planes = planes_of(observed, pass.like, options.demosaic);
+    observation.images = selection.images.size();
+    observation.outside = selection.outside;
+    observation.sled = mean_sled(selection.images);
+    observation.relative_error = noise_of(observed);
+    observation.skipped = std::move(selection.skipped);
+    return observation;
+}
+
+nlohmann::ordered_json to_json(const Observation& observation,
+                               const std::filesystem::path& map_file) {
+    return {{"map", map_file.string()},
+            {"average", name_of(observation.average)},
+            {"images", observation.images},
+            {"outside", observation.outside},
+            {"altitude_m", observation.sled.altitude_m},
+            {"pitch_deg", degrees(observation.sled.pitch_rad)},
+            {"roll_deg", degrees(observation.sled.roll_rad)},
+            {"relative_error", observation.relative_error},
+            {"skipped", to_json(observation.skipped)},
+            {"looks_wrong", to_json(observation.looks_wrong)}};
+}
+
+void write_observation(const std::filesystem::path& map_file, const Observation& observation) {
+    std::vector<std::string> channels;
+    for (const std::string_view prefix : {"", "count.", "stderr."}) {
+        for (const std::string_view name : kChannelNames)
+            channels.push_back(fmt::format("{}{}", prefix, name));
+    }
+    const Sled& sled = observation.sled;
+    ExrWriter exr(map_file,
+                  observation.width_px,
+                  observation.height_px,
+                  channels,
+                  {{"aphotic:version", APHOTIC_VERSION},
+                   {"aphotic:average", name_of(observation.average)},
+                   {"aphotic:images", fmt::format("{}", observation.images)},
+                   {"aphotic:altitude_m", fmt::format("{}", sled.altitude_m)},
+                   {"aphotic:pitch_deg", fmt::format("{}", degrees(sled.pitch_rad))},
+                   {"aphotic:roll_deg", fmt::format("{}", degrees(sled.roll_rad))}});
+    exr.write_rows(observation.height_px, observation.planes);
+    exr.finish();
+}
+
+}  // namespace aphotic

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A fit as JSON: what fit.json holds and `aphotic fit --json` prints.
+#pragma once
+
+#include "survey/fit/fit.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace aphotic {
+
+[[nodiscard]] nlohmann::ordered_json to_json(const FitResult& result);
+
+}  // namespace aphotic

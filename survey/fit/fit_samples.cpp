@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/fit/fit_samples.h"
+
+#include "base/degrees.h"
+#include "base/error.h"
+#include "base/in_order.h"
+#include "base/number.h"
+#include "image/exr.h"
+#include "survey/first_look.h"
+#include "survey/images/survey_image.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace aphotic {
+namespace {
+
+// Of one block and channel.
+struct Mean {
+    double sum = 0.0;
+    std::size_t count = 0;
+    std::size_t saturated = 0;
+    std::size_t sites = 0;
+
+    [[nodiscard]] float signal() const {
+        const auto all = static_cast<double>(sites);
+        const bool is_told = count > 0 && 2 * count >= sites &&
+                             static_cast<double>(saturated) <= kMostSaturated * all;
+        return is_told ? static_cast<float>(sum / static_cast<double>(count))
+                       : std::numeric_limits<float>::quiet_NaN();
+    }
+};
+
+// Of places in rows from the top left.
+std::size_t blocks_along(int size_px, int block_px) {
+    return static_cast<std::size_t>(std::max(1, size_px / block_px));
+}
+
+// Colours at every pixel: the sites of a mosaic's colours are half a pixel beside the middle of a
+// block, to either side, and the mean of a slope would be off by as much.
+RawImage of_all_colours(const RawImage& raw) {
+    if (!is_bayer(raw.mosaic)) return raw;
+    return {.width_px = raw.width_px,
+            .height_px = raw.height_px,
+            .samples = demosaiced(raw.samples, raw.width_px, raw.height_px, raw.mosaic)};
+}
+
+// f(mean, sample) of every sample within a block.
+template <typename F>
+void for_blocks(const RawImage& raw, int block_px, std::vector<Mean>& means, const F& f) {
+    const std::size_t across = blocks_along(raw.width_px, block_px);
+    const std::size_t down = blocks_along(raw.height_px, block_px);
+    const auto width = static_cast<std::size_t>(raw.width_px);
+    for (int plane = 0; plane < raw.planes(); ++plane) {
+        for (int row = 0; row < raw.height_px; ++row) {
+            const auto j = static_cast<std::size_t>(row / block_px);
+            if (j >= down) break;
+            const float* samples = &raw.samples[static_cast<std::size_t>(plane) * raw.pixels() +
+                                                static_cast<std::size_t>(row) * width];
+            for (int column = 0; column < raw.width_px; ++column) {
+                const auto i = static_cast<std::size_t>(column / block_px);
+                if (i >= across) break;
+                const int channel =
+                    raw.mosaic == Mosaic::None ? plane : channel_at(raw.mosaic, column, row);
+                f(means[(j * across + i) * kChannels + static_cast<std::size_t>(channel)],
+                  samples[column]);
+            }
+        }
+    }
+}
+
+void average(const RawImage& raw, float white, int block_px, FitImage& image) {
+    std::vector<Mean> means(blocks_along(raw.width_px, block_px) *
+                            blocks_along(raw.height_px, block_px) * kChannels);
+    double saturated = 0.0;
+    for_blocks(raw, block_px, means, [&](Mean& mean, float sample) {
+        ++mean.sites;
+        if (!(sample >= white)) return;
+        ++mean.saturated;
+        saturated += 1.0;
+    });
+    for_blocks(of_all_colours(raw), block_px, means, [](Mean& mean, float sample) {
+        if (!std::isfinite(sample)) return;
+        mean.sum += sample;
+        ++mean.count;
+    });
+    for (const Mean& mean : means) image.signal.push_back(mean.signal());
+    image.saturated_share = saturated / static_cast<double>(raw.samples.size());
+}
+
+double number_of(const ExrReader& reader, const std::string& name, const std::string& map) {
+    const std::string text = reader.attribute(name);
+    const auto value = read_number<double>(text);
+    if (!value || !std::isfinite(*value)) {
+        throw InputError(
+            "{}: {}: found '{}'; allowed: a number, as `aphotic observe` writes where "
+            "the navigation tells it",
+            map,
+            name,
+            excerpt(text));
+    }
+    return *value;
+}
+
+// A mosaic's map has its red at a quarter of the pixels alone.
+void require_every_channel(const FitImage& image, const std::string& map) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+        bool is_told = false;
+        for (std::size_t k = c; k < image.signal.size(); k += kChannels)
+            is_told = is_told || std::isfinite(image.signal[k]);
+        if (is_told) continue;
+        throw InputError(
+            "{}: found {} at too few pixels of every block; allowed: at half of one's or more, as "
+            "`aphotic observe --demosaic` writes",
+            map,
+            kChannelNames[c]);
+    }
+}
+
+FitImage image_of_map(ExrReader& reader,
+                      const std::string& map,
+                      const Camera& camera,
+                      int block_px) {
+    const std::vector<std::string> names{kChannelNames.begin(), kChannelNames.end()};
+    const std::vector<std::string> channels = reader.channels();
+    for (const std::string& name : names) {
+        if (std::ranges::find(channels, name) == channels.end())
+            throw InputError("{}: has no channel {}; needed: R, G, B", map, name);
+    }
+    RawImage raw{.width_px = reader.width_px(), .height_px = reader.height_px()};
+    naming(map, [&] {
+        require_size(raw, camera.width_px, camera.height_px, "as the rig's camera has");
+    });
+    raw.samples = reader.planes(names);
+    FitImage image{
+        .name = map,
+        .sled = {.altitude_m = number_of(reader, "aphotic:altitude_m", map),
+                 .pitch_rad = number_of(reader, "aphotic:pitch_deg", map) / kDegreesPerRadian,
+                 .roll_rad = number_of(reader, "aphotic:roll_deg", map) / kDegreesPerRadian}};
+    if (!reader.attribute("aphotic:images").empty())
+        image.images = std::max(1.0, number_of(reader, "aphotic:images", map));
+    average(raw, std::numeric_limits<float>::infinity(), block_px, image);
+    require_every_channel(image, map);
+    const bool is_mono = camera.sensor.is_mono();
+    // Of a mono camera all three are one, and count once.
+    for (std::size_t k = 0; k < image.signal.size() && is_mono; ++k)
+        if (k % kChannels > 0) image.signal[k] = std::numeric_limits<float>::quiet_NaN();
+    return image;
+}
+
+FitPlaces places_of(int width_px, int height_px, int block_px) {
+    FitPlaces places{.width_px = width_px, .height_px = height_px, .block_px = block_px};
+    for (std::size_t j = 0; j < blocks_along(height_px, block_px); ++j) {
+        for (std::size_t i = 0; i < blocks_along(width_px, block_px); ++i) {
+            places.columns.push_back((static_cast<double>(i) + 0.5) * block_px);
+            places.rows.push_back((static_cast<double>(j) + 0.5) * block_px);
+        }
+    }
+    return places;
+}
+
+}  // namespace
+
+FitPlaces fit_places(int width_px, int height_px, int blocks_across) {
+    // Even, so that a block of a mosaic holds as many sites of each kind everywhere.
+    int block_px = std::max(1, width_px / std::max(1, blocks_across));
+    if (block_px > 1) block_px -= block_px % 2;
+    return places_of(width_px, height_px, block_px);
+}
+
+FitSamples samples_of_images(const Survey& survey,
+                             PlaneSize size,
+                             int blocks_across,
+                             std::size_t jobs,
+                             const RunWatch& watch) {
+    FitSamples samples;
+    samples.places = fit_places(size.width_px, size.height_px, blocks_across);
+    samples.mosaic = survey.camera.mosaic.value_or(Mosaic::None);
+    CameraNumbers numbers = survey.camera;
+    if (!numbers.expected) numbers.expected.emplace();
+    numbers.expected->image = size;
+    numbers.expected->as = "as the rig's camera has";
+    samples.looks_wrong = suspicions_of(survey.files, numbers, survey.navigation, jobs, watch);
+    const auto skip = [&](std::size_t i, const std::string& why) {
+        samples.skipped.push_back({.image = survey.files[i].source.string(), .why = why});
+        watch.skipped(samples.skipped.back());
+    };
+    in_order(
+        survey.files.size(),
+        static_cast<int>(jobs),
+        [&](std::size_t i) {
+            FitImage image{.name = survey.files[i].name.string(),
+                           .sled = survey.sled_of(survey.files[i])};
+            SurveyImage taken = read_survey_image(survey.files[i].source, numbers);
+            take_off_black(taken);
+            average(taken.raw, taken.levels.white, samples.places.block_px, image);
+            return image;
+        },
+        [&](std::size_t i, FitImage image) {
+            samples.images.push_back(std::move(image));
+            watch.progress("reading",
+                           static_cast<double>(i + 1) / static_cast<double>(survey.files.size()));
+        },
+        skip);
+    if (samples.images.empty()) {
+        throw InputError("no image to be used; the first: {}",
+                         samples.skipped.empty() ? "none" : samples.skipped.front().why);
+    }
+    return samples;
+}
+
+FitSamples in_blocks(const FitSamples& samples, int blocks_across) {
+    const FitPlaces& fine = samples.places;
+    // Of whole blocks.
+    const int merge = fine.width_px / blocks_across / fine.block_px;
+    if (merge <= 1) return samples;
+    const FitPlaces places = places_of(fine.width_px, fine.height_px, merge * fine.block_px);
+    const std::size_t across = blocks_along(fine.width_px, places.block_px);
+    const std::size_t down = blocks_along(fine.height_px, places.block_px);
+    FitSamples merged = samples;
+    merged.places = places;
+    for (FitImage& image : merged.images) {
+        std::vector<Mean> means(across * down * kChannels);
+        for (std::size_t k = 0; k < image.signal.size(); ++k) {
+            const std::size_t place = k / kChannels;
+            const auto i = static_cast<std::size_t>(fine.columns[place] / places.block_px);
+            const auto j = static_cast<std::size_t>(fine.rows[place] / places.block_px);
+            if (i >= across || j >= down) continue;
+            Mean& mean = means[(j * across + i) * kChannels + k % kChannels];
+            ++mean.sites;
+            if (!std::isfinite(image.signal[k])) continue;
+            mean.sum += image.signal[k];
+            ++mean.count;
+        }
+        image.signal.clear();
+        for (const Mean& mean : means) image.signal.push_back(mean.signal());
+    }
+    return merged;
+}
+
+FitSamples samples_of_maps(const std::vector<std::string>& maps,
+                           const Camera& camera,
+                           int blocks_across) {
+    FitSamples samples;
+    samples.are_maps = true;
+    samples.places = fit_places(camera.width_px, camera.height_px, blocks_across);
+    for (const std::string& map : maps)
+        samples.images.push_back(from_named_exr(map, [&](ExrReader& reader) {
+            return image_of_map(reader, map, camera, samples.places.block_px);
+        }));
+    return samples;
+}
+
+}  // namespace aphotic

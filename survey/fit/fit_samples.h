@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a fit is made to: the signal of an even grid of blocks of every image or map, in each
+// channel the mean of the block's samples less the black level, at the reference exposure.
+//
+// A block is left out (NaN) in a channel where more than kMostSaturated of its samples are
+// saturated, for their mean would be too dark, or more than half were not observed.
+#pragma once
+
+#include "survey/fit/fit_light.h"
+#include "survey/run_watch.h"
+#include "survey/survey.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace aphotic {
+
+inline constexpr int kBlocksAcross = 40;
+inline constexpr double kMostSaturated = 0.01;
+
+struct FitImage {
+    std::string name;
+    Sled sled;
+    double images = 1.0;           // that a map was averaged of
+    std::vector<float> signal{};   // by place, then channel
+    double saturated_share = 0.0;  // of its samples
+};
+
+struct FitSamples {
+    FitPlaces places{};
+    std::vector<FitImage> images{};
+    bool are_maps = false;
+    Mosaic mosaic = Mosaic::None;  // of the files, as far as the survey says
+    std::vector<Skipped> skipped{};
+    std::vector<Suspicion> looks_wrong{};  // of images; the watch was told
+};
+
+// Blocks of a width that gives about so many across.
+[[nodiscard]] FitPlaces fit_places(int width_px, int height_px, int blocks_across);
+
+// The survey has a navigation. Images are read `jobs` at a time and kept as their blocks alone.
+// What survey_check.h doubts is told to the watch before. An InputError when none can be used.
+[[nodiscard]] FitSamples samples_of_images(const Survey& survey,
+                                           PlaneSize size,
+                                           int blocks_across,
+                                           std::size_t jobs,
+                                           const RunWatch& watch);
+
+// The same in blocks of about so many across, or as they are where they are no finer.
+[[nodiscard]] FitSamples in_blocks(const FitSamples& samples, int blocks_across);
+
+// Maps by `aphotic observe`, or by any program that writes R, G, B and the attributes
+// aphotic:altitude_m, aphotic:pitch_deg, aphotic:roll_deg. An InputError for one that cannot be
+// used: there are few, and each was named.
+[[nodiscard]] FitSamples samples_of_maps(const std::vector<std::string>& maps,
+                                         const Camera& camera,
+                                         int blocks_across);
+
+}  // namespace aphotic

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The images of a survey, from the files and folders that a user names, and where what is made of
+// each goes.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+struct ImageFile {
+    std::filesystem::path source;
+    // Below the output folder, without extension: the file's name, and its folders below the one
+    // that was named.
+    std::filesystem::path name;
+};
+
+// What `correct` and `baseline` leave in a folder of results, by which it is known as one.
+inline constexpr std::string_view kCorrectionNotes = "correction.json";
+inline constexpr std::string_view kBaselineNotes = "baseline.json";
+inline constexpr std::string_view kReportPage = "report.html";
+inline constexpr std::string_view kJournal = "corrected.jsonl";  // of what is done
+
+// In the order of the arguments, a folder's images sorted by name, those in the folders within it
+// among them, also by links; but for a link to a folder that it lies in. What lies in `output` and
+// in folders of results is left out. What has an image's name and cannot be read, as a link that
+// leads nowhere, is among them, for require_file() to tell. An InputError when an argument is not
+// there or is `output` itself, a folder holds no image, or two images would have one name.
+[[nodiscard]] std::vector<ImageFile> image_files(const std::vector<std::string>& arguments,
+                                                 const std::filesystem::path& output);
+
+// An InputError, which does not name the image, unless it is there and is a file: of a pipe one
+// would wait for ever.
+void require_file(const std::filesystem::path& image);
+
+// Whether the file's name ends as an image's does, such as .tif, in any letter case; and the path
+// without that.
+[[nodiscard]] bool is_image_name(const std::filesystem::path& file);
+[[nodiscard]] std::filesystem::path without_extension(const std::filesystem::path& file);
+
+}  // namespace aphotic

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where the sled was when each image was taken. It is made of poses, by the reader of navigation
+// (navigation_file.h) or by any program that knows them.
+//
+//   altitude  along the camera's axis      pitch  positive bow up      roll  positive starboard
+//   down
+//
+// An image is known by its file name without folder and without an image's extension, so that a
+// pose still holds when raw images were converted; or, where poses are of the files themselves, by
+// its path. An image that stands twice has no pose.
+#pragma once
+
+#include "rig/rig.h"
+#include "survey/images/image_files.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace aphotic {
+
+// What a survey's navigation was taken for: the format, which of its columns say what, in which
+// unit, and how its poses became the camera's.
+
+enum class AngleUnit { Degrees, Radians };
+
+// Where images are found in a track, by their times.
+struct TimesOfImages {
+    std::string mask{};  // of their names; empty: EXIF, or HabCam's names
+    double clock_offset_s = 0.0;
+    double longest_gap_s = 0.0;
+    std::size_t lines_left_out = 0;  // of the track: no time, or no pose that a sled can have
+};
+
+struct NavigationNotes {
+    std::string format{};
+    std::vector<std::pair<std::string, std::string>> columns{};  // our name, the file's
+    AngleUnit angles_in = AngleUnit::Degrees;
+    std::optional<TimesOfImages> times{};  // none: images have their names in the file
+    Mounting mounting{};
+};
+
+// All that poses depend on, lines left out aside: a file may grow.
+[[nodiscard]] nlohmann::ordered_json to_json(const NavigationNotes& notes);
+
+// "oplab's CSV: image 'relative_path', ...; metres, degrees; altitude: along the axis"
+[[nodiscard]] std::string words_of(const NavigationNotes& notes);
+
+struct ImagePose {
+    std::string image{};  // as the source has it
+    Sled sled{};
+    std::size_t line = 0;  // of the file; 0: of none
+    std::string fault{};   // why the source tells no pose; or empty
+};
+
+// Whether the source tells the angles, for the whole survey; else poses have another's, as the
+// rig's.
+struct ToldAngles {
+    bool pitch = true;
+    bool roll = true;
+};
+
+// Why no sled has this pose, as with the zeros and NaN of an altimeter that lost the floor; or
+// empty.
+[[nodiscard]] std::string fault_of(const Sled& sled);
+
+enum class ImagesKnownBy { Name, Path };
+
+class Navigation {
+  public:
+    // source stands in messages, such as the file's name.
+    Navigation(std::string source,
+               const std::vector<ImagePose>& poses,
+               ToldAngles told = {},
+               ImagesKnownBy known_by = ImagesKnownBy::Name);
+
+    // The pose of an image file. An InputError when there is none, it has a fault, or its numbers
+    // are none that a sled can have: that is of one image, and the others can do without it.
+    [[nodiscard]] const ImagePose& pose_of(const std::filesystem::path& image) const;
+
+    // From now on poses, which were the vehicle's, are the camera's.
+    void mount(const Mounting& mounting);
+
+    // From now on an image from beyond has no pose.
+    void limit_altitude(double least_m, double most_m);
+
+    [[nodiscard]] std::size_t size() const { return poses_.size(); }
+    // All that it knows a pose of, as the source has them, in its order.
+    [[nodiscard]] std::vector<std::string> images() const;
+    [[nodiscard]] const ToldAngles& told() const { return told_; }
+
+    // Which angles poses have from anywhere: the source, or a rig that stands in for it.
+    [[nodiscard]] const ToldAngles& known() const { return known_; }
+    void take_angles_of_rig() { known_ = {.pitch = true, .roll = true}; }
+
+    // None when no reader told.
+    [[nodiscard]] const std::optional<NavigationNotes>& notes() const { return notes_; }
+    void note(NavigationNotes notes) { notes_ = std::move(notes); }
+
+    // What may be wrong though it can be read, each with the source's name.
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    void warn(std::string what) { warnings_.push_back(std::move(what)); }
+
+  private:
+    [[nodiscard]] std::string key_of(const std::string& image) const;
+
+    std::string source_;
+    ToldAngles told_;
+    ToldAngles known_;
+    ImagesKnownBy known_by_;
+    std::optional<NavigationNotes> notes_{};
+    std::vector<std::string> warnings_{};
+    std::size_t nameless_line_ = 0;  // the first; 0: none
+    double least_m_ = 0.0;
+    double most_m_ = std::numeric_limits<double>::infinity();
+    std::unordered_map<std::string, ImagePose> poses_;  // by the image's key
+};
+
+// Of these images' poses the highest; none where no image has one.
+[[nodiscard]] std::optional<Sled> highest_pose(const Navigation& navigation,
+                                               const std::vector<ImageFile>& files);
+
+}  // namespace aphotic

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "survey/navigation/navigation_columns.h"
+
+#include "base/csv.h"
+#include "base/error.h"
+#include "base/nearest.h"
+#include "base/number.h"
+#include "base/printable.h"
+#include "base/words.h"
+#include "rig/beam/photometric_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace aphotic {
+
+namespace {
+
+// What loggers, databases and spreadsheets write when they know no number, besides NaN itself.
+bool is_unknown(std::string_view field) {
+    static constexpr std::array<std::string_view, 8> kUnknown{
+        "", "-", "na", "n/a", "#n/a", "null", "none", "1.#qnan"};
+    return std::ranges::find(kUnknown, lower_case(std::string(field))) != kUnknown.end();
+}
+
+// 2,15, as spreadsheets of half of Europe write it.
+bool has_decimal_comma(std::string_view field) {
+    const std::size_t comma = field.find(',');
+    return comma != std::string_view::npos && comma > 0 && comma + 1 < field.size() &&
+           field.find_first_not_of("+-0123456789eE,") == std::string_view::npos;
+}
+
+}  // namespace
+
+double number_in(ImagePose& pose, std::string_view column, std::string_view field) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    if (is_unknown(field)) return kNone;
+    const std::string_view digits = field.starts_with('+') ? field.substr(1) : field;
+    if (const auto number = read_number<double>(digits)) return *number;
+    if (pose.fault.empty()) {
+        pose.fault = fmt::format("{}: found {}; allowed: a number{}",
+                                 column,
+                                 shown_word(field),
+                                 has_decimal_comma(field) ? " with a decimal point" : "");
+    }
+    return kNone;
+}
+
+namespace {
+
+using Header = std::vector<std::string>;
+
+struct KnownFormat {
+    std::string_view name;
+    // In lower case, the first that is there counts.
+    std::array<std::vector<std::string_view>, kNavigationFields.size()> columns;
+};
+
+const std::vector<KnownFormat>& known_formats() {
+    static const std::vector<KnownFormat> kFormats{
+        {"Aphotic's CSV",
+         {{{"image"},
+           {"timestamp [s]", "timestamp", "time", "datetime"},
+           {"altitude_m"},
+           {"pitch_deg"},
+           {"roll_deg"}}}},
+        {"oplab's CSV",
+         {{{"relative_path"},
+           {"timestamp [s]"},
+           {"altitude [m]"},
+           {"pitch [deg]"},
+           {"roll [deg]"}}}},
+        {"BIIGLE's CSV",
+         {{{"filename", "file"},
+           {"taken_at", "sub_datetime"},
+           {"distance_to_ground", "sub_distance"},
+           {},
+           {}}}},
+        {"SQUIDLE+'s CSV",
+         {{{"key"}, {"timestamp_start"}, {"pose.alt"}, {"pose.data.pitch"}, {"pose.data.roll"}}}},
+        {"HabCam's .img", {{{"imagename"}, {}, {"alt1"}, {"pitch"}, {"roll"}}}},
+        // All of these names in one table, but for those that mean little by themselves.
+        {"a table",
+         {{{"image",
+            "relative_path",
+            "filename",
+            "imagename",
+            "image name",
+            "image_name",
+            "file name",
+            "file_name"},
+           {"timestamp [s]",
+            "timestamp",
+            "time",
+            "datetime",
+            "taken_at",
+            "sub_datetime",
+            "timestamp_start",
+            "date/time"},
+           {"altitude_m", "altitude [m]", "altitude (m)", "distance_to_ground", "sub_distance"},
+           {"pitch_deg", "pitch [deg]", "pitch (deg)"},
+           {"roll_deg", "roll [deg]", "roll (deg)"}}}}};
+    return kFormats;
+}
+
+// An altitude of PANGAEA's is over the sea level.
+const std::vector<KnownFormat>& pangaeas_format() {
+    static const std::vector<KnownFormat> kFormats{
+        {"PANGAEA's tab file",
+         {{{"image", "file name", "filename", "file", "image name"},
+           {"date/time"},
+           {"altitude_m"},
+           {"pitch_deg", "pitch [deg]"},
+           {"roll_deg", "roll [deg]"}}}}};
+    return kFormats;
+}
+
+const std::vector<KnownFormat>& formats_of(const HeaderRequest& request) {
+    return request.is_pangaeas ? pangaeas_format() : known_formats();
+}
+
+std::optional<std::size_t> column_named(const Header& header, std::string_view wanted) {
+    const auto same = [&](const std::string& column) {
+        return lower_case(column) == lower_case(std::string(wanted));
+    };
+    const auto found = std::ranges::find_if(header, same);
+    if (found == header.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - header.begin());
+}
+
+std::string is_it(std::string_view wanted, const Header& header) {
+    const std::string near = nearest_name(wanted, header);
+    return near.empty() ? "" : fmt::format(" (is it '{}'?)", printable(near));
+}
+
+// A header may be no header at all, but a line of any length.
+std::string shown_columns(const Header& header) {
+    constexpr std::size_t kMostLetters = 400;
+    std::string words;
+    for (const std::string& name : header) {
+        words += (words.empty() ? "" : ",") + name;
+        if (words.size() > kMostLetters) return printable(words.substr(0, kMostLetters)) + "...";
+    }
+    return printable(words);
+}
+
+// Those of --columns, as far as they are there.
+NavigationColumns given_columns(const Header& header, const ColumnNames& given) {
+    NavigationColumns columns;
+    for (std::size_t field = 0; field < kNavigationFields.size(); ++field) {
+        const auto name = given.find(std::string(kNavigationFields.at(field)));
+        if (name != given.end()) columns.places.at(field) = column_named(header, name->second);
+    }
+    return columns;
+}
+
+void require_given(const HeaderRequest& request, const Header& header) {
+    for (const auto& [ours, name] : request.given) {
+        if (column_named(header, name)) continue;
+        fail_at_line(request.file,
+                     request.line,
+                     "found the columns {}; needed by --columns: '{}'{}",
+                     shown_columns(header),
+                     name,
+                     is_it(name, header));
+    }
+}
+
+NavigationColumns with_format(NavigationColumns columns,
+                              const KnownFormat& format,
+                              const Header& header) {
+    columns.format = format.name;
+    for (std::size_t field = 0; field < kNavigationFields.size(); ++field) {
+        for (const std::string_view name : format.columns.at(field)) {
+            auto& place = columns.places.at(field);
+            if (!place) place = column_named(header, name);
+        }
+    }
+    return columns;
+}
+
+bool has_pose_and_name(const NavigationColumns& columns) {
+    return columns.place(NavigationField::Altitude) &&
+           (columns.place(NavigationField::Image) || columns.place(NavigationField::Time));
+}
+
+// The format with most of the columns that are its own: image, else altitude, else time, in which
+// --columns may have put others in the place of the rest.
+std::optional<NavigationColumns> recognised(const NavigationColumns& given,
+                                            const std::vector<KnownFormat>& formats,
+                                            const Header& header) {
+    using Wanted = std::vector<NavigationField>;
+    using enum NavigationField;
+    for (const Wanted& wanted :
+         {Wanted{Image, Altitude}, Wanted{Time, Altitude}, Wanted{Image}, Wanted{Altitude}, {}}) {
+        for (const KnownFormat& format : formats) {
+            const NavigationColumns own = with_format({}, format, header);
+            const bool is_it = std::ranges::all_of(
+                wanted, [&](auto field) { return own.place(field).has_value(); });
+            NavigationColumns columns = with_format(given, format, header);
+            if (is_it && has_pose_and_name(columns)) return columns;
+        }
+    }
+    return std::nullopt;
+}
+
+[[noreturn]] void refuse_header(const HeaderRequest& request,
+                                const Header& header,
+                                const NavigationColumns& given) {
+    std::vector<std::string_view> over_the_sea{
+        "gps_altitude", "sub_altitude", "image-altitude-meters", "pose.dep", "depth"};
+    if (request.is_pangaeas) over_the_sea.emplace_back("altitude [m]");
+    const NavigationColumns ours = with_format(given, formats_of(request).front(), header);
+    const bool has_altitude = ours.place(NavigationField::Altitude).has_value();
+    const std::string_view needed = has_altitude ? "image" : "altitude_m";
+    std::string sea;
+    for (const std::string_view name : over_the_sea) {
+        const auto place = column_named(header, name);
+        if (has_altitude || !place || !sea.empty()) continue;
+        sea = fmt::format("; '{}' is relative to the sea level", printable(header[*place]));
+    }
+    fail_at_line(request.file,
+                 request.line,
+                 "found the columns {}{}; needed: '{}'{}{}, or --columns {}=NAME{}",
+                 shown_columns(header),
+                 request.is_pangaeas ? ", of PANGAEA's tab file" : "",
+                 needed,
+                 has_altitude ? " or 'timestamp'" : "",
+                 is_it(needed, header),
+                 needed,
+                 sea);
+}
+
+// Of an angle under another name, the rig's would be taken and nobody be told.
+void require_known_angles(const HeaderRequest& request,
+                          const Header& header,
+                          const NavigationColumns& columns) {
+    using enum NavigationField;
+    for (const auto& [field, word] : {std::pair{Pitch, "pitch"}, std::pair{Roll, "roll"}}) {
+        if (columns.place(field)) continue;
+        const std::string_view ours = kNavigationFields.at(static_cast<std::size_t>(field));
+        for (const std::string& column : header) {
+            if (!lower_case(column).starts_with(word)) continue;
+            fail_at_line(request.file,
+                         request.line,
+                         "found the column '{}'; allowed: '{}', or --columns {}='{}'",
+                         printable(column),
+                         ours,
+                         ours,
+                         printable(column));
+        }
+    }
+}
+
+// The unit that a column's name ends in, as in "pitch [deg]", "altitude (cm)" and "roll_rad".
+std::string unit_in(std::string_view column) {
+    const bool has_bracket = column.ends_with(']') || column.ends_with(')');
+    if (has_bracket) column.remove_suffix(1);
+    const std::size_t start = column.find_last_of(has_bracket ? "[(" : "_");
+    if (start == std::string_view::npos) return "";
+    return lower_case(std::string(trimmed(column.substr(start + 1))));
+}
+
+// What --columns names may say that it is something else than it is taken for.
+void require_units(const HeaderRequest& request, const NavigationColumns& columns) {
+    static const std::set<std::string> kLengths{
+        "mm", "cm", "dm", "km", "ft", "feet", "foot", "inch", "inches", "fathoms", "fm"};
+    static const std::set<std::string> kRadians{"rad", "rads", "radian", "radians"};
+    using enum NavigationField;
+    const auto fail = [&](NavigationField field, std::string_view allowed) {
+        const std::string& name = columns.name(field);
+        fail_at_line(request.file,
+                     request.line,
+                     "the column '{}' is in {}; allowed: {}",
+                     printable(name),
+                     printable(unit_in(name)),
+                     allowed);
+    };
+    if (kLengths.contains(unit_in(columns.name(Altitude)))) fail(Altitude, "metres");
+    if (request.angles_in == AngleUnit::Radians) return;
+    for (const NavigationField angle : {Pitch, Roll}) {
+        if (kRadians.contains(unit_in(columns.name(angle))))
+            fail(angle, "degrees, or --angles-in rad");
+    }
+}
+
+}  // namespace
+
+bool is_navigation_header(const HeaderRequest& request, const Header& header) {
+    for (const auto& [ours, name] : request.given) {
+        if (!column_named(header, name)) return false;
+    }
+    return recognised(given_columns(header, request.given), formats_of(request), header)
+        .has_value();
+}
+
+NavigationColumns navigation_columns(const HeaderRequest& request, const Header& header) {
+    require_given(request, header);
+    const NavigationColumns told = given_columns(header, request.given);
+    std::optional<NavigationColumns> columns = recognised(told, formats_of(request), header);
+    if (!columns) refuse_header(request, header, told);
+    // One of them says where the images are; which, --columns may choose.
+    auto& [image, time, altitude, pitch, roll] = columns->places;
+    if (image && told.place(NavigationField::Time) && !told.place(NavigationField::Image))
+        image.reset();
+    if (image) time.reset();
+    require_known_angles(request, header, *columns);
+    columns->count = header.size();
+    std::vector<std::string> names;
+    for (const std::string& name : header) names.push_back(lower_case(name));
+    for (std::size_t field = 0; field < kNavigationFields.size(); ++field) {
+        const auto place = columns->places.at(field);
+        if (!place) continue;
+        columns->names.at(field) = header[*place];
+        if (std::ranges::count(names, names[*place]) > 1) {
+            fail_at_line(request.file,
+                         request.line,
+                         "the column '{}' stands twice",
+                         printable(header[*place]));
+        }
+    }
+    require_units(request, *columns);
+    return *columns;
+}
+
+}  // namespace aphotic

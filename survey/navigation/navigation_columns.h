@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which columns of a table are what, by their names in the formats that surveys come in, whatever
+// their letter case:
+//
+//   format          image           time                       altitude             pitch, roll
+//   Aphotic's CSV   image           timestamp [s], timestamp,  altitude_m           pitch_deg
+//                                   time, datetime                                  roll_deg
+//   oplab's CSV     relative_path   timestamp [s]              altitude [m]         pitch [deg]
+//                                                                                   roll [deg]
+//   BIIGLE's CSV    filename, file  taken_at, SUB_datetime     distance_to_ground,  none
+//                                                              SUB_distance
+//   SQUIDLE+'s CSV  key             timestamp_start            pose.alt             pose.data.pitch
+//                                                                                   pose.data.roll
+//   HabCam's .img   imagename       none                       alt1                 pitch, roll
+//   a table         any of these, with units where they are in doubt: altitude_m, altitude [m],
+//                   distance_to_ground, SUB_distance; pitch_deg, pitch [deg]; roll_deg, roll [deg]
+//   PANGAEA's .tab  image,          date/time                  altitude_m           pitch [deg]
+//                   file name                                                       roll [deg]
+//
+// All are in metres and degrees. Heights over the sea level are never taken: gps_altitude,
+// SUB_altitude, pose.dep, depth, and PANGAEA's altitude [m].
+//
+// Sources: oplab_pipeline, auv_nav/sensors.py and tools/csv_tools.py, and its
+// generate_nav_file_for_squidle.py; biigle/core, image metadata parser; oii, HabCam's metadata.
+#pragma once
+
+#include "survey/navigation/navigation.h"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aphotic {
+
+// A number of a pose, as tables and tags hold it.
+
+// NaN when the field says that nobody knows it, as by None or an empty cell; what is neither is a
+// fault of the pose.
+[[nodiscard]] double number_in(ImagePose& pose, std::string_view column, std::string_view field);
+
+enum class NavigationField { Image, Time, Altitude, Pitch, Roll };
+inline constexpr std::array<std::string_view, 5> kNavigationFields{
+    "image", "time", "altitude_m", "pitch_deg", "roll_deg"};
+
+// Other names of columns, by ours of kNavigationFields.
+using ColumnNames = std::map<std::string, std::string>;
+
+struct NavigationColumns {
+    std::string format{};
+    std::size_t count = 0;  // of all columns
+    std::array<std::optional<std::size_t>, kNavigationFields.size()> places{};
+    std::array<std::string, kNavigationFields.size()> names{};  // as the header has them
+
+    [[nodiscard]] std::optional<std::size_t> place(NavigationField field) const {
+        return places.at(static_cast<std::size_t>(field));
+    }
+    [[nodiscard]] const std::string& name(NavigationField field) const {
+        return names.at(static_cast<std::size_t>(field));
+    }
+    // Images are found by their times, for the table does not name them.
+    [[nodiscard]] bool is_track() const { return !place(NavigationField::Image); }
+};
+
+// HabCam's .img has no header: these are its columns, in their order.
+inline constexpr std::array<std::string_view, 16> kHabCamColumns{"imagename",
+                                                                 "lat",
+                                                                 "lon",
+                                                                 "head",
+                                                                 "pitch",
+                                                                 "roll",
+                                                                 "alt1",
+                                                                 "alt2",
+                                                                 "depth",
+                                                                 "s",
+                                                                 "t",
+                                                                 "o2",
+                                                                 "cdom",
+                                                                 "chlorophyll",
+                                                                 "backscatter",
+                                                                 "therm"};
+
+struct HeaderRequest {
+    std::string file{};  // it and its line stand in messages
+    std::size_t line = 0;
+    ColumnNames given{};
+    AngleUnit angles_in = AngleUnit::Degrees;
+    bool is_pangaeas = false;
+};
+
+// Whether the columns are of a format, with those that are given.
+[[nodiscard]] bool is_navigation_header(const HeaderRequest& request,
+                                        const std::vector<std::string>& header);
+
+// An InputError, which begins with file and line, when the columns are of no format, one that is
+// given is not there, or one says a unit in its name that is not the one it would be taken for.
+[[nodiscard]] NavigationColumns navigation_columns(const HeaderRequest& request,
+                                                   const std::vector<std::string>& header);
+
+}  // namespace aphotic

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// From the camera's signal to what its file holds, by the linear model of EMVA 1288 (release 4.0),
+// whose dark signal is the black level:
+//
+//   mu  = g S_c(pixel)                         electrons; c is the channel of the pixel's own
+//   filter e   = min(Poisson(mu), saturation_e) + read_noise_e N(0, 1) DN  = round(black + K e),
+//   kept within 0 and white
+//
+// S_c  the signal, linear        g  electrons of a signal of 1        K  gain [DN per electron]
+//
+// Without noise e = min(mu, saturation_e). So of an even light the mean is black + K mu, and the
+// variance K^2 (read_noise_e^2 + mu) + 1/12, that of rounding; without light it is the read noise's
+// and rounding's. Dark current and differences from pixel to pixel (DSNU, PRNU) are left out.
+#pragma once
+
+#include "image/camera_image.h"
+#include "image/image_tags.h"
+#include "rig/rig.h"
+#include "survey/images/raw_image.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace aphotic {
+
+struct RawCamera {
+    Mosaic mosaic = Mosaic::Rggb;
+    double black_dn = 64.0;
+    double white_dn = 4095.0;  // of 12 bits
+    // As of an interline CCD with pixels of 6.45 um, a common kind in such cameras; its well fills
+    // the numbers.
+    double gain_dn_per_e = 4031.0 / 15000.0;
+    double read_noise_e = 8.0;
+    double saturation_e = 15000.0;
+    double electrons_per_signal = 1.0;  // g
+    ShotExposure shot{};                // what its files tell in their Exif
+};
+
+// What a camera does not tell is as above; of gain and saturation what is not told follows from
+// the other: white is where the well is full. An InputError where white is not over black or not
+// a number of 16 bits, and of a mosaic of a mono camera, or mono of one of colours.
+[[nodiscard]] RawCamera raw_camera_of(const Readout& readout, bool is_mono = false);
+
+[[nodiscard]] nlohmann::ordered_json to_json(const RawCamera& camera);
+
+// Row by row; of a mono camera the signal is that of red. noise: the survey's seed and the image's
+// number, on which it depends and on nothing else; none: no noise.
+struct NoiseOf {
+    std::uint64_t seed = 0;
+    int image = 0;
+};
+[[nodiscard]] std::vector<std::uint16_t> raw_samples(const CameraImage& image,
+                                                     const RawCamera& camera,
+                                                     std::optional<NoiseOf> noise);
+
+}  // namespace aphotic

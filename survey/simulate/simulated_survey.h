@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A simulated survey, as a camera would have written it, with the truth beside. In its folder:
+//
+//   survey.json               the settings that it is made with, and the camera
+//   navigation.txt            the true poses (flight.h)
+//   navigation-measured.txt   the same with the errors of instruments
+//   truth/000001.exr          the camera's signal, float R, G, B, without noise
+//   texture/000001.exr        what the floor reflects, times the rig's floor: float Y
+//   raw/000001.tif            what the camera's file holds (raw_camera.h), 16 bits
+//
+// A flat floor's truth is made here, of lightmaps:
+//
+//   S_c(pixel) = map_c T(x, y) + veil_c          (x, y) the pixel's place on the floor
+//
+// with the texture T (floor_texture.h), for the veil never met the floor. Each image sees a piece
+// of floor of its own. Any other truth is made by whoever can (plugin/survey_render.h).
+//
+// An image depends on the settings and on its number alone: not on threads, nor on how many images
+// there are. So a survey that was interrupted goes on, and grows, when it is made again.
+#pragma once
+
+#include "image/camera_image.h"
+#include "rig/rig.h"
+#include "survey/simulate/flight.h"
+#include "survey/simulate/raw_camera.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+namespace aphotic {
+
+struct SimulatedSurvey {
+    std::filesystem::path folder;
+    Rig rig;
+    std::vector<Leg> legs;
+    std::vector<Sled> corners;  // between which legs are, and those that may be added
+    InstrumentErrors errors{};
+    RawCamera camera{};
+    bool has_noise = true;
+    double texture = 0.2;  // rms contrast; 0: none
+    std::uint64_t seed = 1;
+    int jobs = 1;
+    nlohmann::ordered_json made_by{};  // what else the images depend on
+    std::function<void(double share)> progress = [](double) {};
+};
+
+inline constexpr const char* kSurveyNotes = "survey.json";
+
+[[nodiscard]] std::filesystem::path truth_file(const SimulatedSurvey& survey, const Leg& leg);
+
+// Of files that are to be written yet, uncompressed.
+[[nodiscard]] std::uint64_t missing_bytes(const SimulatedSurvey& survey);
+
+// An InputError where the folder holds a survey of other settings. Else these are noted.
+void begin_survey(const SimulatedSurvey& survey);
+
+// Electrons of a signal of 1 so that the brightest of the rig's bare floor, seen straight down from
+// the lowest of these poses, fills this share of the well.
+[[nodiscard]] double electrons_for_share(Rig rig,
+                                         const std::vector<Sled>& corners,
+                                         double saturation_e,
+                                         double share);
+
+// What is not there yet of the images' truth, and texture. An InputError of a rig whose view holds
+// more than a flat floor.
+void make_truth_by_lightmaps(const SimulatedSurvey& survey);
+
+// What is not there yet of the raw images, from their truth; the navigation, and all of the notes.
+void finish_survey(const SimulatedSurvey& survey);
+
+}  // namespace aphotic
