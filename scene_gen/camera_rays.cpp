@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -17,44 +19,75 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Along a side of the image: the middles of the first and last pixel, points between them, and one
-// beyond each, for POV-Ray takes a pixel that lies in no face to be black.
-std::vector<double> points_along(int pixels, int cells) {
+// The points of a column or row of the grid lie where POV-Ray looks for them, and have the ray of
+// where a pixel sees.
+struct Line {
+    double at_px;
+    double sees_px;
+};
+
+// From the first pixel to the last, where POV-Ray looks for all of the last one's rays at once.
+// Antialiased pixels come no nearer to their borders than an 18th of a pixel.
+std::vector<Line> lines_along(int pixels, int cells) {
+    constexpr double kNoRay = 1.0 / 32.0;
     constexpr double kBeyond = 0.25;
-    std::vector<double> points{0.5 - kBeyond};
-    for (int i = 0; i <= cells; ++i) points.push_back(0.5 + (pixels - 1.0) * i / cells);
-    points.push_back(pixels - 0.5 + kBeyond);
-    return points;
+    constexpr double kBeforeFirst = 0.09;  // POV-Ray's table of faces has no place for u <= -0.1
+    const double last = pixels - 1.0;
+    std::vector<Line> lines;
+    if (pixels > 1) lines.push_back({std::max(0.0, 0.5 - kBeforeFirst * pixels), 0.0});
+    for (int i = 0; i <= cells; ++i) {
+        const double middle = 0.5 + (last - 1.0) * i / std::max(1, cells);
+        lines.push_back({middle, middle});
+    }
+    if (pixels > 1) lines.push_back({last - kNoRay, last - kNoRay});
+    lines.push_back({last - 0.5 * kNoRay, pixels - 0.5});
+    lines.push_back({last + kBeyond, pixels - 0.5});
+    return lines;
 }
 
 struct Grid {
-    std::vector<double> columns;
-    std::vector<double> rows;
+    std::vector<Line> columns;
+    std::vector<Line> rows;
+    double depth = 1.0;  // m: of what is interpolated, (x, y, m z)
 
     [[nodiscard]] std::size_t points() const { return columns.size() * rows.size(); }
     [[nodiscard]] std::size_t faces() const { return 2 * (columns.size() - 1) * (rows.size() - 1); }
 };
 
-// By how much the middle between two neighbours is off, at the most.
-double error_rad(const Camera& camera, const Grid& grid) {
-    double worst = 0.0;
-    const auto see = [&](double column_a, double row_a, double column_b, double row_b) {
-        const Vector3d between =
-            (direction_in_air(camera, column_a, row_a) + direction_in_air(camera, column_b, row_b))
-                .normalized();
-        const Vector3d ray =
-            direction_in_air(camera, 0.5 * (column_a + column_b), 0.5 * (row_a + row_b));
-        worst = std::max(worst, (between - ray).norm());
+// Square cells. POV-Ray counts rows from below, so that its last one is the first.
+Grid grid_of_cells(const Camera& camera, int cells, double depth) {
+    const auto along = [&](int pixels) {
+        const double share = double(pixels) / std::max(camera.width_px, camera.height_px);
+        return lines_along(pixels,
+                           std::min(static_cast<int>(std::ceil(cells * share)), pixels - 2));
     };
+    Grid grid{.columns = along(camera.width_px), .rows = along(camera.height_px), .depth = depth};
+    for (Line& row : grid.rows) {
+        row = {.at_px = camera.height_px - row.at_px, .sees_px = camera.height_px - row.sees_px};
+    }
+    return grid;
+}
+
+// By how much the middles of the cells' edges and diagonals are off, at the most.
+double error_rad(const Camera& camera, const Grid& grid) {
+    const Vector3d stretch(1.0, 1.0, grid.depth);
+    double worst = 0.0;
+    const auto see =
+        [&](const Line& column_a, const Line& row_a, const Line& column_b, const Line& row_b) {
+            const Vector3d a = direction_in_air(camera, column_a.sees_px, row_a.sees_px);
+            const Vector3d b = direction_in_air(camera, column_b.sees_px, row_b.sees_px);
+            const Vector3d sum =
+                a.cwiseProduct(stretch).normalized() + b.cwiseProduct(stretch).normalized();
+            const Vector3d ray = direction_in_air(camera,
+                                                  0.5 * (column_a.sees_px + column_b.sees_px),
+                                                  0.5 * (row_a.sees_px + row_b.sees_px));
+            worst = std::max(worst, (sum.cwiseQuotient(stretch).normalized() - ray).norm());
+        };
     for (std::size_t r = 0; r + 1 < grid.rows.size(); ++r) {
         for (std::size_t c = 0; c + 1 < grid.columns.size(); ++c) {
-            const double left = grid.columns[c];
-            const double right = grid.columns[c + 1];
-            const double above = grid.rows[r];
-            const double below = grid.rows[r + 1];
-            see(left, above, right, below);
-            see(left, above, right, above);
-            see(left, above, left, below);
+            see(grid.columns[c], grid.rows[r], grid.columns[c + 1], grid.rows[r + 1]);
+            see(grid.columns[c], grid.rows[r], grid.columns[c + 1], grid.rows[r]);
+            see(grid.columns[c], grid.rows[r], grid.columns[c], grid.rows[r + 1]);
         }
     }
     return worst;
@@ -62,28 +95,56 @@ double error_rad(const Camera& camera, const Grid& grid) {
 
 Grid grid_of(const Camera& camera) {
     constexpr int kFirstCells = 16;
-    const int most = std::max({1, camera.width_px - 1, camera.height_px - 1});
-    for (int cells = kFirstCells;; cells = 2 * cells) {
-        // Square cells, along the longer side as many.
-        const auto along = [&](int pixels) {
-            const double share = double(pixels) / std::max(camera.width_px, camera.height_px);
-            return std::clamp(
-                static_cast<int>(std::ceil(cells * share)), 1, std::max(1, pixels - 1));
-        };
-        const Grid grid{.columns = points_along(camera.width_px, along(camera.width_px)),
-                        .rows = points_along(camera.height_px, along(camera.height_px))};
-        if (cells >= most) return grid;
-        const double error = error_rad(camera, grid);
-        if (error <= kRayErrorRad) return grid;
+    constexpr std::array kDepths{1.0, 2.0, 4.0, 8.0, 16.0};
+    // Inside a face a quadratic is off by up to 4/3 of what it is in the middles of its sides.
+    constexpr double kOnSides = 0.75;
+    constexpr double kRoom = 1.02;  // errors fall with the square of the cell, but for this
+    const int longest = std::max({1, camera.width_px, camera.height_px});
+    Grid grid = grid_of_cells(camera, kFirstCells, kDepths[0]);
+    double error = error_rad(camera, grid);
+    for (const double depth : kDepths) {
+        Grid other = grid_of_cells(camera, kFirstCells, depth);
+        const double error_of_other = error_rad(camera, other);
+        if (error_of_other >= error) continue;
+        error = error_of_other;
+        grid = std::move(other);
     }
+    for (int cells = kFirstCells; error > kOnSides * kRayErrorRad && cells < longest;) {
+        const double finer = kRoom * std::sqrt(error / (kOnSides * kRayErrorRad));
+        cells = static_cast<int>(std::min<double>(longest, std::ceil(cells * finer)));
+        grid = grid_of_cells(camera, cells, grid.depth);
+        error = error_rad(camera, grid);
+    }
+    return grid;
 }
 
 std::uint64_t bytes_of(const Grid& grid) {
     constexpr std::uint64_t kHeader_bytes = 400;
-    constexpr std::uint64_t kPoint_bytes =
-        110;                                   // two numbers of 10 letters, three of 16, two of 13
-    constexpr std::uint64_t kFace_bytes = 26;  // three numbers of 7
+    constexpr std::uint64_t kPoint_bytes = 130;  // two numbers of 5 letters, three of 16, two of 22
+    constexpr std::uint64_t kFace_bytes = 30;    // three numbers of 8
     return kHeader_bytes + kPoint_bytes * grid.points() + kFace_bytes * grid.faces();
+}
+
+// In no order would POV-Ray exchange a face's first two corners, which it does with the normals
+// alone unless they differ by 1e-5.
+std::string faces_sdl(const Grid& grid) {
+    std::string faces;
+    const std::size_t across = grid.columns.size();
+    for (std::size_t r = 0; r + 1 < grid.rows.size(); ++r) {
+        for (std::size_t c = 0; c + 1 < across; ++c) {
+            const std::size_t first = r * across + c;
+            const std::size_t last = first + across + 1;
+            fmt::format_to(std::back_inserter(faces),
+                           ",<{},{},{}>\n,<{},{},{}>\n",
+                           first,
+                           first + 1,
+                           last,
+                           first,
+                           last,
+                           last - 1);
+        }
+    }
+    return faces;
 }
 
 }  // namespace
@@ -97,44 +158,31 @@ std::string camera_rays_sdl(const Camera& camera) {
     std::string places;
     std::string normals;
     std::string uvs;
-    std::string faces;
-    for (const double row : grid.rows) {
-        for (const double column : grid.columns) {
-            const Vector3d ray = to_povray(direction_in_air(camera, column, row));
-            fmt::format_to(std::back_inserter(places), ",<{:.7g}e-9,{:.7g}e-9,0>\n", column, -row);
+    for (std::size_t r = 0; r < grid.rows.size(); ++r) {
+        for (std::size_t c = 0; c < grid.columns.size(); ++c) {
+            const Line& column = grid.columns[c];
+            const Line& row = grid.rows[r];
+            const Vector3d ray = to_povray(direction_in_air(camera, column.sees_px, row.sees_px));
+            fmt::format_to(std::back_inserter(places), ",<{},{},0>*1e-12\n", c, r);
             fmt::format_to(std::back_inserter(normals),
                            ",<{:.9g},{:.9g},{:.9g}>\n",
                            ray.x(),
                            ray.y(),
-                           ray.z());
+                           grid.depth * ray.z());
             fmt::format_to(std::back_inserter(uvs),
-                           ",<{:.9g},{:.9g}>\n",
-                           (column - 0.5) / camera.width_px,
-                           1.0 - (row - 0.5) / camera.height_px);
-        }
-    }
-    const std::size_t across = grid.columns.size();
-    for (std::size_t r = 0; r + 1 < grid.rows.size(); ++r) {
-        for (std::size_t c = 0; c + 1 < across; ++c) {
-            const std::size_t first = r * across + c;
-            fmt::format_to(std::back_inserter(faces),
-                           ",<{},{},{}>\n,<{},{},{}>\n",
-                           first,
-                           first + 1,
-                           first + across + 1,
-                           first,
-                           first + across + 1,
-                           first + across);
+                           ",<{},{}>\n",
+                           (column.at_px - 0.5) / camera.width_px,
+                           1.0 - (row.at_px - 0.5) / camera.height_px);
         }
     }
     return fmt::format(
         "// The rays of {} x {} pixels at {} x {} points. Written by aphotic.\n"
         "#declare Aphotic_Camera_Rays = mesh2 {{\n"
         "vertex_vectors {{ {}\n{}}}\nnormal_vectors {{ {}\n{}}}\nuv_vectors {{ {}\n{}}}\n"
-        "face_indices {{ {}\n{}}}\n}}\n",
+        "face_indices {{ {}\n{}}}\nscale <1, 1, {}>\n}}\n",
         camera.width_px,
         camera.height_px,
-        across,
+        grid.columns.size(),
         grid.rows.size(),
         grid.points(),
         places,
@@ -143,7 +191,8 @@ std::string camera_rays_sdl(const Camera& camera) {
         grid.points(),
         uvs,
         grid.faces(),
-        faces);
+        faces_sdl(grid),
+        grid.depth);
 }
 
 }  // namespace aphotic

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The rays of a calibrated lens for POV-Ray's mesh_camera: a grid of points (column, row) of the
-// image, each with its ray d as the mesh's normal and its place in the image as uv,
+// The rays of a calibrated lens for POV-Ray's mesh_camera, which looks a pixel up in the mesh by uv
+// (distribution 3) and takes the normal of the face that it finds, interpolated, for the ray. The
+// mesh is a grid over the image: each point (column, row) has its ray as normal, and as uv
 //
 //   u = (column - 1/2) / width,  v = 1 - (row - 1/2) / height
 //
-// for POV-Ray looks a pixel up without the half (distribution 3), and interpolates the normals of
-// the face that it finds. In the middle of an edge of the grid that is off by
+// since POV-Ray asks without the half pixel. It never asks beyond column width - 1 or above row 1,
+// and so asks there for all of the last column's pixels and all of the first row's.
 //
-//   | (a + b) / |a + b| - d |,
+// Of POV-Ray's ray between two points, with a and b the rays there and d the lens's own halfway,
 //
-// which kRayErrorRad bounds: the grid is as fine as the lens demands, and no finer than the pixels,
-// where it is exact. POV-Ray keeps floats, 6e-8 of a slope. The mesh itself is a billionth of a
-// POV-Ray unit to a pixel, since rays begin on it.
+//   | (a + b) / |a + b| - d |
+//
+// is bounded by kRayErrorRad: the grid is as fine as the lens asks, up to a point a pixel, where
+// rays are exact. What POV-Ray interpolates are not the rays (x, y, z) but (x, y, m z), which it
+// turns into rays afterwards: with a large m a pinhole's come out exact, with m = 1 those of a
+// fisheye are best.
 #pragma once
 
 #include "rig/rig.h"
@@ -24,7 +28,17 @@
 namespace aphotic {
 
 inline constexpr std::string_view kCameraRaysFile = "aphotic_rays.inc";
+
+// A ray so far off changes light by 5e-5, a tenth of a half float, where it changes e-fold in 2.3
+// degrees of view: what is steeper counts as an edge (validation/tracer.h). It is 0.01 pixels of a
+// camera of 24 megapixels. A finer grid costs POV-Ray time, which looks through the faces one after
+// another: twice the time for half the error.
 inline constexpr double kRayErrorRad = 2e-6;
+
+// POV-Ray has no rays for narrower images: it looks for no u <= -0.1.
+[[nodiscard]] constexpr int least_width_px(bool is_antialiased) {
+    return is_antialiased ? 5 : 2;
+}
 
 // Of the file, at most.
 [[nodiscard]] std::uint64_t bytes_of_rays(const Camera& camera);
