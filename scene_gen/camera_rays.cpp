@@ -7,10 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
-#include <utility>
 #include <vector>
 
 namespace aphotic {
@@ -48,20 +46,22 @@ std::vector<Line> lines_along(int pixels, int cells) {
 struct Grid {
     std::vector<Line> columns;
     std::vector<Line> rows;
-    double depth = 1.0;  // m: of what is interpolated, (x, y, m z)
+    double depth;  // m: of what is interpolated, (x, y, m z)
 
     [[nodiscard]] std::size_t points() const { return columns.size() * rows.size(); }
     [[nodiscard]] std::size_t faces() const { return 2 * (columns.size() - 1) * (rows.size() - 1); }
 };
 
-// Square cells. POV-Ray counts rows from below, so that its last one is the first.
-Grid grid_of_cells(const Camera& camera, int cells, double depth) {
+// Of square cells. Counted from below, as POV-Ray does, the last row is the image's first.
+Grid grid_of_cells(const Camera& camera, int cells) {
     const auto along = [&](int pixels) {
         const double share = double(pixels) / std::max(camera.width_px, camera.height_px);
         return lines_along(pixels,
                            std::min(static_cast<int>(std::ceil(cells * share)), pixels - 2));
     };
-    Grid grid{.columns = along(camera.width_px), .rows = along(camera.height_px), .depth = depth};
+    Grid grid{.columns = along(camera.width_px),
+              .rows = along(camera.height_px),
+              .depth = camera.lens->is_fisheye ? 1.0 : 8.0};
     for (Line& row : grid.rows) {
         row = {.at_px = camera.height_px - row.at_px, .sees_px = camera.height_px - row.sees_px};
     }
@@ -95,38 +95,20 @@ double error_rad(const Camera& camera, const Grid& grid) {
 
 Grid grid_of(const Camera& camera) {
     constexpr int kFirstCells = 16;
-    constexpr std::array kDepths{1.0, 2.0, 4.0, 8.0, 16.0};
     // Inside a face a quadratic is off by up to 4/3 of what it is in the middles of its sides.
-    constexpr double kOnSides = 0.75;
-    constexpr double kRoom = 1.02;  // errors fall with the square of the cell, but for this
-    const int longest = std::max({1, camera.width_px, camera.height_px});
-    Grid grid = grid_of_cells(camera, kFirstCells, kDepths[0]);
-    double error = error_rad(camera, grid);
-    for (const double depth : kDepths) {
-        Grid other = grid_of_cells(camera, kFirstCells, depth);
-        const double error_of_other = error_rad(camera, other);
-        if (error_of_other >= error) continue;
-        error = error_of_other;
-        grid = std::move(other);
-    }
-    for (int cells = kFirstCells; error > kOnSides * kRayErrorRad && cells < longest;) {
-        const double finer = kRoom * std::sqrt(error / (kOnSides * kRayErrorRad));
+    constexpr double kOnSidesRad = 0.75 * kRayErrorRad;
+    constexpr double kRoom = 1.02;  // errors fall with the square of the cells, but for so much
+    const int longest = std::max(camera.width_px, camera.height_px);
+    for (int cells = kFirstCells;;) {
+        Grid grid = grid_of_cells(camera, cells);
+        const double finer = kRoom * std::sqrt(error_rad(camera, grid) / kOnSidesRad);
+        if (finer <= kRoom || cells >= longest) return grid;
         cells = static_cast<int>(std::min<double>(longest, std::ceil(cells * finer)));
-        grid = grid_of_cells(camera, cells, grid.depth);
-        error = error_rad(camera, grid);
     }
-    return grid;
 }
 
-std::uint64_t bytes_of(const Grid& grid) {
-    constexpr std::uint64_t kHeader_bytes = 400;
-    constexpr std::uint64_t kPoint_bytes = 130;  // two numbers of 5 letters, three of 16, two of 22
-    constexpr std::uint64_t kFace_bytes = 30;    // three numbers of 8
-    return kHeader_bytes + kPoint_bytes * grid.points() + kFace_bytes * grid.faces();
-}
-
-// In no order would POV-Ray exchange a face's first two corners, which it does with the normals
-// alone unless they differ by 1e-5.
+// Corners are in the order that POV-Ray leaves as it is. Others' first two it exchanges, and their
+// normals only if these differ by 1e-5.
 std::string faces_sdl(const Grid& grid) {
     std::string faces;
     const std::size_t across = grid.columns.size();
@@ -150,7 +132,11 @@ std::string faces_sdl(const Grid& grid) {
 }  // namespace
 
 std::uint64_t bytes_of_rays(const Camera& camera) {
-    return bytes_of(grid_of(camera));
+    constexpr std::uint64_t kHeader_bytes = 400;
+    constexpr std::uint64_t kPoint_bytes = 130;  // two numbers of 5 letters, three of 16, two of 22
+    constexpr std::uint64_t kFace_bytes = 30;    // three numbers of 8
+    const Grid grid = grid_of(camera);
+    return kHeader_bytes + kPoint_bytes * grid.points() + kFace_bytes * grid.faces();
 }
 
 std::string camera_rays_sdl(const Camera& camera) {

@@ -606,7 +606,8 @@ bool Tracer::is_on_beam_edge(double column,
     constexpr double kAslant = 1.5;
     return std::ranges::any_of(apexes_, [&](const Apex& apex) {
         std::array<Vector3d, 3> paths_m;
-        const double sight_rad = sight_error_rad_ + within_px * pixel_rad_;
+        const double sight_rad =
+            (rig_.camera.lens ? kEdgeThroughLensRad : 0.0) + within_px * pixel_rad_;
         // How far a strobe's lamps spread about the edge, at least.
         double spread_rad = sight_error_rad_;
         for (std::size_t e = 0; e < indices.size(); ++e) {

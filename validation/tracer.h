@@ -58,7 +58,8 @@ inline constexpr double kBlackDepth = 700.0;
 inline constexpr double kEdgeRad = 1e-9;
 inline constexpr double kEdgeBehindPortRad = 1e-7;
 // Of a calibrated lens, whose rays POV-Ray interpolates to 2e-6 (kRayErrorRad of
-// scene_gen/camera_rays.h) between those of a mesh in single precision, 2e-7 more.
+// scene_gen/camera_rays.h) between those of a mesh in single precision, 2e-7 more. Of the
+// angle of view: at a lamp that is nearer to the floor it is as many times as large.
 inline constexpr double kEdgeThroughLensRad = 2.2e-6;
 // Of an object's outline, its faces and its shadows: where the image shifted by so much shows
 // another face or other lamps. POV-Ray keeps meshes in single precision, 0.1 um at 2 m.

@@ -216,7 +216,7 @@ TEST(CameraRays, AreTheLensesAtTheSizeOfRealCameras) {
 TEST(CameraRays, AreTheLensesBetweenPixels) {
     constexpr double kOff = 4.0 / 9.0;
     // With a point a pixel, rays between are off by an eighth of what two pixels' angles differ by.
-    constexpr double kOfAPixel = 2e-3;
+    constexpr double kOfAPixel = 4e-3;
     constexpr Size kSize{320, 240};
     for (const LensKind kind : kLensKinds) {
         const Camera camera = camera_with(kind, 5, kSize.width_px, kSize.height_px);
@@ -274,14 +274,14 @@ TEST(CameraRays, BeginAtThePupil) {
     EXPECT_LT(PovrayMesh(camera_with(LensKind::Fisheye, 3, 320, 240)).extent(), kNowhere_m);
 }
 
-// A pinhole needs none but its corners, and 24 megapixels of an ordinary lens no more than 20 MB.
+// An ordinary lens of 24 megapixels, for which a triangle a pixel took 2 GB.
 TEST(CameraRays, AreAsManyAsTheLensAsksForAndNotThePixels) {
-    constexpr std::uint64_t kMegabytes = 1'000'000;
+    constexpr std::uint64_t kMost_bytes = 20'000'000;
     Camera camera = camera_with(LensKind::RadialTangential, 3, 6000, 4000);
-    camera.lens = LensModel{.focal_px = {4650.0, 4650.0}, .centre_px = {3000.0, 2000.0}};
-    EXPECT_LT(bytes_of_rays(camera), kMegabytes);
-    camera.lens->radial = {-0.11, 0.085, -0.01, 0.0};
-    EXPECT_LT(bytes_of_rays(camera), 20 * kMegabytes);
+    camera.lens = LensModel{.focal_px = {4650.0, 4650.0},
+                            .centre_px = {3000.0, 2000.0},
+                            .radial = {-0.11, 0.085, -0.01, 0.0}};
+    EXPECT_LT(bytes_of_rays(camera), kMost_bytes);
 }
 
 TEST(CameraRays, TakeNoMoreRoomThanTheEstimateSays) {
