@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The signal of the rig's camera on its bare flat floor, at the camera's pace: light/floor_light.h's
-// sum at every pixel, by tiles of the image (light/floor_image.h). Once per water the signal over
-// the path's length is tabulated (light/signal_table.h); then a map of any altitude and attitude is
-// geometry and a look-up where the light is smooth at few places, and in between a polynomial.
+// The signal of the rig's camera on its bare flat floor, at the camera's pace:
+// light/floor_light.h's sum at every pixel, by tiles of the image (light/floor_image.h). Once per
+// water the signal over the path's length is tabulated (light/signal_table.h); then a map of any
+// altitude and attitude is geometry and a look-up where the light is smooth at few places, and in
+// between a polynomial.
 //
 // An emitter of a size is the grid of lamps of rig/geometry.h. Where the image sees no floor,
 // the map is black; and so it is beyond the longest path when the paths have a horizon, that is

@@ -41,7 +41,7 @@ std::optional<Manifest> earlier_manifest(const fs::path& folder) {
 
 bool is_whole(const fs::path& image, const Manifest& wanted) {
     try {
-        check_frame(image, wanted.width_px, wanted.height_px + wanted.rows_above());
+        check_frame(image, wanted.width_px, wanted.height_px);
         return true;
     } catch (const RunError&) {
         return false;
@@ -140,8 +140,7 @@ void run_noted(const PovRay& povray,
         }
         write_manifest(folder, manifest);
     };
-    run_frames(
-        povray, folder, frames, manifest.width_px, manifest.height_px + manifest.rows_above(), run);
+    run_frames(povray, folder, frames, manifest.width_px, manifest.height_px, run);
 }
 
 // The digest of a user's scene that scenes were written for.

@@ -168,12 +168,7 @@ void render_pictures(const PovRay& povray,
         PictureUnderWay& picture = *under_way.at(frame.name);
         if (--picture.frames_left == 0) integrate_picture(folder, options.jobs, picture);
     };
-    run_frames(povray,
-               folder,
-               frames,
-               common.manifest.width_px,
-               common.manifest.height_px + common.manifest.rows_above(),
-               run);
+    run_frames(povray, folder, frames, common.manifest.width_px, common.manifest.height_px, run);
 }
 
 }  // namespace aphotic

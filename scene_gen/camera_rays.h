@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The rays of a calibrated lens for POV-Ray's mesh_camera: a mesh of one triangle a pixel, whose
-// centroid is the pupil and whose normal is the ray. For a ray along (x, y, 1) in POV-Ray's frame,
+// The rays of a calibrated lens for POV-Ray's mesh_camera, which looks a pixel up in the mesh by uv
+// (distribution 3) and takes the normal of the face that it finds, interpolated, for the ray. The
+// mesh is a grid over the image: each point (column, row) has its ray as normal, and as uv
 //
-//   (-1, -1, x + y)   (-1, 2, x - 2y)   (2, -1, y - 2x)
+//   u = (column - 1/2) / width,  v = 1 - (row - 1/2) / height
 //
-// POV-Ray 3.7 keeps them as floats, so that directions are right to 1e-7, and takes for each row of
-// the image the faces of the row above: frames have kRowsAbove rows more, and the first ones are
-// not rendered.
+// since POV-Ray asks without the half pixel. It never asks beyond column width - 1 or above row 1,
+// and so asks there for all of the last column's pixels and all of the first row's.
+//
+// Of POV-Ray's ray between two points, with a and b the rays there and d the lens's own halfway,
+//
+//   | (a + b) / |a + b| - d |
+//
+// is bounded by kRayErrorRad: the grid is as fine as the lens asks, up to a point a pixel, where
+// rays are exact. What POV-Ray interpolates are not the rays (x, y, z) but (x, y, m z), which it
+// turns into rays afterwards: m = 8 takes a fifth of the faces for a lens that is nearly a
+// pinhole, whose rays a large m leaves exact, and m = 1 is best for a fisheye.
 #pragma once
 
 #include "rig/rig.h"
@@ -19,10 +28,17 @@
 namespace aphotic {
 
 inline constexpr std::string_view kCameraRaysFile = "aphotic_rays.inc";
-inline constexpr int kRowsAbove = 1;
 
-// Of a frame; 0 for a pinhole.
-[[nodiscard]] int rows_above(const Camera& camera);
+// A ray so far off changes light by 5e-5, a tenth of a half float, where it changes e-fold in 2.3
+// degrees of view: what is steeper counts as an edge (validation/tracer.h). It is 0.01 pixels of a
+// camera of 24 megapixels. A finer grid costs POV-Ray time, which looks through the faces one after
+// another: twice the time for half the error.
+inline constexpr double kRayErrorRad = 2e-6;
+
+// POV-Ray has no rays for narrower images: it looks for no u <= -0.1.
+[[nodiscard]] constexpr int least_width_px(bool is_antialiased) {
+    return is_antialiased ? 5 : 2;
+}
 
 // Of the file, at most.
 [[nodiscard]] std::uint64_t bytes_of_rays(const Camera& camera);

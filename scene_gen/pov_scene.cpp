@@ -601,7 +601,6 @@ std::string antialias_ini(int rays) {
 }  // namespace
 
 std::string render_ini(const Rig& rig, const SceneOptions& options) {
-    const int above = rows_above(rig.camera);
     const bool is_exr = options.format == FrameFormat::Exr;
     return fmt::format(
         "; POV-Ray's settings for the scenes of this folder: povray render.ini +I<scene>.pov\n"
@@ -616,7 +615,7 @@ std::string render_ini(const Rig& rig, const SceneOptions& options) {
         "{}"
         "; Media need full quality.\n"
         "Quality=9\n"
-        "Start_Row={}\n"
+        "Start_Row=0\n"
         "Start_Column=0\n"
         "Display=off\n"
         "Pause_When_Done=off\n"
@@ -626,11 +625,10 @@ std::string render_ini(const Rig& rig, const SceneOptions& options) {
         "Statistic_Console=off\n"
         "{}",
         rig.camera.width_px,
-        rig.camera.height_px + above,
+        rig.camera.height_px,
         is_exr ? "OpenEXR: half floats, linear, unclipped." : "PNG: 16 bits, linear, clipped at 1.",
         is_exr ? "E" : "N\nBits_Per_Color=16",
         antialias_ini(options.antialias),
-        above > 0 ? above + 1 : 0,
         fmt::join(options.ini_lines, ""));
 }
 

@@ -4,6 +4,7 @@
 #include "base/degrees.h"
 #include "base/error.h"
 #include "base/offered.h"
+#include "scene_gen/camera_rays.h"
 #include "scene_gen/certificate.h"
 #include "scene_gen/povray_veil.h"
 #include "scene_gen/veil_planes.h"
@@ -249,12 +250,13 @@ RenderPlan plan_direct_light(const Rig& rig, const PlanRequest& request) {
             "--frame-format: found png16 with --veil povray, whose lobes cancel and leave such "
             "frames too few digits; allowed: exr, or --veil quadrature");
     }
-    if (rig.camera.lens && request.scene.antialias > 0) {
+    const int least_px = least_width_px(request.scene.antialias > 0);
+    if (rig.camera.lens && rig.camera.width_px < least_px) {
         throw InputError(
-            "--antialias: found {} with a calibrated lens; allowed: none, since POV-Ray has one "
-            "ray "
-            "a pixel for it",
-            request.scene.antialias);
+            "camera: found {} columns with a calibrated lens; allowed: {} and more, since POV-Ray "
+            "finds no rays for fewer",
+            rig.camera.width_px,
+            least_px);
     }
     const WavelengthRange range = rig.camera.range;
     RenderPlan plan{.method = PlanMethod::Fitted,

@@ -118,10 +118,8 @@ SceneSet make_scene_set(const Rig& rig, const RenderPlan& plan) {
     manifest.width_px = rig.camera.width_px;
     manifest.height_px = rig.camera.height_px;
     if (plan.scene.format == FrameFormat::Png16) manifest.png.emplace();
-    if (rig.camera.lens || rig.camera.vignetting) {
-        manifest.camera = ManifestCamera{.rows_above = rows_above(rig.camera)};
-    }
     if (rig.camera.vignetting) {
+        manifest.camera.emplace();
         set.vignetting = vignetting_plane(rig.camera);
         manifest.camera->vignetting_sha256 = sha256_of_floats(set.vignetting);
     }

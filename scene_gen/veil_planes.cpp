@@ -79,7 +79,7 @@ std::vector<double> distances(const std::filesystem::path& folder,
     ExrReader reader(image_path(folder, manifest.frames.back()));
     std::vector<float> fog(static_cast<std::size_t>(manifest.width_px) *
                            static_cast<std::size_t>(rows.count));
-    reader.read_rows(rows.first + manifest.rows_above(), rows.count, kFog, fog);
+    reader.read_rows(rows.first, rows.count, kFog, fog);
     std::vector<double> distance_m(fog.size());
     std::ranges::transform(fog, distance_m.begin(), [&](float share) {
         return -manifest.veil->fog_m * std::log1p(-std::min(1.0, static_cast<double>(share)));

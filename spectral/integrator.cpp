@@ -51,10 +51,8 @@ void read_frame(const fs::path& file,
     // All channels at once: OpenEXR unpacks them together, whichever are asked for.
     std::vector<float> samples(kFrameChannels.size() * block.plane);
     ExrReader reader(file);
-    const int above = manifest.rows_above();
-    check_size(
-        file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px + above);
-    reader.read_rows(block.first_row + above, block.rows, kFrameChannels, samples);
+    check_size(file, reader.width_px(), reader.height_px(), manifest.width_px, manifest.height_px);
+    reader.read_rows(block.first_row, block.rows, kFrameChannels, samples);
     for (std::size_t j = 0; j < manifest.wavelengths.size(); ++j) {
         const PlannedWavelength& w = manifest.wavelengths[j];
         if (w.frame != frame) continue;

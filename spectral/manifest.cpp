@@ -266,8 +266,6 @@ void fields(const Visit& visit, Wavelength& w, Before& before) {
 
 template <typename Visit, Is<ManifestCamera> Camera>
 void fields(const Visit& visit, Camera& camera) {
-    constexpr int kMostRows = 1;
-    visit("rows_above", camera.rows_above, 0, kMostRows);
     visit("vignetting_sha256", camera.vignetting_sha256);
 }
 

@@ -58,7 +58,6 @@ struct ManifestScene {
 
 // How frames differ from the image.
 struct ManifestCamera {
-    int rows_above = 0;  // at a frame's top, which are none of the image
     // Of the factors that pixels take, as floats (vignetting_path); empty: none.
     std::string vignetting_sha256{};
 };
@@ -140,7 +139,6 @@ struct Manifest {
     // Of the wavelengths' direct light, which are the first.
     [[nodiscard]] std::size_t direct_frames() const;
 
-    [[nodiscard]] int rows_above() const { return camera ? camera->rows_above : 0; }
     [[nodiscard]] FrameFormat frame_format() const {
         return png ? FrameFormat::Png16 : FrameFormat::Exr;
     }

@@ -606,13 +606,15 @@ bool Tracer::is_on_beam_edge(double column,
     constexpr double kAslant = 1.5;
     return std::ranges::any_of(apexes_, [&](const Apex& apex) {
         std::array<Vector3d, 3> paths_m;
+        const double sight_rad =
+            (rig_.camera.lens ? kEdgeThroughLensRad : 0.0) + within_px * pixel_rad_;
         // How far a strobe's lamps spread about the edge, at least.
         double spread_rad = sight_error_rad_;
         for (std::size_t e = 0; e < indices.size(); ++e) {
             paths_m.at(e) = views.at(e).point_m - apex.position_m;
             const double d_m = paths_m.at(e).norm();
             spread_rad = std::max({spread_rad,
-                                   kAslant * within_px * pixel_rad_ * views.at(e).distance_m / d_m,
+                                   kAslant * sight_rad * views.at(e).distance_m / d_m,
                                    std::asin(std::min(1.0, apex.reach_m / d_m))});
         }
         // Dispersion's way is bent: each half leaves its own chord by a quarter of what the middle
@@ -724,7 +726,7 @@ bool Tracer::is_clear_of_objects(double column,
     View view;
     if (!look(column, row, index_at(0.5 * (range.first_nm + range.last_nm)), view)) return false;
     double reach_m =
-        kNoShadowWithin_m + kRoom * (kEdgePx + within_px) * pixel_rad_ * view.distance_m;
+        kNoShadowWithin_m + kRoom * (edge_px() + within_px) * pixel_rad_ * view.distance_m;
     for (const double lambda_nm : {range.first_nm, range.last_nm}) {
         View shifted;
         if (!look(column, row, index_at(lambda_nm), shifted)) return false;
@@ -733,7 +735,8 @@ bool Tracer::is_clear_of_objects(double column,
     return !is_near_an_object(view, reach_m);
 }
 
-// A lamp's light is so near its end on a rounded thing that the rounding of POV-Ray's rays tells.
+// A lamp's light is so near its end on a rounded thing, or its beam so steep, that the error of
+// POV-Ray's rays tells.
 bool Tracer::turns_steeply(double column, double row, const View& view, double lambda_nm) const {
     const double reach_px = sight_error_rad_ / pixel_rad_;
     const Index index = index_at(lambda_nm);
@@ -758,7 +761,7 @@ bool Tracer::is_on_object_edge(double column,
     View view;
     const bool sees = look(column, row, middle, view);
     if (sees && is_uncertain(view)) return true;
-    for (const double reach_px : {kEdgePx, 0.5 * within_px, within_px}) {
+    for (const double reach_px : {edge_px(), 0.5 * within_px, within_px}) {
         constexpr int kDirections = 8;
         for (int k = 0; k < kDirections && reach_px > 0.0; ++k) {
             const double turn = 2.0 * std::numbers::pi * k / kDirections;
@@ -786,6 +789,17 @@ bool Tracer::is_on_object_edge(double column,
     return false;
 }
 
+bool Tracer::is_on_steep_light(double column, double row, WavelengthRange range) const {
+    const double middle_nm = 0.5 * (range.first_nm + range.last_nm);
+    View view;
+    return look(column, row, index_at(middle_nm), view) &&
+           turns_steeply(column, row, view, middle_nm);
+}
+
+double Tracer::edge_px() const {
+    return std::max(kEdgePx, sight_error_rad_ / pixel_rad_);
+}
+
 bool Tracer::is_on_edge(std::size_t pixel,
                         WavelengthRange range,
                         const std::array<Index, 3>& indices,
@@ -795,6 +809,7 @@ bool Tracer::is_on_edge(std::size_t pixel,
     const std::size_t rows_above = pixel / width;
     const double row = static_cast<double>(rows_above) + 0.5;
     return is_on_beam_edge(column, row, indices, within_px) ||
+           (rig_.camera.lens && is_on_steep_light(column, row, range)) ||
            (!shapes_.empty() && is_on_object_edge(column, row, range, within_px));
 }
 

@@ -57,8 +57,10 @@ inline constexpr double kBlackDepth = 700.0;
 
 inline constexpr double kEdgeRad = 1e-9;
 inline constexpr double kEdgeBehindPortRad = 1e-7;
-// Of a calibrated lens, whose rays POV-Ray takes from a mesh in single precision.
-inline constexpr double kEdgeThroughLensRad = 2e-7;
+// Of a calibrated lens, whose rays POV-Ray interpolates to 2e-6 (kRayErrorRad of
+// scene_gen/camera_rays.h) between those of a mesh in single precision, 2e-7 more. Of the
+// angle of view: at a lamp that is nearer to the floor it is as many times as large.
+inline constexpr double kEdgeThroughLensRad = 2.2e-6;
 // Of an object's outline, its faces and its shadows: where the image shifted by so much shows
 // another face or other lamps. POV-Ray keeps meshes in single precision, 0.1 um at 2 m.
 inline constexpr double kEdgePx = 2e-3;
@@ -116,8 +118,10 @@ class Tracer {
     //   beams    its centre is within kEdgeRad of a beam's edge (kEdgeBehindPortRad behind a port,
     //            whose index POV-Ray keeps in single precision, kEdgeThroughLensRad with a lens),
     //            an emitter of a size has lamps on both sides of it, or dispersion takes it across;
-    //            a smooth beam has none
-    //   objects  within kEdgePx, or by dispersion, the image shows another face or other lamps
+    //            a smooth beam has none, unless light changes by kRoundingChange through the error
+    //            of a lens's rays
+    //   objects  within kEdgePx or that error, or by dispersion, the image shows another face or
+    //   other lamps
     //            shine on it; an emitter is hidden in part; a blocker is nearer than
     //            kNoShadowWithin_m; a lamp grazes a mesh; light changes by kSteepest through
     //            dispersion, or by kRoundingChange through the rounding of a port's index or a
@@ -215,6 +219,8 @@ class Tracer {
                                      double row,
                                      const View& view,
                                      double lambda_nm) const;
+    [[nodiscard]] bool is_on_steep_light(double column, double row, WavelengthRange range) const;
+    [[nodiscard]] double edge_px() const;
     [[nodiscard]] bool shines_on(const Lamp& lamp, const View& view) const;
     // Of the range's ends, its middle between them.
     [[nodiscard]] std::array<Index, 3> indices_over(WavelengthRange range) const;

@@ -80,6 +80,92 @@ TEST(Cameras, LensesOfEveryKindAreTheReferences) {
     }
 }
 
+// So many pixels that the mesh has fewer points, behind a port that is tilted.
+TEST(Cameras, LensesOfManyPixelsAreTheReferences) {
+    for (const LensKind kind : kLensKinds) {
+        SCOPED_TRACE(static_cast<int>(kind));
+        expect_agreement(1, [kind](Dice& dice, Camera& camera) {
+            constexpr int kTimes = 8;
+            enlarge_pixels(
+                camera, 1.0 / kTimes, kTimes * camera.width_px, kTimes * camera.height_px);
+            give_lens(kind, dice, camera);
+            give_port(PortKind::Tilted, dice, camera);
+        });
+    }
+}
+
+// A fisheye that sees 160 degrees and the horizon, below which a pixel's floor may be a kilometre
+// away, and above which it sees nothing.
+TEST(Cameras, AFisheyeThatSeesTheHorizonIsTheReference) {
+    Rig rig = small_habcam(96, 72);
+    rig.sled.pitch_rad = 0.7;
+    rig.water.multiple = 0.01;
+    const double focal_px = 60.0 / (80.0 * kDegree);
+    rig.camera.lens =
+        LensModel{.focal_px = {focal_px, focal_px}, .centre_px = {48.0, 36.0}, .is_fisheye = true};
+    const Tracer tracer(rig, {.signals = false, .planes_nm = {kMiddle_nm}, .threads = 2});
+    const std::vector<double> traced = tracer.rows(0, rig.camera.height_px);
+    EXPECT_GT(std::ranges::count(traced, 0.0), 100);
+    const Worst worst = against_the_reference(rig);
+    EXPECT_LE(worst.error, kHalfFloatError);
+    EXPECT_GT(worst.lit, traced.size() / 4);
+}
+
+// Rays between pixels' centres, each that of a camera with pixels of a third. POV-Ray counts the
+// one through the centre twice, and has for the first row and the last column but the rays along
+// them.
+TEST(Cameras, AntialiasingThroughALensIsTheMeanOfItsRays) {
+    constexpr int kAcross = 3;
+    Rig rig = small_habcam(120, 90);
+    rig.camera.lens = LensModel{
+        .focal_px = {130.0, 131.0}, .centre_px = {61.0, 44.0}, .radial = {-0.2, 0.05, 0.0, 0.0}};
+    Rig fine = rig;
+    const int width = rig.camera.width_px;
+    const int height = rig.camera.height_px;
+    enlarge_pixels(fine.camera, 1.0 / kAcross, kAcross * width, kAcross * height);
+    const Tracer tracer(fine, {.signals = false, .planes_nm = {kMiddle_nm}, .threads = 2});
+    const std::vector<double> traced = tracer.rows(0, kAcross * height);
+    const std::vector<unsigned char> on_edge = tracer.on_edges({kMiddle_nm, kMiddle_nm});
+
+    const TempFolder folder;
+    const SceneSet set = scenes_of(
+        rig, {kMiddle_nm}, {.pixel_shift = 0.0, .emitter_lamps = {}, .antialias = kAcross});
+    const RenderResult result =
+        render(find_povray(""), folder.path(), set, {.jobs = 1, .report = {}});
+    integrate(folder.path(), result.manifest);
+    ExrReader image(folder.path() / "spectral.exr");
+    const std::vector<std::string> planes = image.channels();
+    const std::vector<float> radiance = image.planes(std::span(planes).last(1));
+
+    int compared = 0;
+    for (int row = 0; row < height; ++row) {
+        for (int column = 0; column < width; ++column) {
+            const auto fine_at = [&](int x, int y) {
+                const int below = row > 0 ? y : 1;
+                const int beside = column + 1 < width ? x : 1;
+                return static_cast<std::size_t>((kAcross * row + below) * kAcross * width +
+                                                kAcross * column + beside);
+            };
+            double sum = traced[fine_at(1, 1)];
+            bool is_clear = true;
+            for (int y = 0; y < kAcross; ++y) {
+                for (int x = 0; x < kAcross; ++x) {
+                    sum += traced[fine_at(x, y)];
+                    is_clear = is_clear && on_edge[fine_at(x, y)] == 0;
+                }
+            }
+            if (!is_clear) continue;
+            ++compared;
+            const double expected = sum / (1 + kAcross * kAcross);
+            ASSERT_NEAR(radiance[static_cast<std::size_t>(row * width + column)] / expected,
+                        1.0,
+                        kHalfFloatError)
+                << "column " << column << ", row " << row;
+        }
+    }
+    EXPECT_GT(compared, width * height / 2);
+}
+
 TEST(Cameras, PortsOfEveryKindAreTheReferences) {
     for (const PortKind kind : kPortKinds) {
         SCOPED_TRACE(static_cast<int>(kind));

@@ -123,6 +123,26 @@ TEST(LostLight, IsABlackImageWhereNothingIsHeld) {
     EXPECT_EQ(refusal_of(wavelengths), "none");
 }
 
+// POV-Ray looks a ray up by its place in the image, and not left of a tenth before it.
+TEST(SceneSet, OfALensHasTwoColumnsAndMore) {
+    for (const auto& [antialias, least_px] : {std::pair{0, 2}, {3, 5}}) {
+        for (const int width_px : {least_px - 1, least_px}) {
+            Rig rig = habcam_in(1.0);
+            rig.camera.width_px = width_px;
+            rig.camera.height_px = 3;
+            rig.camera.lens = LensModel{.focal_px = {9.0, 9.0}, .centre_px = {1.0, 1.5}};
+            PlanRequest request;
+            request.wavelengths_nm = {550.0};
+            request.scene.antialias = antialias;
+            if (width_px == least_px) {
+                EXPECT_NO_THROW(plan_render(rig, request));
+            } else {
+                EXPECT_THROW(plan_render(rig, request), InputError) << width_px;
+            }
+        }
+    }
+}
+
 // Frames are kept while their scene is the same, and a lens's rays are in a file of their own.
 TEST(SceneSet, OfAnotherLensHasOtherScenes) {
     PlanRequest request;
