@@ -2,7 +2,6 @@
 #include "base/atomic_file.h"
 
 #include "base/error.h"
-#include "base/interruption.h"
 #include "base/number.h"
 #include "base/sha256.h"
 

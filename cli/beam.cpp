@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/json_text.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
@@ -255,24 +256,16 @@ ExitStatus show_beam(const BeamCommandOptions& options) {
 
 Action configure_beam(CLI::App& app) {
     const auto options = std::make_shared<BeamCommandOptions>();
-    app.add_option("RIG:NAME|FILE",
-                   options->name,
-                   "A beam of a rig, or a file of a measured one (.ies, .ldt, .csv)")
-        ->required();
-    app.add_option("--plot", options->plot, "Plot it over the angle and as thrown into FILE.svg")
-        ->type_name("FILE.svg");
-    app.add_option("--export", options->export_file, "Write it as .ies, .ldt or .csv, in water")
-        ->type_name("FILE");
-    app.add_option("--fit-cones", options->cones, "Find the N sharp cones that come closest")
-        ->type_name("N")
-        ->check(in_range(1, kMostFittedCones));
+    add_option(app, "RIG:NAME|FILE", options->name)->required();
+    add_option(app, "--plot", options->plot);
+    add_option(app, "--export", options->export_file);
+    add_option(app, "--fit-cones", options->cones)->check(in_range(1, kMostFittedCones));
     add_json(app, options->json);
     return [options] { return show_beam(*options); };
 }
 
 }  // namespace
 
-const Command kBeam{
-    "beam", kCheckCommands, "Show, plot, convert or approximate a strobe's beam", configure_beam};
+const Command kBeam{"beam", configure_beam};
 
 }  // namespace aphotic::cli

@@ -20,17 +20,8 @@ enum ExitStatus : int {
 // What a subcommand does once its options are parsed. Throws InputError or RunError.
 using Action = std::function<ExitStatus()>;
 
-// The headings of `aphotic --help`.
-inline constexpr const char* kRenderingCommands = "Render a rig";
-inline constexpr const char* kMapCommands = "Map its light on a flat floor";
-inline constexpr const char* kSurveyCommands = "Correct a survey";
-inline constexpr const char* kCheckCommands = "Check and measure";
-inline constexpr const char* kHelpCommands = "Help";
-
 struct Command {
     const char* name;
-    const char* group;
-    const char* summary;
     // Adds the options to the subcommand's parser and returns the action that reads them.
     Action (*configure)(CLI::App& options);
 };

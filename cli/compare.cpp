@@ -7,6 +7,7 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/terminal.h"
@@ -196,62 +197,24 @@ ExitStatus compare(const CompareCommandOptions& options) {
 Action configure_compare(CLI::App& app) {
     const auto options = std::make_shared<CompareCommandOptions>();
     ComparisonRequest& request = options->request;
-    app.add_option("IMAGE", request.image, "The image to judge: EXR, TIFF, PNG, JPEG and others")
-        ->required();
-    app.add_option(
-        "REFERENCE", request.reference, "The image to judge it by; may be left out with --patches");
-    app.add_option("--bound", request.bound, "Largest |e| that passes")
-        ->check(not_negative())
-        ->option_text("E")
-        ->capture_default_str();
-    app.add_option("--black",
-                   request.black,
-                   "Treat less than this share of the reference's largest sample as black")
-        ->check(in_range(0.0, 1.0))
-        ->option_text("SHARE")
-        ->capture_default_str();
-    app.add_option("--channels",
-                   request.channels,
-                   "Compare these channels only, such as R,G,B; by default all, and each must be "
-                   "in both images")
-        ->type_name("NAMES");
-    app.add_flag("--scale{image}",
-                 options->scale,
-                 "First divide the image by the factor that best fits it to the reference, one for "
-                 "all channels; --scale=per-channel: one for each")
-        ->check(CLI::IsMember({"image", "per-channel"}));
-    CLI::Option* patches =
-        app.add_option(
-               "--patches",
-               options->patches,
-               "Measure IMAGE's patches of known colour: CSV with the columns patch, x, y, "
-               "w, h and reference, which is grey, a reflectance, L a b, or a chart's patch")
-            ->type_name("FILE");
-    app.add_option("--encoding",
-                   options->encoding,
-                   "How IMAGE's samples are encoded, for --patches: linear or srgb")
+    add_option(app, "IMAGE", request.image)->required();
+    add_option(app, "REFERENCE", request.reference);
+    add_option(app, "--bound", request.bound)->check(not_negative());
+    add_option(app, "--black", request.black)->check(in_range(0.0, 1.0));
+    add_option(app, "--channels", request.channels);
+    add_flag(app, "--scale", options->scale)->check(CLI::IsMember({"image", "per-channel"}));
+    CLI::Option* patches = add_option(app, "--patches", options->patches);
+    add_option(app, "--encoding", options->encoding)
         ->check(CLI::IsMember({"linear", "srgb"}))
-        ->needs(patches)
-        ->capture_default_str();
-    app.add_option("-o,--output", options->output, "Write the numbers to FILE as JSON")
-        ->type_name("FILE");
-    app.add_option("--report",
-                   options->report,
-                   "Write a page with both images in false colours, the errors and profiles")
-        ->type_name("FILE.html");
-    add_json(app, options->json, "Print the numbers as JSON");
-    app.footer(
-        "In every channel, e = (a - b) / max(|b|, black). Exit status 0 when every |e| is within "
-        "the bound and every channel is in both images, 1 when not.\n"
-        "Spectral channels are paired by wavelength, whatever their spelling. Opacity, and counts "
-        "and standard errors from `aphotic observe`, need no partner. Samples with a count of 0 "
-        "were never observed: they are counted, not compared.");
+        ->needs(patches);
+    add_option(app, "--output", options->output);
+    add_option(app, "--report", options->report);
+    add_json(app, options->json);
     return [options] { return compare(*options); };
 }
 
 }  // namespace
 
-const Command kCompare{
-    "compare", kCheckCommands, "Compare an image with a reference", configure_compare};
+const Command kCompare{"compare", configure_compare};
 
 }  // namespace aphotic::cli

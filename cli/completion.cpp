@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/completion.h"
 
+#include "cli/option_words.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <initializer_list>
 #include <sstream>
-#include <string_view>
 #include <vector>
 
 namespace aphotic::cli {
@@ -128,52 +129,43 @@ std::string escaped(std::string_view text, std::string_view marks) {
     return result;
 }
 
-// --- bash ---------------------------------------------------------------------------------------
+// How a shell is told what may come.
+struct ShellActions {
+    std::string_view words;      // with their place
+    std::string_view files;      // of any kind
+    std::string_view extension;  // files of it, with its place
+    std::string_view folders;
+    std::string_view text;
+};
 
-constexpr std::string_view kBashHead =
-    R"(# bash completion for aphotic, by: aphotic --completion bash
+constexpr ShellActions kBash{
+    "_aphotic_words '{}'", "_aphotic_files", "_aphotic_files {}", "_aphotic_folders", ":"};
+constexpr ShellActions kZsh{"({})", "_files", "_files -g \"*.{}\"", "_files -/", " "};
+constexpr ShellActions kFish{" -xa '{}'",
+                             " -rF",
+                             " -rka '(__fish_complete_suffix .{})'",
+                             " -xa '(__fish_complete_directories)'",
+                             " -x"};
 
-_aphotic_words() {
-    mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "$1" -- "$cur")
-}
-_aphotic_folders() {
-    compopt -o filenames 2> /dev/null
-    mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -d -- "$cur")
-}
-_aphotic_files() {
-    compopt -o filenames 2> /dev/null
-    if [[ -z $1 ]]; then
-        mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$cur")
-    else
-        mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -X "!*.$1" -- "$cur")
-        _aphotic_folders
-    fi
-}
-_aphotic() {
-    local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD - 1]} command='' word
-    COMPREPLY=()
-    # --option=value comes as three words.
-    if [[ $cur == = ]]; then
-        cur=''
-    elif [[ $prev == = ]]; then
-        prev=${COMP_WORDS[COMP_CWORD - 2]}
-    fi
-    for word in "${COMP_WORDS[@]:1:COMP_CWORD - 1}"; do
-        case $word in
-)";
-
-std::string bash_action(const Taken& taken) {
+std::string action_of(const Taken& taken, const ShellActions& shell) {
     switch (taken.kind) {
         case Taken::Kind::Words:
-            return fmt::format("_aphotic_words '{}'", fmt::join(taken.words, " "));
+            return fmt::format(fmt::runtime(shell.words), fmt::join(taken.words, " "));
         case Taken::Kind::File:
-            return "_aphotic_files" + (taken.extension.empty() ? "" : " " + taken.extension);
+            return fmt::format(
+                fmt::runtime(taken.extension.empty() ? shell.files : shell.extension),
+                taken.extension);
         case Taken::Kind::Folder:
-            return "_aphotic_folders";
-        default:
-            return ":";
+            return std::string(shell.folders);
+        case Taken::Kind::Text:
+            return std::string(shell.text);
+        case Taken::Kind::Nothing:
+            break;
     }
+    return "";
 }
+
+// --- bash ---------------------------------------------------------------------------------------
 
 std::string bash_values(const Offers& offers) {
     std::string text;
@@ -182,8 +174,9 @@ std::string bash_values(const Offers& offers) {
         std::vector<std::string> patterns;
         for (const std::string& name : option.spellings)
             patterns.push_back(offers.command + "," + name);
-        text += fmt::format(
-            "        {}) {}; return ;;\n", fmt::join(patterns, " | "), bash_action(option.taken));
+        text += fmt::format("        {}) {}; return ;;\n",
+                            fmt::join(patterns, " | "),
+                            action_of(option.taken, kBash));
     }
     return text;
 }
@@ -198,7 +191,7 @@ std::string bash_case(const Offers& offers) {
         "        {},-*) _aphotic_words '{}' ;;\n", offers.command, fmt::join(names, " "));
     if (offers.arguments.empty()) return text;
     text += fmt::format("        {},*)", offers.command);
-    for (const Taken& taken : offers.arguments) text += " " + bash_action(taken) + ";";
+    for (const Taken& taken : offers.arguments) text += " " + action_of(taken, kBash) + ";";
     return text + " ;;\n";
 }
 
@@ -207,7 +200,7 @@ std::string bash_script(const std::vector<Offers>& all) {
     for (const Offers& offers : all) {
         if (!offers.command.empty()) commands.push_back(offers.command);
     }
-    std::string text(kBashHead);
+    std::string text(command_text("completion_head.txt"));
     text += fmt::format("            {}) command=$word; break ;;\n        esac\n    done\n",
                         fmt::join(commands, " | "));
     text += "    case $command,$prev in\n";
@@ -230,28 +223,16 @@ std::string zsh_words(const std::string& text) {
     return escaped(text, "[]:\\");
 }
 
-std::string zsh_action(const Taken& taken) {
-    switch (taken.kind) {
-        case Taken::Kind::Words:
-            return fmt::format("({})", fmt::join(taken.words, " "));
-        case Taken::Kind::File:
-            return taken.extension.empty() ? "_files"
-                                           : fmt::format("_files -g \"*.{}\"", taken.extension);
-        case Taken::Kind::Folder:
-            return "_files -/";
-        default:
-            return " ";
-    }
-}
-
 std::string zsh_options(const Offers& offers) {
     std::string text;
     for (const Offer& option : offers.options) {
         const bool takes = option.taken.kind != Taken::Kind::Nothing;
         const std::string before =
             option.taken.is_many ? "*" : fmt::format("({})", fmt::join(option.spellings, " "));
-        const std::string after = fmt::format(
-            "[{}]{}", zsh_words(option.words), takes ? ":value:" + zsh_action(option.taken) : "");
+        const std::string after =
+            fmt::format("[{}]{}",
+                        zsh_words(option.words),
+                        takes ? ":value:" + action_of(option.taken, kZsh) : "");
         std::vector<std::string> names{"--" + option.name + (takes ? "=" : "")};
         if (!option.letter.empty()) names.push_back("-" + option.letter);
         for (const std::string& name : names)
@@ -264,7 +245,7 @@ std::string zsh_arguments(const Offers& offers) {
     std::string text;
     for (const Taken& taken : offers.arguments) {
         text += fmt::format(
-            " \\\n            '{}:argument:{}'", taken.is_many ? "*" : "", zsh_action(taken));
+            " \\\n            '{}:argument:{}'", taken.is_many ? "*" : "", action_of(taken, kZsh));
     }
     return text;
 }
@@ -305,23 +286,6 @@ std::string quoted_for_fish(const std::string& text) {
     return "'" + escaped(text, "'\\") + "'";
 }
 
-std::string fish_action(const Taken& taken) {
-    switch (taken.kind) {
-        case Taken::Kind::Words:
-            return fmt::format(" -xa '{}'", fmt::join(taken.words, " "));
-        case Taken::Kind::File:
-            return taken.extension.empty()
-                       ? " -rF"
-                       : fmt::format(" -rka '(__fish_complete_suffix .{})'", taken.extension);
-        case Taken::Kind::Folder:
-            return " -xa '(__fish_complete_directories)'";
-        case Taken::Kind::Text:
-            return " -x";
-        default:
-            return "";
-    }
-}
-
 std::string fish_lines(const Offers& offers) {
     const std::string before =
         offers.command.empty()
@@ -339,11 +303,11 @@ std::string fish_lines(const Offers& offers) {
                             before,
                             option.letter.empty() ? "" : " -s " + option.letter,
                             option.name,
-                            fish_action(option.taken),
+                            action_of(option.taken, kFish),
                             quoted_for_fish(option.words));
     }
     for (const Taken& taken : offers.arguments) {
-        if (taken.kind != Taken::Kind::Text) text += before + fish_action(taken) + "\n";
+        if (taken.kind != Taken::Kind::Text) text += before + action_of(taken, kFish) + "\n";
     }
     return text;
 }

@@ -9,6 +9,7 @@
 #include "base/words.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
@@ -19,7 +20,6 @@
 #include "survey/images/camera_numbers.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -256,38 +256,21 @@ ExitStatus correct(CorrectCommandOptions options) {
 }
 
 void add_light_options(CLI::App& app, CorrectCommandOptions& options) {
-    app.add_option("--rig", options.input.rig, "The rig that took the images")->type_name("RIG");
+    add_option(app, "--rig", options.input.rig);
     add_navigation_options(app, options.input);
-    app.add_option(
-           "--map", options.map, "Use one lightmap (EXR) for all images instead of --rig and --nav")
-        ->type_name("FILE");
-    app.add_flag("--no-veil",
-                 options.no_veil,
-                 "Leave in what the water scatters into the view, for comparison");
-    app.add_option(kAltitudeNames,
-                   options.altitudes_m,
-                   "Skip images from outside these altitudes in metres")
+    add_option(app, "--map", options.map);
+    add_flag(app, "--no-veil", options.no_veil);
+    add_option(app, "--altitude", options.altitudes_m)
         ->delimiter(',')
         ->expected(2)
-        ->option_text("LEAST,MOST")
         ->check(not_negative());
 }
 
 void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
     add_camera_options(app, options.input);
-    app.add_flag("--keep-mosaic",
-                 options.correction.keep_mosaic,
-                 "Write mosaics as mosaics, not as R, G, B");
-    app.add_option("--read-noise",
-                   options.correction.read_noise,
-                   "The camera's noise without light, in its own numbers; by default the rig's, or "
-                   "that of rounding to integers, 0.3, and none for floats")
-        ->check(not_negative());
-    app.add_option("--electrons",
-                   options.electrons,
-                   "Electrons per number, for shot noise; 0 ignores it; by default of the rig's "
-                   "`gain_dn_per_e`, or 0")
-        ->check(not_negative());
+    add_flag(app, "--keep-mosaic", options.correction.keep_mosaic);
+    add_option(app, "--read-noise", options.correction.read_noise)->check(not_negative());
+    add_option(app, "--electrons", options.electrons)->check(not_negative());
 }
 
 [[nodiscard]] Settle add_result_options(CLI::App& app, CorrectCommandOptions& options) {
@@ -296,99 +279,41 @@ void add_raw_options(CLI::App& app, CorrectCommandOptions& options) {
     constexpr double kMostNoise = 10.0;
     constexpr int kMostEdge_px = 100;
     constexpr std::size_t kMostImages = 10000;
-    auto* gain = app.add_option("--gain",
-                                options.correction.gain,
-                                "Multiply (raw - black) / map by this: one number, or R,G,B; by "
-                                "default taken from the survey")
+    auto* gain = add_option(app, "--gain", options.correction.gain)
                      ->delimiter(',')
                      ->expected(1, kChannels)
                      ->check(positive());
-    auto* gain_from =
-        app.add_option("--gain-from",
-                       options.correction.gain_from,
-                       "Take the gain from the results of another survey by the same camera, so "
-                       "that both are on one scale")
-            ->type_name("DIR")
-            ->excludes(gain);
-    app.add_option("--middle",
-                   options.correction.middle,
-                   "Make the survey's median pixel this value, such as 0.2 for grey; by default "
-                   "the colour of the rig's floor, with --map 0.2")
-        ->check(positive())
-        ->excludes(gain_from);
-    app.add_option("--gain-images", options.correction.gain_images, "Take the gain from N images")
-        ->check(in_range(1, kMostImages))
-        ->capture_default_str();
-    app.add_option(
-           "--least-light",
-           options.correction.limit.share,
-           "Hold a pixel's gain where the map is below this share of its brightest in a channel")
-        ->check(in_range(kLeastShare, 1.0))
-        ->capture_default_str();
-    app.add_option("--most-noise",
-                   options.correction.limit.relative,
-                   "Hold it, too, where noise would exceed this share of the survey's median")
-        ->check(in_range(kLeastNoise, kMostNoise))
-        ->capture_default_str();
-    app.add_option("--edge-px",
-                   options.correction.edge_px,
-                   "Mark N pixels around a beam's edge as doubtful")
-        ->check(in_range(0, kMostEdge_px))
-        ->capture_default_str();
+    auto* gain_from = add_option(app, "--gain-from", options.correction.gain_from)->excludes(gain);
+    add_option(app, "--middle", options.correction.middle)->check(positive())->excludes(gain_from);
+    add_option(app, "--gain-images", options.correction.gain_images)
+        ->check(in_range(1, kMostImages));
+    add_option(app, "--least-light", options.correction.limit.share)
+        ->check(in_range(kLeastShare, 1.0));
+    add_option(app, "--most-noise", options.correction.limit.relative)
+        ->check(in_range(kLeastNoise, kMostNoise));
+    add_option(app, "--edge-px", options.correction.edge_px)->check(in_range(0, kMostEdge_px));
     Settle settle = add_format_options(app, options.correction.run.format);
-    app.add_option(
-           "--ifdo",
-           options.ifdo,
-           "The images' iFDO, JSON or YAML: write that of the results to DIR under its name, "
-           "and without --nav take the navigation from it")
-        ->type_name("FILE");
+    add_option(app, "--ifdo", options.ifdo);
     return settle;
 }
 
 void add_baseline_options(CLI::App& app, BaselineOptions& options) {
-    app.add_option(
-           "--sigma",
-           options.sigma,
-           "illumination-reflectance, homomorphic: width of the blur as a share of the image's")
-        ->check(in_range(1e-4, 10.0))
-        ->capture_default_str();
-    app.add_option("--low", options.low, "homomorphic: gain of low frequencies")
-        ->check(in_range(0.0, 10.0))
-        ->capture_default_str();
-    app.add_option("--high", options.high, "homomorphic: gain of high frequencies")
-        ->check(in_range(0.0, 10.0))
-        ->capture_default_str();
-    app.add_option("--tiles", options.tiles, "local-equalisation: tiles across and down")
-        ->check(in_range(1, 256))
-        ->capture_default_str();
-    app.add_option("--clip",
-                   options.clip,
-                   "local-equalisation: clip histograms at N mean bins; 1 changes nothing")
-        ->check(in_range(1.0, 1e6))
-        ->capture_default_str();
-    app.add_option(
-           "--order", options.order, "log-polynomial, binned-polynomial: order of the polynomials")
-        ->check(in_range(0, 12))
-        ->capture_default_str();
-    app.add_option("--bin",
-                   options.bin_m,
-                   "binned-polynomial, altitude-exponential: width of an altitude bin, in metres")
-        ->check(in_range(1e-3, 1e4))
-        ->capture_default_str();
+    add_option(app, "--sigma", options.sigma)->check(in_range(1e-4, 10.0));
+    add_option(app, "--low", options.low)->check(in_range(0.0, 10.0));
+    add_option(app, "--high", options.high)->check(in_range(0.0, 10.0));
+    add_option(app, "--tiles", options.tiles)->check(in_range(1, 256));
+    add_option(app, "--clip", options.clip)->check(in_range(1.0, 1e6));
+    add_option(app, "--order", options.order)->check(in_range(0, 12));
+    add_option(app, "--bin", options.bin_m)->check(in_range(1e-3, 1e4));
 }
 
 // What both commands take, but for the images and what comes of them.
 Action configure_run(CLI::App& app,
                      const std::shared_ptr<CorrectCommandOptions>& options,
-                     const Settle& settle,
-                     const std::string& notes) {
-    add_jobs(app, options->correction.run.jobs, "Correct N images at a time");
-    add_share(app,
-              "--share",
-              options->correction.share,
-              "Correct of each N images the Ith alone, to DIR/share-I-of-N: the same command "
-              "without it then joins all shares");
-    add_outcome_options(app, options->input, "Print DIR/" + notes);
+                     const Settle& settle) {
+    add_jobs(app, options->correction.run.jobs);
+    add_share(app, "--share", options->correction.share);
+    add_outcome_options(app, options->input);
     return [options, settle] {
         settle();
         return correct(*options);
@@ -403,23 +328,14 @@ Action configure_correct(CLI::App& app) {
     add_model_tolerance(app, options->model_tolerance);
     add_raw_options(app, *options);
     const Settle settle = add_result_options(app, *options);
-    app.add_flag("--report",
-                 options->correction.report,
-                 "Also write DIR/report.html: images before and after, light over altitude, gains, "
-                 "what was skipped and why");
-    app.footer(
-        "Interrupted, it continues where it stopped when run again. Exit status 0 when every image "
-        "is corrected, 1 when more are skipped than --allow-skipped: correction.json lists them. A "
-        "mask's pixel is a "
-        "sum of 1 dark, 2 saturated, 4 black, 8 on a beam's edge, 16 clipped by the format; 0 is "
-        "good.");
-    return configure_run(app, options, settle, std::string(kCorrectionNotes));
+    add_flag(app, "--report", options->correction.report);
+    return configure_run(app, options, settle);
 }
 
 Action configure_baseline(CLI::App& app) {
     const auto options = std::make_shared<CorrectCommandOptions>();
     options->correction.run.format.format = "exr";
-    app.add_option("NAME", options->baseline, fmt::format("{}", fmt::join(kBaselineNames, ", ")))
+    add_option(app, "NAME", options->baseline)
         ->check(CLI::IsMember(std::set<std::string>(kBaselineNames.begin(), kBaselineNames.end())))
         ->required();
     add_images(app, options->input);
@@ -429,29 +345,13 @@ Action configure_baseline(CLI::App& app) {
     add_survey_rig(app, options->input);
     add_camera_options(app, options->input);
     const Settle settle = add_format_options(app, options->correction.run.format);
-    app.footer(
-        "The polynomials and exponentials learn from all images given; the others correct each "
-        "image "
-        "by itself. An EXR holds the camera's own numbers less the black level; a TIFF or PNG has "
-        "65535 where "
-        "the camera saturates. Interrupted, it continues where it stopped when run again. Images "
-        "that cannot be used are reported and skipped; the exit status is 1 when these are more "
-        "than "
-        "--allow-skipped. A mask's pixel "
-        "is a sum of 2 saturated, 4 black, 16 clipped by the format; 0 is good.");
-    return configure_run(app, options, settle, std::string(kBaselineNotes));
+    return configure_run(app, options, settle);
 }
 
 }  // namespace
 
-const Command kCorrect{"correct",
-                       kSurveyCommands,
-                       "Divide survey images by the light they were taken in",
-                       configure_correct};
+const Command kCorrect{"correct", configure_correct};
 
-const Command kBaseline{"baseline",
-                        kSurveyCommands,
-                        "Correct images without a model of the lamps, for comparison",
-                        configure_baseline};
+const Command kBaseline{"baseline", configure_baseline};
 
 }  // namespace aphotic::cli

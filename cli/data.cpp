@@ -3,8 +3,10 @@
 // aphotic data [NAME]: list the built-in tables, or show, plot or hand on one of them, or check
 // a table of the user's own, or make tables of POV-Ray's splines.
 #include "base/atomic_file.h"
+#include "base/csv.h"
 #include "base/error.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/terminal.h"
@@ -38,18 +40,8 @@ constexpr double kPlotSalinity_psu = 35.0;
 constexpr double kPlotTemperature_c = 10.0;
 
 // In this order; others follow in theirs.
-constexpr std::array kMetadataKeys{"title",
-                                   "role",
-                                   "quantity",
-                                   "unit",
-                                   "kind",
-                                   "form",
-                                   "formula",
-                                   "range",
-                                   "source",
-                                   "obtained",
-                                   "uncertainty",
-                                   "terms"};
+constexpr std::string_view kMetadataKeys =
+    "title,role,quantity,unit,kind,form,formula,range,source,obtained,uncertainty,terms";
 
 // Of --from-spline.
 struct SplineOptions {
@@ -160,13 +152,13 @@ void print(const Entry& entry) {
         lines.push_back({"fits:", entry.role});
         lines.push_back({"covers:", range_text(entry.range) + " nm"});
     }
-    for (const std::string key : kMetadataKeys) {
+    const auto in_order = comma_fields(kMetadataKeys);
+    for (const std::string_view known : in_order) {
+        const std::string key(known);
         if (!table.text_of(key).empty()) lines.push_back({key + ":", table.text_of(key)});
     }
     for (const auto& [key, text] : table.metadata) {
-        if (std::count(kMetadataKeys.begin(), kMetadataKeys.end(), key) == 0) {
-            lines.push_back({key + ":", text});
-        }
+        if (std::ranges::count(in_order, key) == 0) lines.push_back({key + ":", text});
     }
     print_aligned(lines);
     say("\n");
@@ -362,35 +354,21 @@ void add_spline_options(CLI::App& app,
                         DataCommandOptions& options) {
     SplineOptions& splines = options.splines;
     const OptionGroup group(app, "Tables from POV-Ray's spectra");
-    auto* from = app.add_option("--from-spline",
-                                splines.file,
-                                "Make a table of each spectrum in a scene or include file: "
-                                "splines, and SpectralRender's arrays")
-                     ->type_name("FILE")
-                     ->excludes(name)
-                     ->excludes(csv);
-    add_output_folder(app, splines.folder)
-        ->description("Write the tables to this folder; by default the current one")
-        ->needs(from);
-    app.add_option("--role", splines.role, "The spectra are reflectance (the default) or lamp")
-        ->type_name("ROLE")
+    auto* from = add_option(app, "--from-spline", splines.file)->excludes(name)->excludes(csv);
+    add_output_folder(app, splines.folder)->needs(from);
+    add_option(app, "--role", splines.role)
         ->check(CLI::IsMember({"reflectance", "lamp"}))
         ->needs(from);
-    app.add_option("--only", splines.only, "Skip spectra whose name does not match, as 'D_CC_*'")
-        ->type_name("PATTERN")
-        ->needs(from);
-    app.add_flag("--force", splines.force, "Overwrite existing tables")->needs(from);
+    add_option(app, "--only", splines.only)->needs(from);
+    add_flag(app, "--force", splines.force)->needs(from);
 }
 
 Action configure_data(CLI::App& app) {
     const auto options = std::make_shared<DataCommandOptions>();
-    auto* name =
-        app.add_option("NAME", options->name, "A built-in table, or a CSV file of yours to check");
-    auto* csv = app.add_flag("--csv", options->csv, "Print the bare table: header row and numbers");
-    app.add_flag("--json", options->json, "Print the same as JSON")->excludes(csv);
-    app.add_option("--plot", options->plot_file, "Plot the table into FILE.svg")
-        ->type_name("FILE.svg")
-        ->needs(name);
+    auto* name = add_option(app, "NAME", options->name);
+    auto* csv = add_flag(app, "--csv", options->csv);
+    add_flag(app, "--json", options->json)->excludes(csv);
+    add_option(app, "--plot", options->plot_file)->needs(name);
     csv->needs(name);
     add_spline_options(app, name, csv, *options);
     return [options] { return show_data(*options); };
@@ -398,7 +376,6 @@ Action configure_data(CLI::App& app) {
 
 }  // namespace
 
-const Command kData{
-    "data", kCheckCommands, "List, show, plot or check tables of spectra", configure_data};
+const Command kData{"data", configure_data};
 
 }  // namespace aphotic::cli

@@ -9,8 +9,8 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
-#include "cli/output_folder.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "lightmap/design_files.h"
@@ -122,49 +122,28 @@ ExitStatus design_rig(const DesignCommandOptions& options) {
 
 void add_envelope(CLI::App& app, DesignCommandOptions& options) {
     const OptionGroup group(app, "Envelope");
-    app.add_option(kAltitudeNames,
-                   options.altitude_m,
-                   "Altitudes to design for, in metres, such as 1.5,2.5, instead of the rig's")
+    add_option(app, "--altitude", options.altitude_m)
         ->delimiter(',')
         ->expected(1, 2)
-        ->check(in_range(kLeastAltitude_m, kMostAltitude_m))
-        ->option_text("LOW,HIGH");
-    app.add_option(kPitchNames, options.pitch_deg, "Pitches, in degrees, bow up")
+        ->check(in_range(kLeastAltitude_m, kMostAltitude_m));
+    add_option(app, "--pitch", options.pitch_deg)
         ->delimiter(',')
         ->expected(1, 2)
-        ->check(in_range(-kMostTilt_deg, kMostTilt_deg))
-        ->option_text("LOW,HIGH");
-    app.add_option(kRollNames, options.roll_deg, "Rolls, in degrees, starboard down")
+        ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
+    add_option(app, "--roll", options.roll_deg)
         ->delimiter(',')
         ->expected(1, 2)
-        ->check(in_range(-kMostTilt_deg, kMostTilt_deg))
-        ->option_text("LOW,HIGH");
+        ->check(in_range(-kMostTilt_deg, kMostTilt_deg));
 }
 
 void add_freedom(CLI::App& app, DesignCommandOptions& options) {
     constexpr double kMostRoom_m = 1000.0;
     constexpr double kMostTurn_deg = 80.0;
     DesignFreedom& freedom = options.request.freedom;
-    app.add_option("--vary",
-                   freedom.keys,
-                   "What may change, such as strobe.fore.position_m,strobe.*.aim: position_m, aim, "
-                   "aim.tilt_deg or power of strobes, * for all")
-        ->delimiter(',')
-        ->required()
-        ->type_name("KEY,...");
-    app.add_option("--within", freedom.within_m, "Move strobes up to M metres each way")
-        ->check(in_range(0.0, kMostRoom_m))
-        ->option_text("M")
-        ->capture_default_str();
-    app.add_option("--box",
-                   freedom.boxes,
-                   "Move this strobe within a box instead, such as fore=0.3:0.7,0,-0.2:0.2; "
-                   "repeatable")
-        ->type_name("NAME=X0:X1,Y0:Y1,Z0:Z1");
-    app.add_option("--turn", options.turn_deg, "Turn strobes up to DEG degrees each way")
-        ->check(in_range(0.0, kMostTurn_deg))
-        ->option_text("DEG")
-        ->capture_default_str();
+    add_option(app, "--vary", freedom.keys)->delimiter(',')->required();
+    add_option(app, "--within", freedom.within_m)->check(in_range(0.0, kMostRoom_m));
+    add_option(app, "--box", freedom.boxes);
+    add_option(app, "--turn", options.turn_deg)->check(in_range(0.0, kMostTurn_deg));
 }
 
 Action configure_design(CLI::App& app) {
@@ -178,38 +157,19 @@ Action configure_design(CLI::App& app) {
     add_output_folder(app, options->folder)->required();
     add_freedom(app, *options);
     add_envelope(app, *options);
-    app.add_option("--for",
-                   request.goal,
-                   "Design for evenness, for signal (the worst signal to noise) or for coverage")
-        ->transform(word_of(kDesignGoals))
-        ->type_name("evenness|signal|coverage")
-        ->default_str("evenness");
-    app.add_option(
-           "--keep", request.keep, "Keep at least this share of each of the start's other figures")
-        ->check(in_range(0.0, 1.0))
-        ->option_text("SHARE")
-        ->capture_default_str();
-    app.add_option("--level",
-                   request.level,
-                   "Count as covered what is as bright as this share of the brightest")
-        ->check(in_range(0.0, 1.0))
-        ->option_text("SHARE")
-        ->capture_default_str();
-    app.add_option("--evaluations", request.evaluations, "Look at up to N designs")
-        ->check(in_range(kLeastEvaluations, kMostEvaluations))
-        ->capture_default_str();
-    app.add_option("--seed", request.seed, "Seed of the search")->capture_default_str();
-    add_jobs(app, request.threads, "Map with N threads");
+    add_option(app, "--for", request.goal)->transform(word_of(kDesignGoals));
+    add_option(app, "--keep", request.keep)->check(in_range(0.0, 1.0));
+    add_option(app, "--level", request.level)->check(in_range(0.0, 1.0));
+    add_option(app, "--evaluations", request.evaluations)
+        ->check(in_range(kLeastEvaluations, kMostEvaluations));
+    add_option(app, "--seed", request.seed);
+    add_jobs(app, request.threads);
     add_json(app, options->json);
-    app.footer(
-        "Leaves DIR/designed.toml, the rig with its strobes moved, report.html and design.json. "
-        "The same command gives the same design, which is never worse than the start.");
     return [options] { return design_rig(*options); };
 }
 
 }  // namespace
 
-const Command kDesign{
-    "design", kMapCommands, "Place and aim strobes for even light", configure_design};
+const Command kDesign{"design", configure_design};
 
 }  // namespace aphotic::cli

@@ -10,6 +10,7 @@
 #include "base/words.h"
 #include "base/work_folder.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/survey_command.h"
@@ -181,52 +182,24 @@ Action configure_fit(CLI::App& app) {
     options->fit.threads = all_cores();
     add_rig(app, options->input.rig);
     add_output_folder(app, options->folder)->required();
-    app.add_option("--maps", options->maps, "Fit to maps by observe, of several altitudes")
-        ->type_name("MAP.exr");
-    app.add_option("--images", options->input.images, "Fit to images, or folders of them")
-        ->type_name("IMAGES");
+    add_option(app, "--maps", options->maps);
+    add_option(app, "--images", options->input.images);
     add_navigation_options(app, options->input);
-    app.add_option("--beam", options->fit.beam, "Fit the beam as table, cones, cosine or optics")
-        ->transform(word_of(kBeams))
-        ->type_name("table|cones|cosine|optics")
-        ->default_str("table");
-    app.add_flag("--beam-each", options->fit.has_beam_each, "Fit each strobe's beam by itself");
-    app.add_option("--parts",
-                   options->fit.parts,
-                   "Splines of a beam's table; by default as many as images tell, 40 of maps")
-        ->check(in_range(4, 200));
-    app.add_option("--free",
-                   options->free,
-                   "Fit these alone: beam, aim, power, water, vignetting, floor, altitude, "
-                   "attitude, gain, or numbers by their keys, such as water.multiple")
-        ->delimiter(',')
-        ->type_name("WHAT,...");
-    app.add_option("--altitude-error",
-                   options->fit.altitude_error_m,
-                   "Standard deviation of an image's altitude, in metres")
-        ->check(not_negative())
-        ->capture_default_str();
-    app.add_option("--attitude-error",
-                   options->attitude_error_deg,
-                   "Standard deviation of its pitch and roll, in degrees")
-        ->check(not_negative())
-        ->capture_default_str();
-    app.add_option("--blocks", options->blocks, "Average each image in N blocks across")
-        ->check(in_range(8, 1000))
-        ->capture_default_str();
+    add_option(app, "--beam", options->fit.beam)->transform(word_of(kBeams));
+    add_flag(app, "--beam-each", options->fit.has_beam_each);
+    add_option(app, "--parts", options->fit.parts)->check(in_range(4, 200));
+    add_option(app, "--free", options->free)->delimiter(',');
+    add_option(app, "--altitude-error", options->fit.altitude_error_m)->check(not_negative());
+    add_option(app, "--attitude-error", options->attitude_error_deg)->check(not_negative());
+    add_option(app, "--blocks", options->blocks)->check(in_range(8, 1000));
     add_camera_options(app, options->input);
-    add_jobs(app, options->fit.threads, "Compute with N threads");
+    add_jobs(app, options->fit.threads);
     add_outcome_options(app, options->input);
-    app.footer(
-        "Leaves fitted.toml, a rig with the beam's table beside it, fit.json with errors and "
-        "covariance, and report.html. Without --free, fits beam, aim, power, water, vignetting "
-        "and floor, and holds what the images cannot tell.");
     return [&app, options] { return fit_survey(app, *options); };
 }
 
 }  // namespace
 
-const Command kFit{
-    "fit", kSurveyCommands, "Find the rig that explains a survey, with errors", configure_fit};
+const Command kFit{"fit", configure_fit};
 
 }  // namespace aphotic::cli

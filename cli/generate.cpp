@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -106,12 +107,7 @@ ExitStatus generate_scenes(const GenerateCommandOptions& options) {
 Action configure_generate(CLI::App& app) {
     const auto options = std::make_shared<GenerateCommandOptions>();
     CLI::Option* folder = add_output_folder(app, options->folder);
-    app.add_option("--quick-look",
-                   options->quick_look,
-                   "Write the rig to FILE instead: as aphotic_quick.inc beside a scene of your "
-                   "own, it shows plain POV-Ray the scene by this rig's light")
-        ->type_name("FILE")
-        ->excludes(folder);
+    add_option(app, "--quick-look", options->quick_look)->excludes(folder);
     add_needs_option(app, options->planning.ignore_needs);
     add_json(app, options->json);
     add_planning_options(app, options->planning);
@@ -120,7 +116,6 @@ Action configure_generate(CLI::App& app) {
 
 }  // namespace
 
-const Command kGenerate{
-    "generate", kRenderingCommands, "Write the POV-Ray scenes and stop", configure_generate};
+const Command kGenerate{"generate", configure_generate};
 
 }  // namespace aphotic::cli

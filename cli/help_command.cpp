@@ -3,10 +3,9 @@
 // aphotic help [COMMAND]: what --help prints, of the command.
 #include "base/error.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/terminal.h"
 #include "cli/unknown_word.h"
-
-#include <fmt/format.h>
 
 #include <memory>
 #include <string>
@@ -29,12 +28,12 @@ ExitStatus print_help(const CLI::App& all, const std::string& name) {
 
 Action configure_help(CLI::App& app) {
     const auto name = std::make_shared<std::string>();
-    app.add_option("COMMAND", *name, "The command; by default all of them");
+    add_option(app, "COMMAND", *name);
     return [&app, name] { return print_help(*app.get_parent(), *name); };
 }
 
 }  // namespace
 
-const Command kHelp{"help", kHelpCommands, "Print the help of a command", configure_help};
+const Command kHelp{"help", configure_help};
 
 }  // namespace aphotic::cli

@@ -7,6 +7,7 @@
 #include "base/work_folder.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -120,22 +121,10 @@ ExitStatus integrate_frames(const IntegrateCommandOptions& options) {
 
 Action configure_integrate(CLI::App& app) {
     const auto options = std::make_shared<IntegrateCommandOptions>();
-    app.add_option("DIR", options->folder, "A folder of `aphotic render` or `aphotic generate`")
-        ->required();
-    add_output_folder(app, options->images_folder)
-        ->description("Write the images to this folder; by default DIR, with --rig DIR/as-RIG");
-    auto* rig = app.add_option("--rig",
-                               options->rig_file,
-                               "Make the image of this rig from the same frames: same geometry, "
-                               "other water, lamps, materials or sensor")
-                    ->type_name("RIG");
-    app.add_option("--tolerance",
-                   options->tolerance,
-                   "With --rig: largest relative error of any pixel's signal")
-        ->check(in_range(0.0, 1.0))
-        ->needs(rig)
-        ->option_text("E")
-        ->capture_default_str();
+    add_option(app, "DIR", options->folder)->required();
+    add_output_folder(app, options->images_folder);
+    auto* rig = add_option(app, "--rig", options->rig_file);
+    add_option(app, "--tolerance", options->tolerance)->check(in_range(0.0, 1.0))->needs(rig);
     add_model_tolerance(app, options->model_tolerance);
     add_strict_option(app, options->strict);
     add_needs_option(app, options->ignore_needs);
@@ -146,9 +135,6 @@ Action configure_integrate(CLI::App& app) {
 
 }  // namespace
 
-const Command kIntegrate{"integrate",
-                         kRenderingCommands,
-                         "Turn the frames of a folder into images",
-                         configure_integrate};
+const Command kIntegrate{"integrate", configure_integrate};
 
 }  // namespace aphotic::cli

@@ -13,6 +13,7 @@
 #include "base/work_folder.h"
 #include "cli/command.h"
 #include "cli/model_error.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -390,25 +391,10 @@ ExitStatus run_lightmap(LightmapCommandOptions options) {
 }
 
 void add_sled_options(CLI::App& app, LightmapCommandOptions& options) {
-    app.add_option(
-           kAltitudeNames,
-           options.altitudes,
-           "Altitude in metres instead of the rig's; of several, such as 1:4:0.1 or 1,1.5,2, "
-           "a map each")
-        ->check(CLI::Validator(altitude_fault, ""))
-        ->option_text("M|FROM:TO:STEP");
-    app.add_option(kPitchNames, options.pitch_deg, "Pitch in degrees, bow up, instead of the rig's")
-        ->check(in_range(-kMostTilt_deg, kMostTilt_deg))
-        ->option_text("DEG");
-    app.add_option(
-           kRollNames, options.roll_deg, "Roll in degrees, starboard down, instead of the rig's")
-        ->check(in_range(-kMostTilt_deg, kMostTilt_deg))
-        ->option_text("DEG");
-    app.add_option("--water-multiple",
-                   options.water_multiple,
-                   "Multiple of the water's absorption instead of the rig's")
-        ->check(not_negative())
-        ->option_text("M");
+    add_option(app, "--altitude", options.altitudes)->check(CLI::Validator(altitude_fault, ""));
+    add_option(app, "--pitch", options.pitch_deg)->check(in_range(-kMostTilt_deg, kMostTilt_deg));
+    add_option(app, "--roll", options.roll_deg)->check(in_range(-kMostTilt_deg, kMostTilt_deg));
+    add_option(app, "--water-multiple", options.water_multiple)->check(not_negative());
 }
 
 Action configure_lightmap(CLI::App& app) {
@@ -417,64 +403,27 @@ Action configure_lightmap(CLI::App& app) {
     const auto options = std::make_shared<LightmapCommandOptions>();
     options->map = {.error = 1e-5, .threads = all_cores()};
     add_rig(app, options->rig_file);
-    app.add_option("-o,--output",
-                   options->output,
-                   "Write the map to this OpenEXR file, or what is by altitude to this folder")
-        ->required()
-        ->type_name("FILE");
+    add_option(app, "--output", options->output)->required();
     add_sled_options(app, *options);
     CLI::Option* exported =
-        app.add_option("--export",
-                       options->export_as,
-                       "Instead of maps write their fit over altitude as parameters for oplab's "
-                       "correct_images (oplab)")
-            ->check(CLI::IsMember({"oplab"}))
-            ->option_text("oplab");
-    app.add_flag("--per-strobe",
-                 options->per_strobe,
-                 "Add each strobe's own light, in channels such as fore.R")
-        ->excludes(exported);
-    app.add_flag("--per-cone",
-                 options->per_cone,
-                 "Add each cone's own light, in channels such as fore.collimated.R")
-        ->excludes(exported);
-    app.add_flag("--normalised",
-                 options->normalised,
-                 "Divide each channel by its largest value, and parts by that of the whole")
-        ->excludes(exported);
-    app.add_option("--error",
-                   options->map.error,
-                   "Relative error of the spectral integral and its table; the rounding of floats "
-                   "adds to it, and an unbounded error behind a port")
-        ->check(in_range(kLeastError, kMostError))
-        ->option_text("E")
-        ->capture_default_str();
-    app.add_flag_callback(
-        "--no-veil",
-        [options] { options->map.has_veil = false; },
-        "Leave out the light that the water scatters into the view");
+        add_option(app, "--export", options->export_as)->check(CLI::IsMember({"oplab"}));
+    add_flag(app, "--per-strobe", options->per_strobe)->excludes(exported);
+    add_flag(app, "--per-cone", options->per_cone)->excludes(exported);
+    add_flag(app, "--normalised", options->normalised)->excludes(exported);
+    add_option(app, "--error", options->map.error)->check(in_range(kLeastError, kMostError));
+    add_flag(app, "--no-veil", [options] { options->map.has_veil = false; });
     add_model_tolerance(app, options->model_tolerance);
     add_strict_option(app, options->strict);
-    add_jobs(app, options->map.threads, "Map with N threads");
+    add_jobs(app, options->map.threads);
     add_needs_option(app, options->ignore_needs);
     add_json(app, options->json);
-    app.add_option("--preview", options->preview_file, "Write a picture to look at, too")
-        ->type_name("FILE.png")
-        ->group("Preview");
+    add_option(app, "--preview", options->preview_file)->group("Preview");
     add_preview_options(app, options->preview);
-    app.footer(
-        "Maps the bare flat floor, without POV-Ray. The file holds what image.exr of a render "
-        "does: R, G, B, linear, 32-bit floats, and the veil apart, as veil.R, veil.G, veil.B, "
-        "where the water scatters. Of several altitudes the folder holds altitude_1.00m.exr and "
-        "so on; those of an earlier run go.");
     return [options] { return run_lightmap(*options); };
 }
 
 }  // namespace
 
-const Command kLightmap{"lightmap",
-                        kMapCommands,
-                        "Map the camera's signal on a bare flat floor in milliseconds",
-                        configure_lightmap};
+const Command kLightmap{"lightmap", configure_lightmap};
 
 }  // namespace aphotic::cli

@@ -11,6 +11,7 @@
 #include "cli/help.h"
 #include "cli/manual.h"
 #include "cli/option_checks.h"
+#include "cli/option_words.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
 #include "cli/unknown_word.h"
@@ -21,7 +22,6 @@
 #include <array>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <memory>
 #include <new>
@@ -156,7 +156,8 @@ int main(int argc, char** argv) {
     add_completion(app, chosen);
     add_manual(app, chosen);
     for (const Command* command : kCommands) {
-        CLI::App* sub = app.add_subcommand(command->name, command->summary)->group(command->group);
+        CLI::App* sub = app.add_subcommand(command->name);
+        describe(*sub);
         const Action action = command->configure(*sub);
         add_set_option(*sub);
         add_common_checks(*sub);

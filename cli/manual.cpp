@@ -2,54 +2,12 @@
 #include "cli/manual.h"
 
 #include "cli/help.h"
+#include "cli/option_words.h"
 
 #include <fmt/format.h>
 
-#include <string_view>
-
 namespace aphotic::cli {
 namespace {
-
-constexpr std::string_view kAfterCommands = R"roff(.SH FILES
-.TP
-.I RIG
-a rig file in TOML; rig.md in the manual has every key
-.TP
-.I image.exr\fR, \fIspectral.exr\fR, \fIpreview.png
-what render, trace, validate and integrate write to their folder: R, G, B; the radiance at each
-wavelength; the image as a screen shows it
-.TP
-.I manifest.json
-the rig's digest, versions, wavelengths, weights, exposures, and the frames with their checksums
-.TP
-.I povray/
-the scenes, their settings, the frames and POV-Ray's messages
-.PP
-The manual, in the folder of documentation that the program is installed with, begins with README.md.
-.SH EXIT STATUS
-.TP
-.B 0
-Done.
-.TP
-.B 1
-It ran, and the answer is no: a comparison or a promise is out of bounds, or more images were skipped
-than \-\-allow\-skipped allows.
-.TP
-.B 2
-The command line or an input file is wrong.
-.TP
-.B 3
-POV-Ray or the file system failed.
-.PP
-Interrupted by SIGINT, SIGTERM or SIGHUP, it stops POV-Ray, keeps finished work, says so, and ends by
-that signal. Results go to standard output, diagnostics to standard error.
-.SH ENVIRONMENT
-.TP
-.B APHOTIC_POVRAY
-The POV-Ray to run without \-\-povray. Without either it is the povray on the path.
-.SH SEE ALSO
-.BR povray (1)
-)roff";
 
 // A text of ours as roff shows it, in one line.
 std::string roff(const std::string& text) {
@@ -94,7 +52,7 @@ std::string options_text(const HelpFormatter& help, const CLI::App& command) {
     return text;
 }
 
-std::string command_text(const HelpFormatter& help, const CLI::App& command) {
+std::string text_of_command(const HelpFormatter& help, const CLI::App& command) {
     std::string arguments;
     for (const CLI::Option* option : command.get_options())
         if (option->get_positional()) arguments += " " + option->get_name(true);
@@ -128,8 +86,8 @@ std::string manual_page(const CLI::App& app) {
         roff(app.version()),
         roff(app.get_description()),
         options_text(help, app));
-    for (const CLI::App* command : app.get_subcommands({})) text += command_text(help, *command);
-    return text.append(kAfterCommands);
+    for (const CLI::App* command : app.get_subcommands({})) text += text_of_command(help, *command);
+    return text.append(command_text("manual_end.roff"));
 }
 
 }  // namespace aphotic::cli

@@ -4,10 +4,9 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "cli/option_checks.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -15,13 +14,7 @@ namespace aphotic::cli {
 
 void add_model_tolerance(CLI::App& app, double& tolerance) {
     constexpr double kAny = 1e9;
-    app.add_option("--model-tolerance",
-                   tolerance,
-                   "In water that scatters: refuse when what the model leaves out is estimated at "
-                   "more than this share of the signal")
-        ->check(in_range(0.0, kAny))
-        ->option_text("E")
-        ->capture_default_str();
+    add_option(app, "--model-tolerance", tolerance)->check(in_range(0.0, kAny));
 }
 
 std::optional<ManifestModel> model_error(const Rig& rig,

@@ -5,6 +5,7 @@
 #include "base/json_text.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/survey_command.h"
 #include "cli/terminal.h"
@@ -69,61 +70,30 @@ ExitStatus observe_survey(const ObserveCommandOptions& options) {
 }
 
 void add_average_options(CLI::App& app, ObservationOptions& options) {
-    app.add_option("--method", options.average, "Average by mean, median or trimmed mean")
-        ->transform(word_of(kAverages))
-        ->type_name("mean|median|trimmed")
-        ->default_str("mean");
-    app.add_option(
-           "--trim", options.trim, "Trimmed mean: leave out this share of samples at either end")
-        ->check(in_range(0.0, 0.49))
-        ->capture_default_str();
-    app.add_flag("--normalise",
-                 options.normalise,
-                 "First divide each image by its mean, to average patterns alone");
-    app.add_flag("--demosaic",
-                 options.demosaic,
-                 "Fill in the other channels of each pixel of a mosaic's map");
+    add_option(app, "--method", options.average)->transform(word_of(kAverages));
+    add_option(app, "--trim", options.trim)->check(in_range(0.0, 0.49));
+    add_flag(app, "--normalise", options.normalise);
+    add_flag(app, "--demosaic", options.demosaic);
 }
 
 Action configure_observe(CLI::App& app) {
     const auto options = std::make_shared<ObserveCommandOptions>();
     add_images(app, options->input);
     add_navigation_options(app, options->input)->required();
-    app.add_option("-o,--output", options->output, "Write the map to this file")
-        ->type_name("MAP.exr")
-        ->required();
-    app.add_option(
-           kAltitudeNames, options->observation.altitude_m, "Altitude to observe, in metres")
-        ->check(positive())
-        ->option_text("M")
-        ->required();
-    app.add_option("--within",
-                   options->observation.within_m,
-                   "Accept images up to this far from it, in metres")
-        ->check(not_negative())
-        ->capture_default_str();
+    add_option(app, "--output", options->output)->required();
+    add_option(app, "--altitude", options->observation.altitude_m)->check(positive())->required();
+    add_option(app, "--within", options->observation.within_m)->check(not_negative());
     add_average_options(app, options->observation);
     add_survey_rig(app, options->input);
     add_camera_options(app, options->input, false);
-    app.add_option("--memory",
-                   options->observation.memory_mb,
-                   "Hold up to N MB of images at a time, for a median or trimmed mean")
-        ->check(positive())
-        ->capture_default_str();
-    add_jobs(app, options->observation.jobs, "Read N images at a time");
+    add_option(app, "--memory", options->observation.memory_mb)->check(positive());
+    add_jobs(app, options->observation.jobs);
     add_outcome_options(app, options->input);
-    app.footer(
-        "MAP.exr holds the average in R, G, B, the number of images in count.R ..., the standard "
-        "error in stderr.R ...; what was never observed is NaN. Images that cannot be used are "
-        "reported and skipped; the exit status is 1 when these are more than --allow-skipped.");
     return [options] { return observe_survey(*options); };
 }
 
 }  // namespace
 
-const Command kObserve{"observe",
-                       kSurveyCommands,
-                       "Average images of one altitude into their shared light",
-                       configure_observe};
+const Command kObserve{"observe", configure_observe};
 
 }  // namespace aphotic::cli

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/option_checks.h"
 
-#include "base/error.h"
-
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <functional>
 #include <optional>
-#include <string>
 #include <system_error>
 
 namespace aphotic::cli {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "cli/option_words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -41,7 +42,7 @@ template <class Value>
 
 // What this throws an InputError at.
 template <typename Read>
-[[nodiscard]] CLI::Validator refused_by(const Read& read, const std::string& type = "") {
+[[nodiscard]] CLI::Validator refused_by(const Read& read) {
     return {[read](const std::string& text) {
                 try {
                     static_cast<void>(read(text));
@@ -50,21 +51,14 @@ template <typename Read>
                     return std::string(error.what());
                 }
             },
-            type};
+            ""};
 }
 
 // An option whose text `read` makes a value of; what that throws an InputError at is refused.
 template <typename Value, typename Read>
-CLI::Option* add_read(CLI::App& app,
-                      const std::string& name,
-                      Value& value,
-                      const Read& read,
-                      const std::string& words,
-                      const std::string& type = "") {
-    return app
-        .add_option_function<std::string>(
-            name, [&value, read](const std::string& text) { value = read(text); }, words)
-        ->check(refused_by(read, type));
+CLI::Option* add_read(CLI::App& app, const std::string& name, Value& value, const Read& read) {
+    const auto take = [&value, read](const std::string& text) { value = read(text); };
+    return add_option_function<std::string>(app, name, take)->check(refused_by(read));
 }
 
 // Of a reader that gives nothing where the text is none of what is allowed.

@@ -8,6 +8,7 @@
 #include "base/work_folder.h"
 #include "cli/model_error.h"
 #include "cli/option_checks.h"
+#include "cli/option_words.h"
 #include "image/preview.h"
 #include "plugin/povray.h"
 #include "rig/rig.h"
@@ -21,11 +22,6 @@
 #include <vector>
 
 namespace aphotic::cli {
-
-// One name for altitudes in every command, whether it takes one, a range or steps.
-inline constexpr const char* kAltitudeNames = "--altitude,--altitude-m,--altitudes-m";
-inline constexpr const char* kPitchNames = "--pitch,--pitch-deg";
-inline constexpr const char* kRollNames = "--roll,--roll-deg";
 
 // What a rig may have, and what stands for it.
 inline constexpr double kLeastAltitude_m = 0.001;
@@ -51,17 +47,17 @@ class OptionGroup {
 };
 
 void add_rig(CLI::App& app, std::string& file);
-void add_json(CLI::App& app, bool& json, const std::string& words = "Print the result as JSON");
+void add_json(CLI::App& app, bool& json);
 
 template <typename Path>
 CLI::Option* add_output_folder(CLI::App& app, Path& folder) {
-    return app.add_option("-o,--output", folder, "Write to this folder")->type_name("DIR");
+    return add_option(app, "--output", folder);
 }
 
 template <typename Count>
-void add_jobs(CLI::App& app, Count& jobs, const std::string& words) {
+void add_jobs(CLI::App& app, Count& jobs) {
     constexpr int kMostJobs = 1024;
-    app.add_option("--jobs,--threads", jobs, words + "; by default one per core")
+    add_option(app, "--jobs", jobs)
         ->check(in_range(1, kMostJobs))
         ->each([](const std::string& text) {
             if (const auto most = read_number<int>(text)) take_no_more_cores_than(*most);
@@ -69,10 +65,7 @@ void add_jobs(CLI::App& app, Count& jobs, const std::string& words) {
 }
 
 // I/N, of work that other machines share.
-CLI::Option* add_share(CLI::App& app,
-                       const std::string& name,
-                       WorkShare& share,
-                       const std::string& words);
+CLI::Option* add_share(CLI::App& app, const std::string& name, WorkShare& share);
 
 void add_preview_options(CLI::App& app, PreviewOptions& options);
 
@@ -81,13 +74,8 @@ inline constexpr std::array kVeilMakers{"quadrature", "povray"};
 
 struct PlanningOptions {
     std::string rig_file;
-    double tolerance = 1e-3;
-    int fitted = 0;  // 0: as the tolerance asks
-    int bands = 0;   // 0: fitted wavelengths
-    std::vector<double> wavelengths_nm;
+    PlanRequest plan{};  // but for what request_of() in planning.cpp makes of the others
     std::vector<double> paths_m;
-    int per_frame = 3;
-    double pixel_shift = kPixelShift;
     std::vector<int> emitter_lamps;
     bool renders = false;  // otherwise a scene that the rig names is left alone
     std::string scene;
@@ -98,8 +86,6 @@ struct PlanningOptions {
     std::vector<std::string> declared{};  // numbers that the probe is told, NAME=NUMBER
     std::string veil{kVeilMakers.front()};
     int veil_samples = kVeilSamples;
-    int antialias = 0;
-    FrameFormat format = FrameFormat::Exr;
     std::vector<std::string> povray_ini;
     std::string povray;
     bool ignore_needs = false;

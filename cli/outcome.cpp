@@ -6,7 +6,6 @@
 #include "base/words.h"
 #include "cli/model_error.h"
 #include "cli/options.h"
-#include "cli/terminal.h"
 #include "image/exr.h"
 #include "spectral/integrator.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/output_folder.h"
+#include "cli/option_words.h"
 
-#include "base/atomic_file.h"
 #include "base/disk_space.h"
 #include "base/error.h"
 #include "scene_gen/camera_rays.h"
@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <system_error>
 
 namespace aphotic::cli {
 
@@ -57,7 +56,7 @@ std::size_t frames_to_render(const SceneSet& scenes, const fs::path& folder) {
 }  // namespace
 
 void add_needs_option(CLI::App& app, bool& ignore_needs) {
-    app.add_flag("--ignore-needs", ignore_needs, "Start even if disk looks insufficient");
+    add_flag(app, "--ignore-needs", ignore_needs);
 }
 
 void require_room(const DiskNeeds& needs, const fs::path& folder, bool ignore_needs) {

@@ -3,6 +3,7 @@
 // aphotic plan RIG: what a render would take and what it promises, before anything is rendered.
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
 #include "cli/planning.h"
@@ -339,11 +340,8 @@ void plot_plan(const Rig& rig, const RenderPlan& plan, const std::filesystem::pa
 
 Action configure_plan(CLI::App& app) {
     const auto options = std::make_shared<PlanCommandOptions>();
-    app.add_option("--plot",
-                   options->plot,
-                   "Plot the light, the wavelengths and the error over path length")
-        ->type_name("FILE.svg");
-    add_json(app, options->json, "Print the plan as JSON");
+    add_option(app, "--plot", options->plot);
+    add_json(app, options->json);
     add_planning_options(app, options->planning);
     return [options] {
         PlannedRender render = plan_rig(options->planning);
@@ -356,9 +354,6 @@ Action configure_plan(CLI::App& app) {
 
 }  // namespace
 
-const Command kPlan{"plan",
-                    kRenderingCommands,
-                    "Show the wavelengths, frames and error bound of a render",
-                    configure_plan};
+const Command kPlan{"plan", configure_plan};
 
 }  // namespace aphotic::cli

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/planning.h"
 
+#include "base/csv.h"
 #include "base/error.h"
-#include "base/progress.h"
 #include "base/words.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
@@ -23,19 +23,10 @@ namespace {
 
 // Settings of POV-Ray's own that change its speed. Others would change what a frame holds: Quality
 // below 9 leaves out the water, gamma and format are the integrator's.
-constexpr std::array kSpeedKeys{"Bounding",
-                                "Bounding_Method",
-                                "Bounding_Threshold",
-                                "BSP_BaseAccessCost",
-                                "BSP_ChildAccessCost",
-                                "BSP_IsectCost",
-                                "BSP_MaxDepth",
-                                "BSP_MissChance",
-                                "Light_Buffer",
-                                "Remove_Bounds",
-                                "Render_Block_Size",
-                                "Split_Unions",
-                                "Vista_Buffer"};
+constexpr std::string_view kSpeedKeys =
+    "Bounding, Bounding_Method, Bounding_Threshold, BSP_BaseAccessCost, BSP_ChildAccessCost, "
+    "BSP_IsectCost, BSP_MaxDepth, BSP_MissChance, Light_Buffer, Remove_Bounds, Render_Block_Size, "
+    "Split_Unions, Vista_Buffer";
 
 std::string ini_line(const std::string& setting) {
     const std::size_t sign = setting.find('=');
@@ -44,12 +35,12 @@ std::string ini_line(const std::string& setting) {
                           std::ranges::all_of(setting.substr(sign + 1), [](unsigned char c) {
                               return std::isalnum(c) != 0 || c == '.' || c == '-';
                           });
-    if (!is_plain || std::ranges::find(kSpeedKeys, key) == kSpeedKeys.end()) {
+    if (!is_plain || std::ranges::count(comma_fields(kSpeedKeys), key) == 0) {
         throw InputError(
             "--povray-ini: found {}; allowed: KEY=VALUE with one of {}. Others would change the "
             "image; for antialiasing there is --antialias",
             setting,
-            fmt::join(kSpeedKeys, ", "));
+            kSpeedKeys);
     }
     return setting + "\n";
 }
@@ -59,23 +50,12 @@ std::string clock_line(double clock) {
 }
 
 PlanRequest request_of(const PlanningOptions& options) {
-    PlanRequest request{.tolerance = options.tolerance,
-                        .fitted = std::nullopt,
-                        .bands = std::nullopt,
-                        .wavelengths_nm = options.wavelengths_nm,
-                        .paths = std::nullopt,
-                        .scene = {.wavelengths_per_frame = options.per_frame,
-                                  .pixel_shift = options.pixel_shift,
-                                  .emitter_lamps = std::nullopt}};
-    request.scene.antialias = options.antialias;
-    request.scene.format = options.format;
+    PlanRequest request = options.plan;
     if (options.veil == "povray") request.scene.veil_samples = options.veil_samples;
     for (const std::string& setting : options.povray_ini) {
         request.scene.ini_lines.push_back(ini_line(setting));
     }
     if (options.clock != 0.0) request.scene.ini_lines.push_back(clock_line(options.clock));
-    if (options.fitted > 0) request.fitted = options.fitted;
-    if (options.bands > 0) request.bands = options.bands;
     if (!options.paths_m.empty()) {
         request.paths = {.shortest_m = options.paths_m[0], .longest_m = options.paths_m[1]};
         if (options.paths_m[0] > options.paths_m[1]) {
@@ -154,7 +134,7 @@ PovRay povray_for(const PlannedRender& planned,
                   const std::string& folder) {
     try {
         PovRay povray = find_povray(options.povray);
-        require_format(povray, options.format);
+        require_format(povray, options.plan.scene.format);
         return povray;
     } catch (const RunError& error) {
         if (planned.plan.scene.user_scene) throw;

@@ -3,6 +3,7 @@
 // aphotic render RIG -o DIR: the main job, from a rig file to a camera image through POV-Ray.
 #include "plugin/render.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/words.h"
@@ -15,11 +16,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 namespace aphotic::cli {
@@ -125,17 +126,11 @@ ExitStatus render_frames_of_share(const RenderCommandOptions& options) {
 
 // A share takes the scenes as they are: what would plan others has no say.
 void refuse_what_plans(const CLI::App& app) {
+    constexpr std::string_view kOfShares =
+        "RIG,--frames,--jobs,--json,--povray,--stall-timeout,--library-path,--ignore-needs";
     for (const CLI::Option* option : app.get_options()) {
-        static const std::set<std::string> kOfShares{"RIG",
-                                                     "--frames",
-                                                     "--jobs",
-                                                     "--json",
-                                                     "--povray",
-                                                     "--stall-timeout",
-                                                     "--library-path",
-                                                     "--ignore-needs"};
         const std::string name = option->get_name(false, false);
-        if (option->count() == 0 || kOfShares.contains(name)) continue;
+        if (option->count() == 0 || std::ranges::count(comma_fields(kOfShares), name) > 0) continue;
         throw InputError("{}: found with --frames; allowed: with a rig", name);
     }
 }
@@ -165,17 +160,14 @@ ExitStatus render_rig(const RenderCommandOptions& options) {
 Action configure_render(CLI::App& app) {
     const auto options = std::make_shared<RenderCommandOptions>();
     add_output_folder(app, options->folder);
-    add_jobs(app, options->jobs, "Render N frames at a time");
+    add_jobs(app, options->jobs);
     add_needs_option(app, options->planning.ignore_needs);
     add_json(app, options->json);
     add_planning_options(app, options->planning);
     add_preview_options(app, options->preview);
-    add_share(app,
-              "--frames",
-              options->share,
-              "Given a folder of `aphotic generate` for RIG: render of each N frames the Ith "
-              "alone, to DIR/share-I-of-N; `aphotic integrate DIR` then joins all shares")
-        ->each([options](const std::string&) { options->is_share = true; });
+    add_share(app, "--frames", options->share)->each([options](const std::string&) {
+        options->is_share = true;
+    });
     return [options, &app] {
         if (options->is_share) {
             refuse_what_plans(app);
@@ -189,7 +181,6 @@ Action configure_render(CLI::App& app) {
 
 }  // namespace
 
-const Command kRender{
-    "render", kRenderingCommands, "Render a rig: plan, run POV-Ray, integrate", configure_render};
+const Command kRender{"render", configure_render};
 
 }  // namespace aphotic::cli

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/rig_file.h"
+#include "cli/option_words.h"
 
 #include "base/error.h"
 #include "cli/terminal.h"
@@ -32,14 +33,11 @@ void add_set_option(CLI::App& app) {
         if (name.starts_with("RIG") || option->get_type_name() == "RIG") rig = option;
     }
     if (rig == nullptr) return;
-    app.add_option_function<std::vector<std::string>>(
-           "--set",
-           [](const std::vector<std::string>& said) { set_keys = said; },
-           "Set this key of the rig, such as sled.altitude_m=2.5, before it is read; repeatable")
+    const auto take = [](const std::vector<std::string>& said) { set_keys = said; };
+    add_option_function<std::vector<std::string>>(app, "--set", take)
         ->allow_extra_args(false)
         ->check(CLI::Validator(setting_fault, ""))
-        ->needs(rig)
-        ->option_text("KEY=VALUE");
+        ->needs(rig);
 }
 
 std::optional<ManifestSettings> rig_settings() {
@@ -66,7 +64,7 @@ Rig read_rig_as_set(const std::string& file) {
 }
 
 void add_strict_option(CLI::App& app, bool& strict) {
-    app.add_flag("--strict", strict, "Treat warnings of what looks wrong as errors");
+    add_flag(app, "--strict", strict);
 }
 
 void check_plausible(const Rig& rig, const std::string& file, bool strict) {

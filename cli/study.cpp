@@ -4,11 +4,11 @@
 // its error against the reference.
 #include "validation/study.h"
 
-#include "base/atomic_file.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -184,39 +184,27 @@ Action configure_study(CLI::App& app) {
     add_rig(app, options->rig_file);
     add_strict_option(app, options->strict);
     add_output_folder(app, options->folder)->required();
-    app.add_option("--tolerance",
-                   options->tolerances,
-                   "Try as few fitted wavelengths as keep these relative errors each, such as "
-                   "1e-3,1e-2")
+    add_option(app, "--tolerance", options->tolerances)
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(in_range(0.0, 1.0))
-        ->option_text("LIST");
-    app.add_option("--fitted", options->fitted, "Try so many fitted wavelengths each")
+        ->check(in_range(0.0, 1.0));
+    add_option(app, "--fitted", options->fitted)
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(in_range(1, kMostFitted))
-        ->option_text("LIST");
-    app.add_option("--bands", options->bands, "Try so many equal bands each, such as 12,36")
+        ->check(in_range(1, kMostFitted));
+    add_option(app, "--bands", options->bands)
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(in_range(1, kMostBands))
-        ->option_text("LIST");
-    app.add_flag("--quick", options->quick, "Try few settings, small enough for two minutes");
+        ->check(in_range(1, kMostBands));
+    add_flag(app, "--quick", options->quick);
     add_needs_option(app, options->ignore_needs);
-    add_json(app, options->json, "Print study.json");
+    add_json(app, options->json);
     add_povray_options(app, options->povray, options->stall_timeout_s);
-    app.footer(
-        "Interrupted, it continues with the settings not yet measured when run again. Leave the "
-        "machine alone meanwhile: the times are wall times.");
     return [options] { return study_rig(*options); };
 }
 
 }  // namespace
 
-const Command kStudy{"study",
-                     kCheckCommands,
-                     "Measure how accuracy trades for time on this machine",
-                     configure_study};
+const Command kStudy{"study", configure_study};
 
 }  // namespace aphotic::cli

@@ -10,6 +10,7 @@
 #include "base/sha256.h"
 #include "base/words.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -123,17 +124,17 @@ Json light_settings(const SurveyCommandOptions& options, const Rig& rig) {
     if (!is_by_povray(options, rig)) return {{"by", "lightmap"}};
     const PlanningOptions& planning = options.planning;
     Json light{{"by", "povray"},
-               {"tolerance", planning.tolerance},
-               {"fitted", planning.fitted},
-               {"bands", planning.bands},
-               {"wavelengths_nm", planning.wavelengths_nm},
+               {"tolerance", planning.plan.tolerance},
+               {"fitted", planning.plan.fitted.value_or(0)},
+               {"bands", planning.plan.bands.value_or(0)},
+               {"wavelengths_nm", planning.plan.wavelengths_nm},
                {"paths_m", planning.paths_m},
-               {"antialias", planning.antialias},
+               {"antialias", planning.plan.scene.antialias},
                {"emitter_lamps", planning.emitter_lamps},
                {"veil", planning.veil},
                {"clock", planning.clock},
                {"declared", options.declared}};
-    if (planning.format == FrameFormat::Png16) light["frame_format"] = "png16";
+    if (planning.plan.scene.format == FrameFormat::Png16) light["frame_format"] = "png16";
     if (const fs::path scene = scene_of(options, rig); !scene.empty())
         light["scene_sha256"] = digest_of_scene(scene);
     return light;
@@ -211,7 +212,7 @@ std::optional<PovRay> povray_for(const SurveyCommandOptions& options,
     if (!is_by_povray(options, survey.rig) || std::ranges::all_of(pictures_of(survey), is_there))
         return std::nullopt;
     PovRay povray = find_povray(options.planning.povray);
-    require_format(povray, options.planning.format);
+    require_format(povray, options.planning.plan.scene.format);
     return povray;
 }
 
@@ -266,26 +267,20 @@ ExitStatus make_survey(const SurveyCommandOptions& options) {
 }
 
 CLI::Option* add_range(CLI::App& app,
-                       const std::string& names,
+                       const std::string& name,
                        std::array<double, 2>& range,
-                       const std::string& words,
                        const CLI::Validator& allowed) {
-    return app
-        .add_option_function<std::vector<double>>(
-            names,
-            [&range, names](const std::vector<double>& ends) {
-                if (ends[0] > ends[1]) {
-                    throw CLI::ValidationError(
-                        names.substr(0, names.find(',')),
-                        fmt::format("found {},{}; allowed: the lower first", ends[0], ends[1]));
-                }
-                range = {ends[0], ends[1]};
-            },
-            words)
+    const auto take = [&range, name](const std::vector<double>& ends) {
+        if (ends[0] > ends[1]) {
+            throw CLI::ValidationError(
+                name, fmt::format("found {},{}; allowed: the lower first", ends[0], ends[1]));
+        }
+        range = {ends[0], ends[1]};
+    };
+    return add_option_function<std::vector<double>>(app, name, take)
         ->delimiter(',')
         ->expected(2)
         ->check(allowed)
-        ->option_text("LEAST,MOST")
         ->default_str(fmt::format("{:g},{:g}", range[0], range[1]));
 }
 
@@ -293,76 +288,31 @@ void add_flight_options(CLI::App& app, SurveyCommandOptions& options) {
     constexpr int kMostImages = 999999;
     constexpr double kMostBias = 1000.0;
     const OptionGroup group(app, kFlightOptions);
-    CLI::Option* images = app.add_option("--images", options.images, "Take N images")
-                              ->check(in_range(1, kMostImages))
-                              ->capture_default_str();
-    app.add_option("--seed", options.seed, "Seed of all that is random")->capture_default_str();
+    CLI::Option* images =
+        add_option(app, "--images", options.images)->check(in_range(1, kMostImages));
+    add_option(app, "--seed", options.seed);
     const auto tilts = in_range(-kMostTilt_deg, kMostTilt_deg);
-    std::vector<CLI::Option*> random{images,
-                                     add_range(app,
-                                               kAltitudeNames,
-                                               options.ranges.altitude_m,
-                                               "Fly at these altitudes in metres",
-                                               in_range(kLeastAltitude_m, kMostAltitude_m)),
-                                     add_range(app,
-                                               kPitchNames,
-                                               options.ranges.pitch_deg,
-                                               "With pitch in degrees between these, bow up",
-                                               tilts),
-                                     add_range(app,
-                                               kRollNames,
-                                               options.ranges.roll_deg,
-                                               "With roll in degrees between these, starboard down",
-                                               tilts)};
-    CLI::Option* flown =
-        app.add_option("--flight",
-                       options.flight,
-                       "Fly the poses of this table instead, as --nav of other commands reads it, "
-                       "an image for each of its own, under its name")
-            ->type_name("FILE");
+    const auto altitudes = in_range(kLeastAltitude_m, kMostAltitude_m);
+    const std::vector<CLI::Option*> random{
+        images,
+        add_range(app, "--altitude", options.ranges.altitude_m, altitudes),
+        add_range(app, "--pitch", options.ranges.pitch_deg, tilts),
+        add_range(app, "--roll", options.ranges.roll_deg, tilts)};
+    CLI::Option* flown = add_option(app, "--flight", options.flight);
     for (CLI::Option* option : random) flown->excludes(option);
-    app.add_option("--altitude-error",
-                   options.errors.altitude_m,
-                   "Standard deviation of the measured altitude, in metres")
-        ->check(not_negative())
-        ->capture_default_str();
-    app.add_option("--attitude-error",
-                   options.errors.attitude_deg,
-                   "Standard deviation of measured pitch and roll, in degrees")
-        ->check(not_negative())
-        ->capture_default_str();
-    const auto add_bias = [&](const char* name, double& bias, const char* words) {
-        app.add_option(name, bias, words)
-            ->check(in_range(-kMostBias, kMostBias).description(""))
-            ->capture_default_str();
-    };
-    add_bias("--altitude-bias",
-             options.errors.altitude_bias_m,
-             "Add this to each measured altitude, in metres");
-    add_bias("--pitch-bias",
-             options.errors.pitch_bias_deg,
-             "Add this to each measured pitch, in degrees");
-    add_bias(
-        "--roll-bias", options.errors.roll_bias_deg, "Add this to each measured roll, in degrees");
+    add_option(app, "--altitude-error", options.errors.altitude_m)->check(not_negative());
+    add_option(app, "--attitude-error", options.errors.attitude_deg)->check(not_negative());
+    const auto biases = in_range(-kMostBias, kMostBias).description("");
+    add_option(app, "--altitude-bias", options.errors.altitude_bias_m)->check(biases);
+    add_option(app, "--pitch-bias", options.errors.pitch_bias_deg)->check(biases);
+    add_option(app, "--roll-bias", options.errors.roll_bias_deg)->check(biases);
 }
 
 void add_floor_options(CLI::App& app, SurveyCommandOptions& options) {
     constexpr double kMostContrast = 10.0;
-    app.add_option("--texture",
-                   options.texture,
-                   "RMS contrast of the flat floor's random pattern; 0: none. A scene has its own")
-        ->check(in_range(0.0, kMostContrast))
-        ->option_text("C")
-        ->capture_default_str();
-    app.add_flag("--by-povray",
-                 options.by_povray,
-                 "Render a bare floor, too, by POV-Ray, which has no pattern; rigs with objects or "
-                 "a scene always are");
-    app.add_option("--declare",
-                   options.declared,
-                   "Declare this in the scene, such as Depth=2 or Floor=\"card\"; repeatable")
-        ->option_text("NAME=VALUE")
-        ->check(refused_by(require_declaration));
+    add_option(app, "--texture", options.texture)->check(in_range(0.0, kMostContrast));
+    add_flag(app, "--by-povray", options.by_povray);
+    add_option(app, "--declare", options.declared)->check(refused_by(require_declaration));
 }
 
 void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {
@@ -373,86 +323,38 @@ void add_readout_options(CLI::App& app, SurveyCommandOptions& options) {
     constexpr double kMostFNumber = 1000.0;
     const OptionGroup group(app, kCameraOptions);
     Readout& readout = options.readout;
-    app.add_option("--bayer",
-                   readout.bayer,
-                   "Pattern of the mosaic, or mono; by default the rig's `bayer`, or RGGB")
-        ->check(CLI::IsMember(std::vector<std::string>{"RGGB", "BGGR", "GRBG", "GBRG", "mono"}))
-        ->option_text("PATTERN");
-    const auto add = [&](const char* name,
-                         std::optional<double>& number,
-                         const char* words,
-                         const CLI::Validator& allowed) {
-        app.add_option(name, number, words)->check(allowed);
-    };
-    add("--black-level",
-        readout.black_level_dn,
-        "Number for no light; by default the rig's `black_level_dn`, or 64",
-        not_negative());
-    add("--white-level",
-        readout.white_level_dn,
-        "Number at saturation; by default the rig's `white_level_dn`, or 4095",
-        not_negative());
-    add("--saturation-e",
-        readout.saturation_e,
-        "Electrons that fill a pixel; by default the rig's `saturation_e`, or 15000",
-        positive());
-    add("--read-noise-e",
-        readout.read_noise_e,
-        "Noise without light in electrons; by default the rig's `read_noise_e`, or 8",
-        not_negative());
-    add("--gain-dn-per-e",
-        readout.gain_dn_per_e,
-        "Numbers per electron; by default the rig's `gain_dn_per_e`, or white at saturation",
-        positive());
-    add("--exposure-ms",
-        readout.exposure_ms,
-        "Open the shutter for this many milliseconds, by default the rig's `exposure_ms`. Where "
-        "the "
-        "rig tells that, images are brighter or darker as by continuous lamps",
-        in_range(kLeastExposure_ms, kMostExposure_ms));
-    add("--f-number",
-        readout.f_number,
-        "Stop the lens down to this, by default the rig's `f_number`. Where the rig tells that, "
-        "images are brighter or darker by that",
-        in_range(kLeastFNumber, kMostFNumber));
-    app.add_option("--floor-share",
-                   options.floor_share,
-                   "Expose so that the rig's bare floor, at its brightest below the lowest "
-                   "altitude, fills this share of a pixel")
-        ->check(positive())
-        ->option_text("SHARE")
-        ->capture_default_str();
-    app.add_option("--electrons-per-signal",
-                   options.electrons_per_signal,
-                   "Expose so that a signal of 1 is this many electrons")
+    add_option(app, "--bayer", readout.bayer)
+        ->check(CLI::IsMember(std::vector<std::string>{"RGGB", "BGGR", "GRBG", "GBRG", "mono"}));
+    add_option(app, "--black-level", readout.black_level_dn)->check(not_negative());
+    add_option(app, "--white-level", readout.white_level_dn)->check(not_negative());
+    add_option(app, "--saturation-e", readout.saturation_e)->check(positive());
+    add_option(app, "--read-noise-e", readout.read_noise_e)->check(not_negative());
+    add_option(app, "--gain-dn-per-e", readout.gain_dn_per_e)->check(positive());
+    add_option(app, "--exposure-ms", readout.exposure_ms)
+        ->check(in_range(kLeastExposure_ms, kMostExposure_ms));
+    add_option(app, "--f-number", readout.f_number)->check(in_range(kLeastFNumber, kMostFNumber));
+    add_option(app, "--floor-share", options.floor_share)->check(positive());
+    add_option(app, "--electrons-per-signal", options.electrons_per_signal)
         ->check(positive())
         ->excludes("--floor-share");
-    app.add_flag_callback(
-        "--no-noise", [&options] { options.has_noise = false; }, "Leave out shot and read noise");
+    add_flag(app, "--no-noise", [&options] { options.has_noise = false; });
 }
 
 Action configure_survey(CLI::App& app) {
     const auto options = std::make_shared<SurveyCommandOptions>();
     add_output_folder(app, options->folder)->required();
     add_floor_options(app, *options);
-    add_jobs(app, options->jobs, "Make N images at a time");
+    add_jobs(app, options->jobs);
     add_needs_option(app, options->planning.ignore_needs);
     add_json(app, options->json);
     add_flight_options(app, *options);
     add_readout_options(app, *options);
     add_planning_options(app, options->planning);
-    app.footer(
-        "Leaves DIR/raw, navigation.txt, navigation-measured.txt, survey.json and DIR/truth. A "
-        "flat floor is lit by lightmaps; options of wavelengths, scene and POV-Ray are for what "
-        "POV-Ray renders. Interrupted, it continues when run again, as with more images.");
     return [options] { return make_survey(*options); };
 }
 
 }  // namespace
 
-const Command kSurvey{"survey",
-                      kSurveyCommands,
-                      "Simulate a survey: raw images, navigation and the truth",
-                      configure_survey};
+const Command kSurvey{"survey", configure_survey};
 
 }  // namespace aphotic::cli

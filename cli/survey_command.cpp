@@ -7,10 +7,10 @@
 #include "base/progress.h"
 #include "base/words.h"
 #include "cli/option_checks.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/rig_file.h"
 #include "cli/terminal.h"
-#include "rig/file/rig_reader.h"
 #include "survey/navigation/image_time.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <optional>
 
 namespace aphotic::cli {
 namespace {
@@ -78,17 +77,9 @@ ColumnNames column_names(const std::string& text) {
 }
 
 void add_columns(CLI::App& app, NavigationOptions& options) {
-    add_read(app,
-             "--columns",
-             options.columns,
-             column_names,
-             "Take image, time, altitude_m, pitch_deg or roll_deg from other columns, such as "
-             "'altitude_m=alt [m],roll_deg=phi'")
-        ->option_text("NAME=COLUMN,...");
-    app.add_option("--angles-in", options.angles_in, "Unit of pitch and roll: deg or rad")
-        ->transform(word_of<AngleUnit>({{"deg", AngleUnit::Degrees}, {"rad", AngleUnit::Radians}}))
-        ->type_name("deg|rad")
-        ->default_str("deg");
+    add_read(app, "--columns", options.columns, column_names);
+    add_option(app, "--angles-in", options.angles_in)
+        ->transform(word_of<AngleUnit>({{"deg", AngleUnit::Degrees}, {"rad", AngleUnit::Radians}}));
 }
 
 std::string time_mask(const std::string& mask) {
@@ -97,56 +88,31 @@ std::string time_mask(const std::string& mask) {
 }
 
 void add_times(CLI::App& app, NavigationOptions& options) {
-    add_read(app,
-             "--image-time",
-             options.time_mask,
-             time_mask,
-             "Where images' names have their time, such as xxxYYYYMMDDxhhmmssxfff; by default "
-             "EXIF, or HabCam's names",
-             "MASK");
-    app.add_option("--clock-offset-s",
-                   options.clock_offset_s,
-                   "Add this many seconds to the images' times, to have the navigation's")
-        ->check(in_range(-kMostClock_s, kMostClock_s).description(""))
-        ->capture_default_str();
-    app.add_option("--longest-gap-s",
-                   options.longest_gap_s,
-                   "Interpolate over time between lines up to this many seconds apart")
-        ->check(positive())
-        ->capture_default_str();
+    add_read(app, "--image-time", options.time_mask, time_mask);
+    add_option(app, "--clock-offset-s", options.clock_offset_s)
+        ->check(in_range(-kMostClock_s, kMostClock_s).description(""));
+    add_option(app, "--longest-gap-s", options.longest_gap_s)->check(positive());
 }
 
 void add_altitude_meaning(CLI::App& app, NavigationOptions& options) {
     std::map<std::string, AltitudeIs> words;
     for (std::size_t i = 0; i < kAltitudeWords.size(); ++i)
         words[std::string(kAltitudeWords.at(i))] = static_cast<AltitudeIs>(i);
-    app.add_option("--altitude-is",
-                   options.altitude_is,
-                   "What navigation's altitudes are: along the camera's axis, the vertical height, "
-                   "or to the nearest floor; by default the rig's altitude_is, or axis")
-        ->transform(word_of(words))
-        ->type_name("axis|plumb|nearest");
-    app.add_option("--altitude-offset-m",
-                   options.altitude_offset_m,
-                   "Add this to altitudes, in metres; by default the rig's altitude_offset_m, or 0")
+    add_option(app, "--altitude-is", options.altitude_is)->transform(word_of(words));
+    add_option(app, "--altitude-offset-m", options.altitude_offset_m)
         ->check(in_range(-kMostOffset_m, kMostOffset_m));
 }
 
 void add_crop_options(CLI::App& app, CameraNumbers& camera) {
-    auto* half = app.add_option_function<std::string>(
-                        "--half",
-                        [&camera](const std::string& name) {
-                            camera.half = name == "left" ? Half::Left : Half::Right;
-                        },
-                        "Take the left or the right half of each file, which holds two cameras' "
-                        "images side by side")
+    const auto take = [&camera](const std::string& name) {
+        camera.half = name == "left" ? Half::Left : Half::Right;
+    };
+    auto* half = add_option_function<std::string>(app, "--half", take)
                      ->check(CLI::IsMember({"left", "right"}));
     add_read(app,
              "--crop",
              camera.crop,
-             read_by(crop_named, "X,Y,WIDTH,HEIGHT, whole numbers of pixels"),
-             "Take this part of each file, from column X and row Y of the top left, which are 0,0")
-        ->option_text("X,Y,WIDTH,HEIGHT")
+             read_by(crop_named, "X,Y,WIDTH,HEIGHT, whole numbers of pixels"))
         ->excludes(half);
 }
 
@@ -166,120 +132,63 @@ std::optional<AllowedSkips> allowed_skips_in(std::string_view text) {
 }  // namespace
 
 void add_images(CLI::App& app, SurveyInput& input) {
-    app.add_option("IMAGES",
-                   input.images,
-                   "Raw images, or folders of them: TIFF, PNG, EXR, JPEG, DNG, CR2, NEF, ARW")
-        ->required();
+    add_option(app, "IMAGES", input.images)->required();
 }
 
 void add_survey_rig(CLI::App& app, SurveyInput& input) {
-    app.add_option(
-           "--rig",
-           input.rig,
-           "Take from this rig what is not given of the camera: its pattern, levels, exposure, and "
-           "its place on the vehicle")
-        ->type_name("RIG");
+    add_option(app, "--rig", input.rig);
 }
 
 CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input) {
     NavigationOptions& options = input.navigation;
     const OptionGroup group(app, "Navigation");
-    CLI::Option* nav =
-        app.add_option("--nav",
-                       options.source,
-                       "Altitude, pitch and roll of each image: a table of Aphotic's, oplab's, "
-                       "BIIGLE's, SQUIDLE+'s or HabCam's form, or of poses over time; or the word "
-                       "tags, for HabCam's tags in the images")
-            ->type_name("FILE");
+    CLI::Option* nav = add_option(app, "--nav", options.source);
     add_columns(app, options);
     add_times(app, options);
     add_altitude_meaning(app, options);
-    for (const char* name : {"--columns",
-                             "--angles-in",
-                             "--image-time",
-                             "--clock-offset-s",
-                             "--longest-gap-s",
-                             "--altitude-is",
-                             "--altitude-offset-m"})
-        app.get_option(name)->needs(nav);
+    constexpr std::string_view kOfNav =
+        "--columns,--angles-in,--image-time,--clock-offset-s,--longest-gap-s,--altitude-is,"
+        "--altitude-offset-m";
+    for (const std::string_view name : comma_fields(kOfNav))
+        app.get_option(std::string(name))->needs(nav);
     return nav;
 }
 
 void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white) {
     CameraNumbers& camera = input.camera;
-    add_read(app,
-             "--bayer",
-             camera.mosaic,
-             read_by(mosaic_named, "RGGB, BGGR, GRBG, GBRG, mono"),
-             "The images are mosaics, named after the four pixels at the file's top left: RGGB, "
-             "BGGR, GRBG or GBRG; or mono, of a mono camera",
-             "PATTERN");
+    add_read(app, "--bayer", camera.mosaic, read_by(mosaic_named, "RGGB, BGGR, GRBG, GBRG, mono"));
     add_crop_options(app, camera);
-    app.add_option(
-        "--black-level", camera.black_level, "The camera's number for no light; by default 0");
+    add_option(app, "--black-level", camera.black_level);
     static const std::map<std::string, ExposureBy> kWays{
         {"none", ExposureBy::Nothing}, {"exif", ExposureBy::Exif}, {"flash", ExposureBy::Flash}};
-    app.add_option("--exposure",
-                   camera.exposure_by,
-                   "Bring images to one exposure by their Exif: exif, by time, ISO number and "
-                   "f-number; flash, without the time")
-        ->transform(word_of(kWays))
-        ->type_name("none|exif|flash")
-        ->default_str("none");
+    add_option(app, "--exposure", camera.exposure_by)->transform(word_of(kWays));
     if (!has_white) return;
-    app.add_option("--white-level",
-                   camera.white_level,
-                   "The camera's number at saturation, such as 4095; by default the largest of the "
-                   "file's integer type");
+    add_option(app, "--white-level", camera.white_level);
 }
 
-void add_outcome_options(CLI::App& app, SurveyInput& input, const std::string& json) {
+void add_outcome_options(CLI::App& app, SurveyInput& input) {
     add_strict_option(app, input.strict);
     add_read(app,
              "--allow-skipped",
              input.allowed_skips,
-             read_by(allowed_skips_in, "a number of images, or a share such as 0.01 or 1%"),
-             "End with 0 when no more images are skipped than this: a number, or a share of all "
-             "such as 0.01 or 1%",
-             "N|SHARE")
-        ->default_str("0");
-    add_json(app, input.json, json);
+             read_by(allowed_skips_in, "a number of images, or a share such as 0.01 or 1%"));
+    add_json(app, input.json);
 }
 
 Settle add_format_options(CLI::App& app, ResultFormat& format) {
     const auto encoded = std::make_shared<SrgbFormat>();
-    app.add_flag("--mask", format.mask, "Write NAME.mask.png beside each image");
-    const CLI::Option* name =
-        app.add_option("--format",
-                       format.format,
-                       "Write tiff or png (16 bits, white 65535) or exr (floats); of --encode "
-                       "srgb also jpeg, which it takes by default")
-            ->check(CLI::IsMember({"tiff", "png", "exr", "jpeg"}))
-            ->capture_default_str();
-    app.add_option("--compression",
-                   format.compression,
-                   "Compress losslessly: none, fast, or small (a few per cent smaller, about 1.5 "
-                   "times slower)")
-        ->transform(word_of(kCompressions))
-        ->type_name("none|fast|small")
-        ->default_str("fast");
+    add_flag(app, "--mask", format.mask);
+    const CLI::Option* name = add_option(app, "--format", format.format)
+                                  ->check(CLI::IsMember({"tiff", "png", "exr", "jpeg"}));
+    add_option(app, "--compression", format.compression)->transform(word_of(kCompressions));
     const auto encoding = std::make_shared<std::string>("linear");
-    app.add_option("--encode",
-                   *encoding,
-                   "With srgb, also write images to look at: DIR/srgb/NAME.jpg, under one exposure")
-        ->check(CLI::IsMember({"linear", "srgb"}))
-        ->capture_default_str();
+    add_option(app, "--encode", *encoding)->check(CLI::IsMember({"linear", "srgb"}));
     const CLI::Option* bits =
-        app.add_option("--bits", encoded->bits, "Of sRGB as tiff or png: 8 or 16")
-            ->check(CLI::IsMember({8, 16}))
-            ->capture_default_str();
+        add_option(app, "--bits", encoded->bits)->check(CLI::IsMember({8, 16}));
     const CLI::Option* quality =
-        app.add_option("--quality", encoded->quality, "Of sRGB as jpeg: 1 to 100")
-            ->check(in_range(1, 100))
-            ->capture_default_str();
-    const CLI::Option* stops = app.add_option("--stops", encoded->stops, "Brighten sRGB by 2^STOPS")
-                                   ->check(in_range(-20.0, 20.0))
-                                   ->capture_default_str();
+        add_option(app, "--quality", encoded->quality)->check(in_range(1, 100));
+    const CLI::Option* stops =
+        add_option(app, "--stops", encoded->stops)->check(in_range(-20.0, 20.0));
     return [&format, linear = format.format, encoded, encoding, name, bits, quality, stops] {
         const bool is_srgb = *encoding == "srgb";
         for (const CLI::Option* option : {bits, quality, stops}) {

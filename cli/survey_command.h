@@ -50,9 +50,7 @@ CLI::Option* add_navigation_options(CLI::App& app, SurveyInput& input);
 // --bayer, --half, --crop, --black-level, --exposure; where brightness has an end, --white-level.
 void add_camera_options(CLI::App& app, SurveyInput& input, bool has_white = true);
 // --strict, --allow-skipped, --json
-void add_outcome_options(CLI::App& app,
-                         SurveyInput& input,
-                         const std::string& json = "Print the result as JSON");
+void add_outcome_options(CLI::App& app, SurveyInput& input);
 // --mask, --format, --compression, and how to encode images to look at. Once parsed, the format has
 // all of it, or is refused.
 using Settle = std::function<void()>;

@@ -15,8 +15,6 @@
 #include "spectral/manifest.h"
 #include "validation/traced_images.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -171,22 +169,16 @@ ExitStatus trace_rig(const TraceCommandOptions& options) {
 Action configure_trace(CLI::App& app) {
     const auto options = std::make_shared<TraceCommandOptions>();
     add_output_folder(app, options->folder)->required();
-    add_jobs(app, options->threads, "Trace with N threads");
+    add_jobs(app, options->threads);
     add_needs_option(app, options->planning.ignore_needs);
     add_json(app, options->json);
     add_wavelength_options(app, options->planning);
     add_preview_options(app, options->preview);
-    app.footer(
-        "image.exr holds the signals over the full spectrum; the wavelengths chosen are the planes "
-        "of spectral.exr. POV-Ray is not needed.");
     return [options] { return trace_rig(*options); };
 }
 
 }  // namespace
 
-const Command kTrace{"trace",
-                     kRenderingCommands,
-                     "Make the same images with the reference tracer, without POV-Ray",
-                     configure_trace};
+const Command kTrace{"trace", configure_trace};
 
 }  // namespace aphotic::cli

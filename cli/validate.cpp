@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "cli/command.h"
+#include "cli/option_words.h"
 #include "cli/options.h"
 #include "cli/outcome.h"
 #include "cli/output_folder.h"
@@ -239,29 +240,18 @@ ExitStatus validate_rig(const ValidateCommandOptions& options) {
 Action configure_validate(CLI::App& app) {
     const auto options = std::make_shared<ValidateCommandOptions>();
     add_output_folder(app, options->folder)->required();
-    app.add_option("--rendered",
-                   options->rendered_folder,
-                   "Validate this finished render, with its wavelengths, instead of rendering")
-        ->type_name("DIR");
+    add_option(app, "--rendered", options->rendered_folder);
     constexpr double kMostPaths = 1e9;
-    app.add_option("--monte-carlo",
-                   options->monte_carlo,
-                   "In water that scatters: also hold the reference against light of all orders of "
-                   "scattering, by N random paths at each of 9 places")
-        ->check(in_range(1, kMostPaths));
-    add_jobs(app, options->jobs, "Render N frames at a time, trace with N threads");
+    add_option(app, "--monte-carlo", options->monte_carlo)->check(in_range(1, kMostPaths));
+    add_jobs(app, options->jobs);
     add_needs_option(app, options->planning.ignore_needs);
-    add_json(app, options->json, "Print validation.json");
+    add_json(app, options->json);
     add_planning_options(app, options->planning);
-    app.footer("Exit status 0 when every wavelength and channel is within its bound, 1 when not.");
     return [options] { return validate_rig(*options); };
 }
 
 }  // namespace
 
-const Command kValidate{"validate",
-                        kCheckCommands,
-                        "Render with POV-Ray and the reference tracer; compare every pixel",
-                        configure_validate};
+const Command kValidate{"validate", configure_validate};
 
 }  // namespace aphotic::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The part of the command that links OpenImageIO; see any_image.h.
+#include "base/csv.h"
 #include "base/error.h"
 #include "image/any_image.h"
 #include "image/checked_file.h"
@@ -13,7 +14,6 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -122,19 +122,8 @@ void compress(OIIO::ImageSpec& spec, aphotic::Compression compression) {
 }
 
 // Formats of which a file that was cut short is known as such: the tests cut each of them.
-constexpr std::array<std::string_view, 13> kFormats{"bmp",
-                                                    "dpx",
-                                                    "fits",
-                                                    "hdr",
-                                                    "jpeg",
-                                                    "jpeg2000",
-                                                    "openexr",
-                                                    "png",
-                                                    "pnm",
-                                                    "sgi",
-                                                    "targa",
-                                                    "tiff",
-                                                    "webp"};
+constexpr std::string_view kFormats =
+    "bmp, dpx, fits, hdr, jpeg, jpeg2000, openexr, png, pnm, sgi, targa, tiff, webp";
 
 // The first of several lines names the cause.
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& reasons) {
@@ -188,10 +177,8 @@ std::shared_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
     std::shared_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &as_stored);
     if (!input) throw aphotic::InputError(OIIO::geterror());
     const std::string_view format = input->format_name();
-    if (std::ranges::find(kFormats, format) == kFormats.end()) {
-        throw aphotic::InputError(
-            "found the format {}; allowed: {}", format, fmt::join(kFormats, ", "));
-    }
+    if (std::ranges::count(aphotic::comma_fields(kFormats), format) == 0)
+        throw aphotic::InputError("found the format {}; allowed: {}", format, kFormats);
     if (format == "tiff") aphotic::require_whole_tiff(file);
     require_sound_spec(input->spec(), file);
     return input;

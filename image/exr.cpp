@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image/exr.h"
 
-#include "base/error.h"
 #include "image/checked_file.h"
 #include "image/exr_header.h"
 #include "image/row_blocks.h"

@@ -8,15 +8,14 @@
 #include <exiv2/exiv2.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <regex>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -100,22 +99,11 @@ bool stays_true(const Exiv2::Exifdatum& datum) {
 }
 
 bool stays_true(const Exiv2::Xmpdatum& datum) {
-    static constexpr std::array<std::string_view, 12> kOfPixels{"Xmp.tiff.ImageWidth",
-                                                                "Xmp.tiff.ImageLength",
-                                                                "Xmp.tiff.BitsPerSample",
-                                                                "Xmp.tiff.Compression",
-                                                                "Xmp.tiff.Photometric",
-                                                                "Xmp.tiff.SamplesPerPixel",
-                                                                "Xmp.tiff.PlanarConfiguration",
-                                                                "Xmp.tiff.YCbCr",
-                                                                "Xmp.exif.PixelXDimension",
-                                                                "Xmp.exif.PixelYDimension",
-                                                                "Xmp.exif.ColorSpace",
-                                                                "Xmp.xmp.Thumbnails"};
-    const std::string key = datum.key();
-    return std::none_of(kOfPixels.begin(), kOfPixels.end(), [&](std::string_view name) {
-        return key.starts_with(name);
-    });
+    static const std::regex kOfPixels(
+        "Xmp\\.tiff\\.(Image(Width|Length)|BitsPerSample|Compression|Photometric|SamplesPerPixel|"
+        "PlanarConfiguration|YCbCr).*|Xmp\\.exif\\.(Pixel[XY]Dimension|ColorSpace).*|"
+        "Xmp\\.xmp\\.Thumbnails.*");
+    return !std::regex_match(datum.key(), kOfPixels);
 }
 
 using FindExif = Exiv2::ExifData::const_iterator (*)(const Exiv2::ExifData&);

@@ -14,12 +14,9 @@
 #include <boost/process/extend.hpp>
 
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <string>
 #include <thread>
 #include <utility>
 

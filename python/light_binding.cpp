@@ -15,7 +15,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <array>
-#include <limits>
 #include <optional>
 
 namespace aphotic::python {

@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 namespace aphotic {
 namespace {
 
@@ -209,14 +207,14 @@ std::string page_html(const Page& page) {
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
         "img-src data:; style-src 'unsafe-inline'\"/>\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
-        "<title>{}</title>\n<style>\n{}{}</style>\n</head>\n<body>\n<main>\n"
+        "<title>{}</title>\n<style>\n\n{}\n{}</style>\n</head>\n<body>\n<main>\n"
         "<header>\n<p class=\"eyebrow\">Aphotic · {}</p>\n<h1>{}</h1>\n"
         "<div class=\"verdict {}\" id=\"verdict\">\n<p "
         "class=\"word\">{}</p>\n{}</div>\n</header>\n\n"
         "{}</main>\n</body>\n</html>\n",
         escaped(page.title.empty() ? page.heading : page.title),
-        kSvgStyle,
-        kPageStyle,
+        style_sheets()[0].css,
+        style_sheets()[1].css,
         escaped(page.kind),
         escaped(page.heading),
         page.is_good ? "holds" : "fails",

@@ -126,8 +126,8 @@ std::string drawing_of(const Plot& plot, double top) {
 
 std::string plots_svg(std::span<const Plot> panels) {
     if (panels.empty()) throw InputError("plot: found no panel to draw; allowed: one or more");
-    std::string svg =
-        fmt::format("<style>{}svg {{ font-family: sans-serif; }}</style>\n", kSvgStyle);
+    std::string svg = fmt::format("<style>\n{}svg {{ font-family: sans-serif; }}</style>\n",
+                                  style_sheets()[0].css);
     svg += R"(<rect width="100%" height="100%" fill="#ffffff"/>)";
     double height = 0.0;
     for (const Plot& plot : panels) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Parts of a plot in SVG: panels with axes, curves and dots in them. Each function gives the text
-// of some elements; svg_drawing() puts them into one <svg>. page_style.h says how they look.
+// of some elements; svg_drawing() puts them into one <svg>. svg.css says how they look.
 //
 // Points that are not finite, or have no logarithm where one is needed, break a curve.
 #pragma once

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/plausibility.h"
 
+#include "base/csv.h"
 #include "base/degrees.h"
+#include "base/number.h"
 #include "base/printable.h"
 #include "rig/camera/calibration_doubts.h"
 #include "rig/geometry.h"
@@ -18,7 +20,6 @@
 #include <numbers>
 #include <optional>
 #include <set>
-#include <span>
 #include <utility>
 #include <variant>
 
@@ -30,131 +31,48 @@ namespace {
 
 // What one of it is in the key's own unit.
 struct Unit {
-    std::string_view name;  // none: the end of the list
+    std::string_view name;
     double factor = 1.0;
 };
-using Units = std::array<Unit, 3>;
 
 constexpr double kHalfPi = 0.5 * std::numbers::pi;
-constexpr double kMetresPerFoot = 0.3048;
 constexpr double kMillimetresPerInch = 25.4;
-constexpr Units kNoUnits{};
-constexpr Units kOfMetres{{{"millimetres", 1e-3}, {"centimetres", 1e-2}, {"feet", kMetresPerFoot}}};
-constexpr Units kOfAltitude{{{"millimetres", 1e-3}, {"feet", kMetresPerFoot}, {"kilometres", 1e3}}};
-constexpr Units kOfMillimetres{
-    {{"metres", 1e3}, {"micrometres", 1e-3}, {"inches", kMillimetresPerInch}}};
-constexpr Units kOfDegrees{{{"radians", kDegreesPerRadian}}};
-constexpr Units kOfShares{{{"per cent", 1e-2}}};
 
-// Magnitudes count. A 0 is usual where it says that there is none.
+// A line of usual.csv.
 struct Usual {
     std::string_view key;
     double least;
     double most;
-    double typical;  // the unit that brings a number nearest to it is the likely one
-    Units units;
+    double typical;
+    bool is_zero_usual;
     std::string_view why;
-    bool is_zero_usual = true;
+    std::vector<Unit> units{};
 };
 
-constexpr std::string_view kSledReach = "sleds and vehicles are a few metres long";
-constexpr std::string_view kHousing = "ports are the size of a lens or a hand";
-constexpr std::string_view kLampSize = "lamps are the size of a hand";
-constexpr std::string_view kCloseBy = "what the camera sees is a few metres away";
-constexpr std::string_view kCameras = "typical of cameras";
-constexpr std::string_view kGloss = "the floor's own light is about 1";
+Usual usual_in(const std::vector<std::string_view>& fields) {
+    const auto number = [&](std::size_t i) { return read_number<double>(fields[i]).value(); };
+    Usual usual{.key = fields[0],
+                .least = number(1),
+                .most = number(2),
+                .typical = number(3),
+                .is_zero_usual = fields[4] == "yes",
+                .why = fields[5]};
+    for (std::size_t i = 6; i < fields.size(); i += 2)
+        usual.units.push_back({fields[i], number(i + 1)});
+    return usual;
+}
 
-// Reasons from: a metre of the clearest water takes 1.5 to 4 % of green and 30 % of red light and
-// more (Pope and Fry 1997), so that less than 1e-4 of the red returns from 15 m; photographic
-// strobes and vehicles' lamps have beams of 10 degrees and more; the sea is -2 to 35 degrees.
-constexpr std::array kUsual{
-    Usual{"sled.altitude_m",
-          0.05,
-          30,
-          2.5,
-          kOfAltitude,
-          "water absorbs the strobes' light from higher up",
-          false},
-    Usual{"sled.altitude_offset_m", 0, 20, 1, kOfMetres, kSledReach},
-    Usual{"sled.pitch_deg", 0, 75, 5, kNoUnits, "the camera looks down"},
-    Usual{"sled.roll_deg", 0, 75, 5, kNoUnits, "the camera looks down"},
-    Usual{"camera.position_m", 0, 20, 1, kOfMetres, kSledReach},
-    Usual{"camera.fov_deg", 3, 150, 50, kOfDegrees, "typical of lenses"},
-    Usual{"camera.range_nm", 200, 1200, 550, {{{"angstrom", 0.1}}}, "water passes no other light"},
-    Usual{"camera.exposure_ms",
-          0.005,
-          60'000,
-          5,
-          {{{"seconds", 1e3}, {"microseconds", 1e-3}}},
-          "typical of shutters",
-          false},
-    Usual{"camera.iso", 20, 1e6, 400, kNoUnits, kCameras, false},
-    Usual{"camera.f_number", 0.7, 64, 4, kNoUnits, "typical of lenses", false},
-    Usual{"camera.gain_dn_per_e", 1e-3, 1e3, 1, kNoUnits, kCameras, false},
-    Usual{"camera.read_noise_e", 0, 1000, 5, kNoUnits, kCameras},
-    Usual{"camera.saturation_e", 200, 1e7, 2e4, {{{"thousands", 1e3}}}, kCameras, false},
-    Usual{"camera.port.distance_mm", 1, 400, 40, kOfMillimetres, kHousing},
-    Usual{"camera.port.thickness_mm", 1, 100, 12, kOfMillimetres, kHousing},
-    Usual{"camera.port.radius_mm", 10, 500, 80, kOfMillimetres, kHousing},
-    Usual{"camera.port.centre_mm", 0, 500, 10, kOfMillimetres, kHousing},
-    Usual{"water.multiple", 0, 20, 1, kOfShares, "1 is the water of its table"},
-    Usual{"water.uniform_loss_per_m",
-          0,
-          10,
-          0.3,
-          {{{"per kilometre", 1e-3}}},
-          "a metre of such water is opaque"},
-    Usual{"water.chlorophyll_mg_m3", 0, 200, 1, kNoUnits, "even in blooms"},
-    Usual{"water.cdom_440_per_m",
-          0,
-          30,
-          0.1,
-          {{{"per kilometre", 1e-3}}},
-          "even in peat-stained water"},
-    Usual{"seafloor.phong", 0, 10, 0.3, kOfShares, kGloss},
-    Usual{"seafloor.phong_size", 0, 5000, 40, kNoUnits, "beyond that it is a mirror"},
-    Usual{"object[].phong", 0, 10, 0.3, kOfShares, kGloss},
-    Usual{"object[].phong_size", 0, 5000, 40, kNoUnits, "beyond that it is a mirror"},
-    Usual{"object[].position_m", 0, 50, 1, kOfMetres, kCloseBy},
-    Usual{"object[].centre_m", 0, 50, 1, kOfMetres, kCloseBy},
-    Usual{"object[].from_m", 0, 50, 1, kOfMetres, kCloseBy},
-    Usual{"object[].to_m", 0, 50, 1, kOfMetres, kCloseBy},
-    Usual{"object[].radius_m", 0, 20, 0.2, kOfMetres, kCloseBy},
-    Usual{"beam.*.fwhm_deg", 4, 180, 60, kOfDegrees, "lamps have wider beams", false},
-    Usual{"beam.*.diffuser_mm", 0.5, 500, 50, kOfMillimetres, kLampSize},
-    Usual{"beam.*.focal_length_mm", 1, 1000, 60, kOfMillimetres, kLampSize},
-    Usual{"beam.*.distance_mm", 0.5, 1000, 50, kOfMillimetres, kLampSize},
-    Usual{"beam.*.aperture_mm", 1, 1000, 60, kOfMillimetres, kLampSize},
-    Usual{"strobe[].position_m",
-          0,
-          5,
-          0.5,
-          kOfMetres,
-          "sleds carry strobes within 5 m of the camera"},
-    Usual{"strobe[].emitter_mm", 0.5, 2000, 50, kOfMillimetres, kLampSize},
-    Usual{"strobe[].power", 0, 1e12, 1, kNoUnits, "such a strobe gives no light", false},
-    Usual{"strobe[].luminous_flux_lm",
-          10,
-          1e8,
-          1e4,
-          {{{"kilolumens", 1e3}}},
-          "typical of lamps",
-          false},
-    Usual{"strobe[].radiant_flux_w",
-          0.05,
-          1e6,
-          50,
-          {{{"milliwatts", 1e-3}, {"kilowatts", 1e3}}},
-          "typical of lamps",
-          false},
-    Usual{"strobe[].energy_j",
-          1e-3,
-          1e5,
-          20,
-          {{{"millijoules", 1e-3}, {"kilojoules", 1e3}}},
-          "typical of flashes",
-          false},
-};
+const std::vector<Usual>& all_usual() {
+    static const std::vector<Usual> kUsual = [] {
+        std::vector<Usual> all;
+        for_each_line(usual_numbers().front().csv, [&](std::size_t, std::string_view line) {
+            if (!line.starts_with('#') && !line.starts_with("key,"))
+                all.push_back(usual_in(comma_fields(line)));
+        });
+        return all;
+    }();
+    return kUsual;
+}
 
 // A number of the rig's file, where it stands.
 struct Place {
@@ -173,7 +91,7 @@ std::string in_likely_unit(double value, const Usual& usual) {
     std::string words;
     for (const Unit& unit : usual.units) {
         const double other = std::abs(value) * unit.factor;
-        if (unit.name.empty() || other < usual.least || other > usual.most) continue;
+        if (other < usual.least || other > usual.most) continue;
         const double away = std::abs(std::log(other / usual.typical));
         if (!(away < nearest)) continue;
         nearest = away;
@@ -195,8 +113,8 @@ std::optional<std::string> doubt_of(double value, const Usual& usual) {
 }
 
 const Usual* usual_of(std::string_view pattern) {
-    const auto* const found = std::ranges::find(kUsual, pattern, &Usual::key);
-    return found == kUsual.end() ? nullptr : found;
+    const auto found = std::ranges::find(all_usual(), pattern, &Usual::key);
+    return found == all_usual().end() ? nullptr : &*found;
 }
 
 // Quarter turns and their halves, as radians have them.

@@ -4,9 +4,6 @@
 #include "base/error.h"
 #include "spectral/curve_loader.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <array>
 #include <functional>
 

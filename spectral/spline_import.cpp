@@ -227,13 +227,9 @@ class Parser {
         if (knots.size() < 2) {
             fail(spectrum.line, "found {} knots; a curve needs 2 or more", knots.size());
         }
-        std::stable_sort(knots.begin(), knots.end(), [](const auto& a, const auto& b) {
-            return a.lambda_nm < b.lambda_nm;
-        });
+        std::ranges::stable_sort(knots, {}, &SplineKnot::lambda_nm);
         const auto twice =
-            std::adjacent_find(knots.begin(), knots.end(), [](const auto& a, const auto& b) {
-                return !(a.lambda_nm < b.lambda_nm);
-            });
+            std::ranges::adjacent_find(knots, std::ranges::equal_to(), &SplineKnot::lambda_nm);
         if (twice == knots.end()) return;
         fail(std::next(twice)->line,
              "found the wavelength {} again, first in line {}; allowed: once",
@@ -264,8 +260,7 @@ class Parser {
             take(",");
         }
         const bool unequal =
-            std::adjacent_find(components.begin(), components.end(), std::not_equal_to<>()) !=
-            components.end();
+            std::ranges::adjacent_find(components, std::not_equal_to<>()) != components.end();
         if (unequal || components.size() < 2 || components.size() > kMaxVector) {
             fail(line,
                  "found <{}>; allowed: a number, or a vector of 2 to {} equal ones",
@@ -280,26 +275,17 @@ class Parser {
         fail(line, "found a number out of range; allowed: finite");
     }
 
-    double sum(int depth) {
-        double result = product(depth);
-        for (;;) {
-            if (take("+")) {
-                result += product(depth);
-            } else if (take("-")) {
-                result -= product(depth);
-            } else {
-                return result;
-            }
-        }
-    }
+    double sum(int depth) { return chain(true, depth); }
 
-    double product(int depth) {
-        double result = factor(depth);
+    // Of + and -, or of * and / within it.
+    double chain(bool is_sum, int depth) {
+        const auto next = [&] { return is_sum ? chain(false, depth) : factor(depth); };
+        double result = next();
         for (;;) {
-            if (take("*")) {
-                result *= factor(depth);
-            } else if (take("/")) {
-                result /= factor(depth);
+            if (take(is_sum ? "+" : "*")) {
+                result = is_sum ? result + next() : result * next();
+            } else if (take(is_sum ? "-" : "/")) {
+                result = is_sum ? result - next() : result / next();
             } else {
                 return result;
             }

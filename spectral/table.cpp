@@ -23,47 +23,30 @@
 namespace aphotic {
 namespace {
 
-constexpr double kNoUpperBound = std::numeric_limits<double>::infinity();
-
 struct RoleRule {
     CurveRole role;
     std::string_view name;
-    std::vector<std::vector<std::string>> headers;
+    std::vector<std::string> headers;
     double max_value;
 };
 
 const std::vector<RoleRule>& role_rules() {
-    const std::string nm = "wavelength_nm";
+    using enum CurveRole;
+    constexpr double kAny = std::numeric_limits<double>::infinity();
     static const std::vector<RoleRule> kRules{
-        {CurveRole::WaterAbsorption, "water absorption", {{nm, "absorption_per_m"}}, kNoUpperBound},
-        {CurveRole::WaterScattering, "water scattering", {{nm, "scattering_per_m"}}, kNoUpperBound},
-        {CurveRole::WaterAttenuation,
-         "water attenuation",
-         {{nm, "attenuation_per_m"}},
-         kNoUpperBound},
-        {CurveRole::WaterType,
-         "water type",
-         {{nm, "absorption_per_m", "scattering_per_m"}},
-         kNoUpperBound},
-        {CurveRole::LampSpectrum,
+        {WaterAbsorption, "water absorption", {"wavelength_nm,absorption_per_m"}, kAny},
+        {WaterScattering, "water scattering", {"wavelength_nm,scattering_per_m"}, kAny},
+        {WaterAttenuation, "water attenuation", {"wavelength_nm,attenuation_per_m"}, kAny},
+        {WaterType, "water type", {"wavelength_nm,absorption_per_m,scattering_per_m"}, kAny},
+        {LampSpectrum,
          "lamp spectrum",
-         {{nm, "relative_power"}, {nm, "radiant_flux_w_per_nm"}},
-         kNoUpperBound},
-        {CurveRole::Reflectance, "reflectance", {{nm, "reflectance"}}, 1.0},
-        {CurveRole::SensorResponse,
-         "sensor response",
-         {{nm, "red", "green", "blue"}},
-         kNoUpperBound},
-        {CurveRole::FilterTransmittance,
-         "filter transmittance",
-         {{nm, "red", "green", "blue"}},
-         1.0},
-        {CurveRole::QuantumEfficiency, "quantum efficiency", {{nm, "quantum_efficiency"}}, 1.0},
-        {CurveRole::ColourMatching,
-         "colour matching",
-         {{nm, "xbar", "ybar", "zbar"}},
-         kNoUpperBound},
-    };
+         {"wavelength_nm,relative_power", "wavelength_nm,radiant_flux_w_per_nm"},
+         kAny},
+        {Reflectance, "reflectance", {"wavelength_nm,reflectance"}, 1.0},
+        {SensorResponse, "sensor response", {"wavelength_nm,red,green,blue"}, kAny},
+        {FilterTransmittance, "filter transmittance", {"wavelength_nm,red,green,blue"}, 1.0},
+        {QuantumEfficiency, "quantum efficiency", {"wavelength_nm,quantum_efficiency"}, 1.0},
+        {ColourMatching, "colour matching", {"wavelength_nm,xbar,ybar,zbar"}, kAny}};
     return kRules;
 }
 
@@ -154,8 +137,12 @@ void take_line(Table& table, std::size_t line, std::string_view text) {
     }
 }
 
+std::string header_of(const Table& table) {
+    return fmt::format("{}", fmt::join(table.columns, ","));
+}
+
 bool header_fits(const Table& table, const RoleRule& rule) {
-    return std::count(rule.headers.begin(), rule.headers.end(), table.columns) > 0;
+    return std::ranges::count(rule.headers, header_of(table)) > 0;
 }
 
 // K_d by its name: kd, Kd(490), K_d_per_m; not kdye.
@@ -195,7 +182,7 @@ void refuse_daylights_loss(const Table& table, const RoleRule& rule) {
                      "found the column {}; allowed for {}: {}. {}",
                      column,
                      rule.name,
-                     fmt::join(rule.headers.front(), ","),
+                     rule.headers.front(),
                      kDaylightsLoss);
     }
     for (const char* key : {"quantity", "role"}) {
@@ -215,16 +202,12 @@ void refuse_daylights_loss(const Table& table, const RoleRule& rule) {
 void check_header(const Table& table, const RoleRule& rule) {
     refuse_daylights_loss(table, rule);
     if (header_fits(table, rule)) return;
-    std::vector<std::string> allowed;
-    for (const auto& header : rule.headers) {
-        allowed.push_back(fmt::format("{}", fmt::join(header, ",")));
-    }
     fail_at_line(table.name,
                  table.header_line,
                  "found the header row {}; allowed for {}: {}",
-                 fmt::join(table.columns, ","),
+                 header_of(table),
                  rule.name,
-                 fmt::join(allowed, " or "));
+                 fmt::join(rule.headers, " or "));
 }
 
 void check_wavelengths(const Table& table) {
@@ -248,7 +231,7 @@ void check_values(const Table& table, const RoleRule& rule) {
         for (std::size_t i = 1; i < row.fields.size(); ++i) {
             const double value = row.fields[i];
             if (value >= 0.0 && value <= rule.max_value) continue;
-            const bool bounded = rule.max_value != kNoUpperBound;
+            const bool bounded = std::isfinite(rule.max_value);
             fail_at_line(table.name,
                          row.line,
                          "{}: found {}; allowed: {}",
@@ -325,7 +308,7 @@ std::vector<CurveRole> roles_of(const Table& table) {
     std::optional<InputError> fault;
     for (const RoleRule& rule : role_rules()) {
         for (const auto& header : rule.headers) {
-            headers.push_back(fmt::format("{} ({})", fmt::join(header, ","), rule.name));
+            headers.push_back(fmt::format("{} ({})", header, rule.name));
         }
         if (!header_fits(table, rule)) continue;
         try {
@@ -341,7 +324,7 @@ std::vector<CurveRole> roles_of(const Table& table) {
     fail_at_line(table.name,
                  table.header_line,
                  "found the header row {}; allowed: {}",
-                 fmt::join(table.columns, ","),
+                 header_of(table),
                  fmt::join(headers, ", "));
 }
 

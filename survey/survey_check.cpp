@@ -260,23 +260,6 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
                                          is_green_beside ? "GRBG or GBRG" : "RGGB or BGGR")});
 }
 
-Mosaic with_red_for_blue(Mosaic mosaic) {
-    switch (mosaic) {
-        case Mosaic::Rggb:
-            return Mosaic::Bggr;
-        case Mosaic::Bggr:
-            return Mosaic::Rggb;
-        case Mosaic::Grbg:
-            return Mosaic::Gbrg;
-        case Mosaic::Gbrg:
-            return Mosaic::Grbg;
-        case Mosaic::None:
-        case Mosaic::Mono:
-            break;
-    }
-    return mosaic;
-}
-
 std::string range_of(std::span<const ImageLook> looks) {
     const auto [lowest, highest] = std::ranges::minmax(looks, {}, &ImageLook::altitude_m);
     return fmt::format("{:g} to {:g} m", *lowest.altitude_m, *highest.altitude_m);
@@ -660,7 +643,8 @@ std::optional<Suspicion> red_for_blue(std::span<const ImageLook> looks, Mosaic m
         return std::nullopt;
     std::string what = "red over blue " + words_of_turned(ratio) + ": red and blue are swapped";
     if (is_bayer(mosaic)) {
-        what += fmt::format("; --bayer {} puts them right", mosaic_name(with_red_for_blue(mosaic)));
+        // A pattern with red and blue in each other's place begins a column and a row further on.
+        what += fmt::format("; --bayer {} puts them right", mosaic_name(shifted(mosaic, 1, 1)));
     }
     return Suspicion{.about = "bayer", .what = std::move(what)};
 }

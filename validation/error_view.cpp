@@ -8,12 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace aphotic {
 namespace {

@@ -10,7 +10,6 @@
 #include <cassert>
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 namespace aphotic {
 namespace {

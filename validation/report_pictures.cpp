@@ -4,11 +4,8 @@
 #include "image/preview.h"
 #include "validation/comparison.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace aphotic {
 namespace {

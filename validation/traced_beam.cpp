@@ -10,7 +10,6 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <utility>
 #include <variant>

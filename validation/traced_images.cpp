@@ -5,7 +5,6 @@
 #include "image/traced_image.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace aphotic {
 

@@ -3,10 +3,8 @@
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <type_traits>
 #include <variant>
 
 namespace aphotic {

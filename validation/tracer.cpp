@@ -3,17 +3,12 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "spectral/light_family.h"
 #include "spectral/refractive_index.h"
-#include "validation/full_spectrum.h"
 
-#include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace aphotic {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "validation/validation.h"
 
-#include "image/frame_check.h"
 #include "validation/traced_images.h"
-#include "validation/tracer.h"
 
 #include <fmt/format.h>
 

@@ -4,11 +4,8 @@
 #include "base/atomic_file.h"
 #include "base/degrees.h"
 #include "base/error.h"
-#include "base/file_beside.h"
-#include "base/nearest.h"
 #include "base/offered.h"
 #include "base/printable.h"
-#include "base/sha256.h"
 #include "image/image_size.h"
 #include "rig/beam/photometric_file.h"
 #include "rig/camera/calibration_file.h"
@@ -34,7 +31,6 @@
 #include <iterator>
 #include <numbers>
 #include <set>
-#include <sstream>
 
 namespace aphotic {
 namespace {
@@ -97,58 +93,6 @@ const std::string kOneKindOfBeam =
 constexpr Bounds kRadiusM{0.001, 1000.0};
 constexpr double kLeastSideM = 0.001;
 
-class RigReader {
-  public:
-    RigReader(std::string_view toml, fs::path folder) : files_(std::move(folder)), toml_(toml) {}
-
-    Rig read(Section top);
-
-  private:
-    static Sled read_sled(Section section, Mounting& mounting);
-    static Emitter read_emitter(Section& strobe);
-    static Cone read_cone(Section& section);
-    static BeamOptics read_optics(Section& section);
-    static BeamWindow read_window(Section& section, const Water& water);
-    static Eigen::Vector3d read_axis(Section& strobe, const Eigen::Vector3d& position_m);
-    static Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m);
-    static Dome read_dome(Section& section);
-    static Eigen::Vector3d read_port_normal(Section& section);
-    static PortWindow read_port(Section section);
-    static PortWindow read_calibrated_port(Section section, const CalibratedPort& calibrated);
-    static Glass read_glass(Section& port);
-
-    std::optional<CameraCalibration> read_calibration(Section& section);
-    static std::array<int, 2> read_size(Section& section,
-                                        const std::optional<CameraCalibration>& calibration);
-    static void read_lens(Section& section,
-                          const std::optional<CameraCalibration>& calibration,
-                          Camera& camera);
-    TabulatedVignetting read_vignetting_table(Section& section);
-    void read_vignetting(Section& camera_section, Camera& camera);
-    static Readout read_readout(Section& camera, bool is_mono);
-    Camera read_camera(Section section, Mounting& mounting);
-    Sensor read_response(Section& camera);
-    Sensor read_response_table(Section response);
-    Seafloor read_seafloor(Section section);
-    Beam read_beam(Section section, std::string name, const Water& water);
-    std::vector<Beam> read_beams(Section& top, const Water& water);
-    BeamTable read_beam_table(Section& section);
-    double read_power(Section& strobe, const Spectrum& spectrum);
-    Strobe read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled);
-    std::vector<Strobe> read_strobes(Section& top,
-                                     const std::vector<Beam>& beams,
-                                     const Sled& sled,
-                                     const Water& water);
-    Object read_object(Section section, const std::vector<Strobe>& strobes);
-    Shape read_shape(Section& object, std::string_view key);
-    Mesh read_mesh_of(Section& object);
-    std::vector<Object> read_objects(Section& top, const std::vector<Strobe>& strobes);
-    std::vector<Spectrum> read_materials(Section& top);
-
-    RigFiles files_;
-    std::string toml_;
-};
-
 // What navigation means by an altitude.
 void read_altitude_meaning(Section& sled, Mounting& mounting) {
     mounting.altitude_offset_m = sled.number_or("altitude_offset_m", kPositionM, 0.0);
@@ -159,7 +103,7 @@ void read_altitude_meaning(Section& sled, Mounting& mounting) {
         static_cast<AltitudeIs>(std::ranges::find(kAltitudeWords, word) - kAltitudeWords.begin());
 }
 
-Sled RigReader::read_sled(Section section, Mounting& mounting) {
+Sled read_sled(Section section, Mounting& mounting) {
     // Before altitude_m, which they would else be taken for, misspelt.
     read_altitude_meaning(section, mounting);
     const Sled sled{.altitude_m = section.number("altitude_m", kAltitudeM),
@@ -169,13 +113,13 @@ Sled RigReader::read_sled(Section section, Mounting& mounting) {
     return sled;
 }
 
-Glass RigReader::read_glass(Section& port) {
+Glass read_glass(Section& port) {
     const std::string name = port.text("glass", "a built-in glass");
     return port.at_key("glass", [&] { return builtin_glass(name); });
 }
 
 // A dome's own keys, beside those of all ports.
-Dome RigReader::read_dome(Section& section) {
+Dome read_dome(Section& section) {
     Dome dome{.radius_m = section.number("radius_mm", kPortDistanceMm) * kMetresPerMillimetre};
     if (section.has("centre_mm")) {
         const auto centre_mm = section.numbers<3>("centre_mm", kDomeCentreMm);
@@ -186,7 +130,7 @@ Dome RigReader::read_dome(Section& section) {
     return dome;
 }
 
-Eigen::Vector3d RigReader::read_port_normal(Section& section) {
+Eigen::Vector3d read_port_normal(Section& section) {
     if (!section.has("normal")) return Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d normal(section.numbers<3>("normal", kDirection).data());
     if (normal.z() < std::cos(kMostPortTiltDeg * kRadiansPerDegree) * normal.norm() ||
@@ -199,7 +143,7 @@ Eigen::Vector3d RigReader::read_port_normal(Section& section) {
     return normal.normalized();
 }
 
-PortWindow RigReader::read_port(Section section) {
+PortWindow read_port(Section section) {
     const bool is_dome = section.word("shape", {"flat", "dome"}) == "dome";
     PortWindow port{.glass = read_glass(section)};
     if (is_dome) {
@@ -214,7 +158,7 @@ PortWindow RigReader::read_port(Section section) {
 }
 
 // All but the glass is the calibration's.
-PortWindow RigReader::read_calibrated_port(Section section, const CalibratedPort& calibrated) {
+PortWindow read_calibrated_port(Section section, const CalibratedPort& calibrated) {
     for (const std::string_view key :
          {"shape", "distance_mm", "thickness_mm", "normal", "radius_mm", "centre_mm"}) {
         if (section.has(key))
@@ -231,32 +175,31 @@ PortWindow RigReader::read_calibrated_port(Section section, const CalibratedPort
     return port;
 }
 
-Sensor RigReader::read_response_table(Section response) {
+Sensor read_response_table(Section response, RigFiles& files) {
     if (response.has("table")) {
-        std::vector<Spectrum> channels =
-            files_.curves(response, "table", CurveRole::SensorResponse);
+        std::vector<Spectrum> channels = files.curves(response, "table", CurveRole::SensorResponse);
         const bool energy = response.word("kind", {"energy", "quantum"}) == "energy";
         response.refuse_unknown_keys();
         return {std::move(channels), energy ? ResponseKind::Energy : ResponseKind::Quantum};
     }
     const bool is_mono = response.has("quantum_efficiency") && !response.has("filters");
     std::vector<Spectrum> filters;
-    if (!is_mono) filters = files_.curves(response, "filters", CurveRole::FilterTransmittance);
+    if (!is_mono) filters = files.curves(response, "filters", CurveRole::FilterTransmittance);
     std::vector<Spectrum> efficiency =
-        files_.curves(response, "quantum_efficiency", CurveRole::QuantumEfficiency);
+        files.curves(response, "quantum_efficiency", CurveRole::QuantumEfficiency);
     response.refuse_unknown_keys();
     if (is_mono) return Sensor::mono(efficiency.front());
     return Sensor::filtered(std::move(filters), std::move(efficiency.front()));
 }
 
-Sensor RigReader::read_response(Section& camera) {
+Sensor read_response(Section& camera, RigFiles& files) {
     const std::string allowed =
         "a built-in response's name, { table = \"rgb.csv\", kind = \"energy\" } (or \"quantum\"), "
         "or "
         "{ filters = \"rgb.csv\", quantum_efficiency = \"ccd.csv\" }, of a mono camera without "
         "filters";
     if (camera.required("response", allowed).is_table()) {
-        return read_response_table(camera.section("response", allowed));
+        return read_response_table(camera.section("response", allowed), files);
     }
     const std::string name = camera.text("response", allowed);
     // A file does not say whether it counts energy or photons, so its name alone will not do.
@@ -264,13 +207,13 @@ Sensor RigReader::read_response(Section& camera) {
     return camera.at_key("response", [&] { return builtin_sensor(name); });
 }
 
-std::optional<CameraCalibration> RigReader::read_calibration(Section& section) {
+std::optional<CameraCalibration> read_calibration(Section& section, RigFiles& files) {
     section.refuse_both({"focal_length_mm", "fov_deg", "calibration"});
     if (!section.has("calibration")) return std::nullopt;
     const std::string name =
         section.text("calibration", "the name of a camera calibration beside the rig");
     return section.at_key("calibration", [&] {
-        const std::string text = files_.read(name, kMostCalibrationBytes);
+        const std::string text = files.read(name, kMostCalibrationBytes);
         CameraCalibration calibration = parse_calibration(name, text);
         naming(name, [&] {
             require_to_hold(calibration.lens, calibration.width_px, calibration.height_px);
@@ -279,8 +222,8 @@ std::optional<CameraCalibration> RigReader::read_calibration(Section& section) {
     });
 }
 
-std::array<int, 2> RigReader::read_size(Section& section,
-                                        const std::optional<CameraCalibration>& calibration) {
+std::array<int, 2> read_size(Section& section,
+                             const std::optional<CameraCalibration>& calibration) {
     if (calibration && !section.has("resolution"))
         return {calibration->width_px, calibration->height_px};
     const auto resolution = section.numbers<2>("resolution", kResolutionPx);
@@ -300,9 +243,9 @@ std::array<int, 2> RigReader::read_size(Section& section,
 
 // One of: pitch and focal length, a field of view, a calibration. Of the latter two, only the ratio
 // of focal length and pitch counts.
-void RigReader::read_lens(Section& section,
-                          const std::optional<CameraCalibration>& calibration,
-                          Camera& camera) {
+void read_lens(Section& section,
+               const std::optional<CameraCalibration>& calibration,
+               Camera& camera) {
     if (!calibration && !section.has("fov_deg")) {
         camera.pixel_pitch_m =
             section.number("pixel_pitch_um", kPixelPitchUm) * kMetresPerMicrometre;
@@ -324,15 +267,15 @@ void RigReader::read_lens(Section& section,
         camera.lens = calibration->lens;
 }
 
-TabulatedVignetting RigReader::read_vignetting_table(Section& section) {
+TabulatedVignetting read_vignetting_table(Section& section, RigFiles& files) {
     const std::string name = section.text("table", "the name of a .csv file beside the rig");
     return section.at_key("table", [&] {
-        const std::string text = files_.read(name, kMostTableBytes);
+        const std::string text = files.read(name, kMostTableBytes);
         return parse_vignetting_csv(name, text);
     });
 }
 
-void RigReader::read_vignetting(Section& camera_section, Camera& camera) {
+void read_vignetting(Section& camera_section, RigFiles& files, Camera& camera) {
     const std::string allowed =
         "\"natural\" (cos^4), { radial = [a1, a2, a3] } or { table = \"vignetting.csv\" }";
     if (!camera_section.required("vignetting", allowed).is_table()) {
@@ -346,7 +289,7 @@ void RigReader::read_vignetting(Section& camera_section, Camera& camera) {
     if (section.has("radial")) {
         camera.vignetting = RadialVignetting{section.numbers<3>("radial", kVignettingTerm)};
     } else {
-        camera.vignetting = read_vignetting_table(section);
+        camera.vignetting = read_vignetting_table(section, files);
     }
     section.refuse_unknown_keys();
     (void)camera_section.at_key("vignetting", [&] {
@@ -367,7 +310,7 @@ void read_place(Section& camera, Mounting& mounting) {
 }
 
 // What no render needs, and surveys do.
-Readout RigReader::read_readout(Section& camera, bool is_mono) {
+Readout read_readout(Section& camera, bool is_mono) {
     const auto optional = [&](std::string_view key, Bounds bounds) {
         return camera.has(key) ? std::optional(camera.number(key, bounds)) : std::nullopt;
     };
@@ -392,15 +335,14 @@ Readout RigReader::read_readout(Section& camera, bool is_mono) {
     return readout;
 }
 
-Camera RigReader::read_camera(Section section, Mounting& mounting) {
+Camera read_camera(Section section, RigFiles& files, Mounting& mounting) {
     section.refuse_keys_but(
-        {"resolution",     "pixel_pitch_um", "focal_length_mm", "fov_deg",    "calibration",
-         "vignetting",     "range_nm",       "response",        "port",       "black_level_dn",
-         "white_level_dn", "bayer",          "exposure_ms",     "iso",        "f_number",
-         "gain_dn_per_e",  "read_noise_e",   "saturation_e",    "position_m", "orientation_deg"});
-    const std::optional<CameraCalibration> calibration = read_calibration(section);
+        "resolution, pixel_pitch_um, focal_length_mm, fov_deg, calibration, vignetting, range_nm, "
+        "response, port, black_level_dn, white_level_dn, bayer, exposure_ms, iso, f_number, "
+        "gain_dn_per_e, read_noise_e, saturation_e, position_m, orientation_deg");
+    const std::optional<CameraCalibration> calibration = read_calibration(section, files);
     const auto [width_px, height_px] = read_size(section, calibration);
-    Sensor sensor = read_response(section);
+    Sensor sensor = read_response(section, files);
     WavelengthRange range = sensor.range();
     if (section.has("range_nm")) {
         const auto [first_nm, last_nm] = section.numbers<2>("range_nm", kWavelengthNm);
@@ -414,7 +356,7 @@ Camera RigReader::read_camera(Section section, Mounting& mounting) {
                   .sensor = std::move(sensor),
                   .port = std::nullopt};
     read_lens(section, calibration, camera);
-    if (section.has("vignetting")) read_vignetting(section, camera);
+    if (section.has("vignetting")) read_vignetting(section, files, camera);
     camera.readout = read_readout(section, camera.sensor.is_mono());
     if (calibration && calibration->port) {
         camera.port = read_calibrated_port(
@@ -427,28 +369,28 @@ Camera RigReader::read_camera(Section section, Mounting& mounting) {
     return camera;
 }
 
-Seafloor RigReader::read_seafloor(Section section) {
+Seafloor read_seafloor(Section section, RigFiles& files) {
     Seafloor floor{
-        .reflectance = files_.curve(section, "reflectance", CurveRole::Reflectance, "sand"),
+        .reflectance = files.curve(section, "reflectance", CurveRole::Reflectance, "sand"),
         .phong = section.number_or("phong", kPhong, 0.0),
         .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
     section.refuse_unknown_keys();
     return floor;
 }
 
-std::vector<Spectrum> RigReader::read_materials(Section& top) {
+std::vector<Spectrum> read_materials(Section& top, RigFiles& files) {
     std::vector<Spectrum> materials;
     if (!top.has("materials")) return materials;
     const std::string allowed =
         "an array of built-in reflectances (aphotic data) or .csv files beside the rig";
     for (const std::string& name : top.texts("materials", allowed)) {
         materials.push_back(
-            files_.curves_named(top, "materials", name, CurveRole::Reflectance).front());
+            files.curves_named(top, "materials", name, CurveRole::Reflectance).front());
     }
     return materials;
 }
 
-Cone RigReader::read_cone(Section& section) {
+Cone read_cone(Section& section) {
     Cone cone{.part = section.text("part", "a name in quotes"),
               .half_angle_rad = section.number("half_angle_deg", kHalfAngleDeg) * kRadiansPerDegree,
               .weight = section.number("weight", kConeWeight),
@@ -464,7 +406,7 @@ Cone RigReader::read_cone(Section& section) {
     return cone;
 }
 
-BeamOptics RigReader::read_optics(Section& section) {
+BeamOptics read_optics(Section& section) {
     const auto [along_mm, across_mm] = section.numbers<2>("diffuser_mm", kOpticsMm);
     const auto metres = [&](std::string_view key, const Bounds& bounds) {
         return section.number(key, bounds) * kMetresPerMillimetre;
@@ -476,18 +418,18 @@ BeamOptics RigReader::read_optics(Section& section) {
             .aperture_m = metres("aperture_mm", kOpticsMm)};
 }
 
-BeamTable RigReader::read_beam_table(Section& section) {
+BeamTable read_beam_table(Section& section, RigFiles& files) {
     const std::string allowed =
         fmt::format("the name of a {} file beside the rig", kPhotometricEndings);
     const std::string name = section.text("table", allowed);
     if (!is_photometric_file_name(name)) section.found_but("table", allowed);
     return section.at_key("table", [&] {
         return normalised(
-            parse_photometric_file(name, files_.read(name, kMostPhotometricBytes)).table);
+            parse_photometric_file(name, files.read(name, kMostPhotometricBytes)).table);
     });
 }
 
-BeamWindow RigReader::read_window(Section& section, const Water& water) {
+BeamWindow read_window(Section& section, const Water& water) {
     const std::string allowed = fmt::format(
         "a built-in glass or its index, {} to {}", kWindowIndex.least, kWindowIndex.most);
     const toml::node& node = section.required("window", allowed);
@@ -499,18 +441,10 @@ BeamWindow RigReader::read_window(Section& section, const Water& water) {
     return {.glass_index = glass_index, .water_index = water.refractive_index(kWindowIndex_nm)};
 }
 
-Beam RigReader::read_beam(Section section, std::string name, const Water& water) {
-    section.refuse_keys_but({"weights",
-                             "cones",
-                             "fwhm_deg",
-                             "table",
-                             "diffuser_mm",
-                             "focal_length_mm",
-                             "distance_mm",
-                             "aperture_mm",
-                             "turn_deg",
-                             "measured_in",
-                             "window"});
+Beam read_beam(Section section, RigFiles& files, std::string name, const Water& water) {
+    section.refuse_keys_but(
+        "weights, cones, fwhm_deg, table, diffuser_mm, focal_length_mm, distance_mm, aperture_mm, "
+        "turn_deg, measured_in, window");
     const auto refuse_beside = [&](const std::vector<std::string>& keys, const std::string& why) {
         for (const std::string& key : keys) {
             if (section.has(key)) section.fail_at(key, why);
@@ -521,7 +455,7 @@ Beam RigReader::read_beam(Section section, std::string name, const Water& water)
     if (section.has("table")) {
         refuse_beside({"cones", "fwhm_deg", "diffuser_mm"}, kOneKindOfBeam);
         refuse_beside(optics, kOneKindOfBeam);
-        beam.pattern = read_beam_table(section);
+        beam.pattern = read_beam_table(section, files);
         if (largest_intensity(std::get<BeamTable>(beam.pattern)) == 0.0) {
             section.found_but("table", "one with light in it");
         }
@@ -563,8 +497,8 @@ Beam RigReader::read_beam(Section section, std::string name, const Water& water)
     return scaled_to_flux(std::move(beam));
 }
 
-Eigen::Vector3d RigReader::axis_from_aim(Section aim, const Eigen::Vector3d& position_m) {
-    aim.refuse_keys_but({"tilt_deg", "toward"});
+Eigen::Vector3d axis_from_aim(Section aim, const Eigen::Vector3d& position_m) {
+    aim.refuse_keys_but("tilt_deg, toward");
     const double tilt_rad = aim.number("tilt_deg", kAimTiltDeg) * kRadiansPerDegree;
     (void)aim.word("toward", {"axis"});
     const Eigen::Vector3d inward(-position_m.x(), -position_m.y(), 0.0);
@@ -577,7 +511,7 @@ Eigen::Vector3d RigReader::axis_from_aim(Section aim, const Eigen::Vector3d& pos
     return std::cos(tilt_rad) * Eigen::Vector3d::UnitZ() + std::sin(tilt_rad) * inward.normalized();
 }
 
-Eigen::Vector3d RigReader::read_axis(Section& strobe, const Eigen::Vector3d& position_m) {
+Eigen::Vector3d read_axis(Section& strobe, const Eigen::Vector3d& position_m) {
     const std::string allowed =
         "either aim = { tilt_deg = 26.0, toward = \"axis\" } or direction = [x, y, z]";
     const bool has_direction = strobe.has("direction");
@@ -589,7 +523,7 @@ Eigen::Vector3d RigReader::read_axis(Section& strobe, const Eigen::Vector3d& pos
     return direction.normalized();
 }
 
-Emitter RigReader::read_emitter(Section& strobe) {
+Emitter read_emitter(Section& strobe) {
     const auto [across_mm, along_mm] = strobe.numbers<2>("emitter_mm", kEmitterMm);
     return {.across_m = across_mm * kMetresPerMillimetre,
             .along_m = along_mm * kMetresPerMillimetre};
@@ -597,7 +531,7 @@ Emitter RigReader::read_emitter(Section& strobe) {
 
 // Phi(lambda) = power S(lambda) of the table S: of a lamp whose flux is known, power is that over
 // the integral of S, for lumens 683 lm/W times that of S V with the CIE's V(lambda).
-double RigReader::read_power(Section& strobe, const Spectrum& spectrum) {
+double read_power(Section& strobe, const Spectrum& spectrum) {
     const std::vector<std::string> kinds{"power", "luminous_flux_lm", "radiant_flux_w", "energy_j"};
     std::string kind;
     for (const std::string& key : kinds) {
@@ -622,7 +556,10 @@ double RigReader::read_power(Section& strobe, const Spectrum& spectrum) {
     return value / of_table;
 }
 
-Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, const Sled& sled) {
+Strobe read_strobe(Section section,
+                   RigFiles& files,
+                   const std::vector<Beam>& beams,
+                   const Sled& sled) {
     const auto [x, y, z] = section.numbers<3>("position_m", kPositionM);
     if (height_above(floor_plane(sled), {x, y, z}) < kLeastDistance_m) {
         section.found_but(
@@ -634,7 +571,7 @@ Strobe RigReader::read_strobe(Section section, const std::vector<Beam>& beams, c
         .position_m = {x, y, z},
         .axis = read_axis(section, {x, y, z}),
         .beam = {},
-        .spectrum = files_.curve(section, "spectrum", CurveRole::LampSpectrum, "xenon-flash"),
+        .spectrum = files.curve(section, "spectrum", CurveRole::LampSpectrum, "xenon-flash"),
         .power = 1.0,
         .emitter = std::nullopt};
     strobe.power = read_power(section, strobe.spectrum);
@@ -664,7 +601,7 @@ Box read_box(Section& object) {
     return {.least_m = a.cwiseMin(b), .most_m = a.cwiseMax(b)};
 }
 
-Mesh RigReader::read_mesh_of(Section& object) {
+Mesh read_mesh_of(Section& object, RigFiles& files) {
     const std::string allowed = "the name of a Wavefront .obj file beside the rig";
     const std::string name = object.text("file", allowed);
     if (!name.ends_with(".obj")) object.found_but("file", allowed);
@@ -673,8 +610,8 @@ Mesh RigReader::read_mesh_of(Section& object) {
         position_m = Eigen::Vector3d(object.numbers<3>("position_m", kPositionM).data());
     }
     return object.at_key("file", [&] {
-        const fs::path file = files_.path_of(name);
-        const std::string obj = files_.read(name, kMostMeshBytes);
+        const fs::path file = files.path_of(name);
+        const std::string obj = files.read(name, kMostMeshBytes);
         return parse_mesh(file.string(), obj, position_m);
     });
 }
@@ -685,9 +622,9 @@ constexpr std::string_view place_key(const std::string_view shape) {
     return shape == "box" ? "from_m" : "file";
 }
 
-Shape RigReader::read_shape(Section& object, std::string_view key) {
+Shape read_shape(Section& object, RigFiles& files, std::string_view key) {
     if (key == place_key("box")) return read_box(object);
-    if (key == place_key("mesh")) return read_mesh_of(object);
+    if (key == place_key("mesh")) return read_mesh_of(object, files);
     const auto centre_m = object.numbers<3>("centre_m", kPositionM);
     return Sphere{.centre_m = Eigen::Vector3d(centre_m.data()),
                   .radius_m = object.number("radius_m", kRadiusM)};
@@ -709,13 +646,13 @@ void require_place(const Shape& shape, const std::vector<Strobe>& strobes) {
     }
 }
 
-Object RigReader::read_object(Section section, const std::vector<Strobe>& strobes) {
+Object read_object(Section section, RigFiles& files, const std::vector<Strobe>& strobes) {
     std::string name = section.text("name", "a name in quotes");
     const std::string_view key = place_key(section.word("shape", {"sphere", "box", "mesh"}));
     Object object{
         .name = std::move(name),
-        .shape = read_shape(section, key),
-        .reflectance = files_.curves(section, "reflectance", CurveRole::Reflectance).front(),
+        .shape = read_shape(section, files, key),
+        .reflectance = files.curves(section, "reflectance", CurveRole::Reflectance).front(),
         .phong = section.number_or("phong", kPhong, 0.0),
         .phong_size = section.number_or("phong_size", kPhongSize, 40.0)};
     section.refuse_unknown_keys();
@@ -726,12 +663,14 @@ Object RigReader::read_object(Section section, const std::vector<Strobe>& strobe
     return object;
 }
 
-std::vector<Object> RigReader::read_objects(Section& top, const std::vector<Strobe>& strobes) {
+std::vector<Object> read_objects(Section& top,
+                                 RigFiles& files,
+                                 const std::vector<Strobe>& strobes) {
     std::vector<Object> objects;
     std::set<std::string> names;
     if (!top.has("object")) return objects;
     for (Section& section : top.sections("object", "one or more tables [[object]]")) {
-        objects.push_back(read_object(section, strobes));
+        objects.push_back(read_object(section, files, strobes));
         if (!names.insert(objects.back().name).second)
             section.found_but("name", "a name that no other object has");
     }
@@ -763,7 +702,7 @@ void require_tables_to_cover_the_range(const Rig& rig) {
     require_cover(curves, rig.camera.range);
 }
 
-std::vector<Beam> RigReader::read_beams(Section& top, const Water& water) {
+std::vector<Beam> read_beams(Section& top, RigFiles& files, const Water& water) {
     Section sections = top.section("beam", "a table [beam.NAME]");
     const std::vector<std::string> names = sections.keys();
     if (names.empty()) top.found_but("beam", "at least one table [beam.NAME]");
@@ -771,20 +710,21 @@ std::vector<Beam> RigReader::read_beams(Section& top, const Water& water) {
     std::vector<Beam> beams;
     for (const std::string& name : names) {
         sections.require_one_line(sections.required(name, ""), name, name);
-        beams.push_back(read_beam(sections.section(name, "a table"), name, water));
+        beams.push_back(read_beam(sections.section(name, "a table"), files, name, water));
     }
     return beams;
 }
 
-std::vector<Strobe> RigReader::read_strobes(Section& top,
-                                            const std::vector<Beam>& beams,
-                                            const Sled& sled,
-                                            const Water& water) {
+std::vector<Strobe> read_strobes(Section& top,
+                                 RigFiles& files,
+                                 const std::vector<Beam>& beams,
+                                 const Sled& sled,
+                                 const Water& water) {
     std::vector<Strobe> strobes;
     std::set<std::string> names;
     std::size_t cones = 0;
     for (Section& section : top.sections("strobe", "one or more tables [[strobe]]")) {
-        strobes.push_back(read_strobe(section, beams, sled));
+        strobes.push_back(read_strobe(section, files, beams, sled));
         if (!names.insert(strobes.back().name).second)
             section.found_but("name", "a name that no other strobe has");
         if (water.scatters() && strobes.back().position_m.norm() < kLeastDistance_m) {
@@ -801,22 +741,22 @@ std::vector<Strobe> RigReader::read_strobes(Section& top,
     return strobes;
 }
 
-Rig RigReader::read(Section top) {
+Rig read_all(Section top, RigFiles files, std::string toml) {
     std::string title = top.text_or("title", "a text in quotes", "");
     Mounting mounting;
     const Sled sled = read_sled(top.section("sled", "a table [sled]"), mounting);
-    Camera camera = read_camera(top.section("camera", "a table [camera]"), mounting);
-    Water water = read_water(top.section("water", "a table [water]"), files_);
-    Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"));
+    Camera camera = read_camera(top.section("camera", "a table [camera]"), files, mounting);
+    Water water = read_water(top.section("water", "a table [water]"), files);
+    Seafloor seafloor = read_seafloor(top.section("seafloor", "a table [seafloor]"), files);
 
-    const std::vector<Beam> beams = read_beams(top, water);
-    std::vector<Strobe> strobes = read_strobes(top, beams, sled, water);
-    std::vector<Spectrum> materials = read_materials(top);
-    std::vector<Object> objects = read_objects(top, strobes);
+    const std::vector<Beam> beams = read_beams(top, files, water);
+    std::vector<Strobe> strobes = read_strobes(top, files, beams, sled, water);
+    std::vector<Spectrum> materials = read_materials(top, files);
+    std::vector<Object> objects = read_objects(top, files, strobes);
     fs::path scene;
     if (top.has("scene")) {
         const std::string name = top.text("scene", "a POV-Ray scene beside the rig");
-        scene = top.at_key("scene", [&] { return files_.path_of(name); });
+        scene = top.at_key("scene", [&] { return files.path_of(name); });
     }
     top.refuse_unknown_keys();
 
@@ -830,9 +770,9 @@ Rig RigReader::read(Section top) {
             .materials = std::move(materials),
             .objects = std::move(objects),
             .scene = std::move(scene),
-            .digest = files_.digest(toml_),
-            .toml = toml_,
-            .files = files_.all()};
+            .digest = files.digest(toml),
+            .toml = std::move(toml),
+            .files = files.all()};
     const Section camera_section = top.section("camera", "a table [camera]");
     (void)camera_section.at_key("range_nm", [&] {
         require_tables_to_cover_the_range(rig);
@@ -852,7 +792,7 @@ Rig parse_rig(std::string_view toml, const std::string& file_name, const fs::pat
         throw InputError(
             "{}:{}: {}", file_name, error.source().begin.line, printable(error.description()));
     }
-    Rig rig = RigReader(toml, folder).read(Section(table, "", file_name));
+    Rig rig = read_all(Section(table, "", file_name), RigFiles(folder), std::string(toml));
     if (rig.title.empty()) rig.title = fs::path(file_name).stem().string();
     return rig;
 }

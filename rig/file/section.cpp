@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rig/file/section.h"
 
+#include "base/csv.h"
 #include "base/nearest.h"
 #include "base/printable.h"
 
-#include <algorithm>
 #include <sstream>
 
 namespace aphotic {
@@ -131,8 +131,9 @@ void Section::refuse_unknown_keys() const {
     }
 }
 
-void Section::refuse_keys_but(const std::vector<std::string>& known) {
-    known_ = known;
+void Section::refuse_keys_but(std::string_view known) {
+    const auto keys = comma_fields(known);
+    known_.assign(keys.begin(), keys.end());
     refuse_unknown_keys();
 }
 

@@ -106,7 +106,7 @@ class Section {
 
     // Before any is asked for: where another key stands in place of one that is required, that is
     // the cause.
-    void refuse_keys_but(const std::vector<std::string>& known);
+    void refuse_keys_but(std::string_view known);  // with commas between
 
     // Ways to say one thing.
     void refuse_both(std::initializer_list<std::string_view> keys);

@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "survey/correct/slow_light.h"
-#include "survey/images/raw_image.h"
 
 #include <cmath>
 

@@ -2,7 +2,6 @@
 #include "survey/correct/result_files.h"
 
 #include "base/atomic_file.h"
-#include "image/any_image.h"
 #include "image/preview.h"
 
 #include <nlohmann/json.hpp>

@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <map>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace aphotic {

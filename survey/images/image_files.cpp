@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "survey/images/image_files.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "base/printable.h"
 #include "base/words.h"
@@ -12,10 +13,8 @@
 #include <array>
 #include <functional>
 #include <map>
-#include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 namespace aphotic {
 
@@ -61,21 +60,9 @@ std::string kinds_in_words(const std::map<std::string, std::size_t>& kinds) {
 
 // Of raw files that are not read, what to do with them.
 bool is_other_raw(std::string_view extension) {
-    static constexpr std::array<std::string_view, 14> kRaws{".orf",
-                                                            ".rw2",
-                                                            ".raf",
-                                                            ".cr3",
-                                                            ".pef",
-                                                            ".srw",
-                                                            ".x3f",
-                                                            ".iiq",
-                                                            ".3fr",
-                                                            ".nrw",
-                                                            ".erf",
-                                                            ".kdc",
-                                                            ".dcr",
-                                                            ".raw"};
-    return std::ranges::find(kRaws, extension) != kRaws.end();
+    constexpr std::string_view kRaws =
+        ".orf,.rw2,.raf,.cr3,.pef,.srw,.x3f,.iiq,.3fr,.nrw,.erf,.kdc,.dcr,.raw";
+    return std::ranges::count(comma_fields(kRaws), extension) > 0;
 }
 
 [[noreturn]] void refuse_empty(const fs::path& folder,

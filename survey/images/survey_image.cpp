@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
-#include <utility>
 
 namespace aphotic {
 

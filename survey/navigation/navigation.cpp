@@ -15,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <tuple>
-#include <utility>
 
 namespace aphotic {
 

@@ -10,10 +10,9 @@
 #include "rig/beam/photometric_text.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <set>
 #include <utility>
@@ -57,72 +56,27 @@ namespace {
 using Header = std::vector<std::string>;
 
 struct KnownFormat {
-    std::string_view name;
+    std::string name;
     // In lower case, the first that is there counts.
-    std::array<std::vector<std::string_view>, kNavigationFields.size()> columns;
+    std::array<std::vector<std::string>, kNavigationFields.size()> columns;
 };
 
-const std::vector<KnownFormat>& known_formats() {
-    static const std::vector<KnownFormat> kFormats{
-        {"Aphotic's CSV",
-         {{{"image"},
-           {"timestamp [s]", "timestamp", "time", "datetime"},
-           {"altitude_m"},
-           {"pitch_deg"},
-           {"roll_deg"}}}},
-        {"oplab's CSV",
-         {{{"relative_path"},
-           {"timestamp [s]"},
-           {"altitude [m]"},
-           {"pitch [deg]"},
-           {"roll [deg]"}}}},
-        {"BIIGLE's CSV",
-         {{{"filename", "file"},
-           {"taken_at", "sub_datetime"},
-           {"distance_to_ground", "sub_distance"},
-           {},
-           {}}}},
-        {"SQUIDLE+'s CSV",
-         {{{"key"}, {"timestamp_start"}, {"pose.alt"}, {"pose.data.pitch"}, {"pose.data.roll"}}}},
-        {"HabCam's .img", {{{"imagename"}, {}, {"alt1"}, {"pitch"}, {"roll"}}}},
-        // All of these names in one table, but for those that mean little by themselves.
-        {"a table",
-         {{{"image",
-            "relative_path",
-            "filename",
-            "imagename",
-            "image name",
-            "image_name",
-            "file name",
-            "file_name"},
-           {"timestamp [s]",
-            "timestamp",
-            "time",
-            "datetime",
-            "taken_at",
-            "sub_datetime",
-            "timestamp_start",
-            "date/time"},
-           {"altitude_m", "altitude [m]", "altitude (m)", "distance_to_ground", "sub_distance"},
-           {"pitch_deg", "pitch [deg]", "pitch (deg)"},
-           {"roll_deg", "roll [deg]", "roll (deg)"}}}}};
-    return kFormats;
+std::vector<KnownFormat> formats_in(std::string_view json) {
+    std::vector<KnownFormat> formats;
+    for (const nlohmann::json& one : nlohmann::json::parse(json)) {
+        KnownFormat format{.name = one.at("format").get<std::string>(), .columns = {}};
+        for (std::size_t field = 0; field < kNavigationFields.size(); ++field)
+            one.at(std::string(kNavigationFields.at(field))).get_to(format.columns.at(field));
+        formats.push_back(std::move(format));
+    }
+    return formats;
 }
 
-// An altitude of PANGAEA's is over the sea level.
-const std::vector<KnownFormat>& pangaeas_format() {
-    static const std::vector<KnownFormat> kFormats{
-        {"PANGAEA's tab file",
-         {{{"image", "file name", "filename", "file", "image name"},
-           {"date/time"},
-           {"altitude_m"},
-           {"pitch_deg", "pitch [deg]"},
-           {"roll_deg", "roll [deg]"}}}}};
-    return kFormats;
-}
-
-const std::vector<KnownFormat>& formats_of(const HeaderRequest& request) {
-    return request.is_pangaeas ? pangaeas_format() : known_formats();
+// PANGAEA's stands last, and by itself: its altitude [m], for one, is over the sea level.
+std::span<const KnownFormat> formats_of(const HeaderRequest& request) {
+    static const std::vector<KnownFormat> kFormats = formats_in(navigation_formats().front().json);
+    const std::span<const KnownFormat> all(kFormats);
+    return request.is_pangaeas ? all.last(1) : all.first(all.size() - 1);
 }
 
 std::optional<std::size_t> column_named(const Header& header, std::string_view wanted) {
@@ -177,7 +131,7 @@ NavigationColumns with_format(NavigationColumns columns,
                               const Header& header) {
     columns.format = format.name;
     for (std::size_t field = 0; field < kNavigationFields.size(); ++field) {
-        for (const std::string_view name : format.columns.at(field)) {
+        for (const std::string& name : format.columns.at(field)) {
             auto& place = columns.places.at(field);
             if (!place) place = column_named(header, name);
         }
@@ -193,7 +147,7 @@ bool has_pose_and_name(const NavigationColumns& columns) {
 // The format with most of the columns that are its own: image, else altitude, else time, in which
 // --columns may have put others in the place of the rest.
 std::optional<NavigationColumns> recognised(const NavigationColumns& given,
-                                            const std::vector<KnownFormat>& formats,
+                                            std::span<const KnownFormat> formats,
                                             const Header& header) {
     using Wanted = std::vector<NavigationField>;
     using enum NavigationField;

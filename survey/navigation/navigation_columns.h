@@ -2,21 +2,8 @@
 //
 // Which columns of a table are what, by their names in the formats that surveys come in, whatever
 // their letter case:
-//
-//   format          image           time                       altitude             pitch, roll
-//   Aphotic's CSV   image           timestamp [s], timestamp,  altitude_m           pitch_deg
-//                                   time, datetime                                  roll_deg
-//   oplab's CSV     relative_path   timestamp [s]              altitude [m]         pitch [deg]
-//                                                                                   roll [deg]
-//   BIIGLE's CSV    filename, file  taken_at, SUB_datetime     distance_to_ground,  none
-//                                                              SUB_distance
-//   SQUIDLE+'s CSV  key             timestamp_start            pose.alt             pose.data.pitch
-//                                                                                   pose.data.roll
-//   HabCam's .img   imagename       none                       alt1                 pitch, roll
-//   a table         any of these, with units where they are in doubt: altitude_m, altitude [m],
-//                   distance_to_ground, SUB_distance; pitch_deg, pitch [deg]; roll_deg, roll [deg]
-//   PANGAEA's .tab  image,          date/time                  altitude_m           pitch [deg]
-//                   file name                                                       roll [deg]
+// (formats.json): Aphotic's, oplab's, BIIGLE's and SQUIDLE+'s CSV, HabCam's .img, PANGAEA's tab
+// files, and any table whose names say enough, with units where they are in doubt.
 //
 // All are in metres and degrees. Heights over the sea level are never taken: gps_altitude,
 // SUB_altitude, pose.dep, depth, and PANGAEA's altitude [m].
@@ -30,6 +17,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,22 +54,15 @@ struct NavigationColumns {
 };
 
 // HabCam's .img has no header: these are its columns, in their order.
-inline constexpr std::array<std::string_view, 16> kHabCamColumns{"imagename",
-                                                                 "lat",
-                                                                 "lon",
-                                                                 "head",
-                                                                 "pitch",
-                                                                 "roll",
-                                                                 "alt1",
-                                                                 "alt2",
-                                                                 "depth",
-                                                                 "s",
-                                                                 "t",
-                                                                 "o2",
-                                                                 "cdom",
-                                                                 "chlorophyll",
-                                                                 "backscatter",
-                                                                 "therm"};
+inline constexpr std::string_view kHabCamColumns =
+    "imagename,lat,lon,head,pitch,roll,alt1,alt2,depth,s,t,o2,cdom,chlorophyll,backscatter,therm";
+
+// formats.json: of each format, which names its columns have.
+struct NavigationFormats {
+    std::string_view name;
+    std::string_view json;
+};
+[[nodiscard]] std::span<const NavigationFormats> navigation_formats();
 
 struct HeaderRequest {
     std::string file{};  // it and its line stand in messages

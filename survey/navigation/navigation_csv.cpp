@@ -6,8 +6,6 @@
 #include "base/error.h"
 #include "base/printable.h"
 #include "rig/beam/photometric_text.h"
-#include "survey/navigation/navigation.h"
-#include "survey/navigation/navigation_columns.h"
 #include "survey/navigation/table_text.h"
 #include "survey/navigation/time_text.h"
 
@@ -16,11 +14,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace aphotic {
 
@@ -126,18 +121,13 @@ Layout acfr_layout() {
 }
 
 bool are_numbers(const Fields& fields, std::size_t first, std::size_t count) {
-    return std::all_of(fields.begin() + static_cast<std::ptrdiff_t>(first),
-                       fields.begin() + static_cast<std::ptrdiff_t>(first + count),
-                       [](const std::string& field) {
-                           ImagePose none;
-                           static_cast<void>(number_in(none, "", field));
-                           return none.fault.empty();
-                       });
+    const auto begin = fields.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::all_of(begin, begin + static_cast<std::ptrdiff_t>(count), is_numeric_word);
 }
 
 // Latitude to roll are numbers.
 bool is_habcam_img(const Fields& fields) {
-    return fields.size() == kHabCamColumns.size() && are_numbers(fields, 1, 5);
+    return fields.size() == comma_fields(kHabCamColumns).size() && are_numbers(fields, 1, 5);
 }
 
 // A header row of as many words has no number; a line that is spoilt has one left.
@@ -248,7 +238,8 @@ class LayoutReader {
     std::optional<Layout> of_values() {
         for (const char separator : kSeparators) {
             if (!is_habcam_img(table_.row(separator).fields)) continue;
-            const Fields header(kHabCamColumns.begin(), kHabCamColumns.end());
+            const auto names = comma_fields(kHabCamColumns);
+            const Fields header(names.begin(), names.end());
             return Layout{.columns = navigation_columns(request_, header), .separator = separator};
         }
         const Fields words = table_.row(kByBlanks).fields;

@@ -11,7 +11,6 @@
 #include "base/words.h"
 #include "image/any_image.h"
 #include "survey/navigation/image_time.h"
-#include "survey/navigation/navigation_columns.h"
 #include "survey/navigation/navigation_csv.h"
 #include "survey/navigation/navigation_ifdo.h"
 #include "survey/navigation/vehicle_pose.h"
@@ -19,9 +18,6 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <limits>
-#include <optional>
-#include <thread>
 #include <utility>
 
 namespace aphotic {

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdint>
 #include <regex>
-#include <string>
 
 namespace aphotic {
 namespace {

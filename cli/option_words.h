@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The words of --help are text, not code: cli/options.toml has the names, what follows them and
+// what they mean, of each command and of all. Code says what an option sets and what it allows.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace aphotic {
+
+struct CommandText {
+    std::string_view name;  // of a file of cli/
+    std::string_view text;
+};
+
+[[nodiscard]] std::span<const CommandText> command_texts();
+
+namespace cli {
+
+// A file of cli/ that travels inside the command: options.toml, and what the manual page ends and
+// bash's completion begins with.
+[[nodiscard]] std::string_view command_text(std::string_view file);
+
+// Says what the command is, under which heading of the list it stands, and what stands below its
+// options.
+void describe(CLI::App& command);
+
+// All spellings of an option or argument of the command, by the first long one: "--output".
+[[nodiscard]] std::string spellings_of(const CLI::App& command, const std::string& name);
+
+// Says what the option takes and means, and its default.
+CLI::Option* described(const CLI::App& command, const std::string& name, CLI::Option* option);
+
+template <typename Value>
+CLI::Option* add_option(CLI::App& app, const std::string& name, Value& value) {
+    return described(app, name, app.add_option(spellings_of(app, name), value));
+}
+
+// take(text) is called with what is given.
+template <typename Value, typename Take>
+CLI::Option* add_option_function(CLI::App& app, const std::string& name, Take take) {
+    CLI::Option* option = app.add_option_function<Value>(spellings_of(app, name), std::move(take));
+    return described(app, name, option);
+}
+
+// A value that is set, or what is called when the flag is given.
+template <typename Value>
+CLI::Option* add_flag(CLI::App& app, const std::string& name, Value&& value) {
+    const std::string names = spellings_of(app, name);
+    if constexpr (std::is_invocable_v<Value>) {
+        return described(app, name, app.add_flag_callback(names, std::forward<Value>(value)));
+    } else {
+        return described(app, name, app.add_flag(names, value));
+    }
+}
+
+}  // namespace cli
+}  // namespace aphotic
