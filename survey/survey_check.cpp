@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kRed = 0;
 constexpr std::size_t kGreenChannel = 1;
 constexpr std::size_t kBlue = 2;
-constexpr double kPercent = 100.0;
+constexpr double kPerCent = 100.0;
 
 constexpr double kNearTop = 0.9;
 constexpr double kLeastTop = 64.0;  // six whole numbers and more lie between 0.9 of it and it
@@ -60,9 +60,9 @@ constexpr double kVaried = 4.0;
 constexpr double kMostOfDarkest = 0.5;
 constexpr double kBlockNoise = 0.1;  // by which b may exceed what is darkest, of noise
 
-constexpr int kBlocksAcross = 16;
+constexpr int kLookBlocksAcross = 16;
 constexpr int kBlocksDown = 12;
-constexpr std::size_t kBlocks = std::size_t{kBlocksAcross} * kBlocksDown;
+constexpr std::size_t kBlocks = std::size_t{kLookBlocksAcross} * kBlocksDown;
 
 // Sums over a block's samples.
 struct Block {
@@ -89,8 +89,8 @@ std::vector<Block> blocks_of(const RawImage& raw,
             const std::size_t pixel = size_of(row) * size_of(raw.width_px) + size_of(column);
             const float sample = raw.samples[is_plane ? pixel : of_map + pixel];
             if (!counts(sample)) continue;
-            Block& block = blocks[size_of(row * kBlocksDown / raw.height_px) * kBlocksAcross +
-                                  size_of(column * kBlocksAcross / raw.width_px)];
+            Block& block = blocks[size_of(row * kBlocksDown / raw.height_px) * kLookBlocksAcross +
+                                  size_of(column * kLookBlocksAcross / raw.width_px)];
             block.image += static_cast<double>(sample - levels.black);
             for (std::size_t m = 0; m < maps.size(); ++m)
                 block.maps[m] += static_cast<double>(maps[m]->samples[of_map + pixel]);
@@ -223,7 +223,7 @@ void check_white(std::span<const ImageLook> looks, std::vector<Suspicion>& found
         {.about = "white-level",
          .what = fmt::format("{:.2g} % of the samples are {:g}, the largest number of all, as "
                              "where a sensor is saturated{}",
-                             kPercent * share,
+                             kPerCent * share,
                              all.top,
                              std::isfinite(white) ? fmt::format("; the white level is {:g}", white)
                                                   : "; there is no white level")});
@@ -255,8 +255,8 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
                      .what = fmt::format("the two sites that {} makes green differ by {:.0f} %, "
                                          "the other two by {:.1f} %: the pattern is {}",
                                          mosaic_name(mosaic),
-                                         kPercent * green,
-                                         kPercent * other,
+                                         kPerCent * green,
+                                         kPerCent * other,
                                          is_green_beside ? "GRBG or GBRG" : "RGGB or BGGR")});
 }
 

@@ -18,7 +18,7 @@
 namespace aphotic {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 struct ChosenImage {
     ImageFile file;
@@ -41,8 +41,8 @@ Selection selected(const Survey& survey, const ObservationOptions& options) {
     for (const ImageFile& file : survey.files) {
         try {
             Sled sled = survey.sled_of(file);
-            if (!known.pitch) sled.pitch_rad = kUnknown;
-            if (!known.roll) sled.roll_rad = kUnknown;
+            if (!known.pitch) sled.pitch_rad = kNotKnown;
+            if (!known.roll) sled.roll_rad = kNotKnown;
             const double off_m = std::abs(sled.altitude_m - options.altitude_m);
             if (off_m > options.within_m + kRounding_m) {
                 ++selection.outside;
@@ -192,7 +192,7 @@ double noise_of(const Observed& observed) {
         sum += observed.average[i];
         count += 1.0;
     }
-    return count > 0.0 ? std::sqrt(squares / count) / (sum / count) : kUnknown;
+    return count > 0.0 ? std::sqrt(squares / count) / (sum / count) : kNotKnown;
 }
 
 double degrees(double radians) {
