@@ -80,7 +80,6 @@ bool Painter::interpolate(const Tile& tile, const Lamps& lamps) {
     const TileAxis& across = tile_axis(tile.width);
     const TileAxis& down = tile_axis(tile.height);
     std::array<TileNodes, kChannels> nodes;
-    Outside outside;
     for (int j = 0; j < kTilePoints; ++j) {
         for (int i = 0; i < kTilePoints; ++i) {
             const PlaceRays rays = rays_in(tile,

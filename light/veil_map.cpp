@@ -390,9 +390,9 @@ class VeilMap::Strip {
               const Scope& scope,
               VeilNodes& room) const {
         if (is_straight(nodes, scope)) return true;
-        constexpr std::array<std::array<double, 2>, 5> kLooks{
+        constexpr std::array<std::array<double, 2>, 5> kPlaces{
             {{0.5, 0.5}, {0.2, 0.2}, {0.8, 0.8}, {0.2, 0.8}, {0.8, 0.2}}};
-        return std::ranges::all_of(kLooks, [&](const auto& look) {
+        return std::ranges::all_of(kPlaces, [&](const auto& look) {
             const double column = part.first_column + look[0] * part.apart_column;
             const double row = part.first_row + look[1] * part.apart_row;
             return holds(cubic(nodes, place, column, row),

@@ -17,14 +17,14 @@ using Coefficients = std::array<double, kProfileOrder>;
 using Fit = Eigen::Matrix<double, kProfileOrder, 1>;
 
 constexpr int kMostHalvings = 24;
-constexpr double kRightAngle_rad = 0.5 * std::numbers::pi;
+constexpr double kQuarterTurn_rad = 0.5 * std::numbers::pi;
 
 double chord_of(double theta_rad) {
     return 2.0 * std::sin(0.5 * theta_rad);
 }
 
 // Chebyshev's points of the first kind, of 0 to 1: none is an end.
-double node(std::size_t i) {
+double chebyshev_point(std::size_t i) {
     const double share = (static_cast<double>(i) + 0.5) / kProfileOrder;
     return 0.5 - 0.5 * std::cos(std::numbers::pi * share);
 }
@@ -36,7 +36,7 @@ const Eigen::Matrix<double, kProfileOrder, kProfileOrder>& to_coefficients() {
         for (std::size_t i = 0; i < kProfileOrder; ++i)
             for (std::size_t k = 0; k < kProfileOrder; ++k)
                 powers(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-                    std::pow(node(i), static_cast<double>(k));
+                    std::pow(chebyshev_point(i), static_cast<double>(k));
         return Eigen::Matrix<double, kProfileOrder, kProfileOrder>(powers.inverse());
     }();
     return matrix;
@@ -61,12 +61,11 @@ std::vector<double> breaks_of(const Beam& beam) {
         }
     }
     if (beam.window) {
-        std::erase_if(breaks_rad, [](double theta_rad) { return theta_rad > kRightAngle_rad; });
-        breaks_rad.push_back(kRightAngle_rad);
+        std::erase_if(breaks_rad, [](double theta_rad) { return theta_rad > kQuarterTurn_rad; });
+        breaks_rad.push_back(kQuarterTurn_rad);
     }
     std::ranges::sort(breaks_rad);
-    const auto repeated = std::ranges::unique(breaks_rad);
-    breaks_rad.erase(repeated.begin(), repeated.end());
+    breaks_rad.erase(std::unique(breaks_rad.begin(), breaks_rad.end()), breaks_rad.end());
     return breaks_rad;
 }
 
@@ -106,14 +105,15 @@ RoundProfile::RoundProfile(const Beam& beam)
         [&](double first, double last, std::size_t region, int halvings) {
             Fit values;
             for (std::size_t i = 0; i < kProfileOrder; ++i)
-                values(static_cast<Eigen::Index>(i)) = value_at(std::lerp(first, last, node(i)));
+                values(static_cast<Eigen::Index>(i)) =
+                    value_at(std::lerp(first, last, chebyshev_point(i)));
             const Fit fit = to_coefficients() * values;
             Piece piece{.first = first, .per_width = 1.0 / (last - first), .region = region};
             std::ranges::copy(fit, piece.c.begin());
             const double largest = values.maxCoeff();
             bool is_right = true;
             for (std::size_t i = 0; i + 1 < kProfileOrder; ++i) {
-                const double x = 0.5 * (node(i) + node(i + 1));
+                const double x = 0.5 * (chebyshev_point(i) + chebyshev_point(i + 1));
                 const double off = polynomial(piece.c, x) - value_at(std::lerp(first, last, x));
                 is_right &= std::abs(off) <= kProfileError * largest;
             }
