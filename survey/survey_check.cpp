@@ -31,7 +31,7 @@ constexpr double kPile = 10.0;
 constexpr double kPileShare = 1e-4;
 constexpr double kPileLeast = 16.0;  // samples: in a small image one is a large share
 
-constexpr double kGreen = 0.1;
+constexpr double kGreenSites = 0.1;
 constexpr double kOtherSites = 0.25;
 
 // Altitudes that vary less are one altitude: an altimeter's own noise is some centimetres, and a
@@ -250,7 +250,7 @@ void check_greens(std::span<const ImageLook> looks, Mosaic mosaic, std::vector<S
     if (greens.empty()) return;
     const double green = double{upper_median(greens)} - 1.0;
     const double other = double{upper_median(others)} - 1.0;
-    if (green < kGreen || other > kOtherSites * green) return;
+    if (green < kGreenSites || other > kOtherSites * green) return;
     found.push_back({.about = "bayer",
                      .what = fmt::format("the two sites that {} makes green differ by {:.0f} %, "
                                          "the other two by {:.1f} %: the pattern is {}",

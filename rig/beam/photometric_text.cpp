@@ -51,10 +51,10 @@ std::string utf8_of(std::string_view text) {
 }
 
 std::string_view without_blanks(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r\f\v";
-    const std::size_t first = text.find_first_not_of(kBlanks);
+    constexpr std::string_view kSpaces = " \t\r\f\v";
+    const std::size_t first = text.find_first_not_of(kSpaces);
     if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+    return text.substr(first, text.find_last_not_of(kSpaces) - first + 1);
 }
 
 std::string shown_word(std::string_view word) {

@@ -17,7 +17,7 @@ using Coefficients = std::array<double, kProfileOrder>;
 using Fit = Eigen::Matrix<double, kProfileOrder, 1>;
 
 constexpr int kMostHalvings = 24;
-constexpr double kQuarterTurn_rad = 0.5 * std::numbers::pi;
+constexpr double kGrazing_rad = 0.5 * std::numbers::pi;
 
 double chord_of(double theta_rad) {
     return 2.0 * std::sin(0.5 * theta_rad);
@@ -61,8 +61,8 @@ std::vector<double> breaks_of(const Beam& beam) {
         }
     }
     if (beam.window) {
-        std::erase_if(breaks_rad, [](double theta_rad) { return theta_rad > kQuarterTurn_rad; });
-        breaks_rad.push_back(kQuarterTurn_rad);
+        std::erase_if(breaks_rad, [](double theta_rad) { return theta_rad > kGrazing_rad; });
+        breaks_rad.push_back(kGrazing_rad);
     }
     std::ranges::sort(breaks_rad);
     breaks_rad.erase(std::unique(breaks_rad.begin(), breaks_rad.end()), breaks_rad.end());
