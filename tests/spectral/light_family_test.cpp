@@ -306,8 +306,8 @@ class Dice {
 TEST(ReferenceGrid, HoldsItsErrorForRandomFamilies) {
     constexpr double kError = 1e-8;
     // Simpson errs by x^4 / (2880 n^4) of an interval over which the exponent runs through x;
-    // here x reaches some 50, in intervals that give little to the whole.
-    constexpr int kPanels = 256;
+    // here x reaches some 120, in intervals that give little to the whole.
+    constexpr int kPanels = 512;
     constexpr double kSimpsonError = 2e-9;
     Dice dice(1);
     for (int trial = 0; trial < 12; ++trial) {
