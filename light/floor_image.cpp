@@ -201,7 +201,7 @@ Outside paint_floor(const FloorLight& light, int height_px, int threads, const I
     std::vector<Outside> outside(static_cast<std::size_t>(threads));
     const auto width = static_cast<std::size_t>(rows.width_px);
     const std::size_t plane_size = width * static_cast<std::size_t>(rows.count);
-    parallel_for(static_cast<std::size_t>(across * down),
+    parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down),
                  static_cast<std::size_t>(threads),
                  [&](std::size_t index, std::size_t thread) {
                      const int k = static_cast<int>(index);

@@ -38,10 +38,10 @@ Stencil stencil_at(double place, double pixels, std::size_t nodes) {
 
 }  // namespace
 
-RayTable::Axis::Axis(int pixels_, double most_apart_px)
-    : pixels(pixels_),
+RayTable::Axis::Axis(int count, double most_apart_px)
+    : pixels(count),
       nodes(std::max(kNodesOfCubic,
-                     static_cast<std::size_t>(std::ceil(pixels_ / most_apart_px)) + 1)) {}
+                     static_cast<std::size_t>(std::ceil(count / most_apart_px)) + 1)) {}
 
 double RayTable::Axis::place_px(double node) const {
     return pixels * (node / (static_cast<double>(nodes) - 1.0));
@@ -102,8 +102,9 @@ bool RayTable::is_exact() const {
     };
     const auto middles_of = [](std::size_t nodes) {
         const std::size_t cells = nodes - 1;
+        const std::size_t middle = cells / 2;
         return std::array<double, 3>{
-            0.5, static_cast<double>(cells / 2) + 0.5, static_cast<double>(cells) - 0.5};
+            0.5, static_cast<double>(middle) + 0.5, static_cast<double>(cells) - 0.5};
     };
     bool is = true;
     for (const double row : middles_of(down_.nodes))

@@ -61,12 +61,12 @@ TileAxis axis_of(int pixels) {
 }  // namespace
 
 const TileAxis& tile_axis(int pixels) {
-    static const std::vector<TileAxis> axes = [] {
+    static const std::vector<TileAxis> kAxes = [] {
         std::vector<TileAxis> made;
         for (int count = 1; count <= kTilePixels; ++count) made.push_back(axis_of(count));
         return made;
     }();
-    return axes[static_cast<std::size_t>(pixels - 1)];
+    return kAxes[static_cast<std::size_t>(pixels - 1)];
 }
 
 }  // namespace aphotic
