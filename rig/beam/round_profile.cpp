@@ -31,7 +31,7 @@ double chebyshev_point(std::size_t i) {
 
 // From values at the nodes to coefficients.
 const Eigen::Matrix<double, kProfileOrder, kProfileOrder>& to_coefficients() {
-    static const Eigen::Matrix<double, kProfileOrder, kProfileOrder> matrix = [] {
+    static const Eigen::Matrix<double, kProfileOrder, kProfileOrder> kMatrix = [] {
         Eigen::Matrix<double, kProfileOrder, kProfileOrder> powers;
         for (std::size_t i = 0; i < kProfileOrder; ++i)
             for (std::size_t k = 0; k < kProfileOrder; ++k)
@@ -39,7 +39,7 @@ const Eigen::Matrix<double, kProfileOrder, kProfileOrder>& to_coefficients() {
                     std::pow(chebyshev_point(i), static_cast<double>(k));
         return Eigen::Matrix<double, kProfileOrder, kProfileOrder>(powers.inverse());
     }();
-    return matrix;
+    return kMatrix;
 }
 
 double polynomial(const Coefficients& c, double x) {

@@ -760,6 +760,7 @@ Rig read_all(Section top, RigFiles files, std::string toml) {
     }
     top.refuse_unknown_keys();
 
+    std::string digest = files.digest(toml);
     Rig rig{.title = std::move(title),
             .sled = sled,
             .mounting = mounting,
@@ -770,7 +771,7 @@ Rig read_all(Section top, RigFiles files, std::string toml) {
             .materials = std::move(materials),
             .objects = std::move(objects),
             .scene = std::move(scene),
-            .digest = files.digest(toml),
+            .digest = std::move(digest),
             .toml = std::move(toml),
             .files = files.all()};
     const Section camera_section = top.section("camera", "a table [camera]");
