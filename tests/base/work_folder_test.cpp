@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "support/abandoned_file.h"
+#include "support/refusal.h"
 #include "support/temp_folder.h"
 
 #include <fmt/format.h>
@@ -25,12 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string refusal(const std::filesystem::path& folder, FolderUse use) {
-    try {
-        const FolderLock lock(folder, use);
-    } catch (const RunError& error) {
-        return error.what();
-    }
-    return "no error";
+    return run_error_of([&] { const FolderLock lock(folder, use); });
 }
 
 // A process that holds the folder until it is killed.
@@ -87,16 +83,16 @@ TEST(FolderLock, RefusesASecondWriterAtOnceAndNamesTheFirst) {
 TEST(FolderLock, GoesWithItsProcessHoweverThatEnded) {
     const TempFolder folder;
     Holder holder(folder.path(), FolderUse::Write);
-    EXPECT_NE(refusal(folder.path(), FolderUse::Write), "no error");
+    EXPECT_NE(refusal(folder.path(), FolderUse::Write), kAccepted);
     holder.kill();
-    EXPECT_EQ(refusal(folder.path(), FolderUse::Write), "no error");
+    EXPECT_EQ(refusal(folder.path(), FolderUse::Write), kAccepted);
 }
 
 TEST(FolderLock, LetsReadersInTogetherButNoWriter) {
     const TempFolder folder;
     const Holder holder(folder.path(), FolderUse::Read);
-    EXPECT_EQ(refusal(folder.path(), FolderUse::Read), "no error");
-    EXPECT_NE(refusal(folder.path(), FolderUse::Write), "no error");
+    EXPECT_EQ(refusal(folder.path(), FolderUse::Read), kAccepted);
+    EXPECT_NE(refusal(folder.path(), FolderUse::Write), kAccepted);
 }
 
 TEST(FolderLock, LeavesNoFile) {
@@ -107,7 +103,7 @@ TEST(FolderLock, LeavesNoFile) {
 
 TEST(FolderLock, OfAMissingFolderIsNone) {
     const TempFolder folder;
-    EXPECT_EQ(refusal(folder.path() / "missing", FolderUse::Write), "no error");
+    EXPECT_EQ(refusal(folder.path() / "missing", FolderUse::Write), kAccepted);
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "missing"));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/atomic_file.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -14,20 +14,15 @@ namespace {
 
 const std::string kLed = std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam-led.toml:led";
 
-class CommandBeam : public testing::Test {
+class CommandBeam : public CommandTest {
   protected:
-    CommandResult beam(std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), "beam");
-        return run_aphotic(folder_.path(), arguments);
-    }
-    nlohmann::json json(std::vector<std::string> arguments) {
-        arguments.emplace_back("--json");
+    CommandResult beam(const Arguments& arguments) { return aphotic("beam" + arguments); }
+    nlohmann::json json(Arguments arguments) {
+        arguments += "--json";
         const CommandResult result = beam(std::move(arguments));
         EXPECT_EQ(result.status, 0) << result.err;
         return nlohmann::json::parse(result.out);
     }
-
-    TempFolder folder_;
 };
 
 // cos^n with n = ln 0.5 / ln cos 50: (n + 1) / (2 pi) on the axis, times the lamp's lumens in
@@ -78,7 +73,7 @@ TEST_F(CommandBeam, FindsTheClosestCones) {
 TEST_F(CommandBeam, Plots) {
     const CommandResult plotted = beam({kLed, "--plot", "led.svg"});
     ASSERT_EQ(plotted.status, 0) << plotted.err;
-    const std::string svg = read_text_file(folder_.path() / "led.svg");
+    const std::string svg = text_of("led.svg");
     EXPECT_NE(svg.find("angle off the axis"), std::string::npos);
     EXPECT_NE(svg.find("as thrown"), std::string::npos);
 }

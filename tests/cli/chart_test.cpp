@@ -7,7 +7,7 @@
 #include "spectral/curve_loader.h"
 #include "spectral/manifest.h"
 #include "support/closed_form.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -88,37 +88,34 @@ std::array<double, 3> integrated_by_hand(const Spectrum& reflectance) {
     return sum;
 }
 
-class Chart : public testing::Test {
+class Chart : public CommandTest {
   protected:
     Chart() {
         for (const std::string& name : names_) {
             fs::copy_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/chart/patches/" + name,
-                          folder_.path() / name);
+                          path(name));
         }
-        write_file(folder_.path() / "chart.pov", scene_text(names_));
+        write_file(path("chart.pov"), scene_text(names_));
     }
 
-    TempFolder folder_;
     std::vector<std::string> names_ = patches();
 };
 
 TEST_F(Chart, InAirIsItsSpectraIntegratedByHand) {
     ASSERT_EQ(names_.size(), 24U);
-    write_file(folder_.path() / "rig.toml", rig_text());
-    const CommandResult run =
-        run_aphotic(folder_.path(),
-                    {"render", "rig.toml", "--scene", "chart.pov", "-o", "out", "--fitted", "27"});
+    write_file(path("rig.toml"), rig_text());
+    const CommandResult run = aphotic("render rig.toml --scene chart.pov -o out --fitted 27");
     ASSERT_EQ(run.status, 0) << run.err;
     // As many wavelengths as kinds of light, and two: the plan's own error is nothing.
-    for (const RuleQuality& quality : read_manifest(folder_.path() / "out").quality) {
+    for (const RuleQuality& quality : read_manifest(path("out")).quality) {
         EXPECT_LT(quality.error, 1e-9);
     }
 
-    Rig rig = read_rig(folder_.path() / "rig.toml");
+    Rig rig = read_rig(path("rig.toml"));
     rig.seafloor.reflectance = {"white", {300.0, 900.0}, {1.0, 1.0}};
     const double some_nm = 550.0;
     const double flux = rig.strobes[0].spectrum.at(some_nm);
-    const CameraImage image = read_signals(folder_.path() / "out" / "image.exr");
+    const CameraImage image = read_signals(path("out") / "image.exr");
     const auto pixels = static_cast<std::size_t>(image.width_px * image.height_px);
     for (int i = 0; i < static_cast<int>(names_.size()); ++i) {
         const std::string& name = names_[static_cast<std::size_t>(i)];
@@ -167,18 +164,14 @@ TEST_F(Chart, InWaterIsWhatTheReferenceTraces) {
     std::string rig =
         std::regex_replace(rig_text(), std::regex("multiple = 0.0"), "multiple = 1.0");
     rig = std::regex_replace(rig, std::regex("altitude_m = 1.0"), "altitude_m = 2.0");
-    write_file(folder_.path() / "rig.toml", rig + objects_text(names_));
-    const CommandResult run =
-        run_aphotic(folder_.path(), {"validate", "rig.toml", "--scene", "chart.pov", "-o", "out"});
+    write_file(path("rig.toml"), rig + objects_text(names_));
+    const CommandResult run = aphotic("validate rig.toml --scene chart.pov -o out");
     EXPECT_EQ(run.status, 0) << run.out << run.err;
     // One patch of another colour is another chart.
-    std::string swapped = read_text_file(folder_.path() / "chart.pov");
+    std::string swapped = text_of("chart.pov");
     swapped = std::regex_replace(swapped, std::regex("08-purplish-blue"), "13-blue");
-    write_file(folder_.path() / "chart.pov", swapped);
-    EXPECT_EQ(
-        run_aphotic(folder_.path(), {"validate", "rig.toml", "--scene", "chart.pov", "-o", "out"})
-            .status,
-        1);
+    write_file(path("chart.pov"), swapped);
+    EXPECT_EQ(aphotic("validate rig.toml --scene chart.pov -o out").status, 1);
 }
 
 }  // namespace

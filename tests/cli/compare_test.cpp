@@ -2,9 +2,10 @@
 //
 // aphotic compare with --scale and --report, as a user runs it.
 #include "image/exr.h"
+#include "support/command_test.h"
 #include "support/page.h"
-#include "support/run_command.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -26,32 +27,27 @@ constexpr double kFloat = 1e-6;  // roundings of samples as floats, relative
 using Plane = std::vector<float>;
 const std::vector<std::string> kRgb{"R", "G", "B"};
 
-class CommandCompare : public testing::Test {
+class CommandCompare : public CommandTest {
   protected:
     void write(const std::string& name,
                const std::vector<Plane>& planes,
                const std::vector<std::string>& channels = kRgb) {
-        ExrWriter exr(folder_.path() / name, kWidth_px, kHeight_px, channels, {});
+        ExrWriter exr(path(name), kWidth_px, kHeight_px, channels, {});
         Plane samples;
         for (const Plane& plane : planes) samples.insert(samples.end(), plane.begin(), plane.end());
         exr.write_rows(kHeight_px, samples);
         exr.finish();
     }
 
-    CommandResult compare(const std::vector<std::string>& options) {
-        std::vector<std::string> arguments{"compare", "a.exr", "b.exr"};
-        arguments.insert(arguments.end(), options.begin(), options.end());
-        return run_aphotic(folder_.path(), arguments);
+    CommandResult compare(const Arguments& options) {
+        return aphotic("compare a.exr b.exr" + options);
     }
 
-    nlohmann::json json_of(std::vector<std::string> options, int status) {
-        options.emplace_back("--json");
-        const CommandResult result = compare(options);
+    nlohmann::json json_of(const Arguments& options, int status) {
+        const CommandResult result = compare(options + "--json");
         EXPECT_EQ(result.status, status) << result.err << result.out;
         return nlohmann::json::parse(result.out);
     }
-
-    TempFolder folder_;
 };
 
 // Brightest in the middle, as a lamp's light.
@@ -78,7 +74,7 @@ TEST_F(CommandCompare, ScaleTakesTheExposureAway) {
     write("a.exr", times(kReference, {640.0, 640.0, 640.0}));
     write("b.exr", kReference);
     EXPECT_EQ(compare({}).status, 1) << "no factor is fitted unasked";
-    const nlohmann::json json = json_of({"--scale"}, 0);
+    const nlohmann::json json = json_of("--scale", 0);
     EXPECT_EQ(json["scaled"], "image");
     for (const auto& channel : json["channels"])
         EXPECT_NEAR(channel["scale"].get<double>(), 640.0, 640.0 * kFloat);
@@ -87,17 +83,17 @@ TEST_F(CommandCompare, ScaleTakesTheExposureAway) {
 TEST_F(CommandCompare, ScalePerChannelTakesTheColourAwayToo) {
     write("a.exr", times(kReference, {2.0, 3.0, 5.0}));
     write("b.exr", kReference);
-    const nlohmann::json one = json_of({"--scale"}, 1);
+    const nlohmann::json one = json_of("--scale", 1);
     // Least squares of planes that are 1, 2 and 0.5 times the same.
     const double wanted = (2.0 * 1.0 + 3.0 * 4.0 + 5.0 * 0.25) / (1.0 + 4.0 + 0.25);
-    const nlohmann::json each = json_of({"--scale=per-channel"}, 0);
+    const nlohmann::json each = json_of("--scale=per-channel", 0);
     for (const auto& channel : one["channels"])
         EXPECT_NEAR(channel["scale"].get<double>(), wanted, wanted * kFloat);
     for (const auto& channel : each["channels"]) {
         const double own = channel["name"] == "R" ? 2.0 : channel["name"] == "G" ? 3.0 : 5.0;
         EXPECT_NEAR(channel["scale"].get<double>(), own, own * kFloat) << channel["name"];
     }
-    EXPECT_NE(compare({"--scale=per-channel"}).out.find("/ 5"), std::string::npos);
+    EXPECT_NE(compare("--scale=per-channel").out.find("/ 5"), std::string::npos);
 }
 
 // A bent pattern is no factor away.
@@ -108,8 +104,8 @@ TEST_F(CommandCompare, ScaleHidesNoOtherDifference) {
     }
     write("a.exr", bent);
     write("b.exr", kReference);
-    EXPECT_EQ(compare({"--scale", "--bound", "0.004"}).status, 1);
-    EXPECT_EQ(compare({"--scale", "--bound", "0.011"}).status, 0);
+    EXPECT_EQ(compare("--scale --bound 0.004").status, 1);
+    EXPECT_EQ(compare("--scale --bound 0.011").status, 0);
 }
 
 TEST_F(CommandCompare, WhatWasNotObservedIsToldAndNotCompared) {
@@ -126,7 +122,7 @@ TEST_F(CommandCompare, WhatWasNotObservedIsToldAndNotCompared) {
     observed.push_back(counts);
     const std::vector<std::string> channels{"R", "G", "B", "count.R"};
     write("a.exr", observed, channels);
-    const nlohmann::json json = json_of({"--scale"}, 0);
+    const nlohmann::json json = json_of("--scale", 0);
     for (const auto& channel : json["channels"]) {
         const std::size_t unobserved = channel["name"] == "R" ? kPixels / 2 : 0;
         EXPECT_EQ(channel["unobserved"], unobserved);
@@ -135,16 +131,16 @@ TEST_F(CommandCompare, WhatWasNotObservedIsToldAndNotCompared) {
 
     observed[0][1] = kNaN;  // where it is said to have been seen nine times
     write("a.exr", observed, channels);
-    EXPECT_EQ(compare({"--scale"}).status, 1);
+    EXPECT_EQ(compare("--scale").status, 1);
 }
 
 TEST_F(CommandCompare, RefusesAScaleThatIsNone) {
     write("a.exr", times(kReference, {-1.0, -1.0, -1.0}));
     write("b.exr", kReference);
-    const CommandResult negative = compare({"--scale"});
+    const CommandResult negative = compare("--scale");
     EXPECT_EQ(negative.status, 2);
     EXPECT_NE(negative.err.find("positive"), std::string::npos) << negative.err;
-    EXPECT_EQ(compare({"--scale=twice"}).status, 2);
+    EXPECT_EQ(compare("--scale=twice").status, 2);
 }
 
 // Two images of three wavelengths each, of which one is in both.
@@ -154,14 +150,14 @@ TEST_F(CommandCompare, SaysNoToChannelsWithoutAPartner) {
     write("b.exr",
           {kReference[2], kReference[1], kReference[0]},
           {"S0.450,000000nm", shared, "S0.650,000000nm"});
-    const CommandResult result = compare({"--report", "page.html"});
+    const CommandResult result = compare("--report page.html");
     EXPECT_EQ(result.status, 1);
     for (const char* part : {"only in a.exr: S0.470,000000nm S0.620,000000nm\n",
                              "only in b.exr: S0.450,000000nm S0.650,000000nm\n",
                              "a.exr is within 0.0006 of b.exr\n",
                              "but 4 channels WITHOUT a partner"})
         EXPECT_TRUE(contains(result.out, part)) << part << " is not in " << result.out;
-    EXPECT_TRUE(contains(read_text_file(folder_.path() / "page.html"), "S0.470,000000nm"));
+    EXPECT_TRUE(contains(text_of("page.html"), "S0.470,000000nm"));
 
     const nlohmann::json json = json_of({}, 1);
     EXPECT_FALSE(json["holds"].get<bool>());
@@ -176,16 +172,16 @@ TEST_F(CommandCompare, ComparesTheChannelsThatAreNamed) {
     write("a.exr", {kReference[0], kReference[1], kReference[2]}, {"R", shared, "S0.470,000000nm"});
     write("b.exr", {kReference[0], kReference[1]}, {"R", shared});
     EXPECT_EQ(compare({}).status, 1);
-    const nlohmann::json json = json_of({"--channels", "R," + shared}, 0);
+    const nlohmann::json json = json_of(fmt::format("--channels R,{}", shared), 0);
     ASSERT_EQ(json["channels"].size(), 2U);
     EXPECT_EQ(json["channels"][1]["name"], shared) << "a name that holds a comma";
     EXPECT_EQ(json["only_in_image"].size(), 0U);
-    EXPECT_EQ(json_of({"--channels", "R"}, 0)["channels"].size(), 1U);
+    EXPECT_EQ(json_of("--channels R", 0)["channels"].size(), 1U);
     for (const char* names : {"S0.470,000000nm", "R,X", "", ","}) {
         const CommandResult refused = compare({"--channels", names});
         EXPECT_EQ(refused.status, 2) << names;
     }
-    EXPECT_TRUE(contains(compare({"--channels", "R,X"}).err,
+    EXPECT_TRUE(contains(compare("--channels R,X").err,
                          "--channels: found X; allowed: those of both images, R, " + shared));
 }
 
@@ -199,7 +195,7 @@ TEST_F(CommandCompare, PairsSpectralChannelsByWavelength) {
     EXPECT_EQ(json["channels"].size(), ours.size());
     EXPECT_EQ(json["only_in_image"].size() + json["only_in_reference"].size(), 0U);
     for (const std::string& name : {ours[2], theirs[1], std::string("S0.440nm")}) {
-        const nlohmann::json named = json_of({"--channels", name}, 0);
+        const nlohmann::json named = json_of(fmt::format("--channels {}", name), 0);
         ASSERT_EQ(named["channels"].size(), 1U) << name;
         EXPECT_EQ(named["channels"][0]["name"], ours[2]);
     }
@@ -236,10 +232,9 @@ TEST_F(CommandCompare, NamesItsStatisticsAsAValidationDoes) {
 // Light falls off in the pattern, alike in all channels: grey, and uneven over the patches.
 TEST_F(CommandCompare, MeasuresPatchesWithOrWithoutAReference) {
     write("a.exr", times(kReference, {1.0, 1.0, 1.0}));
-    write_file(folder_.path() / "p.csv",
+    write_file(path("p.csv"),
                "patch,x,y,w,h,reference\nmiddle,11,7,2,2,0.5\ncorner,0,0,2,2,0.5\nskin,4,4,1,1,\n");
-    const CommandResult alone =
-        run_aphotic(folder_.path(), {"compare", "a.exr", "--patches", "p.csv", "--json"});
+    const CommandResult alone = aphotic("compare a.exr --patches p.csv --json");
     ASSERT_EQ(alone.status, 0) << alone.err;
     const nlohmann::json patches = nlohmann::json::parse(alone.out)["patches"];
     ASSERT_EQ(patches["patches"].size(), 3U);
@@ -248,29 +243,27 @@ TEST_F(CommandCompare, MeasuresPatchesWithOrWithoutAReference) {
     EXPECT_FALSE(patches["patches"][2].contains("degrees_from_grey"));
     EXPECT_GT(patches["unevenness"], 0.01);
     write("b.exr", kReference);
-    const nlohmann::json both = json_of({"--patches", "p.csv"}, 0);
+    const nlohmann::json both = json_of("--patches p.csv", 0);
     EXPECT_EQ(both["patches"], patches);
     EXPECT_TRUE(both.contains("channels"));
-    const CommandResult words =
-        run_aphotic(folder_.path(), {"compare", "a.exr", "--patches", "p.csv"});
+    const CommandResult words = aphotic("compare a.exr --patches p.csv");
     EXPECT_TRUE(contains(words.out, "degrees from grey: mean ")) << words.out;
 }
 
 TEST_F(CommandCompare, NeedsAReferenceOrPatches) {
     write("a.exr", kReference);
-    const auto refused = [&](std::vector<std::string> arguments, const std::string& why) {
-        arguments.insert(arguments.begin(), {"compare", "a.exr"});
-        const CommandResult result = run_aphotic(folder_.path(), arguments);
+    const auto refused = [&](const Arguments& arguments, const std::string& why) {
+        const CommandResult result = aphotic("compare a.exr" + arguments);
         EXPECT_EQ(result.status, 2);
         EXPECT_TRUE(contains(result.err, why)) << result.err;
     };
     refused({}, "found no REFERENCE; allowed: an image to judge IMAGE by, or --patches");
-    refused({"--encoding", "srgb"}, "--encoding requires --patches");
-    refused({"--patches", "none.csv"}, "none.csv: cannot be read");
-    write_file(folder_.path() / "p.csv", "patch,x,y,w,h\na,20,0,9,9\n");
-    refused({"--patches", "p.csv"},
+    refused("--encoding srgb", "--encoding requires --patches");
+    refused("--patches none.csv", "none.csv: cannot be read");
+    write_file(path("p.csv"), "patch,x,y,w,h\na,20,0,9,9\n");
+    refused("--patches p.csv",
             "p.csv:2: found a patch up to 29, 9; allowed: the image's 24 x 16 pixels");
-    refused({"--patches", "p.csv", "--report", "r.html"}, "--report: found no REFERENCE");
+    refused("--patches p.csv --report r.html", "--report: found no REFERENCE");
 }
 
 TEST_F(CommandCompare, LeavesAPageOfBoth) {
@@ -280,8 +273,8 @@ TEST_F(CommandCompare, LeavesAPageOfBoth) {
     observed.back()[5] = 0.0F;
     write("a.exr", observed, {"R", "G", "B", "count.G"});
     write("b.exr", kReference);
-    ASSERT_EQ(compare({"--scale", "--report", "page.html"}).status, 0);
-    const std::string page = read_text_file(folder_.path() / "page.html");
+    ASSERT_EQ(compare("--scale --report page.html").status, 0);
+    const std::string page = text_of("page.html");
     EXPECT_EQ(first_unbalanced(page), "");
     EXPECT_TRUE(contains(words_of(page), "a.exr\u2069 is within"));
     for (const char* part : {"id=\"row-R\"", "id=\"column-B\"", "data:image/png;base64,"})

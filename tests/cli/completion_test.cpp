@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Completion in the shells themselves, held against --help.
-#include "support/run_command.h"
+#include "support/command_test.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,23 +46,18 @@ bool is_installed(const std::string& program) {
     return fs::exists("/usr/bin/" + program) || fs::exists("/bin/" + program);
 }
 
-class Completion : public testing::Test {
+class Completion : public CommandTest {
   protected:
-    void SetUp() override { write_file(folder_.path() / "my-rig.toml", ""); }
-
-    [[nodiscard]] CommandResult aphotic(const std::vector<std::string>& arguments) const {
-        return run_aphotic(folder_.path(), arguments);
-    }
+    void SetUp() override { write_file(path("my-rig.toml"), ""); }
 
     void save_script(const std::string& shell, const std::string& name) const {
-        const CommandResult run = aphotic({"--completion", shell});
+        const CommandResult run = aphotic(fmt::format("--completion {}", shell));
         ASSERT_EQ(run.status, 0) << run.err;
-        write_file(folder_.path() / name, run.out);
+        write_file(path(name), run.out);
     }
 
-    [[nodiscard]] std::string said_by(const std::string& shell,
-                                      const std::vector<std::string>& arguments) const {
-        const fs::path log = folder_.path() / "log";
+    [[nodiscard]] std::string said_by(const std::string& shell, const Arguments& arguments) const {
+        const fs::path log = path("log");
         const ProcessEnd end = run_process({.executable = shell,
                                             .arguments = arguments,
                                             .folder = folder_.path(),
@@ -74,19 +70,19 @@ class Completion : public testing::Test {
     }
 
     // What bash makes of the words, the last of which is to be completed.
-    [[nodiscard]] std::set<std::string> by_bash(std::vector<std::string> words) const {
-        words.insert(words.begin(),
-                     {"--norc",
-                      "-c",
-                      "source ./aphotic.bash && COMP_WORDS=(\"$0\" \"$@\") && COMP_CWORD=$# && "
-                      "_aphotic && echo \"${COMPREPLY[@]}\"",
-                      "aphotic"});
-        return words_in(said_by("/bin/bash", words));
+    [[nodiscard]] std::set<std::string> by_bash(const Arguments& words) const {
+        const Arguments completed{
+            "--norc",
+            "-c",
+            "source ./aphotic.bash && COMP_WORDS=(\"$0\" \"$@\") && COMP_CWORD=$# && "
+            "_aphotic && echo \"${COMPREPLY[@]}\"",
+            "aphotic"};
+        return words_in(said_by("/bin/bash", completed + words));
     }
 
     // An interactive zsh, of a terminal: what the command is given once the line was completed.
     [[nodiscard]] std::string by_zsh(const std::string& line) const {
-        write_file(folder_.path() / "type.zsh", R"(zmodload zsh/zpty
+        write_file(path("type.zsh"), R"(zmodload zsh/zpty
 zpty shell zsh -f -i
 zpty -w shell "fpath=($1 \$fpath); autoload -U compinit; compinit -u -D; aphotic() { print -r -- got \${(j:,:)@}; }; print rea''dy"
 zpty -r -m shell out '*ready*'
@@ -111,32 +107,31 @@ print -r -- $out
             words.insert(one.substr(0, one.find('\t')));
         return words;
     }
-
-    TempFolder folder_;
 };
 
 using Words = std::set<std::string>;
 
 TEST_F(Completion, BashOffersTheCommandsAndOptionsOfHelp) {
     save_script("bash", "aphotic.bash");
-    const std::set<std::string> commands = commands_in_help(aphotic({"--help"}).out);
+    const std::set<std::string> commands = commands_in_help(aphotic("--help").out);
     EXPECT_TRUE(commands.contains("render") && commands.contains("help"));
     EXPECT_EQ(by_bash({""}), commands);
     for (const std::string& command : commands) {
-        const std::set<std::string> options = options_in_help(aphotic({command, "--help"}).out);
+        const std::set<std::string> options =
+            options_in_help(aphotic(fmt::format("{} --help", command)).out);
         EXPECT_TRUE(options.contains("--help")) << command;
-        EXPECT_EQ(by_bash({command, "--"}), options) << command;
+        EXPECT_EQ(by_bash(fmt::format("{} --", command)), options) << command;
     }
 }
 
 TEST_F(Completion, BashOffersWordsAndFiles) {
     save_script("bash", "aphotic.bash");
-    write_file(folder_.path() / "notes.txt", "");
-    fs::create_directory(folder_.path() / "frames");
+    write_file(path("notes.txt"), "");
+    fs::create_directory(path("frames"));
     EXPECT_EQ(by_bash({"pl"}), Words{"plan"});
     EXPECT_EQ(by_bash({"--completion", ""}), (Words{"bash", "zsh", "fish"}));
     EXPECT_EQ(by_bash({"render", "r.toml", "--veil", ""}), (Words{"quadrature", "povray"}));
-    EXPECT_EQ(by_bash({"render", "r.toml", "--veil", "=", "p"}), Words{"povray"});
+    EXPECT_EQ(by_bash("render r.toml --veil = p"), Words{"povray"});
     EXPECT_EQ(by_bash({"render", "r.toml", "-o", ""}), Words{"frames"});
     EXPECT_EQ(by_bash({"plan", ""}), (Words{"my-rig.toml", "frames"}));
     EXPECT_EQ(by_bash({"plan", "r.toml", "--tolerance", ""}), Words{});
@@ -150,7 +145,7 @@ TEST_F(Completion, BashOffersWordsAndFiles) {
 TEST_F(Completion, ZshCompletes) {
     if (!is_installed("zsh")) GTEST_SKIP() << "zsh is not installed";
     save_script("zsh", "_aphotic");
-    EXPECT_EQ(said_by("/usr/bin/zsh", {"-n", "_aphotic"}), "");
+    EXPECT_EQ(said_by("/usr/bin/zsh", "-n _aphotic"), "");
     EXPECT_EQ(by_zsh("rend"), "render");
     EXPECT_EQ(by_zsh("plan my"), "plan,my-rig.toml");
     EXPECT_EQ(by_zsh("plan --plo"), "plan,--plot");
@@ -164,14 +159,14 @@ TEST_F(Completion, FishCompletes) {
     save_script("fish", "aphotic.fish");
     EXPECT_EQ(by_fish("aphotic pla"), Words{"plan"});
     EXPECT_EQ(by_fish("aphotic plan my"), Words{"my-rig.toml"});
-    EXPECT_EQ(by_fish("aphotic plan --plo"), Words{"--plot"});
+    EXPECT_EQ(by_fish("aphotic plan --plo"), std::set<std::string>{"--plot"});
     EXPECT_EQ(by_fish("aphotic lightmap --preview-white "), (Words{"lamp", "image", "none"}));
     EXPECT_EQ(by_fish("aphotic help lightm"), Words{"lightmap"});
     EXPECT_TRUE(by_fish("aphotic beam my").contains("my-rig.toml"));
 }
 
 TEST_F(Completion, OfAnotherShellIsRefused) {
-    const CommandResult run = aphotic({"--completion", "tcsh"});
+    const CommandResult run = aphotic("--completion tcsh");
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(run.out, "");
     EXPECT_NE(run.err.find("tcsh not in {bash,zsh,fish}"), std::string::npos) << run.err;

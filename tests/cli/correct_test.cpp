@@ -11,9 +11,9 @@
 #include "lightmap/cone_edge.h"
 #include "rig/file/rig_reader.h"
 #include "support/absurd_images.h"
+#include "support/command_test.h"
 #include "support/has.h"
 #include "support/png.h"
-#include "support/run_command.h"
 #include "support/tiff.h"
 #include "validation/tracer.h"
 
@@ -59,7 +59,10 @@ bool is_patch(std::size_t pixel) {
     return column >= 12 && column < 20 && row >= 10 && row < 18;
 }
 
-class CorrectCommand : public testing::Test {
+const Arguments kCorrect(
+    "correct raw --rig rig.toml --nav nav.eic --bayer GRBG --black-level 60 --white-level 4095");
+
+class CorrectCommand : public CommandTest {
   protected:
     void SetUp() override {
         std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
@@ -71,8 +74,6 @@ class CorrectCommand : public testing::Test {
         write_file(path("rig.toml"), text);
         fs::create_directories(path("raw"));
     }
-
-    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
 
     [[nodiscard]] Rig rig_at(const Sled& sled) const {
         Rig rig = read_rig(path("rig.toml"));
@@ -128,30 +129,17 @@ class CorrectCommand : public testing::Test {
         return sleds;
     }
 
-    [[nodiscard]] CommandResult correct(const std::vector<std::string>& more,
+    [[nodiscard]] CommandResult correct(const Arguments& more,
                                         const std::string& output = "out") const {
-        std::vector<std::string> arguments{"correct",
-                                           "raw",
-                                           "--rig",
-                                           "rig.toml",
-                                           "--nav",
-                                           "nav.eic",
-                                           "-o",
-                                           output,
-                                           "--bayer",
-                                           "GRBG",
-                                           "--black-level",
-                                           "60",
-                                           "--white-level",
-                                           "4095"};
+        Arguments arguments = kCorrect + ("-o " + output);
         // In place of the same option here.
         for (const std::string& option : more) {
             if (!option.starts_with("--")) continue;
             const auto same = std::ranges::find(arguments, option);
             if (same != arguments.end()) arguments.erase(same, same + 2);
         }
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run_aphotic(folder_.path(), arguments);
+        arguments += more;
+        return aphotic(arguments);
     }
 
     static std::vector<float> exr_samples(const fs::path& file,
@@ -172,7 +160,6 @@ class CorrectCommand : public testing::Test {
         return files;
     }
 
-    TempFolder folder_;
     mutable double exposure_ = 0.0;
     std::string lines_;
 };
@@ -181,8 +168,7 @@ class CorrectCommand : public testing::Test {
 // again, up to half a step of the camera's whole numbers there.
 TEST_F(CorrectCommand, AFloorIsEvenAndOneColourOverAltitudeAndAttitude) {
     const std::vector<Sled> sleds = take_survey();
-    const CommandResult run =
-        correct({"--format", "exr", "--keep-mosaic", "--mask", "--edge-px", "1", "--json"});
+    const CommandResult run = correct("--format exr --keep-mosaic --mask --edge-px 1 --json");
     ASSERT_EQ(run.status, 0) << run.err;
     const Json summary = Json::parse(run.out);
     EXPECT_EQ(summary["corrected"], sleds.size());
@@ -215,58 +201,52 @@ TEST_F(CorrectCommand, AFloorIsEvenAndOneColourOverAltitudeAndAttitude) {
 // How much light the middle has is not known of a gain by itself, so noise holds nothing then.
 TEST_F(CorrectCommand, AGainByItselfLeavesTheDarkToItsShare) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
-    const auto dark_share = [&](const std::vector<std::string>& more, const std::string& output) {
-        std::vector<std::string> arguments{"--format", "exr", "--json"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        const CommandResult run = correct(arguments, output);
+    const auto dark_share = [&](const Arguments& more, const std::string& output) {
+        const CommandResult run = correct("--format exr --json" + more, output);
         EXPECT_EQ(run.status, 0) << run.err;
         return Json::parse(run.out).at("doubtful").at("dark").get<double>();
     };
-    EXPECT_EQ(dark_share({"--gain", "1"}, "one"), 0.0);
-    EXPECT_GT(dark_share({"--gain", "1", "--least-light", "0.5"}, "half"), 0.0);
+    EXPECT_EQ(dark_share("--gain 1", "one"), 0.0);
+    EXPECT_GT(dark_share("--gain 1 --least-light 0.5", "half"), 0.0);
 }
 
 TEST_F(CorrectCommand, TiffOfSixteenBitsHasThreeChannelsAndTheSourcesWords) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
     ASSERT_EQ(correct({}).status, 0);
-    ASSERT_EQ(correct({"--format", "exr"}, "exact").status, 0);
+    ASSERT_EQ(correct("--format exr", "exact").status, 0);
     // 1/65536 of white; the floor is 0.1 and more.
     constexpr const char* kStep = "1e-4";
     const CommandResult same =
-        run_aphotic(folder_.path(),
-                    {"compare", "out/a.tif", "exact/a.exr", "--bound", kStep, "--black", "0.5"});
+        aphotic({"compare", "out/a.tif", "exact/a.exr", "--bound", kStep, "--black", "0.5"});
     EXPECT_EQ(same.status, 0) << same.out << same.err;
     EXPECT_TRUE(has(same.out, " B "));
-    EXPECT_TRUE(has(read_text_file(path("out/a.tif")), "lat=41.5,lon=-70.6"));
+    EXPECT_TRUE(has(text_of("out/a.tif"), "lat=41.5,lon=-70.6"));
     EXPECT_EQ(ExrReader(path("exact/a.exr")).attribute("comments"), "lat=41.5,lon=-70.6");
-    ASSERT_EQ(correct({"--format", "png"}, "png").status, 0);
-    EXPECT_EQ(decode_png(read_text_file(path("png/a.png"))).width, kWidth);
+    ASSERT_EQ(correct("--format png", "png").status, 0);
+    EXPECT_EQ(decode_png(text_of("png/a.png")).width, kWidth);
 }
 
 // The same pixels, in a file as large as they are, or smaller.
 TEST_F(CorrectCommand, EveryCompressionIsLossless) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
-    const auto file_of = [&](const std::string& name, const std::vector<std::string>& compression) {
+    const auto file_of = [&](const std::string& name, const Arguments& compression) {
         const std::string format = name.substr(2) == "tif" ? "tiff" : name.substr(2);
         const std::string folder = format + (compression.empty() ? "" : "-" + compression.back());
-        std::vector<std::string> options{"--format", format};
-        options.insert(options.end(), compression.begin(), compression.end());
-        EXPECT_EQ(correct(options, folder).status, 0);
+        EXPECT_EQ(correct(fmt::format("--format {}", format) + compression, folder).status, 0);
         return folder + "/" + name;
     };
     const auto expect_smaller = [&](const std::string& file, const std::string& plain) {
         EXPECT_LT(fs::file_size(path(file)), fs::file_size(path(plain))) << file;
-        const CommandResult same =
-            run_aphotic(folder_.path(), {"compare", plain, file, "--bound", "0"});
+        const CommandResult same = aphotic(fmt::format("compare {} {} --bound 0", plain, file));
         EXPECT_EQ(same.status, 0) << same.out << same.err;
     };
     for (const char* name : {"a.tif", "a.png", "a.exr"}) {
-        const std::string plain = file_of(name, {"--compression", "none"});
+        const std::string plain = file_of(name, "--compression none");
         const std::uintmax_t sample_bytes = std::string(name) == "a.exr" ? 4 : 2;
         EXPECT_GE(fs::file_size(path(plain)), kChannels * kPixels * sample_bytes) << name;
         expect_smaller(file_of(name, {}), plain);
     }
-    expect_smaller(file_of("a.tif", {"--compression", "small"}), "tiff-none/a.tif");
+    expect_smaller(file_of("a.tif", "--compression small"), "tiff-none/a.tif");
 }
 
 TEST_F(CorrectCommand, PngOfRgbAndExrOfFloatsAreRead) {
@@ -286,19 +266,9 @@ TEST_F(CorrectCommand, PngOfRgbAndExrOfFloatsAreRead) {
     writer.finish();
     note("a.png", sled);
     note("b.exr", sled);
-    const CommandResult run = run_aphotic(folder_.path(),
-                                          {"correct",
-                                           "raw",
-                                           "--rig",
-                                           "rig.toml",
-                                           "--nav",
-                                           "nav.eic",
-                                           "-o",
-                                           "out",
-                                           "--format",
-                                           "exr",
-                                           "--gain",
-                                           fmt::format("{:.17g}", 1.0 / exposure_)});
+    const CommandResult run =
+        aphotic("correct raw --rig rig.toml --nav nav.eic -o out --format exr --gain " +
+                fmt::format("{:.17g}", 1.0 / exposure_));
     ASSERT_EQ(run.status, 0) << run.err;
     const std::vector<float> a = exr_samples(path("out/a.exr"), {"R", "G", "B"});
     const std::vector<float> b = exr_samples(path("out/b.exr"), {"R", "G", "B"});
@@ -316,7 +286,7 @@ TEST_F(CorrectCommand, PngOfRgbAndExrOfFloatsAreRead) {
 
 TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     take_survey();
-    const std::string whole = read_text_file(path("raw/0.tif"));
+    const std::string whole = text_of("raw/0.tif");
     write_file(path("raw/cut.tif"), whole.substr(0, whole.size() / 2));
     const std::vector<std::uint16_t> grey(kPixels, 1000);
     const std::string short_of_rows = tiff_of(grey, kWidth, kHeight, "", true);
@@ -331,7 +301,7 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     for (const char* name : {"cut.tif", "rows.tif", "packed.tif", "words.png", "small.tif"})
         note(name, {2.0, 0.0, 0.0});
     note("low.tif", {0.0, 0.0, 0.0});
-    const CommandResult run = correct({"--json"});
+    const CommandResult run = correct("--json");
     EXPECT_EQ(run.status, kAnswerIsNo);
     const Json summary = Json::parse(run.out);
     EXPECT_EQ(summary["corrected"], 4);
@@ -348,7 +318,7 @@ TEST_F(CorrectCommand, BadImagesAreSaidSkippedAndListedAndTheOthersDone) {
     for (const auto& [image, reason] : why) {
         EXPECT_TRUE(has(run.err, "aphotic: " + image + ": " + reason + "; skipped"));
     }
-    EXPECT_EQ(Json::parse(read_text_file(path("out/correction.json"))), summary);
+    EXPECT_EQ(Json::parse(text_of("out/correction.json")), summary);
     const auto files = files_in("out");
     EXPECT_EQ(files.size(), 4U + 2U);  // the images, and the two that say what was done
 }
@@ -358,8 +328,7 @@ TEST_F(CorrectCommand, AMapOfAnotherWindowOrOfAbsurdSizeIsRefused) {
     take("0.tif", {2.0, 0.0, 0.0});
     const auto refused = [&](const std::string& map) {
         write_file(path("map.exr"), map);
-        const CommandResult run = run_aphotic(
-            folder_.path(), {"correct", "raw", "--map", "map.exr", "-o", "out", "--bayer", "GRBG"});
+        const CommandResult run = aphotic("correct raw --map map.exr -o out --bayer GRBG");
         EXPECT_EQ(run.status, kBadInput) << run.err;
         return run.err;
     };
@@ -377,17 +346,17 @@ TEST_F(CorrectCommand, EndsWellWhenNoMoreAreSkippedThanAllowed) {
     write_file(path("raw/words.tif"), "this is no image");
     note("words.tif", {2.0, 0.0, 0.0});
     struct Case {
-        std::vector<std::string> option;
+        Arguments option;
         int status;
         int allowed;
     };
     for (const Case& one : std::vector<Case>{{{}, kAnswerIsNo, 0},
-                                             {{"--allow-skipped", "0"}, kAnswerIsNo, 0},
-                                             {{"--allow-skipped", "1"}, 0, 1},
-                                             {{"--allow-skipped", "3"}, 0, 3},
-                                             {{"--allow-skipped", "0.19"}, kAnswerIsNo, 0},
-                                             {{"--allow-skipped", "0.2"}, 0, 1},
-                                             {{"--allow-skipped", "20%"}, 0, 1}}) {
+                                             {"--allow-skipped 0", kAnswerIsNo, 0},
+                                             {"--allow-skipped 1", 0, 1},
+                                             {"--allow-skipped 3", 0, 3},
+                                             {"--allow-skipped 0.19", kAnswerIsNo, 0},
+                                             {"--allow-skipped 0.2", 0, 1},
+                                             {"--allow-skipped 20%", 0, 1}}) {
         const CommandResult run = correct(one.option);
         const std::string about = testing::PrintToString(one.option);
         EXPECT_EQ(run.status, one.status) << about << run.err;
@@ -409,16 +378,16 @@ TEST_F(CorrectCommand, EndsWellWhenNoMoreAreSkippedThanAllowed) {
 // The same floor in another dive, at half the exposure: by one gain it is half as bright.
 TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
     const std::vector<Sled> sleds = take_survey();
-    ASSERT_EQ(correct({"--format", "exr"}, "one").status, 0);
+    ASSERT_EQ(correct("--format exr", "one").status, 0);
     fs::rename(path("raw"), path("raw-one"));
     fs::create_directories(path("raw"));
     exposure_ /= 2.0;
     take("second.tif", sleds[0]);
-    const CommandResult run = correct({"--format", "exr", "--gain-from", "one", "--strict"}, "two");
+    const CommandResult run = correct("--format exr --gain-from one --strict", "two");
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_TRUE(has(run.out, ", that of one"));
     const auto notes = [&](const std::string& folder) {
-        return Json::parse(read_text_file(path(folder + "/correction.json")));
+        return Json::parse(text_of(folder + "/correction.json"));
     };
     EXPECT_EQ(notes("two")["gain"], notes("one")["gain"]);
     EXPECT_EQ(notes("two")["settings"]["middle"], notes("one")["settings"]["middle"]);
@@ -433,15 +402,15 @@ TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
     }
 
     // Another rig is told of, with --strict refused; another camera is refused.
-    const std::string rig = read_text_file(path("rig.toml"));
+    const std::string rig = text_of("rig.toml");
     write_file(path("rig.toml"), rig + "# of the second dive\n");
-    const CommandResult other = correct({"--gain-from", "one"}, "three");
+    const CommandResult other = correct("--gain-from one", "three");
     EXPECT_EQ(other.status, 0) << other.err;
     EXPECT_TRUE(has(other.err, "looks wrong: gain-from: one: the rig there is another"));
     EXPECT_EQ(notes("three")["looks_wrong"][0]["about"], "gain-from");
-    EXPECT_EQ(correct({"--gain-from", "one", "--strict"}, "three").status, kBadInput);
+    EXPECT_EQ(correct("--gain-from one --strict", "three").status, kBadInput);
     write_file(path("rig.toml"), rig);
-    const CommandResult levels = correct({"--gain-from", "one", "--black-level", "1"}, "levels");
+    const CommandResult levels = correct("--gain-from one --black-level 1", "levels");
     EXPECT_TRUE(has(levels.err, "looks wrong: gain-from: one: the black_level there is "));
     EXPECT_TRUE(has(levels.err, ", here 1.0"));
     write_file(path("camera.csv"),
@@ -450,35 +419,34 @@ TEST_F(CorrectCommand, TheGainOfAnotherDiveKeepsBothOnOneScale) {
         path("rig.toml"),
         std::regex_replace(
             rig, std::regex("\"nikon-d5100\""), R"({ table = "camera.csv", kind = "energy" })"));
-    const auto refused = [&](const std::vector<std::string>& options, const std::string& why) {
+    const auto refused = [&](const Arguments& options, const std::string& why) {
         const CommandResult wrong = correct(options, "four");
         EXPECT_EQ(wrong.status, kBadInput) << wrong.out;
         EXPECT_TRUE(has(wrong.err, why));
         EXPECT_FALSE(fs::exists(path("four")));
     };
-    refused({"--gain-from", "one"},
+    refused("--gain-from one",
             "--gain-from: one: the rig there has a camera with another response; allowed: results "
             "of the same camera");
     write_file(path("rig.toml"), rig);
-    refused({"--gain-from", "raw"},
+    refused("--gain-from raw",
             "--gain-from: raw: holds no correction.json; allowed: a folder that correct wrote");
     fs::create_directories(path("broken"));
     write_file(path("broken/correction.json"), R"({"gain": [1, 0, 1]})");
-    refused({"--gain-from", "broken"},
+    refused("--gain-from broken",
             "--gain-from: broken: correction.json: tells of no gain; allowed: as correct wrote it");
     write_file(path("broken/correction.json"), "no notes");
-    refused({"--gain-from", "broken"}, "--gain-from: broken: correction.json: is not JSON");
-    refused({"--gain-from", "one", "--gain", "2"}, "--gain");
-    refused({"--gain-from", "one", "--middle", "0.2"}, "--middle");
+    refused("--gain-from broken", "--gain-from: broken: correction.json: is not JSON");
+    refused("--gain-from one --gain 2", "--gain");
+    refused("--gain-from one --middle 0.2", "--middle");
 }
 
 // By the standard's formula from the linear result, the matrix and the exposure that are noted.
 TEST_F(CorrectCommand, SrgbIsTheLinearImageByMatrixExposureAndCurve) {
     take_survey();
-    const CommandResult run =
-        correct({"--encode", "srgb", "--format", "png", "--bits", "16", "--json"}, "png");
+    const CommandResult run = correct("--encode srgb --format png --bits 16 --json", "png");
     ASSERT_EQ(run.status, 0) << run.err;
-    ASSERT_EQ(correct({"--format", "exr"}, "exr").status, 0);
+    ASSERT_EQ(correct("--format exr", "exr").status, 0);
     const Json srgb = Json::parse(run.out).at("srgb");
     EXPECT_GT(srgb["mean_delta_e"].get<double>(), 0.0);
     EXPECT_LT(srgb["largest_delta_e"].get<double>(), 20.0);
@@ -500,7 +468,7 @@ TEST_F(CorrectCommand, SrgbIsTheLinearImageByMatrixExposureAndCurve) {
     const double exposure = srgb["exposure"].get<double>();
     EXPECT_NEAR(exposure, 0.2 / middle, 1e-9);
     const std::vector<float> linear = exr_samples(path("exr/0.exr"), {"R", "G", "B"});
-    const DecodedPng shown = decode_png(read_text_file(path("png/srgb/0.png")));
+    const DecodedPng shown = decode_png(text_of("png/srgb/0.png"));
     ASSERT_EQ(shown.width, kWidth);
     for (std::size_t p = 0; p < kPixels; ++p) {
         for (std::size_t row = 0; row < kChannels; ++row) {
@@ -522,33 +490,29 @@ TEST_F(CorrectCommand, SrgbIsTheLinearImageByMatrixExposureAndCurve) {
 // A JPEG by default, beside the linear TIFF, and it says what it is.
 TEST_F(CorrectCommand, SrgbFilesSayThatTheyAreSrgb) {
     take("a.tif", {2.0, 5.0 * kDegree, 0.0});
-    const auto made = [&](const std::vector<std::string>& format, const std::string& folder) {
-        std::vector<std::string> options{"--encode", "srgb"};
-        options.insert(options.end(), format.begin(), format.end());
-        const CommandResult run = correct(options, folder);
+    const auto made = [&](const Arguments& format, const std::string& folder) {
+        const CommandResult run = correct("--encode srgb" + format, folder);
         EXPECT_EQ(run.status, 0) << run.err;
         EXPECT_TRUE(has(run.out, "sRGB in " + folder + "/srgb: exposure "));
         return files_in(folder);
     };
     EXPECT_TRUE(made({}, "jpeg").contains("srgb/a.jpg"));
     EXPECT_TRUE(fs::exists(path("jpeg/a.tif")));
-    auto named = made({"--format", "jpeg"}, "named");
+    auto named = made("--format jpeg", "named");
     for (const char* file : {"a.tif", "srgb/a.jpg"}) {
         EXPECT_TRUE(named[file] == files_in("jpeg")[file]) << file;
     }
-    EXPECT_TRUE(made({"--format", "png"}, "png").contains("srgb/a.png"));
-    EXPECT_TRUE(made({"--format", "tiff"}, "tiff").contains("srgb/a.tif"));
-    EXPECT_TRUE(made({"--format", "exr"}, "exr").contains("srgb/a.jpg"));
-    EXPECT_LT(made({"--quality", "40"}, "small").at("srgb/a.jpg").size(),
+    EXPECT_TRUE(made("--format png", "png").contains("srgb/a.png"));
+    EXPECT_TRUE(made("--format tiff", "tiff").contains("srgb/a.tif"));
+    EXPECT_TRUE(made("--format exr", "exr").contains("srgb/a.jpg"));
+    EXPECT_LT(made("--quality 40", "small").at("srgb/a.jpg").size(),
               files_in("jpeg").at("srgb/a.jpg").size());
     // JPEG blurs colours over 2 x 2 pixels: at the patch's rim by up to half of its own
     // step, 1.5-fold and some 1.2-fold once encoded.
-    const CommandResult same = run_aphotic(
-        folder_.path(),
-        {"compare", "jpeg/srgb/a.jpg", "png/srgb/a.png", "--bound", "0.2", "--black", "0.5"});
+    const CommandResult same =
+        aphotic("compare jpeg/srgb/a.jpg png/srgb/a.png --bound 0.2 --black 0.5");
     EXPECT_EQ(same.status, 0) << same.out << same.err;
-    const CommandResult depth = run_aphotic(
-        folder_.path(), {"compare", "tiff/srgb/a.tif", "png/srgb/a.png", "--bound", "0"});
+    const CommandResult depth = aphotic("compare tiff/srgb/a.tif png/srgb/a.png --bound 0");
     EXPECT_EQ(depth.status, 0) << depth.out << depth.err;
 
     // Exif's ColorSpace, tag 0xA001, one short number, is 1 for sRGB; in either order of bytes. A
@@ -567,7 +531,7 @@ TEST_F(CorrectCommand, SrgbFilesSayThatTheyAreSrgb) {
 
     // Repeated, all is kept; without its JPEG, an image is made again.
     const auto again = [&] {
-        const CommandResult run = correct({"--encode", "srgb", "--json"}, "jpeg");
+        const CommandResult run = correct("--encode srgb --json", "jpeg");
         return Json::parse(run.out)["kept"].get<int>();
     };
     EXPECT_EQ(again(), 1);
@@ -577,10 +541,9 @@ TEST_F(CorrectCommand, SrgbFilesSayThatTheyAreSrgb) {
 
     // Brighter by a stop.
     const auto exposure = [&](const std::string& folder) {
-        return Json::parse(read_text_file(path(folder + "/correction.json")))["srgb"]["exposure"]
-            .get<double>();
+        return Json::parse(text_of(folder + "/correction.json"))["srgb"]["exposure"].get<double>();
     };
-    made({"--stops", "1"}, "bright");
+    made("--stops 1", "bright");
     EXPECT_NEAR(exposure("bright") / exposure("jpeg"), 2.0, 1e-12);
 }
 
@@ -589,23 +552,23 @@ TEST_F(CorrectCommand, WhatCannotBeEncodedIsRefused) {
     fs::create_directories(path("raw/srgb"));
     fs::copy(path("raw/a.tif"), path("raw/srgb/a.tif"));
     struct Case {
-        std::vector<std::string> options;
+        Arguments options;
         std::string why;
     };
     for (const Case& one : std::vector<Case>{
-             {{"--format", "jpeg"},
+             {"--format jpeg",
               "--format: found jpeg, which holds no linear image; allowed: tiff, png, exr, or jpeg "
               "with --encode srgb"},
-             {{"--quality", "90"}, "--quality: found linear images; allowed: with --encode srgb"},
-             {{"--encode", "srgb", "--bits", "16"},
+             {"--quality 90", "--quality: found linear images; allowed: with --encode srgb"},
+             {"--encode srgb --bits 16",
               "--bits: found 16 of jpeg; allowed: 8, or --format png or tiff"},
-             {{"--encode", "srgb", "--bits", "12"}, "--bits"},
-             {{"--encode", "srgb", "--quality", "101"}, "--quality: found 101; allowed: 1 to 100"},
-             {{"--encode", "srgb", "--format", "png", "--quality", "90"},
+             {"--encode srgb --bits 12", "--bits"},
+             {"--encode srgb --quality 101", "--quality: found 101; allowed: 1 to 100"},
+             {"--encode srgb --format png --quality 90",
               "--quality: found 90 of png; allowed: with --format jpeg"},
-             {{"--encode", "srgb", "--stops", "nan"}, "--stops: found nan; allowed: a number"},
-             {{"--encode", "adobe"}, "--encode: adobe not in {linear,srgb}"},
-             {{"--encode", "srgb", "--format", "tiff"},
+             {"--encode srgb --stops nan", "--stops: found nan; allowed: a number"},
+             {"--encode adobe", "--encode: adobe not in {linear,srgb}"},
+             {"--encode srgb --format tiff",
               "raw/a.tif and raw/srgb/a.tif would both become out/srgb/a.tif"}}) {
         const CommandResult run = correct(one.options);
         EXPECT_EQ(run.status, kBadInput) << run.out;
@@ -621,7 +584,7 @@ TEST_F(CorrectCommand, ACutNavigationIsWarnedOf) {
     const CommandResult run = correct({});
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_TRUE(has(run.err, "looks wrong: navigation: nav.eic:2: the file ends within this line"));
-    const CommandResult strict = correct({"--strict"});
+    const CommandResult strict = correct("--strict");
     EXPECT_EQ(strict.status, kBadInput) << strict.err;
 }
 
@@ -634,12 +597,12 @@ TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
              {1.5 + 0.1 * i, (i % 5 - 1) * 2.0 * kDegree, (i % 3 - 1) * 3.0 * kDegree});
     }
     const std::string right = lines_;
-    const auto told = [&](const std::string& navigation, const std::vector<std::string>& more) {
+    const auto told = [&](const std::string& navigation, const Arguments& more) {
         write_file(path("nav.eic"), navigation);
         const CommandResult run = correct(more);
         EXPECT_EQ(run.status, 0) << run.err;
         std::string about;
-        const Json notes = Json::parse(read_text_file(path("out/correction.json")));
+        const Json notes = Json::parse(text_of("out/correction.json"));
         for (const Json& one : notes["looks_wrong"]) {
             about += one["about"];
             EXPECT_TRUE(has(run.err,
@@ -659,28 +622,28 @@ TEST_F(CorrectCommand, WhatLooksWrongIsToldAndByStrictAnEnd) {
     };
     const std::string high = changed(50.0, 1.0);
     write_file(path("nav.eic"), high);
-    const CommandResult refused = correct({"--strict"});
+    const CommandResult refused = correct("--strict");
     EXPECT_EQ(refused.status, kBadInput);
     EXPECT_TRUE(has(refused.err, "--strict: suspicious survey: altitude: "));
     EXPECT_FALSE(fs::exists(path("out")));
 
     EXPECT_EQ(told(high, {}), "altitude");
-    EXPECT_EQ(told(right, {"--strict"}), "") << "the gain is taken anew";
+    EXPECT_EQ(told(right, "--strict"), "") << "the gain is taken anew";
 
     // Given again, with a gain that is kept.
-    const std::string notes = read_text_file(path("out/correction.json"));
+    const std::string notes = text_of("out/correction.json");
     write_file(path("nav.eic"), high);
-    EXPECT_EQ(correct({"--strict"}).status, kBadInput);
-    EXPECT_EQ(read_text_file(path("out/correction.json")), notes);
+    EXPECT_EQ(correct("--strict").status, kBadInput);
+    EXPECT_EQ(text_of("out/correction.json"), notes);
     EXPECT_EQ(told(high, {}), "altitude");
-    EXPECT_EQ(told(high, {"--gain-images", "3"}), "altitude");
-    EXPECT_EQ(told(changed(0.0, kDegree), {"--middle", "0.3"}), "attitude");
-    EXPECT_EQ(told(right, {"--bayer", "RGGB"}), "bayer");
-    EXPECT_EQ(told(right, {"--gain", "1", "--bayer", "GBRG"}), "bayer");
+    EXPECT_EQ(told(high, "--gain-images 3"), "altitude");
+    EXPECT_EQ(told(changed(0.0, kDegree), "--middle 0.3"), "attitude");
+    EXPECT_EQ(told(right, "--bayer RGGB"), "bayer");
+    EXPECT_EQ(told(right, "--gain 1 --bayer GBRG"), "bayer");
     // The lowest image set the exposure: nearer still, much of an image is saturated.
     take("low.tif", {1.2, 0.0, 0.0});
-    EXPECT_EQ(told(lines_, {"--strict"}), "");
-    EXPECT_EQ(told(lines_, {"--white-level", "65535"}), "white-level");
+    EXPECT_EQ(told(lines_, "--strict"), "");
+    EXPECT_EQ(told(lines_, "--white-level 65535"), "white-level");
 }
 
 // The same poses as heights with the images' names, as heights over time, and in tags: the same
@@ -724,13 +687,10 @@ TEST_F(CorrectCommand, TheSameNavigationInOtherFormsCorrectsAlike) {
     }
     write_file(path("heights.csv"), heights);
     write_file(path("track.csv"), track);
-    ASSERT_EQ(correct({"--format", "exr"}).status, 0);
-    const auto expect_alike = [&](const std::vector<std::string>& options,
-                                  const std::string& words) {
-        std::vector<std::string> all{"--format", "exr"};
-        all.insert(all.end(), options.begin(), options.end());
+    ASSERT_EQ(correct("--format exr").status, 0);
+    const auto expect_alike = [&](const Arguments& options, const std::string& words) {
         fs::remove_all(path("other"));
-        const CommandResult run = correct(all, "other");
+        const CommandResult run = correct("--format exr" + options, "other");
         ASSERT_EQ(run.status, 0) << run.err;
         EXPECT_TRUE(has(run.out, "  navigation: " + words));
         for (const std::string& name : names) {
@@ -742,16 +702,16 @@ TEST_F(CorrectCommand, TheSameNavigationInOtherFormsCorrectsAlike) {
             EXPECT_LT(most, kDigits) << words << " " << name;
         }
     };
-    expect_alike({"--nav", "heights.csv", "--altitude-is", "plumb"}, "oplab's CSV: image");
-    expect_alike({"--nav", "track.csv", "--altitude-is", "nearest", "--clock-offset-s", "3600"},
+    expect_alike("--nav heights.csv --altitude-is plumb", "oplab's CSV: image");
+    expect_alike("--nav track.csv --altitude-is nearest --clock-offset-s 3600",
                  "Aphotic's CSV: time 'timestamp'");
-    expect_alike({"--nav", "tags"}, "HabCam's tags: altitude_m 'alt0'");
-    const Json notes = Json::parse(read_text_file(path("other/correction.json")));
+    expect_alike("--nav tags", "HabCam's tags: altitude_m 'alt0'");
+    const Json notes = Json::parse(text_of("other/correction.json"));
     EXPECT_EQ(notes["settings"]["navigation"]["format"], "HabCam's tags");
     EXPECT_EQ(notes["settings"]["navigation"]["altitude_is"], "axis");
     // By another altimeter it is another survey: the gain is taken anew, and every image done.
-    const CommandResult other = correct(
-        {"--nav", "tags", "--format", "exr", "--columns", "altitude_m=alt1", "--json"}, "other");
+    const CommandResult other =
+        correct("--nav tags --format exr --columns altitude_m=alt1 --json", "other");
     EXPECT_EQ(Json::parse(other.out)["kept"], 0);
 }
 
@@ -766,7 +726,7 @@ TEST_F(CorrectCommand, TheFirstImageThatCannotBeReadIsNamed) {
                           : "no image");
         note(name, {2.0, 0.0, 0.0});
     }
-    const CommandResult run = correct({"--jobs", "8"});
+    const CommandResult run = correct("--jobs 8");
     EXPECT_EQ(run.status, kBadInput);
     EXPECT_TRUE(has(run.err,
                     "none of the 16 images looked at can be corrected; 00: found 1024 x "
@@ -777,12 +737,12 @@ TEST_F(CorrectCommand, TheFirstImageThatCannotBeReadIsNamed) {
 TEST_F(CorrectCommand, NotesEditedByHandSpoilNothing) {
     take_survey();
     ASSERT_EQ(correct({}).status, 0);
-    const std::string journal = read_text_file(path("out/corrected.jsonl"));
-    const std::string notes = read_text_file(path("out/correction.json"));
+    const std::string journal = text_of("out/corrected.jsonl");
+    const std::string notes = text_of("out/correction.json");
     const auto after = [&](const std::string& edited_journal, const std::string& edited_notes) {
         write_file(path("out/corrected.jsonl"), edited_journal);
         write_file(path("out/correction.json"), edited_notes);
-        const CommandResult run = correct({"--json"});
+        const CommandResult run = correct("--json");
         EXPECT_EQ(run.status, 0) << run.err;
         const Json summary = Json::parse(run.out);
         EXPECT_EQ(summary["gain"], Json::parse(notes)["gain"]);
@@ -808,33 +768,18 @@ TEST_F(CorrectCommand, NotesEditedByHandSpoilNothing) {
 
 TEST_F(CorrectCommand, KilledAnywhereItGoesOnToTheSameImages) {
     take_survey();
-    const std::string image = read_text_file(path("raw/1.tif"));
+    const std::string image = text_of("raw/1.tif");
     constexpr int kMore = 60;
     for (int i = 0; i < kMore; ++i) {
         const std::string name = fmt::format("more{:02}.tif", i);
         write_file(path("raw/" + name), image);
         note(name, {2.0 + 0.01 * i, 0.0, 0.0});
     }
-    const std::vector<std::string> settings{"--mask", "--gain-images", "4", "--jobs", "2"};
+    const Arguments settings("--mask --gain-images 4 --jobs 2");
     ASSERT_EQ(correct(settings, "whole").status, 0);
     {
-        std::vector<std::string> arguments{"correct",
-                                           "raw",
-                                           "--rig",
-                                           "rig.toml",
-                                           "--nav",
-                                           "nav.eic",
-                                           "-o",
-                                           "out",
-                                           "--bayer",
-                                           "GRBG",
-                                           "--black-level",
-                                           "60",
-                                           "--white-level",
-                                           "4095"};
-        arguments.insert(arguments.end(), settings.begin(), settings.end());
         Process process({.executable = APHOTIC_COMMAND,
-                         .arguments = arguments,
+                         .arguments = kCorrect + ("-o out" + settings),
                          .folder = folder_.path(),
                          .environment = {},
                          .log = path("log")});
@@ -848,11 +793,7 @@ TEST_F(CorrectCommand, KilledAnywhereItGoesOnToTheSameImages) {
         }
     }  // killed
     abandon(path("out/more07.tif"));
-    const CommandResult again = correct([&] {
-        std::vector<std::string> more = settings;
-        more.emplace_back("--json");
-        return more;
-    }());
+    const CommandResult again = correct(settings + "--json");
     ASSERT_EQ(again.status, 0) << again.err;
     const Json summary = Json::parse(again.out);
     EXPECT_GE(summary["kept"], 1);
@@ -872,7 +813,7 @@ TEST_F(CorrectCommand, APoseWithAStrobeUnderTheFloorIsSkipped) {
     take_survey();
     fs::copy_file(path("raw/0.tif"), path("raw/tilted.tif"));
     note("tilted.tif", {0.02, 30.0 * kDegree, 0.0});
-    const CommandResult run = correct({"--json"});
+    const CommandResult run = correct("--json");
     EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
     const Json summary = Json::parse(run.out);
     EXPECT_EQ(summary["corrected"], 4);
@@ -896,7 +837,7 @@ TEST_F(CorrectCommand, WhatIsNoFileWhenItsTurnComesCostsNoOther) {
     for (const char* name : {"gone.tif", "itself.tif", "pipe.tif", "named.tif"}) {
         note(name, {2.0, 0.0, 0.0});
     }
-    const CommandResult run = correct({"named.tif", "--json", "--gain", "1"});
+    const CommandResult run = correct("named.tif --json --gain 1");
     EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
     const Json summary = Json::parse(run.out);
     EXPECT_EQ(summary["corrected"], 4);
@@ -927,7 +868,7 @@ TEST_F(CorrectCommand, AnImageThatVanishesMeanwhileIsOneThatIsSkipped) {
         }
         fs::remove(path(last));
     });
-    const CommandResult run = correct({"--json", "--gain", "1", "--jobs", "1"});
+    const CommandResult run = correct("--json --gain 1 --jobs 1");
     EXPECT_EQ(run.status, kAnswerIsNo) << run.err;
     const Json summary = Json::parse(run.out);
     EXPECT_EQ(summary["corrected"], kMany - 1);
@@ -946,29 +887,16 @@ TEST_F(CorrectCommand, AMapTakesThePlaceOfRigAndNavigation) {
     ExrWriter writer(path("map.exr"), kWidth, kHeight, {"R", "G", "B"}, {});
     writer.write_rows(kHeight, std::vector<float>(map.begin(), map.end()));
     writer.finish();
-    const std::vector<std::string> common{"--format", "exr", "--keep-mosaic", "--gain", "0.001"};
+    const Arguments common("--format exr --keep-mosaic --gain 0.001");
     ASSERT_EQ(correct(common, "by-rig").status, 0);
-    std::vector<std::string> arguments{"correct",
-                                       "raw",
-                                       "--map",
-                                       "map.exr",
-                                       "-o",
-                                       "by-map",
-                                       "--bayer",
-                                       "GRBG",
-                                       "--black-level",
-                                       "60",
-                                       "--white-level",
-                                       "4095",
-                                       "--middle",
-                                       "0.3",
-                                       "--mask"};
-    arguments.insert(arguments.end(), common.begin(), common.end());
-    const CommandResult run = run_aphotic(folder_.path(), arguments);
+    const CommandResult run = aphotic(
+        "correct raw --map map.exr -o by-map --bayer GRBG --black-level 60 --white-level 4095 "
+        "--middle 0.3 --mask" +
+        common);
     ASSERT_EQ(run.status, 0) << run.err;
     const std::vector<float> by_map = exr_samples(path("by-map/a.exr"), {"Y"});
     const std::vector<float> by_rig = exr_samples(path("by-rig/a.exr"), {"Y"});
-    const DecodedPng mask = decode_png(read_text_file(path("by-map/a.mask.png")));
+    const DecodedPng mask = decode_png(text_of("by-map/a.mask.png"));
     const std::vector<std::uint8_t> edges = ConeEdges(rig_at(sled)).mask(sled, 1);
     for (std::size_t p = 0; p < kPixels; ++p) {
         EXPECT_TRUE(std::isfinite(by_map[p]));
@@ -980,47 +908,45 @@ TEST_F(CorrectCommand, AMapTakesThePlaceOfRigAndNavigation) {
 
 TEST_F(CorrectCommand, WhatIsWrongIsSaidBeforeAnythingIsWritten) {
     take("a.tif", {2.0, 0.0, 0.0});
-    const auto refused = [&](const std::vector<std::string>& arguments, const std::string& part) {
-        std::vector<std::string> all{"correct"};
-        all.insert(all.end(), arguments.begin(), arguments.end());
-        const CommandResult run = run_aphotic(folder_.path(), all);
+    const auto refused = [&](const Arguments& arguments, const std::string& part) {
+        const CommandResult run = aphotic("correct" + arguments);
         EXPECT_EQ(run.status, kBadInput) << part;
         EXPECT_EQ(run.out, "") << part;
         EXPECT_TRUE(has(run.err, part));
         EXPECT_FALSE(fs::exists(path("out"))) << part;
     };
-    const std::vector<std::string> rig{"--rig", "rig.toml", "--nav", "nav.eic"};
-    const auto with = [&](std::vector<std::string> arguments) {
-        arguments.insert(arguments.end(), rig.begin(), rig.end());
+    const Arguments rig("--rig rig.toml --nav nav.eic");
+    const auto with = [&](Arguments arguments) {
+        arguments += rig;
         return arguments;
     };
-    refused({"raw", "-o", "out"}, "--rig with --nav, or --map");
-    refused({"raw", "-o", "out", "--rig", "rig.toml"}, "--rig and --nav go together");
-    refused(with({"rew", "-o", "out"}), "rew: there is no such file or folder");
-    refused(with({"raw", "raw/a.tif", "-o", "out"}), "would both become out/a");
-    refused(with({"raw", "-o", "out", "--bayer", "RGB"}), "--bayer: found 'RGB'");
-    refused(with({"raw", "-o", "out", "--gain", "1,2"}), "--gain: found 2 numbers");
-    refused(with({"raw", "-o", "out", "--compression", "lzw"}), "--compression");
-    refused(with({"raw", "-o", "out", "--altitudes-m", "4,1"}), "--altitude: found 4,1");
-    refused(with({"raw/a.tif", "-o", "raw"}), "would be overwritten by the result");
+    refused("raw -o out", "--rig with --nav, or --map");
+    refused("raw -o out --rig rig.toml", "--rig and --nav go together");
+    refused(with("rew -o out"), "rew: there is no such file or folder");
+    refused(with("raw raw/a.tif -o out"), "would both become out/a");
+    refused(with("raw -o out --bayer RGB"), "--bayer: found 'RGB'");
+    refused(with("raw -o out --gain 1,2"), "--gain: found 2 numbers");
+    refused(with("raw -o out --compression lzw"), "--compression");
+    refused(with("raw -o out --altitudes-m 4,1"), "--altitude: found 4,1");
+    refused(with("raw/a.tif -o raw"), "would be overwritten by the result");
     write_file(path("raw/a.mask.png"), "an image of the user's");
-    refused(with({"raw/a.tif", "raw/a.mask.png", "-o", "raw", "--format", "exr", "--mask"}),
+    refused(with("raw/a.tif raw/a.mask.png -o raw --format exr --mask"),
             "raw/a.mask.png: would be overwritten by the result");
     fs::remove(path("raw/a.mask.png"));
-    refused(with({"raw", "-o", "raw"}), "found the folder to write to");
-    refused({"raw", "-o", "out", "--map", "none.exr"}, "none.exr");
+    refused(with("raw -o raw"), "found the folder to write to");
+    refused("raw -o out --map none.exr", "none.exr");
     fs::create_directories(path("dark"));
     const std::vector<std::uint16_t> black(kPixels, static_cast<std::uint16_t>(kBlackLevel));
     write_file(path("dark/a.tif"), tiff_of(black, kWidth, kHeight, ""));
-    refused(with({"dark", "-o", "out", "--bayer", "GRBG", "--black-level", "60"}),
+    refused(with("dark -o out --bayer GRBG --black-level 60"),
             "no gain can be taken from these images");
-    refused(with({"raw", "-o", "out"}),
+    refused(with("raw -o out"),
             "the only image looked at cannot be corrected; a: found one channel and no --bayer; "
             "allowed: R, G, B, a mosaic whose pattern --bayer names, or --bayer mono");
     fs::create_directories(path("empty"));
-    refused(with({"empty", "-o", "out"}), "empty: the folder holds no image");
+    refused(with("empty -o out"), "empty: the folder holds no image");
     write_file(path("nav.eic"), "a.tif two 0 0\n");
-    refused(with({"raw", "-o", "out"}), "nav.eic:1: altitude_m: found 'two'; allowed: a number");
+    refused(with("raw -o out"), "nav.eic:1: altitude_m: found 'two'; allowed: a number");
 }
 
 // Poses and results by an iFDO alone: heights are plumb, so pitch and roll count.
@@ -1038,9 +964,9 @@ TEST_F(CorrectCommand, TakesAnIfdoAndLeavesThatOfTheResults) {
     }
     write_file(path("set.json"), set.dump());
     ASSERT_EQ(correct({}).status, 0);
-    const CommandResult by_ifdo = correct({"--nav", "set.json", "--ifdo", "set.json"}, "by-ifdo");
+    const CommandResult by_ifdo = correct("--nav set.json --ifdo set.json", "by-ifdo");
     ASSERT_EQ(by_ifdo.status, 0) << by_ifdo.err;
-    const Json results = Json::parse(read_text_file(path("by-ifdo/set.json")));
+    const Json results = Json::parse(text_of("by-ifdo/set.json"));
     EXPECT_EQ(results["image-set-header"]["image-set-name"], "a survey");
     EXPECT_EQ(results["image-set-header"]["image-quality"], "processed");
     ASSERT_EQ(results["image-set-items"].size(), 4U);
@@ -1049,7 +975,7 @@ TEST_F(CorrectCommand, TakesAnIfdoAndLeavesThatOfTheResults) {
         EXPECT_EQ(read_text_file(path("by-ifdo/" + name)), read_text_file(path("out/" + name)));
     }
     write_file(path("set.json"), R"({"image-set-header": {}})");
-    const CommandResult none = correct({"--ifdo", "set.json"}, "none");
+    const CommandResult none = correct("--ifdo set.json", "none");
     EXPECT_EQ(none.status, kBadInput);
     EXPECT_TRUE(has(none.err, "set.json: image-set-items: found none"));
     EXPECT_FALSE(fs::exists(path("none")));

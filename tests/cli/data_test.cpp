@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic data, as a user runs it.
-#include "support/run_command.h"
+#include "support/command_test.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -13,38 +14,18 @@ namespace fs = std::filesystem;
 
 constexpr int kBadInput = 2;
 
-class CommandData : public testing::Test {
+class CommandData : public CommandTest {
   protected:
-    CommandResult data(std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), "data");
-        return run_aphotic(folder_.path(), arguments);
-    }
-
-    TempFolder folder_;
+    CommandResult data(const Arguments& arguments) { return aphotic("data" + arguments); }
 };
 
 TEST_F(CommandData, ListsEveryTableOnALineOfItsOwn) {
     const CommandResult list = data({});
     ASSERT_EQ(list.status, 0) << list.err;
-    for (const char* name : {"pope-fry-1997",
-                             "pure-2016",
-                             "xenon-flash",
-                             "xenon-arc",
-                             "sand",
-                             "green-algae",
-                             "brown-algae",
-                             "red-algae",
-                             "nikon-d5100",
-                             "cie-1931",
-                             "cie-d65",
-                             "cie-led-b4",
-                             "cie-led-b5",
-                             "bk7",
-                             "fused-silica",
-                             "sapphire",
-                             "pmma",
-                             "polycarbonate",
-                             "quan-fry-1995"}) {
+    for (const std::string& name :
+         Arguments("pope-fry-1997 pure-2016 xenon-flash xenon-arc sand green-algae brown-algae "
+                   "red-algae nikon-d5100 cie-1931 cie-d65 cie-led-b4 cie-led-b5 bk7 fused-silica "
+                   "sapphire pmma polycarbonate quan-fry-1995")) {
         EXPECT_NE(list.out.find(std::string("\n") + name + " "), std::string::npos) << name;
     }
 }
@@ -59,18 +40,18 @@ TEST_F(CommandData, ShowsATableWithItsSource) {
 
 // What --csv prints is itself a table that a rig can name.
 TEST_F(CommandData, CsvCanBeGivenBack) {
-    const CommandResult csv = data({"xenon-flash", "--csv"});
+    const CommandResult csv = data("xenon-flash --csv");
     ASSERT_EQ(csv.status, 0);
     EXPECT_TRUE(csv.out.starts_with("wavelength_nm,relative_power\n380,0.00161351\n"))
         << csv.out.substr(0, 80);
-    write_file(folder_.path() / "lamp.csv", csv.out);
+    write_file(path("lamp.csv"), csv.out);
     const CommandResult checked = data({"lamp.csv"});
     EXPECT_EQ(checked.status, 0) << checked.err;
     EXPECT_NE(checked.out.find("lamp spectrum"), std::string::npos) << checked.out;
 }
 
 TEST_F(CommandData, JsonHoldsTheValues) {
-    const CommandResult run = data({"sand", "--json"});
+    const CommandResult run = data("sand --json");
     ASSERT_EQ(run.status, 0) << run.err;
     const auto json = nlohmann::json::parse(run.out);
     EXPECT_EQ(json["name"], "sand");
@@ -78,17 +59,17 @@ TEST_F(CommandData, JsonHoldsTheValues) {
 }
 
 TEST_F(CommandData, PlotsAreDrawn) {
-    const CommandResult run = data({"pope-fry-1997", "--plot", "water.svg"});
+    const CommandResult run = data("pope-fry-1997 --plot water.svg");
     EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_GT(fs::file_size(folder_.path() / "water.svg"), 1000U);
-    EXPECT_EQ(data({"bk7", "--plot", "glass.svg"}).status, 0);
+    EXPECT_GT(fs::file_size(path("water.svg")), 1000U);
+    EXPECT_EQ(data("bk7 --plot glass.svg").status, 0);
     for (const std::string file : {"sand.pdf", "sand.png"}) {
-        const CommandResult refused = data({"sand", "--plot", file});
+        const CommandResult refused = data(fmt::format("sand --plot {}", file));
         EXPECT_EQ(refused.status, kBadInput);
         EXPECT_NE(refused.err.find("--plot: found " + file + "; allowed: a name that ends in .svg"),
                   std::string::npos)
             << refused.err;
-        EXPECT_FALSE(fs::exists(folder_.path() / file));
+        EXPECT_FALSE(fs::exists(path(file)));
     }
 }
 
@@ -98,8 +79,8 @@ constexpr const char* kSplines =
     "#declare D_Mud = spline { cubic_spline 380, 0.1 400, 0.2 500, 0.3 730, 0.4 }\n";
 
 TEST_F(CommandData, MakesTablesOfSplines) {
-    write_file(folder_.path() / "things.inc", kSplines);
-    const CommandResult run = data({"--from-spline", "things.inc", "-o", "tables"});
+    write_file(path("things.inc"), kSplines);
+    const CommandResult run = data("--from-spline things.inc -o tables");
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.out,
               "wrote tables/d-clay-01.csv: D_Clay_01, 380 to 730 nm, 3 rows\n"
@@ -107,7 +88,7 @@ TEST_F(CommandData, MakesTablesOfSplines) {
     EXPECT_EQ(run.err,
               "aphotic: things.inc:3: D_Mud is a cubic_spline: its knots are taken, and joined by "
               "straight lines\n");
-    const CommandResult checked = data({"tables/d-clay-01.csv", "--json"});
+    const CommandResult checked = data("tables/d-clay-01.csv --json");
     ASSERT_EQ(checked.status, 0) << checked.err;
     const auto json = nlohmann::json::parse(checked.out);
     EXPECT_EQ(json["role"], "reflectance");
@@ -116,8 +97,8 @@ TEST_F(CommandData, MakesTablesOfSplines) {
 }
 
 TEST_F(CommandData, SplinesGoToThisFolderAsLampsWhenAsked) {
-    write_file(folder_.path() / "lamp.inc", "#declare ES_Lamp = spline { 400, 0.5 700, 4.1 }");
-    const CommandResult run = data({"--from-spline", "lamp.inc", "--role", "lamp", "--json"});
+    write_file(path("lamp.inc"), "#declare ES_Lamp = spline { 400, 0.5 700, 4.1 }");
+    const CommandResult run = data("--from-spline lamp.inc --role lamp --json");
     ASSERT_EQ(run.status, 0) << run.err;
     const auto json = nlohmann::json::parse(run.out);
     EXPECT_EQ(json[0]["file"], "./es-lamp.csv");
@@ -126,43 +107,42 @@ TEST_F(CommandData, SplinesGoToThisFolderAsLampsWhenAsked) {
 }
 
 TEST_F(CommandData, WritesNoTableUnlessAllCanBe) {
-    write_file(folder_.path() / "a.inc",
+    write_file(path("a.inc"),
                std::string(kSplines) + "#declare IOR_Water = spline { 400, 1.34 700, 1.33 }\n");
-    const CommandResult refused = data({"--from-spline", "a.inc", "-o", "tables"});
+    const CommandResult refused = data("--from-spline a.inc -o tables");
     EXPECT_EQ(refused.status, kBadInput);
     EXPECT_NE(refused.err.find("a.inc:4: IOR_Water: found 1.34 at 400 nm; allowed for "
                                "reflectance: 0 to 1"),
               std::string::npos)
         << refused.err;
-    EXPECT_FALSE(fs::exists(folder_.path() / "tables"));
-    const CommandResult some =
-        data({"--from-spline", "a.inc", "-o", "tables", "--only", "D_Clay*"});
+    EXPECT_FALSE(fs::exists(path("tables")));
+    const CommandResult some = data("--from-spline a.inc -o tables --only D_Clay*");
     EXPECT_EQ(some.status, 0) << some.err;
-    EXPECT_TRUE(fs::exists(folder_.path() / "tables/d-clay-01.csv"));
-    EXPECT_FALSE(fs::exists(folder_.path() / "tables/d-mud.csv"));
+    EXPECT_TRUE(fs::exists(path("tables/d-clay-01.csv")));
+    EXPECT_FALSE(fs::exists(path("tables/d-mud.csv")));
 }
 
 TEST_F(CommandData, OverwritesNoTableUnlessToldTo) {
-    write_file(folder_.path() / "a.inc", kSplines);
-    write_file(folder_.path() / "d-mud.csv", "mine");
-    const CommandResult refused = data({"--from-spline", "a.inc"});
+    write_file(path("a.inc"), kSplines);
+    write_file(path("d-mud.csv"), "mine");
+    const CommandResult refused = data("--from-spline a.inc");
     EXPECT_EQ(refused.status, kBadInput);
     EXPECT_NE(refused.err.find("d-mud.csv: found a file of this name; allowed: none, unless "
                                "--force is given"),
               std::string::npos)
         << refused.err;
-    EXPECT_EQ(read_text_file(folder_.path() / "d-mud.csv"), "mine");
-    EXPECT_FALSE(fs::exists(folder_.path() / "d-clay-01.csv"));
-    EXPECT_EQ(data({"--from-spline", "a.inc", "--force"}).status, 0);
-    EXPECT_NE(read_text_file(folder_.path() / "d-mud.csv"), "mine");
+    EXPECT_EQ(text_of("d-mud.csv"), "mine");
+    EXPECT_FALSE(fs::exists(path("d-clay-01.csv")));
+    EXPECT_EQ(data("--from-spline a.inc --force").status, 0);
+    EXPECT_NE(text_of("d-mud.csv"), "mine");
 }
 
 TEST_F(CommandData, SplineOptionsNeedASplineFile) {
-    EXPECT_EQ(data({"sand", "--role", "lamp"}).status, kBadInput);
-    EXPECT_EQ(data({"sand", "--from-spline", "a.inc"}).status, kBadInput);
-    EXPECT_EQ(data({"--from-spline", "none.inc"}).status, kBadInput);
-    write_file(folder_.path() / "a.inc", kSplines);
-    EXPECT_EQ(data({"--from-spline", "a.inc", "--role", "paint"}).status, kBadInput);
+    EXPECT_EQ(data("sand --role lamp").status, kBadInput);
+    EXPECT_EQ(data("sand --from-spline a.inc").status, kBadInput);
+    EXPECT_EQ(data("--from-spline none.inc").status, kBadInput);
+    write_file(path("a.inc"), kSplines);
+    EXPECT_EQ(data("--from-spline a.inc --role paint").status, kBadInput);
 }
 
 TEST_F(CommandData, UnknownNameNamesTheNearest) {

@@ -2,10 +2,11 @@
 //
 // A design as a user asks for one: what it leaves, and what its numbers say.
 #include "base/atomic_file.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "support/small_scene.h"
 #include "support/temp_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -24,29 +25,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class CommandDesign : public testing::Test {
+class CommandDesign : public CommandTest {
   protected:
     void SetUp() override { put_small_scene(APHOTIC_SOURCE_DIR "/scenes/habcam.toml", at("")); }
 
-    [[nodiscard]] fs::path at(const std::string& name) const { return folder_.path() / name; }
+    [[nodiscard]] fs::path at(const std::string& name) const { return path(name); }
 
-    [[nodiscard]] CommandResult design(const std::string& rig,
-                                       const std::vector<std::string>& more) const {
-        std::vector<std::string> all{
-            "design", rig, "--altitude", "1.5,2.5", "--evaluations", "200"};
-        all.insert(all.end(), more.begin(), more.end());
-        return run_aphotic(folder_.path(), all);
+    [[nodiscard]] CommandResult design(const std::string& rig, const Arguments& more) const {
+        return aphotic(fmt::format("design {} --altitude 1.5,2.5 --evaluations 200", rig) + more);
     }
 
     [[nodiscard]] nlohmann::json numbers(const std::string& folder) const {
         return nlohmann::json::parse(read_text_file(at(folder) / "design.json"));
     }
-
-    TempFolder folder_;
 };
 
-std::vector<std::string> tilts_into(const std::string& folder) {
-    return {"--vary", "strobe.*.aim.tilt_deg", "-o", folder};
+Arguments tilts_into(const std::string& folder) {
+    return fmt::format("--vary strobe.*.aim.tilt_deg -o {}", folder);
 }
 
 // A design that is designed again starts at the figures that the first ended with.
@@ -80,10 +75,7 @@ TEST_F(CommandDesign, StaysWhereItIsToldTo) {
     const auto place = [](const nlohmann::json& one) {
         return one.at("position_m").get<std::array<double, 3>>();
     };
-    ASSERT_EQ(
-        design("rig.toml", {"--vary", "strobe.*.position_m", "--within", "0.02", "-o", "near"})
-            .status,
-        0);
+    ASSERT_EQ(design("rig.toml", "--vary strobe.*.position_m --within 0.02 -o near").status, 0);
     double farthest = 0.0;
     for (std::size_t s = 0; s < 4; ++s) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -97,7 +89,7 @@ TEST_F(CommandDesign, StaysWhereItIsToldTo) {
 
     const std::string bounds = "fore=0.45:0.55,0,-0.3:0.3";
     const CommandResult box =
-        design("rig.toml", {"--vary", "strobe.*.position_m", "--box", bounds, "-o", "box"});
+        design("rig.toml", fmt::format("--vary strobe.*.position_m --box {} -o box", bounds));
     ASSERT_EQ(box.status, 0) << box.err;
     const auto [x, y, z] = place(strobe("box", "design", 0));
     EXPECT_GE(x, 0.45 - kRounding);
@@ -106,8 +98,8 @@ TEST_F(CommandDesign, StaysWhereItIsToldTo) {
     EXPECT_LE(std::abs(z), 0.3 + kRounding);
     EXPECT_NE(place(strobe("box", "design", 0)), place(strobe("box", "start", 0)));
 
-    std::vector<std::string> turned = tilts_into("turned");
-    turned.insert(turned.end(), {"--turn", "2"});
+    Arguments turned = tilts_into("turned");
+    turned += "--turn 2";
     ASSERT_EQ(design("rig.toml", turned).status, 0);
     for (std::size_t s = 0; s < 4; ++s) {
         const auto before = strobe("turned", "start", s).at("direction").get<std::vector<double>>();
@@ -119,16 +111,14 @@ TEST_F(CommandDesign, StaysWhereItIsToldTo) {
 }
 
 TEST_F(CommandDesign, SearchesForWhatItIsAskedFor) {
-    const auto worst = [&](const std::string& folder, const std::vector<std::string>& more) {
-        std::vector<std::string> all = tilts_into(folder);
-        all.insert(all.end(), more.begin(), more.end());
-        const CommandResult run = design("rig.toml", all);
+    const auto worst = [&](const std::string& folder, const Arguments& more) {
+        const CommandResult run = design("rig.toml", tilts_into(folder) + more);
         EXPECT_EQ(run.status, 0) << run.err;
         return numbers(folder).at("design").at("worst");
     };
-    const nlohmann::json even = worst("even", {"--keep", "0.7"});
-    const nlohmann::json bright = worst("bright", {"--keep", "0.7", "--for", "signal"});
-    const nlohmann::json broad = worst("broad", {"--keep", "0.7", "--for", "coverage"});
+    const nlohmann::json even = worst("even", "--keep 0.7");
+    const nlohmann::json bright = worst("bright", "--keep 0.7 --for signal");
+    const nlohmann::json broad = worst("broad", "--keep 0.7 --for coverage");
     EXPECT_GT(bright["signal_to_noise"], even["signal_to_noise"]);
     EXPECT_GT(even["evenness"], bright["evenness"]);
     EXPECT_GT(broad["coverage"], bright["coverage"]);
@@ -138,15 +128,14 @@ TEST_F(CommandDesign, SearchesForWhatItIsAskedFor) {
             EXPECT_GE(one[figure].get<double>(), 0.7 * start[figure].get<double>()) << figure;
     }
     // More is a fifth as bright as the brightest than is half as bright.
-    worst("level", {"--level", "0.2"});
+    worst("level", "--level 0.2");
     EXPECT_GT(numbers("level")["start"]["worst"]["coverage"], start["coverage"]);
     EXPECT_EQ(numbers("level")["coverage_level"], 0.2);
 }
 
 TEST_F(CommandDesign, JudgesEveryPoseOfItsEnvelope) {
-    std::vector<std::string> all = tilts_into("out");
-    all.insert(all.end(), {"--pitch", "0,10", "--roll=-5,5", "--seed", "2"});
-    const CommandResult run = design("rig.toml", all);
+    const CommandResult run =
+        design("rig.toml", tilts_into("out") + "--pitch 0,10 --roll=-5,5 --seed 2");
     ASSERT_EQ(run.status, 0) << run.err;
     const nlohmann::json found = numbers("out");
     EXPECT_EQ(found["seed"], 2);
@@ -166,8 +155,7 @@ TEST_F(CommandDesign, JudgesEveryPoseOfItsEnvelope) {
 }
 
 TEST_F(CommandDesign, NamesWhatMayVary) {
-    const CommandResult run =
-        design("rig.toml", {"--vary", "strobe.*.aim.tilt_dg", "-o", "out", "--json"});
+    const CommandResult run = design("rig.toml", "--vary strobe.*.aim.tilt_dg -o out --json");
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(run.out, "");
     EXPECT_NE(run.err.find("rig.toml: --vary: found strobe.*.aim.tilt_dg; allowed: "),

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What goes wrong for users: one clear message, the right exit status, nothing half written.
-#include "support/run_command.h"
+#include "support/command_test.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,45 +22,28 @@ namespace fs = std::filesystem;
 constexpr int kBadInput = 2;
 constexpr int kRunFailed = 3;
 
-const std::vector<std::string> kCommands{"render",
-                                         "plan",
-                                         "generate",
-                                         "integrate",
-                                         "trace",
-                                         "lightmap",
-                                         "design",
-                                         "validate",
-                                         "study",
-                                         "survey",
-                                         "correct",
-                                         "observe",
-                                         "fit",
-                                         "baseline",
-                                         "beam",
-                                         "compare",
-                                         "data",
-                                         "help"};
+const Arguments kCommands(
+    "render plan generate integrate trace lightmap design validate study survey correct observe "
+    "fit baseline beam compare data help");
 
-class CommandErrors : public testing::Test {
+class CommandErrors : public CommandTest {
   protected:
     void SetUp() override {
         std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
         text = std::regex_replace(
             text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [16, 12]");
-        write_file(folder_.path() / "rig.toml", text);
+        write_file(path("rig.toml"), text);
     }
 
     [[nodiscard]] CommandResult render(
         const std::map<std::string, std::string>& environment = {}) const {
-        return run_aphotic(folder_.path(),
-                           {"render", "rig.toml", "-o", "out", "--wavelengths", "478,576,638"},
-                           environment);
+        return aphotic("render rig.toml -o out --wavelengths 478,576,638", environment);
     }
 
     void change_rig(const std::string& from, const std::string& to) const {
-        std::string text = read_text_file(folder_.path() / "rig.toml");
+        std::string text = text_of("rig.toml");
         ASSERT_NE(text.find(from), std::string::npos) << from;
-        write_file(folder_.path() / "rig.toml", text.replace(text.find(from), from.size(), to));
+        write_file(path("rig.toml"), text.replace(text.find(from), from.size(), to));
     }
 
     static void expect_one_message(const CommandResult& run, int status, const std::string& part) {
@@ -68,32 +52,30 @@ class CommandErrors : public testing::Test {
         EXPECT_TRUE(run.err.starts_with("aphotic: ")) << run.err;
         EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
     }
-
-    TempFolder folder_;
 };
 
 TEST_F(CommandErrors, UnknownKeyNamesFileLineAndTheNearestKey) {
     change_rig("altitude_m = 2.0", "altitude = 2.0");
     expect_one_message(render(), kBadInput, "altitude");
-    EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+    EXPECT_FALSE(fs::exists(path("out")));
 }
 
 TEST_F(CommandErrors, RigThatIsNotThere) {
-    const CommandResult run = run_aphotic(folder_.path(), {"plan", "no-such.toml"});
+    const CommandResult run = aphotic("plan no-such.toml");
     expect_one_message(run, kBadInput, "no-such.toml: cannot be read: No such file or directory");
 }
 
 TEST_F(CommandErrors, CommandLineMistakesAreBadInput) {
-    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-             {},
-             {"rendr", "rig.toml"},
-             {"render", "rig.toml"},
-             {"render", "rig.toml", "-o", "out", "--bands", "0"},
-             {"render", "rig.toml", "-o", "out", "--bands", "many"},
-             {"render", "rig.toml", "-o", "out", "--bands", "3", "--wavelengths", "500"},
-             {"plan", "rig.toml", "--jbos", "2"},
-             {"data", "--csv"}}) {
-        const CommandResult run = run_aphotic(folder_.path(), arguments);
+    for (const Arguments& arguments :
+         std::vector<Arguments>{{},
+                                {"rendr", "rig.toml"},
+                                "render rig.toml",
+                                "render rig.toml -o out --bands 0",
+                                "render rig.toml -o out --bands many",
+                                "render rig.toml -o out --bands 3 --wavelengths 500",
+                                "plan rig.toml --jbos 2",
+                                "data --csv"}) {
+        const CommandResult run = aphotic(arguments);
         EXPECT_EQ(run.status, kBadInput) << testing::PrintToString(arguments);
         EXPECT_NE(run.err, "") << testing::PrintToString(arguments);
         EXPECT_EQ(run.out, "") << testing::PrintToString(arguments);
@@ -137,25 +119,23 @@ TEST_F(CommandErrors, NumbersAndNamesThatAreNotAllowed) {
         {"plan rig.toml --plot plan.png",
          "--plot: found plan.png; allowed: a name that ends in .svg"}};
     for (const auto& [words, message] : cases) {
-        std::istringstream each(words);
-        const std::vector<std::string> arguments{std::istream_iterator<std::string>(each), {}};
-        const CommandResult run = run_aphotic(folder_.path(), arguments);
+        const CommandResult run = aphotic(words);
         EXPECT_EQ(run.status, kBadInput) << words;
         EXPECT_NE(run.err.find(message), std::string::npos) << run.err;
     }
-    EXPECT_FALSE(fs::exists(folder_.path() / "map.exr"));
-    EXPECT_FALSE(fs::exists(folder_.path() / "map.png"));
+    EXPECT_FALSE(fs::exists(path("map.exr")));
+    EXPECT_FALSE(fs::exists(path("map.png")));
 }
 
 // What a script passes for a variable that it never set: the folder that it runs in is not meant.
 TEST_F(CommandErrors, AnEmptyNameIsNone) {
     for (const char* command : {"render", "generate", "trace", "validate", "study", "lightmap"}) {
-        const CommandResult run = run_aphotic(folder_.path(), {command, "rig.toml", "-o", ""});
+        const CommandResult run = aphotic({command, "rig.toml", "-o", ""});
         EXPECT_EQ(run.status, kBadInput) << command;
         EXPECT_NE(run.err.find("--output: found an empty text; allowed: a name"), std::string::npos)
             << run.err;
     }
-    const CommandResult run = run_aphotic(folder_.path(), {"integrate", ""});
+    const CommandResult run = aphotic({"integrate", ""});
     EXPECT_EQ(run.status, kBadInput);
     EXPECT_NE(run.err.find("DIR: found an empty text; allowed: a name"), std::string::npos)
         << run.err;
@@ -163,33 +143,31 @@ TEST_F(CommandErrors, AnEmptyNameIsNone) {
 }
 
 TEST_F(CommandErrors, NoResultTakesThePlaceOfWhatItIsMadeFrom) {
-    const std::string rig = read_text_file(folder_.path() / "rig.toml");
-    write_file(folder_.path() / "rig.svg", rig);
-    expect_one_message(run_aphotic(folder_.path(), {"plan", "rig.svg", "--plot", "rig.svg"}),
+    const std::string rig = text_of("rig.toml");
+    write_file(path("rig.svg"), rig);
+    expect_one_message(aphotic("plan rig.svg --plot rig.svg"),
                        kBadInput,
                        "--plot: found rig.svg, which RIG names too");
-    EXPECT_EQ(read_text_file(folder_.path() / "rig.svg"), rig);
-    fs::create_directory(folder_.path() / "raw");
-    write_file(folder_.path() / "raw/a.exr", "raw");
-    write_file(folder_.path() / "nav.csv", "image,altitude_m\na.exr,2\n");
-    expect_one_message(
-        run_aphotic(folder_.path(),
-                    {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "raw/a.exr"}),
-        kBadInput,
-        "--output: found raw/a.exr, which IMAGES names too");
-    EXPECT_EQ(read_text_file(folder_.path() / "raw/a.exr"), "raw");
+    EXPECT_EQ(text_of("rig.svg"), rig);
+    fs::create_directory(path("raw"));
+    write_file(path("raw/a.exr"), "raw");
+    write_file(path("nav.csv"), "image,altitude_m\na.exr,2\n");
+    expect_one_message(aphotic("observe raw --nav nav.csv --altitude 2 -o raw/a.exr"),
+                       kBadInput,
+                       "--output: found raw/a.exr, which IMAGES names too");
+    EXPECT_EQ(text_of("raw/a.exr"), "raw");
 }
 
 TEST_F(CommandErrors, HelpAndVersionAreNoErrors) {
     for (const std::string& command : kCommands) {
-        const CommandResult run = run_aphotic(folder_.path(), {command, "--help"});
+        const CommandResult run = aphotic(fmt::format("{} --help", command));
         EXPECT_EQ(run.status, 0);
         EXPECT_EQ(run.out.find("--json") == std::string::npos, command == "help") << command;
         EXPECT_EQ(run.err, "");
         std::istringstream lines(run.out);
         for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
     }
-    EXPECT_TRUE(run_aphotic(folder_.path(), {"--version"}).out.starts_with("aphotic "));
+    EXPECT_TRUE(aphotic("--version").out.starts_with("aphotic "));
 }
 
 std::set<std::string> words_of(const std::string& text) {
@@ -203,13 +181,13 @@ std::set<std::string> words_of(const std::string& text) {
 std::string shown_by_groff(const std::filesystem::path& folder, const std::string& page) {
     const std::string groff = "/usr/bin/groff";
     if (!std::filesystem::exists(groff)) return "";
-    const ProcessEnd end = run_process(
-        {.executable = groff,
-         .arguments = {"-man", "-Tascii", "-P-bcou", "-ww", "-rLL=200n", "-rHY=0", page},
-         .folder = folder,
-         .environment = {},
-         .log = folder / "shown"},
-        60.0);
+    const ProcessEnd end =
+        run_process({.executable = groff,
+                     .arguments = Arguments("-man -Tascii -P-bcou -ww -rLL=200n -rHY=0") + page,
+                     .folder = folder,
+                     .environment = {},
+                     .log = folder / "shown"},
+                    60.0);
     EXPECT_EQ(end.exit_code, 0);
     std::string text = read_text_file(folder / "shown");
     EXPECT_EQ(text.find("warning: "), std::string::npos) << text.substr(0, 2000);
@@ -218,23 +196,23 @@ std::string shown_by_groff(const std::filesystem::path& folder, const std::strin
 
 // As man shows it: without warnings of groff's, and with all that --help has.
 TEST_F(CommandErrors, TheManPageHasEveryCommandOptionAndDefault) {
-    const std::string all = run_aphotic(folder_.path(), {"--help"}).out;
+    const std::string all = aphotic("--help").out;
     const std::regex subcommand("\n  ([a-z]+) {2,}");
     std::set<std::string> commands;
     for (std::sregex_iterator at(all.begin(), all.end(), subcommand), end; at != end; ++at)
         commands.insert((*at)[1].str());
     EXPECT_EQ(commands, std::set<std::string>(kCommands.begin(), kCommands.end()));
 
-    const CommandResult page = run_aphotic(folder_.path(), {"--man-page"});
+    const CommandResult page = aphotic("--man-page");
     ASSERT_EQ(page.status, 0) << page.err;
-    write_file(folder_.path() / "aphotic.1", page.out);
+    write_file(path("aphotic.1"), page.out);
     const std::string shown = shown_by_groff(folder_.path(), "aphotic.1");
     if (shown.empty()) GTEST_SKIP() << "groff is not installed";
     for (const std::string& command : kCommands) {
         const std::size_t at = shown.find("\n   aphotic " + command + "\n");
         ASSERT_NE(at, std::string::npos) << command << " is not in the man page";
         const std::string own = shown.substr(at + 1, shown.find("\n   aphotic ", at + 1) - at);
-        const auto in_help = words_of(run_aphotic(folder_.path(), {command, "--help"}).out);
+        const auto in_help = words_of(aphotic(fmt::format("{} --help", command)).out);
         const auto in_page = words_of(own);
         for (const std::string& word : in_help) {
             const bool is_said =
@@ -245,14 +223,12 @@ TEST_F(CommandErrors, TheManPageHasEveryCommandOptionAndDefault) {
 }
 
 TEST_F(CommandErrors, TheNamesOfTheFirstVersionGoOn) {
-    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-             {"lightmap", "rig.toml", "-o", "a.exr", "--altitude-m", "2", "--pitch-deg", "3"},
-             {"lightmap", "rig.toml", "-o", "a.exr", "--roll-deg", "1", "--threads", "1"}}) {
-        EXPECT_EQ(run_aphotic(folder_.path(), arguments).status, 0)
-            << testing::PrintToString(arguments);
+    for (const Arguments& arguments :
+         std::vector<Arguments>{"lightmap rig.toml -o a.exr --altitude-m 2 --pitch-deg 3",
+                                "lightmap rig.toml -o a.exr --roll-deg 1 --threads 1"}) {
+        EXPECT_EQ(aphotic(arguments).status, 0) << testing::PrintToString(arguments);
     }
-    EXPECT_NE(run_aphotic(folder_.path(),
-                          {"correct", "raw", "--map", "m.exr", "-o", "out", "--altitudes-m", "4,1"})
+    EXPECT_NE(aphotic("correct raw --map m.exr -o out --altitudes-m 4,1")
                   .err.find("--altitude: found 4,1; allowed: the lower first"),
               std::string::npos);
 }
@@ -261,61 +237,55 @@ TEST_F(CommandErrors, TheNamesOfTheFirstVersionGoOn) {
 TEST_F(CommandErrors, MissingPovRayNamesWhatRunsWithoutIt) {
     const std::map<std::string, std::string> none{{"APHOTIC_POVRAY", "/no/povray"}};
     for (const char* command : {"render", "validate"}) {
-        const CommandResult run =
-            run_aphotic(folder_.path(), {command, "rig.toml", "-o", "out"}, none);
+        const CommandResult run = aphotic(fmt::format("{} rig.toml -o out", command), none);
         expect_one_message(run, kRunFailed, "install povray");
         expect_one_message(
             run, kRunFailed, "`aphotic trace rig.toml -o out` makes the same images");
-        EXPECT_FALSE(fs::exists(folder_.path() / "out")) << command;
+        EXPECT_FALSE(fs::exists(path("out"))) << command;
     }
-    EXPECT_EQ(run_aphotic(folder_.path(), {"trace", "rig.toml", "-o", "out"}, none).status, 0);
+    EXPECT_EQ(aphotic("trace rig.toml -o out", none).status, 0);
 }
 
 // Which the tracer cannot read.
 TEST_F(CommandErrors, MissingPovRayNamesNoTracerForASceneOfTheUsersOwn) {
-    write_file(folder_.path() / "own.pov", "#include \"aphotic.inc\"\n");
+    write_file(path("own.pov"), "#include \"aphotic.inc\"\n");
     for (const char* command : {"render", "validate"}) {
         const CommandResult run =
-            run_aphotic(folder_.path(),
-                        {command, "rig.toml", "-o", "out", "--scene", "own.pov"},
-                        {{"APHOTIC_POVRAY", "/no/povray"}});
+            aphotic(fmt::format("{} rig.toml -o out --scene own.pov", command),
+                    {{"APHOTIC_POVRAY", "/no/povray"}});
         expect_one_message(run, kRunFailed, "install povray");
         EXPECT_EQ(run.err.find("aphotic trace"), std::string::npos) << run.err;
-        EXPECT_FALSE(fs::exists(folder_.path() / "out")) << command;
+        EXPECT_FALSE(fs::exists(path("out"))) << command;
     }
 }
 
 TEST_F(CommandErrors, AValidationThatIsRefusedLeavesNoFolder) {
-    const std::string rig = read_text_file(folder_.path() / "rig.toml");
-    ASSERT_EQ(run_aphotic(folder_.path(), {"generate", "rig.toml", "-o", "other", "--fitted", "3"})
-                  .status,
-              0);
-    write_file(folder_.path() / "wider.toml",
+    const std::string rig = text_of("rig.toml");
+    ASSERT_EQ(aphotic("generate rig.toml -o other --fitted 3").status, 0);
+    write_file(path("wider.toml"),
                std::regex_replace(rig, std::regex(R"(resolution\s*=\s*\[\s*)"), "resolution = [1"));
-    expect_one_message(
-        run_aphotic(folder_.path(), {"validate", "wider.toml", "--rendered", "other", "-o", "out"}),
-        kBadInput,
-        "other: found images of ");
-    EXPECT_FALSE(fs::exists(folder_.path() / "out"));
+    expect_one_message(aphotic("validate wider.toml --rendered other -o out"),
+                       kBadInput,
+                       "other: found images of ");
+    EXPECT_FALSE(fs::exists(path("out")));
 }
 
 TEST_F(CommandErrors, OutputThatCannotBeAFolder) {
-    write_file(folder_.path() / "out", "a file");
+    write_file(path("out"), "a file");
     expect_one_message(render(), kRunFailed, "out: cannot be created");
-    EXPECT_EQ(read_text_file(folder_.path() / "out"), "a file");
+    EXPECT_EQ(text_of("out"), "a file");
 }
 
 // Root writes where it likes; /proc refuses even root.
 TEST_F(CommandErrors, UnwritableFolder) {
-    const CommandResult run =
-        run_aphotic(folder_.path(), {"generate", "rig.toml", "-o", "/proc/aphotic"});
+    const CommandResult run = aphotic("generate rig.toml -o /proc/aphotic");
     expect_one_message(run, kRunFailed, "/proc/aphotic");
 }
 
 TEST_F(CommandErrors, IntegrateOfAStrangeFolder) {
-    expect_one_message(run_aphotic(folder_.path(), {"integrate", "."}), kBadInput, "manifest.json");
-    write_file(folder_.path() / "manifest.json", "{ \"format\": \"something\" }");
-    expect_one_message(run_aphotic(folder_.path(), {"integrate", "."}), kBadInput, "format");
+    expect_one_message(aphotic("integrate ."), kBadInput, "manifest.json");
+    write_file(path("manifest.json"), "{ \"format\": \"something\" }");
+    expect_one_message(aphotic("integrate ."), kBadInput, "format");
 }
 
 TEST_F(CommandErrors, FullStandardOutput) {
@@ -325,9 +295,9 @@ TEST_F(CommandErrors, FullStandardOutput) {
                      .arguments = {"-c", "exec \"$0\" data > /dev/full", APHOTIC_COMMAND},
                      .folder = folder_.path(),
                      .environment = {},
-                     .log = folder_.path() / "log"},
+                     .log = path("log")},
                     60.0);
-    EXPECT_EQ(end.exit_code, kRunFailed) << read_text_file(folder_.path() / "log");
+    EXPECT_EQ(end.exit_code, kRunFailed) << text_of("log");
 }
 
 }  // namespace

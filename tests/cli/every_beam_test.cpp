@@ -2,7 +2,7 @@
 //
 // Every kind of beam through both renderers, as a rig file says it: three strobes that no mirror
 // makes alike, over a floor that leans, with and without a port.
-#include "support/run_command.h"
+#include "support/command_test.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -97,16 +97,8 @@ TEST_P(EveryBeam, Validates) {
     const auto& [kind, has_port] = GetParam();
     const TempFolder folder;
     write_rig(folder.path(), kind, has_port);
-    const CommandResult run = run_aphotic(folder.path(),
-                                          {"validate",
-                                           "rig.toml",
-                                           "-o",
-                                           "out",
-                                           "--per-frame",
-                                           "1",
-                                           "--wavelengths",
-                                           "450,550,650",
-                                           "--json"});
+    const CommandResult run = run_aphotic(
+        folder.path(), "validate rig.toml -o out --per-frame 1 --wavelengths 450,550,650 --json");
     ASSERT_EQ(run.status, 0) << run.out << run.err;
     const auto json = nlohmann::json::parse(run.out);
     ASSERT_EQ(json.at("wavelengths").size(), 3U);
@@ -147,23 +139,22 @@ INSTANTIATE_TEST_SUITE_P(
                (std::get<1>(kind.param) ? "BehindAPort" : "");
     });
 
+using BeamTableFile = CommandTest;
+
 // A table is part of the rig: what was rendered by another is neither kept nor weighed.
-TEST(BeamTableFile, ThatChangesChangesTheFrames) {
-    const TempFolder folder;
-    write_rig(folder.path(), {"OneAngle", "table = \"one.csv\"", true}, false);
-    const std::vector<std::string> render{
-        "render", "rig.toml", "-o", "out", "--wavelengths", "450,550,650"};
+TEST_F(BeamTableFile, ThatChangesChangesTheFrames) {
+    write_rig(folder_.path(), {"OneAngle", "table = \"one.csv\"", true}, false);
+    const Arguments render("render rig.toml -o out --wavelengths 450,550,650");
     const auto rendered = [&] {
-        const CommandResult run = run_aphotic(folder.path(), render);
+        const CommandResult run = aphotic(render);
         EXPECT_EQ(run.status, 0) << run.err;
         return run.out;
     };
     EXPECT_NE(rendered().find("1 frame rendered, 0 kept"), std::string::npos);
     EXPECT_NE(rendered().find("0 frames rendered, 1 kept"), std::string::npos);
 
-    write_file(folder.path() / "one.csv", "theta_deg,intensity\n0,5\n12,4.6\n33,2\n61,0.3\n90,0\n");
-    const CommandResult integrated =
-        run_aphotic(folder.path(), {"integrate", "out", "--rig", "rig.toml"});
+    write_file(path("one.csv"), "theta_deg,intensity\n0,5\n12,4.6\n33,2\n61,0.3\n90,0\n");
+    const CommandResult integrated = aphotic("integrate out --rig rig.toml");
     EXPECT_EQ(integrated.status, 2) << integrated.out;
     EXPECT_NE(integrated.err.find("beam"), std::string::npos) << integrated.err;
     EXPECT_NE(rendered().find("1 frame rendered, 0 kept"), std::string::npos);

@@ -7,7 +7,7 @@
 #include "image/exr.h"
 #include "image/output_images.h"
 #include "spectral/manifest.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "support/small_scene.h"
 
 #include <fmt/format.h>
@@ -30,28 +30,21 @@ constexpr int kBadInput = 2;
 constexpr int kRunFailed = 3;
 constexpr double kScriptTimeoutS = 200.0;
 
-class Faults : public testing::Test {
+class Faults : public CommandTest {
   protected:
     Faults() {
-        write_file(file("rig.toml"),
+        write_file(path("rig.toml"),
                    small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
     }
 
-    [[nodiscard]] fs::path file(const std::string& name) const { return folder_.path() / name; }
-
     // Two frames.
     [[nodiscard]] CommandResult render(const std::map<std::string, std::string>& environment = {},
-                                       const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> arguments{
-            "render", "rig.toml", "-o", "out", "--wavelengths", "450,500,550,600"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run_aphotic(folder_.path(), arguments, environment);
+                                       const Arguments& more = {}) const {
+        return aphotic("render rig.toml -o out --wavelengths 450,500,550,600" + more, environment);
     }
-    [[nodiscard]] CommandResult integrate() const {
-        return run_aphotic(folder_.path(), {"integrate", "out"});
-    }
+    [[nodiscard]] CommandResult integrate() const { return aphotic("integrate out"); }
     [[nodiscard]] fs::path frame(std::size_t index) const {
-        return image_path(file("out"), read_manifest(file("out")).frames[index]);
+        return image_path(path("out"), read_manifest(path("out")).frames[index]);
     }
 
     static void expect_message(const CommandResult& run, int status, const std::string& part) {
@@ -72,23 +65,23 @@ class Faults : public testing::Test {
 
     // A POV-Ray that does this instead of rendering, and introduces itself as one all the same.
     [[nodiscard]] std::map<std::string, std::string> povray_that(const std::string& body) const {
-        write_script(file("povray"),
+        write_script(path("povray"),
                      "if [ \"$1\" = --version ]; then\n  exec povray --version\nfi\n" + body);
-        return {{"APHOTIC_POVRAY", file("povray").string()}};
+        return {{"APHOTIC_POVRAY", path("povray").string()}};
     }
 
     // A shell script in which mounts may be made that nobody else sees; its words, by line.
     [[nodiscard]] std::vector<std::string> in_a_namespace(const std::string& script) const {
-        write_file(file("script"), "APHOTIC='" + std::string(APHOTIC_COMMAND) + "'\n" + script);
+        write_file(path("script"), "APHOTIC='" + std::string(APHOTIC_COMMAND) + "'\n" + script);
         const ProcessEnd end = run_process({.executable = "/usr/bin/unshare",
                                             .arguments = {"-rm", "/bin/sh", "script"},
                                             .folder = folder_.path(),
                                             .environment = {},
-                                            .log = file("words")},
+                                            .log = path("words")},
                                            kScriptTimeoutS);
-        EXPECT_TRUE(end.succeeded()) << end.words() << "\n" << read_text_file(file("words"));
-        std::istringstream lines(read_text_file(file("words")));
-        std::vector<std::string> words;
+        EXPECT_TRUE(end.succeeded()) << end.words() << "\n" << text_of("words");
+        std::istringstream lines(text_of("words"));
+        Arguments words;
         for (std::string line; std::getline(lines, line);) words.push_back(line);
         return words;
     }
@@ -98,43 +91,40 @@ class Faults : public testing::Test {
                          .arguments = {"-c", "exec unshare -rm mount -t tmpfs none /mnt"},
                          .folder = folder_.path(),
                          .environment = {},
-                         .log = file("may-mount")},
+                         .log = path("may-mount")},
                         kScriptTimeoutS);
         return end.succeeded();
     }
-
-    TempFolder folder_;
 };
 
 // --- Two at once --------------------------------------------------------------------------
 
 TEST_F(Faults, ASecondRunInAFolderIsRefused) {
     ASSERT_EQ(render().status, 0);
-    fs::create_directory(file("raw"));
-    ASSERT_EQ(run_aphotic(folder_.path(), {"lightmap", "rig.toml", "-o", "raw/a.exr"}).status, 0);
-    write_file(file("nav.csv"), "image,altitude_m\na.exr,2\n");
-    const auto before = contents(file("out"));
+    fs::create_directory(path("raw"));
+    ASSERT_EQ(aphotic("lightmap rig.toml -o raw/a.exr").status, 0);
+    write_file(path("nav.csv"), "image,altitude_m\na.exr,2\n");
+    const auto before = contents(path("out"));
     {
-        const FolderLock held(file("out"), FolderUse::Write);
-        for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
-                 {"render", "rig.toml", "-o", "out"},
-                 {"generate", "rig.toml", "-o", "out"},
-                 {"integrate", "out"},
-                 {"integrate", "out", "-o", "elsewhere"},
-                 {"trace", "rig.toml", "-o", "out"},
-                 {"validate", "rig.toml", "-o", "out"},
-                 {"validate", "rig.toml", "--rendered", "out", "-o", "elsewhere"},
-                 {"study", "rig.toml", "--quick", "-o", "out"},
-                 {"lightmap", "rig.toml", "--altitude", "2:2.2:0.2", "-o", "out"},
-                 {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.csv", "-o", "out"},
-                 {"baseline", "homomorphic", "raw", "-o", "out"},
-                 {"fit", "rig.toml", "--maps", "raw/a.exr", "-o", "out"}}) {
-            expect_message(run_aphotic(folder_.path(), command),
-                           kRunFailed,
-                           "out: another aphotic is at work in this folder");
+        const FolderLock held(path("out"), FolderUse::Write);
+        for (const Arguments& command :
+             std::vector<Arguments>{"render rig.toml -o out",
+                                    "generate rig.toml -o out",
+                                    "integrate out",
+                                    "integrate out -o elsewhere",
+                                    "trace rig.toml -o out",
+                                    "validate rig.toml -o out",
+                                    "validate rig.toml --rendered out -o elsewhere",
+                                    "study rig.toml --quick -o out",
+                                    "lightmap rig.toml --altitude 2:2.2:0.2 -o out",
+                                    "correct raw --rig rig.toml --nav nav.csv -o out",
+                                    "baseline homomorphic raw -o out",
+                                    "fit rig.toml --maps raw/a.exr -o out"}) {
+            expect_message(
+                aphotic(command), kRunFailed, "out: another aphotic is at work in this folder");
         }
     }
-    EXPECT_EQ(contents(file("out")), before);
+    EXPECT_EQ(contents(path("out")), before);
     EXPECT_EQ(render().status, 0) << "and when the first is gone";
 }
 
@@ -144,13 +134,9 @@ TEST_F(Faults, ASecondRunInAFolderIsRefused) {
 TEST_F(Faults, AFullDiskIsSaidAndSpaceIsAllThatIsWanting) {
     if (!may_mount()) GTEST_SKIP() << "this system lets users make no namespaces";
     ASSERT_EQ(render().status, 0);
-    ASSERT_EQ(run_aphotic(folder_.path(), {"trace", "rig.toml", "-o", "traced"}).status, 0);
+    ASSERT_EQ(aphotic("trace rig.toml -o traced").status, 0);
     const std::string words = "--wavelengths 450,500,550,600";
-    ASSERT_EQ(
-        run_aphotic(folder_.path(),
-                    {"generate", "rig.toml", "-o", "generated", "--wavelengths", "450,500,550,600"})
-            .status,
-        0);
+    ASSERT_EQ(aphotic("generate rig.toml -o generated --wavelengths 450,500,550,600").status, 0);
     // What a command needs is told beforehand (cli/needs_test): here the disk fills under way.
     // Each line of the result: command, KiB left, status, message in one line; then what is amiss.
     std::string script =
@@ -232,23 +218,23 @@ TEST_F(Faults, AFullFolderForTemporaryFilesIsSaid) {
         "echo \"$? $(tr '\\n' ' ' <err)\"\n");
     ASSERT_EQ(lines.size(), 1U);
     EXPECT_TRUE(lines[0].starts_with("3 aphotic: POV-Ray: ")) << lines[0];
-    EXPECT_NE(lines[0].find((file("tmp") / "aphotic-").string()), std::string::npos) << lines[0];
+    EXPECT_NE(lines[0].find((path("tmp") / "aphotic-").string()), std::string::npos) << lines[0];
     EXPECT_NE(lines[0].find(": No space left on device: 0 KiB are left"), std::string::npos)
         << lines[0];
-    EXPECT_FALSE(fs::exists(file("out")));
+    EXPECT_FALSE(fs::exists(path("out")));
 }
 
 TEST_F(Faults, AMissingFolderForTemporaryFilesIsSaid) {
     expect_message(render({{"TMPDIR", "/no/such/folder"}}),
                    kRunFailed,
                    "TMPDIR: found /no/such/folder; allowed: a folder that is there");
-    EXPECT_FALSE(fs::exists(file("out")));
+    EXPECT_FALSE(fs::exists(path("out")));
 }
 
 // Where no namespaces are to be had, a limit on the size of files stands for the disk.
 TEST_F(Faults, AFileThatCannotGrowIsSaid) {
     ASSERT_EQ(render().status, 0);
-    const auto before = contents(file("out"));
+    const auto before = contents(path("out"));
     const auto limited = [&](const std::string& arguments) {
         const std::string script =
             "ulimit -f 4; exec '" + std::string(APHOTIC_COMMAND) + "' " + arguments;
@@ -256,11 +242,11 @@ TEST_F(Faults, AFileThatCannotGrowIsSaid) {
                                             .arguments = {"-c", script},
                                             .folder = folder_.path(),
                                             .environment = {},
-                                            .log = file("words")},
+                                            .log = path("words")},
                                            kScriptTimeoutS);
         return CommandResult{.status = end.signal != 0 ? 128 + end.signal : end.exit_code,
                              .out = "",
-                             .err = read_text_file(file("words"))};
+                             .err = text_of("words")};
     };
     for (const std::string arguments : {"render rig.toml -o out --wavelengths 450,500,550,600",
                                         "generate rig.toml -o out --wavelengths 450,500,550,600",
@@ -268,14 +254,14 @@ TEST_F(Faults, AFileThatCannotGrowIsSaid) {
                                         "trace rig.toml -o traced"}) {
         expect_message(limited(arguments), kRunFailed, "File too large");
     }
-    EXPECT_EQ(contents(file("out")), before);
-    EXPECT_TRUE(fs::is_empty(file("traced")));
+    EXPECT_EQ(contents(path("out")), before);
+    EXPECT_TRUE(fs::is_empty(path("traced")));
 }
 
 TEST_F(Faults, AReadOnlyFolderIsSaid) {
     if (!may_mount()) GTEST_SKIP() << "this system lets users make no namespaces";
     ASSERT_EQ(render().status, 0);
-    const auto before = contents(file("out"));
+    const auto before = contents(path("out"));
     const std::vector<std::string> lines = in_a_namespace(
         "mount --bind out out && mount -o remount,bind,ro out\n"
         "for c in 'render rig.toml -o out' 'generate rig.toml -o out' 'integrate out' \\\n"
@@ -290,7 +276,7 @@ TEST_F(Faults, AReadOnlyFolderIsSaid) {
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
         EXPECT_EQ(lines[i], "3 aphotic: out: cannot be written to: Read-only file system ");
     }
-    EXPECT_EQ(contents(file("out")), before);
+    EXPECT_EQ(contents(path("out")), before);
 }
 
 // --- Frames and manifests -----------------------------------------------------------------
@@ -336,15 +322,15 @@ const std::vector<SpoiltFrame> kSpoiltFrames{
 
 TEST_F(Faults, ExactlyTheFramesThatAreNotWholeAreRenderedAgain) {
     ASSERT_EQ(render().status, 0);
-    const std::string image = sha256_of_file(file("out") / "image.exr");
+    const std::string image = sha256_of_file(path("out") / "image.exr");
     for (const SpoiltFrame& spoilt : kSpoiltFrames) {
         for (const bool is_noted : {false, true}) {
             SCOPED_TRACE(std::string(spoilt.how) + (is_noted ? ", noted" : ""));
             spoilt.spoil(frame(1), frame(0));
             if (is_noted) {
-                Manifest manifest = read_manifest(file("out"));
+                Manifest manifest = read_manifest(path("out"));
                 manifest.frames[1].image_sha256 = sha256_of_file(frame(1));
-                write_manifest(file("out"), manifest);
+                write_manifest(path("out"), manifest);
             }
             const CommandResult refused = integrate();
             expect_message(refused, kRunFailed, frame(1).filename().string());
@@ -353,11 +339,11 @@ TEST_F(Faults, ExactlyTheFramesThatAreNotWholeAreRenderedAgain) {
                                                   "manifest notes"),
                       std::string::npos)
                 << refused.err;
-            EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
+            EXPECT_EQ(sha256_of_file(path("out") / "image.exr"), image);
             const CommandResult again = render();
             EXPECT_NE(again.out.find("1 frame rendered, 1 kept"), std::string::npos)
                 << again.out << again.err;
-            EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
+            EXPECT_EQ(sha256_of_file(path("out") / "image.exr"), image);
         }
     }
 }
@@ -365,57 +351,56 @@ TEST_F(Faults, ExactlyTheFramesThatAreNotWholeAreRenderedAgain) {
 // It may be of another plan, rendered by hand or copied: of the same size and without a fault.
 TEST_F(Faults, AFrameThatNobodyNotedIsRenderedAgain) {
     ASSERT_EQ(render().status, 0);
-    const std::string image = sha256_of_file(file("out") / "image.exr");
-    Manifest manifest = read_manifest(file("out"));
+    const std::string image = sha256_of_file(path("out") / "image.exr");
+    Manifest manifest = read_manifest(path("out"));
     manifest.frames[1].image_sha256.clear();
-    write_manifest(file("out"), manifest);
+    write_manifest(path("out"), manifest);
     fs::copy_file(frame(0), frame(1), fs::copy_options::overwrite_existing);
     EXPECT_NE(render().out.find("1 frame rendered, 1 kept"), std::string::npos);
-    EXPECT_EQ(sha256_of_file(file("out") / "image.exr"), image);
+    EXPECT_EQ(sha256_of_file(path("out") / "image.exr"), image);
 }
 
 // What stands under its name was drawn for a scene that the rig no longer asks for.
 TEST_F(Faults, AFrameOfAnEarlierRigIsNeverKept) {
     ASSERT_EQ(render().status, 0);
-    const std::string image = sha256_of_file(file("out") / "image.exr");
-    const std::string rig = read_text_file(file("rig.toml"));
+    const std::string image = sha256_of_file(path("out") / "image.exr");
+    const std::string rig = text_of("rig.toml");
     write_file(
-        file("rig.toml"),
+        path("rig.toml"),
         std::regex_replace(rig, std::regex(R"(altitude_m\s*=\s*[0-9.]+)"), "altitude_m = 2.5"));
     // Killed before its first frame ends: the manifest of the new rig, the frames of the old.
     expect_message(render(povray_that("exit 1")), kRunFailed, "POV-Ray");
     EXPECT_NE(render().out.find("2 frames rendered, 0 kept"), std::string::npos);
-    EXPECT_NE(sha256_of_file(file("out") / "image.exr"), image);
+    EXPECT_NE(sha256_of_file(path("out") / "image.exr"), image);
 }
 
 TEST_F(Faults, AClockSetBackChangesNothing) {
     ASSERT_EQ(render().status, 0);
-    const auto before = contents(file("out") / "povray" / "frames");
+    const auto before = contents(path("out") / "povray" / "frames");
     for (const int years : {-40, 80}) {
         const auto moment = fs::file_time_type::clock::now() + years * std::chrono::years{1};
         for (const auto& entry : fs::recursive_directory_iterator(folder_.path()))
             fs::last_write_time(entry.path(), moment);
         EXPECT_NE(render().out.find("0 frames rendered, 2 kept"), std::string::npos);
-        EXPECT_EQ(contents(file("out") / "povray" / "frames"), before);
+        EXPECT_EQ(contents(path("out") / "povray" / "frames"), before);
         EXPECT_EQ(integrate().status, 0);
     }
 }
 
 TEST_F(Faults, AManifestThatCannotBeReadIsNotWrittenOver) {
     ASSERT_EQ(render().status, 0);
-    const std::string good = read_text_file(file("out") / "manifest.json");
-    const std::string name = read_manifest(file("out")).frames[0].name;
+    const std::string good = read_text_file(path("out") / "manifest.json");
+    const std::string name = read_manifest(path("out")).frames[0].name;
     std::string elsewhere = good;
     for (auto at = elsewhere.find(name); at != std::string::npos; at = elsewhere.find(name, at))
         elsewhere.replace(at, name.size(), "../../../x");
     for (const std::string& bad :
          {good.substr(0, good.size() / 2), std::string("{\"name\": \"an app\"}"), elsewhere}) {
-        write_file(file("out") / "manifest.json", bad);
+        write_file(path("out") / "manifest.json", bad);
         const auto before = contents(folder_.path());
         for (const char* command : {"render", "generate"}) {
             const CommandResult run =
-                run_aphotic(folder_.path(),
-                            {command, "rig.toml", "-o", "out", "--wavelengths", "450,500,550,600"});
+                aphotic(fmt::format("{} rig.toml -o out --wavelengths 450,500,550,600", command));
             expect_message(run, kBadInput, "out/manifest.json");
             EXPECT_NE(run.err.find("nothing was changed. Remove that file to render "
                                    "everything again"),
@@ -424,7 +409,7 @@ TEST_F(Faults, AManifestThatCannotBeReadIsNotWrittenOver) {
         }
         EXPECT_EQ(contents(folder_.path()), before);
     }
-    fs::remove(file("out") / "manifest.json");
+    fs::remove(path("out") / "manifest.json");
     EXPECT_NE(render().out.find("2 frames rendered, 0 kept"), std::string::npos);
 }
 
@@ -434,17 +419,17 @@ class BadPovRay : public Faults {
   protected:
     void expect_failure(const std::string& body,
                         const std::string& part,
-                        const std::vector<std::string>& more = {}) {
+                        const Arguments& more = {}) {
         const CommandResult run = render(povray_that(body), more);
         expect_message(run, kRunFailed, part);
         EXPECT_NE(run.err.find("band_450_500_550nm"), std::string::npos) << run.err;
         EXPECT_NE(run.err.find("Its log: "), std::string::npos) << run.err;
-        EXPECT_TRUE(fs::is_empty(file("out") / "povray" / "frames"));
-        EXPECT_FALSE(fs::exists(file("out") / "image.exr"));
+        EXPECT_TRUE(fs::is_empty(path("out") / "povray" / "frames"));
+        EXPECT_FALSE(fs::exists(path("out") / "image.exr"));
     }
 };
 
-const std::vector<std::string> kOneJob{"--jobs", "1"};
+const Arguments kOneJob("--jobs 1");
 
 TEST_F(BadPovRay, GarbageForAnImage) {
     expect_failure("for a; do case \"$a\" in +O*) echo garbage > \"${a#+O}\" ;; esac; done\n",
@@ -455,7 +440,7 @@ TEST_F(BadPovRay, GarbageForAnImage) {
 TEST_F(BadPovRay, ThatHangsAndHeedsNoSignal) {
     expect_failure("trap '' TERM INT HUP\nsleep 1000\n",
                    "was stopped: for 0.5 s it neither printed anything nor used the processor",
-                   {"--jobs", "1", "--stall-timeout", "0.5"});
+                   "--jobs 1 --stall-timeout 0.5");
 }
 
 TEST_F(BadPovRay, ThatPrintsWithoutEnd) {
@@ -471,18 +456,18 @@ TEST_F(BadPovRay, ThatPrintsErrorsWithoutEndIsQuotedInShort) {
 }
 
 TEST_F(BadPovRay, ThatFloodsItsIntroduction) {
-    write_script(file("povray"), "exec yes\n");
-    expect_message(render({{"APHOTIC_POVRAY", file("povray").string()}}),
+    write_script(path("povray"), "exec yes\n");
+    expect_message(render({{"APHOTIC_POVRAY", path("povray").string()}}),
                    kRunFailed,
                    "was stopped: it printed more than 64 MiB");
-    EXPECT_FALSE(fs::exists(file("out")));
+    EXPECT_FALSE(fs::exists(path("out")));
 }
 
 // The share of the pixels is looked for where progress is shown: on a terminal, which `script`
 // gives the command.
 TEST_F(BadPovRay, ThatLiesAboutItsProgress) {
     if (!fs::exists("/usr/bin/script")) GTEST_SKIP() << "no program that makes a terminal";
-    write_script(file("povray"),
+    write_script(path("povray"),
                  "if [ \"$1\" != --version ]; then\n"
                  "  echo 'Rendered 1 of 1 pixels (99999999999%)'; sleep 1\n"
                  "fi\n"
@@ -493,13 +478,13 @@ TEST_F(BadPovRay, ThatLiesAboutItsProgress) {
                        "'" + std::string(APHOTIC_COMMAND) + "' render rig.toml -o out --bands 3",
                        "/dev/null"},
          .folder = folder_.path(),
-         .environment = {{"APHOTIC_POVRAY", file("povray").string()}},
-         .log = file("said")},
+         .environment = {{"APHOTIC_POVRAY", path("povray").string()}},
+         .log = path("said")},
         kScriptTimeoutS);
-    const std::string said = read_text_file(file("said"));
+    const std::string said = text_of("said");
     EXPECT_TRUE(end.succeeded()) << end.words() << said;
     EXPECT_NE(said.find("rendering"), std::string::npos) << "no progress: " << said;
-    EXPECT_TRUE(fs::exists(file("out") / "image.exr"));
+    EXPECT_TRUE(fs::exists(path("out") / "image.exr"));
 }
 
 // --- A scene of the user's own ------------------------------------------------------------
@@ -507,30 +492,28 @@ TEST_F(BadPovRay, ThatLiesAboutItsProgress) {
 class OwnScene : public BadPovRay {
   protected:
     OwnScene() {
-        write_file(file("reef.pov"),
+        write_file(path("reef.pov"),
                    "#version 3.7;\n#include \"aphotic.inc\"\nAphotic_Rig ()\n"
                    "Aphotic_Rig_Seafloor ()\n");
     }
     [[nodiscard]] CommandResult render_reef(
         const std::map<std::string, std::string>& environment = {},
-        const std::vector<std::string>& more = {}) const {
-        std::vector<std::string> arguments{"--scene", "reef.pov", "--jobs", "1"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return render(environment, arguments);
+        const Arguments& more = {}) const {
+        return render(environment, "--scene reef.pov --jobs 1" + more);
     }
 };
 
 TEST_F(OwnScene, IsLookedAtUnderTheSameGuards) {
-    fs::create_directory(file("tmp"));
+    fs::create_directory(path("tmp"));
     auto environment = povray_that("sleep 1000\n");
-    environment["TMPDIR"] = file("tmp").string();
-    const CommandResult hanging = render_reef(environment, {"--stall-timeout", "0.5"});
+    environment["TMPDIR"] = path("tmp").string();
+    const CommandResult hanging = render_reef(environment, "--stall-timeout 0.5");
     expect_message(hanging, kRunFailed, "reef.pov: ");
     expect_message(hanging, kRunFailed, "was stopped: for 0.5 s");
     static_cast<void>(povray_that("exec yes\n"));
     expect_message(render_reef(environment), kRunFailed, "it printed more than 64 MiB");
-    EXPECT_TRUE(fs::is_empty(file("tmp")));
-    EXPECT_FALSE(fs::exists(file("out")));
+    EXPECT_TRUE(fs::is_empty(path("tmp")));
+    EXPECT_FALSE(fs::exists(path("out")));
 }
 
 // POV-Ray's first argument is the scene: band_* are frames, strobe_* the survey's. The edit comes
@@ -546,11 +529,11 @@ TEST_F(OwnScene, EditedWhileItRendersIsNotMixed) {
                    kRunFailed,
                    "reef.pov: it, or a file that it names, was "
                    "changed while it was worked on");
-    const Manifest left = read_manifest(file("out"));
+    const Manifest left = read_manifest(path("out"));
     EXPECT_TRUE(left.frames[0].done()) << "rendered before the edit";
     EXPECT_FALSE(left.frames[1].done());
-    EXPECT_FALSE(fs::exists(image_path(file("out"), left.frames[1])));
-    EXPECT_FALSE(fs::exists(file("out") / "image.exr"));
+    EXPECT_FALSE(fs::exists(image_path(path("out"), left.frames[1])));
+    EXPECT_FALSE(fs::exists(path("out") / "image.exr"));
 
     const CommandResult again = render_reef();
     EXPECT_NE(again.out.find("2 frames rendered, 0 kept"), std::string::npos)
@@ -563,7 +546,7 @@ TEST_F(OwnScene, EditedWhileItIsLookedAtIsNotPlanned) {
         "case \"$1\" in *strobe_1_*) echo '// edited' >> reef.pov ;; esac\n"
         "exec povray \"$@\"\n");
     expect_message(render_reef(editing), kRunFailed, "was changed while it was worked on");
-    EXPECT_FALSE(fs::exists(file("out")));
+    EXPECT_FALSE(fs::exists(path("out")));
 }
 
 }  // namespace

@@ -2,9 +2,10 @@
 //
 // Frames as 16-bit PNG, by a POV-Ray that says it has no OpenEXR and by one that has.
 #include "image/exr.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "support/small_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-class FrameFormatOption : public testing::Test {
+class FrameFormatOption : public CommandTest {
   protected:
     FrameFormatOption() {
         // POV-Ray as conda-forge builds it: it says so among the formats, and nobody asks it for
@@ -35,33 +36,25 @@ class FrameFormatOption : public testing::Test {
         put_small_scene(fs::path(APHOTIC_SOURCE_DIR) / "scenes" / scene, path(""));
     }
     void make_water_scatter() const {
-        std::string toml = read_text_file(path("rig.toml"));
+        std::string toml = text_of("rig.toml");
         toml = std::regex_replace(toml,
                                   std::regex(R"(absorption = .*\n *(multiple .*\n)?)"),
                                   "chlorophyll_mg_m3 = 0.05\n");
         toml = std::regex_replace(toml, std::regex(R"(\[400, 720\])"), "[400, 700]");
         write_file(path("rig.toml"), toml);
     }
-    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
-    [[nodiscard]] CommandResult run(const std::vector<std::string>& arguments) const {
-        return run_aphotic(folder_.path(), arguments);
-    }
-    [[nodiscard]] CommandResult run_without_openexr(
-        const std::vector<std::string>& arguments) const {
-        return run_aphotic(
-            folder_.path(), arguments, {{"APHOTIC_POVRAY", path("povray").string()}});
+    [[nodiscard]] CommandResult run_without_openexr(const Arguments& arguments) const {
+        return aphotic(arguments, {{"APHOTIC_POVRAY", path("povray").string()}});
     }
     [[nodiscard]] std::vector<float> image(const std::string& folder) const {
         return ExrReader(path(folder) / "image.exr")
             .planes(std::vector<std::string>{"R", "G", "B"});
     }
-
-    TempFolder folder_;
 };
 
 TEST_F(FrameFormatOption, ServesAPovRayWithoutOpenExr) {
     put("habcam.toml");
-    const CommandResult refused = run_without_openexr({"render", "rig.toml", "-o", "exr"});
+    const CommandResult refused = run_without_openexr("render rig.toml -o exr");
     EXPECT_EQ(refused.status, 3);
     EXPECT_NE(refused.err.find("built without OpenEXR, in which frames are written; --frame-format "
                                "png16 does without"),
@@ -70,20 +63,15 @@ TEST_F(FrameFormatOption, ServesAPovRayWithoutOpenExr) {
     EXPECT_FALSE(fs::exists(path("exr")));
 
     const CommandResult rendered =
-        run_without_openexr({"render", "rig.toml", "--frame-format", "png16", "-o", "png"});
+        run_without_openexr("render rig.toml --frame-format png16 -o png");
     ASSERT_EQ(rendered.status, 0) << rendered.err;
     EXPECT_NE(rendered.out.find("frames were PNG"), std::string::npos) << rendered.out;
-    const CommandResult validated =
-        run({"validate", "rig.toml", "--rendered", "png", "-o", "validation"});
+    const CommandResult validated = aphotic("validate rig.toml --rendered png -o validation");
     EXPECT_EQ(validated.status, 0) << validated.out << validated.err;
 
     const CommandResult own =
-        run_without_openexr({"render",
-                             std::string(APHOTIC_SOURCE_DIR) + "/scenes/user/reef/reef.toml",
-                             "--frame-format",
-                             "png16",
-                             "-o",
-                             "own"});
+        run_without_openexr("render --frame-format png16 -o own" +
+                            Arguments{APHOTIC_SOURCE_DIR "/scenes/user/reef/reef.toml"});
     EXPECT_EQ(own.status, 3);
     EXPECT_NE(own.err.find("in which a scene of your own is measured"), std::string::npos)
         << own.err;
@@ -94,22 +82,15 @@ TEST_F(FrameFormatOption, ServesAPovRayWithoutOpenExr) {
 TEST_F(FrameFormatOption, ShowsTheSame) {
     put("objects.toml");
     make_water_scatter();
-    std::string toml = read_text_file(path("rig.toml"));
+    std::string toml = text_of("rig.toml");
     toml = std::regex_replace(toml, std::regex(R"(altitude_m .*)"), "altitude_m = 3");
     toml = std::regex_replace(toml, std::regex(R"(pitch_deg .*)"), "pitch_deg = 80");
     write_file(path("rig.toml"), toml);
     const auto render = [&](const char* format) {
-        return run({"render",
-                    "rig.toml",
-                    "--frame-format",
-                    format,
-                    "--wavelengths",
-                    "478,576,638",
-                    "--model-tolerance",
-                    "1",
-                    "--json",
-                    "-o",
-                    format});
+        return run(
+            fmt::format("render rig.toml --frame-format {0} --wavelengths 478,576,638 "
+                        "--model-tolerance 1 --json -o {0}",
+                        format));
     };
     const CommandResult halves = render("exr");
     ASSERT_EQ(halves.status, 0) << halves.err;
@@ -139,11 +120,10 @@ TEST_F(FrameFormatOption, ShowsTheSame) {
 
 TEST_F(FrameFormatOption, IsRefusedWhereItCannotServe) {
     put("habcam.toml");
-    const CommandResult result = run({"render", "rig.toml", "--frame-format", "tiff", "-o", "out"});
+    const CommandResult result = aphotic("render rig.toml --frame-format tiff -o out");
     EXPECT_EQ(result.status, 2);
     make_water_scatter();
-    const CommandResult veil =
-        run({"render", "rig.toml", "--frame-format", "png16", "--veil", "povray", "-o", "out"});
+    const CommandResult veil = aphotic("render rig.toml --frame-format png16 --veil povray -o out");
     EXPECT_EQ(veil.status, 2);
     EXPECT_NE(veil.err.find("--frame-format: found png16 with --veil povray"), std::string::npos)
         << veil.err;

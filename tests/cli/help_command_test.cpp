@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/atomic_file.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
+#include "support/has.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -12,24 +13,24 @@
 namespace aphotic::help_command_test {
 namespace {
 
-TEST(HelpCommand, PrintsWhatTheOptionDoes) {
-    const TempFolder folder;
-    const auto out = [&](const std::vector<std::string>& arguments) {
-        const CommandResult run = run_aphotic(folder.path(), arguments);
+using HelpCommand = CommandTest;
+
+TEST_F(HelpCommand, PrintsWhatTheOptionDoes) {
+    const auto out = [&](const Arguments& arguments) {
+        const CommandResult run = aphotic(arguments);
         EXPECT_EQ(run.status, 0) << run.err;
         EXPECT_EQ(run.err, "");
         return run.out;
     };
-    EXPECT_NE(out({"--help"}), "");
-    EXPECT_EQ(out({"help"}), out({"--help"}));
+    EXPECT_NE(out("--help"), "");
+    EXPECT_EQ(out({"help"}), out("--help"));
     for (const char* command : {"render", "plan", "data", "help"})
-        EXPECT_EQ(out({"help", command}), out({command, "--help"}));
+        EXPECT_EQ(out({"help", command}), out(fmt::format("{} --help", command)));
 }
 
 // Words of an option that is gone would stay in cli/options.toml unseen; one without words is found
 // by any use of its command.
-TEST(HelpCommand, SaysAllThatTheTableOfOptionsHas) {
-    const TempFolder folder;
+TEST_F(HelpCommand, SaysAllThatTheTableOfOptionsHas) {
     const std::string table = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/cli/options.toml");
     const std::regex entry(R"re(\[(\w+)\."(--[a-z-]+)"\]\n)re");
     std::map<std::string, std::set<std::string>> options;
@@ -42,12 +43,11 @@ TEST(HelpCommand, SaysAllThatTheTableOfOptionsHas) {
     EXPECT_GT(options.size(), 15U);
     std::string all;
     for (const auto& [command, names] : options) {
-        const std::string help = run_aphotic(folder.path(), {command, "--help"}).out;
-        for (const std::string& name : names)
-            EXPECT_NE(help.find(name), std::string::npos) << command << " " << name;
+        const std::string help = aphotic(command + " --help").out;
+        for (const std::string& name : names) EXPECT_TRUE(has(help, name)) << command;
         all += help;
     }
-    for (const std::string& name : of_all) EXPECT_NE(all.find(name), std::string::npos) << name;
+    for (const std::string& name : of_all) EXPECT_TRUE(has(all, name));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 // and for a shell. tests/scene_gen/rig_reader_test.cpp has what is refused when a rig is read,
 // tests/validation/*_browser_test.cpp what a browser makes of such names.
 #include "image/exr.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -122,12 +122,14 @@ std::vector<float> samples_of(const fs::path& file) {
     return samples;
 }
 
-TEST(Hostile, TextsOfARigChangeNoBitOfItsImage) {
+using Hostile = CommandTest;
+
+TEST_F(Hostile, TextsOfARigChangeNoBitOfItsImage) {
     const TempFolder folder;
     const auto rendered = [&](const std::string& name, const Texts& texts) {
         put_rig(folder.path() / name, texts);
         const CommandResult run =
-            run_aphotic(folder.path() / name, {"render", "rig.toml", "-o", "out", "--fitted", "3"});
+            run_aphotic(folder.path() / name, "render rig.toml -o out --fitted 3");
         EXPECT_EQ(run.status, 0) << run.err;
         return samples_of(folder.path() / name / "out" / "image.exr");
     };
@@ -139,8 +141,8 @@ TEST(Hostile, TextsOfARigChangeNoBitOfItsImage) {
     // The test sees a difference where there is one.
     write_file(folder.path() / "innocent" / kInnocent.clay, kMud);
     EXPECT_NE(samples_of(folder.path() / "0" / "out" / "image.exr"), [&] {
-        const CommandResult run = run_aphotic(folder.path() / "innocent",
-                                              {"render", "rig.toml", "-o", "out", "--fitted", "3"});
+        const CommandResult run =
+            run_aphotic(folder.path() / "innocent", "render rig.toml -o out --fitted 3");
         EXPECT_EQ(run.status, 0) << run.err;
         return samples_of(folder.path() / "innocent" / "out" / "image.exr");
     }());
@@ -149,58 +151,50 @@ TEST(Hostile, TextsOfARigChangeNoBitOfItsImage) {
 const std::vector<std::string> kFolderNames{
     "it's \"so\"", "-o", "two\nlines", "K\xC3\xB6ln", "; #x = %s{} $(touch owned)"};
 
-TEST(Hostile, FoldersOfAnyNameHoldRigsAndRenders) {
-    const TempFolder folder;
-    put_rig(folder.path(), kInnocent);
-    ASSERT_EQ(
-        run_aphotic(folder.path(), {"render", "rig.toml", "-o", "out", "--fitted", "3"}).status, 0);
-    const std::vector<float> expected = samples_of(folder.path() / "out" / "image.exr");
+TEST_F(Hostile, FoldersOfAnyNameHoldRigsAndRenders) {
+    put_rig(folder_.path(), kInnocent);
+    ASSERT_EQ(aphotic("render rig.toml -o out --fitted 3").status, 0);
+    const std::vector<float> expected = samples_of(path("out") / "image.exr");
     for (const std::string& name : kFolderNames) {
-        put_rig(folder.path() / name, kInnocent);
-        const CommandResult run = run_aphotic(
-            folder.path(),
+        put_rig(path(name), kInnocent);
+        const CommandResult run = aphotic(
             {"render", "./" + name + "/rig.toml", "--output=" + name + "/out", "--fitted", "3"});
         EXPECT_EQ(run.status, 0) << name << ": " << run.err;
-        EXPECT_EQ(samples_of(folder.path() / name / "out" / "image.exr"), expected) << name;
+        EXPECT_EQ(samples_of(path(name) / "out" / "image.exr"), expected) << name;
     }
-    EXPECT_FALSE(fs::exists(folder.path() / "owned"));
+    EXPECT_FALSE(fs::exists(path("owned")));
 }
 
 // POV-Ray reads "a[b]" as the section b of the settings a.
 // JSON must be UTF-8, names of folders need not.
-TEST(Hostile, FoldersOfAnyNameAreToldInJson) {
-    const TempFolder folder;
-    write_file(folder.path() / "rig.toml",
+TEST_F(Hostile, FoldersOfAnyNameAreToldInJson) {
+    write_file(path("rig.toml"),
                read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/one-lamp.toml"));
     const CommandResult run =
-        run_aphotic(folder.path(),
-                    {"generate", "rig.toml", "-o", "\xff\xfe", "--wavelengths", "550", "--json"});
+        aphotic({"generate", "rig.toml", "-o", "\xff\xfe", "--wavelengths", "550", "--json"});
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(nlohmann::json::parse(run.out).at("folder"), "\uFFFD\uFFFD");
 }
 
-TEST(Hostile, FolderThatPovRayCannotReadIsRefusedBeforeAnythingIsWritten) {
-    const TempFolder folder;
-    put_rig(folder.path(), kInnocent);
-    const CommandResult run =
-        run_aphotic(folder.path(), {"render", "rig.toml", "-o", "a[b]", "--fitted", "3"});
+TEST_F(Hostile, FolderThatPovRayCannotReadIsRefusedBeforeAnythingIsWritten) {
+    put_rig(folder_.path(), kInnocent);
+    const CommandResult run = aphotic("render rig.toml -o a[b] --fitted 3");
     EXPECT_EQ(run.status, kBadInput);
     EXPECT_NE(run.err.find("a[b]: found a '['"), std::string::npos) << run.err;
-    EXPECT_FALSE(fs::exists(folder.path() / "a[b]"));
+    EXPECT_FALSE(fs::exists(path("a[b]")));
 }
 
 // The lines that generate prints go through a shell, with a POV-Ray that says what it is given.
-TEST(Hostile, PrintedCommandsNameFoldersAsAShellTakesThem) {
+TEST_F(Hostile, PrintedCommandsNameFoldersAsAShellTakesThem) {
     for (const std::string& name : kFolderNames) {
-        const TempFolder folder;
-        put_rig(folder.path(), kInnocent);
-        const fs::path out = folder.path() / "called";
-        fs::create_directory(folder.path() / "bin");
+        put_rig(folder_.path(), kInnocent);
+        const fs::path out = path("called");
+        fs::create_directory(path("bin"));
         write_script(
-            folder.path() / "bin" / "povray",
+            path("bin") / "povray",
             "pwd >> '" + out.string() + "'\nprintf '%s\\n' \"$@\" >> '" + out.string() + "'\n");
-        const CommandResult run = run_aphotic(
-            folder.path(), {"generate", "rig.toml", "--output=" + name, "--wavelengths", "500"});
+        const CommandResult run =
+            aphotic({"generate", "rig.toml", "--output=" + name, "--wavelengths", "500"});
         ASSERT_EQ(run.status, 0) << run.err;
         const std::size_t from = run.out.find("  (cd ");
         const std::size_t to = run.out.find("done)\n") + 5;
@@ -208,46 +202,40 @@ TEST(Hostile, PrintedCommandsNameFoldersAsAShellTakesThem) {
         const ProcessEnd end = run_process(
             {.executable = "/bin/sh",
              .arguments = {"-c", "PATH=$PWD/bin:$PATH\n" + run.out.substr(from, to - from)},
-             .folder = folder.path(),
+             .folder = folder_.path(),
              .environment = {},
-             .log = folder.path() / "log"},
+             .log = path("log")},
             60.0);
-        EXPECT_TRUE(end.succeeded()) << read_text_file(folder.path() / "log");
-        EXPECT_EQ(read_text_file(out),
-                  (fs::canonical(folder.path() / name) / "povray").string() +
-                      "\nrender.ini\n+Iband_500nm.pov\n");
-        EXPECT_FALSE(fs::exists(folder.path() / name / "povray" / "owned"));
+        EXPECT_TRUE(end.succeeded()) << text_of("log");
+        EXPECT_EQ(
+            read_text_file(out),
+            (fs::canonical(path(name)) / "povray").string() + "\nrender.ini\n+Iband_500nm.pov\n");
+        EXPECT_FALSE(fs::exists(path(name) / "povray" / "owned"));
     }
 }
 
 // A scene of the user's own brings the folder's path into POV-Ray's settings.
-TEST(Hostile, FolderThatWouldAddASettingIsRefused) {
-    const TempFolder folder;
-    put_rig(folder.path(), kInnocent);
-    write_file(folder.path() / "own.pov",
+TEST_F(Hostile, FolderThatWouldAddASettingIsRefused) {
+    put_rig(folder_.path(), kInnocent);
+    write_file(path("own.pov"),
                "#version 3.7;\n#include \"aphotic.inc\"\nAphotic_Rig ()\n"
                "Aphotic_Seafloor (2, 0, 0, \"sand\")\n");
     for (const std::string name : {"x\nOutput_File_Name=owned", "x\" y"}) {
-        const CommandResult run = run_aphotic(
-            folder.path(),
+        const CommandResult run = aphotic(
             {"generate", "rig.toml", "--scene", "own.pov", "-o", name, "--wavelengths", "500"});
         EXPECT_EQ(run.status, kBadInput) << run.out;
         EXPECT_NE(run.err.find("for POV-Ray cannot read them"), std::string::npos) << run.err;
-        EXPECT_FALSE(fs::exists(folder.path() / name));
+        EXPECT_FALSE(fs::exists(path(name)));
     }
 }
 
 // A pipe that nobody writes to, and a device without end, in the place of a frame.
-TEST(Hostile, FramesThatAreNoFilesAreRefusedWithoutWaiting) {
-    const TempFolder folder;
-    put_rig(folder.path(), kInnocent);
-    ASSERT_EQ(
-        run_aphotic(folder.path(), {"render", "rig.toml", "-o", "out", "--wavelengths", "500"})
-            .status,
-        0);
-    const fs::path frame = folder.path() / "out" / "povray" / "frames" / "band_500nm.exr";
+TEST_F(Hostile, FramesThatAreNoFilesAreRefusedWithoutWaiting) {
+    put_rig(folder_.path(), kInnocent);
+    ASSERT_EQ(aphotic("render rig.toml -o out --wavelengths 500").status, 0);
+    const fs::path frame = path("out") / "povray" / "frames" / "band_500nm.exr";
     const auto expect_refused = [&] {
-        const CommandResult run = run_aphotic(folder.path(), {"integrate", "out"});
+        const CommandResult run = aphotic("integrate out");
         EXPECT_EQ(run.status, 3) << run.out;
         EXPECT_NE(run.err.find("band_500nm.exr: cannot be read"), std::string::npos) << run.err;
     };

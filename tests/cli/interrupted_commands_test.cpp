@@ -27,44 +27,38 @@ constexpr int kMostBlows = 60;  // when all come too late
 
 struct Struck {
     const char* name;
-    std::vector<std::string> arguments;
+    Arguments arguments;
 };
 void PrintTo(const Struck& struck, std::ostream* out) {
     *out << struck.name;
 }
 
 const std::vector<Struck> kCommands{
-    {"Baseline", {"baseline", "local-equalisation", "raw", "-o", "out"}},
-    {"Correct", {"correct", "raw", "--rig", "rig.toml", "--nav", "nav.eic", "-o", "out"}},
-    {"Compare", {"compare", "raw/0.exr", "raw/1.exr", "--report", "out/page.html"}},
-    {"Generate", {"generate", "rig.toml", "-o", "out", "--bands", "30"}},
-    {"Integrate", {"integrate", "render", "-o", "out"}},
-    {"Lightmap", {"lightmap", "rig.toml", "--per-cone", "-o", "out/map.exr"}},
-    {"MapsByAltitude", {"lightmap", "rig.toml", "--altitude", "1:3:0.25", "-o", "out"}},
-    {"Oplab", {"lightmap", "rig.toml", "--altitude", "1:3:0.1", "--export", "oplab", "-o", "out"}},
-    {"Observe", {"observe", "raw", "--nav", "nav.eic", "--altitude", "2", "-o", "out/map.exr"}},
-    {"Plan", {"plan", "rig.toml", "--plot", "out/plan.svg"}},
-    {"Survey", {"survey", "rig.toml", "--images", "8", "-o", "out"}},
-    {"Study", {"study", "rig.toml", "-o", "out", "--quick"}},
-    {"Trace", {"trace", "rig.toml", "-o", "out"}},
-    {"Validate", {"validate", "rig.toml", "-o", "out", "--bands", "6"}}};
+    {"Baseline", "baseline local-equalisation raw -o out"},
+    {"Correct", "correct raw --rig rig.toml --nav nav.eic -o out"},
+    {"Compare", "compare raw/0.exr raw/1.exr --report out/page.html"},
+    {"Generate", "generate rig.toml -o out --bands 30"},
+    {"Integrate", "integrate render -o out"},
+    {"Lightmap", "lightmap rig.toml --per-cone -o out/map.exr"},
+    {"MapsByAltitude", "lightmap rig.toml --altitude 1:3:0.25 -o out"},
+    {"Oplab", "lightmap rig.toml --altitude 1:3:0.1 --export oplab -o out"},
+    {"Observe", "observe raw --nav nav.eic --altitude 2 -o out/map.exr"},
+    {"Plan", "plan rig.toml --plot out/plan.svg"},
+    {"Survey", "survey rig.toml --images 8 -o out"},
+    {"Study", "study rig.toml -o out --quick"},
+    {"Trace", "trace rig.toml -o out"},
+    {"Validate", "validate rig.toml -o out --bands 6"}};
 
 // What a file of these names says depends on the clock, on the frames' own times, or on what an
 // earlier run had done.
 bool tells_the_time(const fs::path& file) {
-    constexpr std::array kNames{"baseline.json",
-                                "correction.json",
-                                "corrected.jsonl",
-                                "manifest.json",
-                                "validation.json",
-                                "trace.json",
-                                "report.html",
-                                "study.html",
-                                "study.csv",
-                                "study.json"};
+    static const Arguments kNames(
+        "baseline.json correction.json corrected.jsonl manifest.json validation.json trace.json "
+        "report.html study.html study.csv study.json");
     const fs::path folder = file.parent_path().filename();
     return folder == "frames" || folder == "logs" || folder == "settings" ||
-           folder == "reference" || std::ranges::find(kNames, file.filename()) != kNames.end();
+           folder == "reference" ||
+           std::ranges::find(kNames, file.filename().string()) != kNames.end();
 }
 
 // By the file's path below the folder, its checksum.
@@ -85,7 +79,7 @@ class InterruptedCommand : public testing::TestWithParam<Struck> {
         write_file(home_ / "rig.toml",
                    small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
         const std::string& command = GetParam().arguments.front();
-        if (command == "integrate") well({"render", "rig.toml", "-o", "render", "--bands", "3"});
+        if (command == "integrate") well("render rig.toml -o render --bands 3");
         if (command == "observe" || command == "baseline" || command == "compare" ||
             command == "correct")
             take_images();
@@ -98,7 +92,7 @@ class InterruptedCommand : public testing::TestWithParam<Struck> {
         fs::create_directory(home_ / folder);
     }
 
-    void well(const std::vector<std::string>& arguments) {
+    void well(const Arguments& arguments) {
         const CommandResult run = run_aphotic(home_, arguments);
         ASSERT_EQ(run.status, 0) << run.err;
     }
@@ -106,7 +100,7 @@ class InterruptedCommand : public testing::TestWithParam<Struck> {
     void take_images() {
         constexpr int kImages = 12;
         fs::create_directory(home_ / "raw");
-        well({"lightmap", "rig.toml", "-o", "raw/0.exr"});
+        well("lightmap rig.toml -o raw/0.exr");
         std::string lines;
         for (int i = 0; i < kImages; ++i) {
             if (i > 0) fs::copy_file(home_ / "raw/0.exr", home_ / fmt::format("raw/{}.exr", i));

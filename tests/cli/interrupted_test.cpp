@@ -45,7 +45,7 @@ std::string rig_text() {
     return text;
 }
 
-const std::vector<std::string> kWavelengths{"--wavelengths", "430,470,520,560,600,640,700"};
+const Arguments kWavelengths("--wavelengths 430,470,520,560,600,640,700");
 
 // By frame, the inode of those that are there, noted or not: a frame that is rendered again is
 // another file.
@@ -132,10 +132,8 @@ class Lane {
     // One run, interrupted or not. Whether it came to its end.
     bool once(Counts& counts, bool is_to_be_interrupted = true) {
         const auto before = done_frames(out());
-        std::vector<std::string> arguments{"render", "rig.toml", "-o", "out", "--jobs", "2"};
-        arguments.insert(arguments.end(), kWavelengths.begin(), kWavelengths.end());
         Command command(folder_,
-                        arguments,
+                        "render rig.toml -o out --jobs 2" + kWavelengths,
                         {{"APHOTIC_POVRAY", povray_}, {"TMPDIR", (folder_ / "tmp").string()}});
         const std::optional<Blow> blow = is_to_be_interrupted ? strike(command) : std::nullopt;
         const int status = command.wait();
@@ -223,9 +221,9 @@ TEST(Interrupted, RendersEndInTheSameImageHoweverOftenTheyAreStruck) {
     const TempFolder folder;
     write_file(folder.path() / "rig.toml", rig_text());
     const auto start = Clock::now();
-    std::vector<std::string> arguments{"render", "rig.toml", "-o", "undisturbed", "--jobs", "2"};
-    arguments.insert(arguments.end(), kWavelengths.begin(), kWavelengths.end());
-    ASSERT_EQ(run_aphotic(folder.path(), arguments).status, 0);
+    ASSERT_EQ(
+        run_aphotic(folder.path(), "render rig.toml -o undisturbed --jobs 2" + kWavelengths).status,
+        0);
     const double longest_s = std::chrono::duration<double>(Clock::now() - start).count();
 
     // The script around POV-Ray waits for it, and heeds no signal itself.
@@ -291,7 +289,7 @@ TEST(Interrupted, ASurveyLeavesNothing) {
                          "if [ \"$1\" = --version ]; then\n  exec povray --version\nfi\n"
                          "trap '' TERM INT HUP\nsleep 1000 &\ntouch tmp/started\nwait\nwait\n");
         Command command(home,
-                        {"render", "rig.toml", "--scene", "reef.pov", "-o", "out"},
+                        "render rig.toml --scene reef.pov -o out",
                         {{"APHOTIC_POVRAY", povray}, {"TMPDIR", (home / "tmp").string()}});
         ASSERT_TRUE(comes_true([&] { return fs::exists(home / "tmp" / "started"); }));
         ::kill(command.pid(), signal);
@@ -312,15 +310,13 @@ TEST(Interrupted, ATraceEndsAtOnce) {
     const std::regex size(R"(\nresolution[^\n]*)");
     write_file(folder.path() / "rig.toml",
                std::regex_replace(text, size, "\nresolution = [8000, 8000]"));
-    Command command(folder.path(), {"trace", "rig.toml", "-o", "out", "--threads", "1"}, {});
+    Command command(folder.path(), "trace rig.toml -o out --threads 1", {});
     ASSERT_TRUE(comes_true([&] { return fs::exists(folder.path() / "out"); }));
     ::kill(command.pid(), SIGINT);
     EXPECT_EQ(command.wait(), 128 + SIGINT);
     EXPECT_FALSE(fs::exists(folder.path() / "out" / "image.exr"));
     // What it leaves half written, the next run takes away.
-    EXPECT_EQ(
-        run_aphotic(folder.path(), {"generate", "rig.toml", "-o", "out", "--bands", "3"}).status,
-        0);
+    EXPECT_EQ(run_aphotic(folder.path(), "generate rig.toml -o out --bands 3").status, 0);
     expect_no_leftovers(folder.path() / "out");
 }
 

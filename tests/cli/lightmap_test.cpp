@@ -3,8 +3,9 @@
 // aphotic lightmap, as a user runs it.
 #include "image/exr.h"
 #include "spectral/integrator.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -23,7 +24,7 @@ constexpr int kRunFailed = 3;
 // --error by default, and the rounding of floats.
 constexpr double kError = 1.1e-5;
 
-class CommandLightmap : public testing::Test {
+class CommandLightmap : public CommandTest {
   protected:
     void SetUp() override {
         std::string text = read_text_file(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
@@ -31,23 +32,19 @@ class CommandLightmap : public testing::Test {
             text, std::regex(R"(\n\s*resolution\s*=[^\n]*)"), "\nresolution = [160, 120]");
         text = std::regex_replace(
             text, std::regex(R"(\n\s*pixel_pitch_um\s*=[^\n]*)"), "\npixel_pitch_um = 55.0");
-        write_file(folder_.path() / "rig.toml", text);
+        write_file(path("rig.toml"), text);
     }
 
-    [[nodiscard]] CommandResult lightmap(const std::vector<std::string>& options = {}) const {
-        std::vector<std::string> arguments{"lightmap", "rig.toml", "-o", "map.exr"};
-        arguments.insert(arguments.end(), options.begin(), options.end());
-        return run_aphotic(folder_.path(), arguments);
+    [[nodiscard]] CommandResult lightmap(const Arguments& options = {}) const {
+        return aphotic("lightmap rig.toml -o map.exr" + options);
     }
 
     [[nodiscard]] std::vector<float> samples(const std::vector<std::string>& channels) const {
-        ExrReader reader(folder_.path() / "map.exr");
+        ExrReader reader(path("map.exr"));
         std::vector<float> all(channels.size() * 160 * 120);
         reader.read_rows(0, reader.height_px(), channels, all);
         return all;
     }
-
-    TempFolder folder_;
 };
 
 // One pixel in a thousand may be on a beam's edge, and step.
@@ -62,21 +59,19 @@ void expect_equal(const std::vector<float>& found, const std::vector<float>& wan
 }
 
 TEST_F(CommandLightmap, IsWhatTheReferenceTraces) {
-    const CommandResult run = lightmap({"--pitch-deg", "-3", "--altitude-m", "1.7"});
+    const CommandResult run = lightmap("--pitch-deg -3 --altitude-m 1.7");
     ASSERT_EQ(run.status, 0) << run.err;
-    std::string text = read_text_file(folder_.path() / "rig.toml");
+    std::string text = text_of("rig.toml");
     text = std::regex_replace(text, std::regex("pitch_deg  = 5.0"), "pitch_deg = -3.0");
     text = std::regex_replace(text, std::regex("altitude_m = 2.0"), "altitude_m = 1.7");
-    write_file(folder_.path() / "other.toml", text);
-    const CommandResult trace = run_aphotic(
-        folder_.path(), {"trace", "other.toml", "-o", "traced", "--wavelengths", "550"});
+    write_file(path("other.toml"), text);
+    const CommandResult trace = aphotic("trace other.toml -o traced --wavelengths 550");
     ASSERT_EQ(trace.status, 0) << trace.err;
-    expect_equal(samples({"R", "G", "B"}),
-                 read_signals(folder_.path() / "traced" / "image.exr").samples);
+    expect_equal(samples({"R", "G", "B"}), read_signals(path("traced") / "image.exr").samples);
 }
 
 TEST_F(CommandLightmap, PartsAddUpToTheWhole) {
-    ASSERT_EQ(lightmap({"--per-strobe", "--per-cone", "--normalised"}).status, 0);
+    ASSERT_EQ(lightmap("--per-strobe --per-cone --normalised").status, 0);
     std::vector<double> by_strobe(std::size_t{160} * 120);
     std::vector<double> by_cone(by_strobe.size());
     const auto add = [&](const std::string& channel, std::vector<double>& sum) {
@@ -98,14 +93,14 @@ TEST_F(CommandLightmap, PartsAddUpToTheWhole) {
 }
 
 TEST_F(CommandLightmap, SaysWhatItDidInJson) {
-    const CommandResult run = lightmap({"--json", "--preview", "map.png"});
+    const CommandResult run = lightmap("--json --preview map.png");
     ASSERT_EQ(run.status, 0) << run.err;
     const auto said = nlohmann::json::parse(run.out);
     EXPECT_EQ(said["width_px"], 160);
     EXPECT_EQ(said["channels"], nlohmann::json({"R", "G", "B"}));
     EXPECT_GT(said["peak"][1], 0.0);
-    EXPECT_TRUE(fs::exists(folder_.path() / "map.png"));
-    ExrReader reader(folder_.path() / "map.exr");
+    EXPECT_TRUE(fs::exists(path("map.png")));
+    ExrReader reader(path("map.exr"));
     EXPECT_EQ(reader.attribute("aphotic:altitude_m"), "2");
     EXPECT_EQ(reader.attribute("aphotic:rig_sha256"), said["rig_sha256"]);
 }
@@ -119,39 +114,39 @@ TEST_F(CommandLightmap, PromisesWhatHolds) {
     };
     const std::string off_edges = " of a signal off the beams' edges";
     expect_words("exact to 1.2e-05" + off_edges, lightmap());
-    expect_words("exact to 1.8e-06" + off_edges, lightmap({"--error", "1e-7"}));
-    const std::string text = read_text_file(folder_.path() / "rig.toml");
-    write_file(folder_.path() / "rig.toml",
+    expect_words("exact to 1.8e-06" + off_edges, lightmap("--error 1e-7"));
+    const std::string text = text_of("rig.toml");
+    write_file(path("rig.toml"),
                text +
                    "\n[camera.port]\nshape = \"flat\"\ndistance_mm = 50.0\n"
                    "thickness_mm = 12.0\nglass = \"bk7\"\n");
     expect_words("near to 1.1e-04" + off_edges + ", as measured behind ports and not bounded",
                  lightmap());
-    const auto port = nlohmann::json::parse(lightmap({"--json"}).out);
+    const auto port = nlohmann::json::parse(lightmap("--json").out);
     EXPECT_FALSE(port["promise"]["bounded"]);
     write_file(
-        folder_.path() / "rig.toml",
+        path("rig.toml"),
         std::regex_replace(text, std::regex("\nbeam "), "\nemitter_mm = [63.5, 30.2]\nbeam "));
     expect_words("exact to 1.2e-05" + off_edges + ", emitters being grids of lamps", lightmap());
 }
 
 TEST_F(CommandLightmap, RefusesTwoPartsOfOneName) {
-    const std::string text = read_text_file(folder_.path() / "rig.toml");
-    write_file(folder_.path() / "rig.toml",
+    const std::string text = text_of("rig.toml");
+    write_file(path("rig.toml"),
                std::regex_replace(text, std::regex("\"aft\""), "\"fore.collimated\""));
-    const CommandResult run = lightmap({"--per-strobe", "--per-cone"});
+    const CommandResult run = lightmap("--per-strobe --per-cone");
     EXPECT_EQ(run.status, kBadInput);
     EXPECT_EQ(run.err,
               "aphotic: rig.toml: strobes: found two parts of the light that would be named "
               "fore.collimated, of a strobe and of a cone, or of two cones; allowed: names that "
               "differ\n");
-    EXPECT_FALSE(fs::exists(folder_.path() / "map.exr"));
-    EXPECT_EQ(lightmap({"--per-strobe"}).status, 0);
+    EXPECT_FALSE(fs::exists(path("map.exr")));
+    EXPECT_EQ(lightmap("--per-strobe").status, 0);
 }
 
 TEST_F(CommandLightmap, RefusesARigWithObjects) {
-    std::string text = read_text_file(folder_.path() / "rig.toml");
-    write_file(folder_.path() / "rig.toml",
+    std::string text = text_of("rig.toml");
+    write_file(path("rig.toml"),
                text +
                    "\n[[object]]\nname = \"ball\"\nshape = \"sphere\"\ncentre_m = [0, 0, 1.5]\n"
                    "radius_m = 0.1\nreflectance = \"sand\"\n");
@@ -160,20 +155,19 @@ TEST_F(CommandLightmap, RefusesARigWithObjects) {
     EXPECT_EQ(run.err,
               "aphotic: rig.toml: found the object 'ball'; allowed: the bare floor, which is all "
               "that a lightmap is of\n");
-    EXPECT_FALSE(fs::exists(folder_.path() / "map.exr"));
+    EXPECT_FALSE(fs::exists(path("map.exr")));
 }
 
 TEST_F(CommandLightmap, RefusesASledThatPutsAStrobeUnderTheFloor) {
-    const CommandResult run = lightmap({"--altitude-m", "0.02", "--pitch-deg", "30"});
+    const CommandResult run = lightmap("--altitude-m 0.02 --pitch-deg 30");
     EXPECT_EQ(run.status, kBadInput);
     EXPECT_NE(run.err.find("strobe 'aft' stands 0.2327 m under the sea floor"), std::string::npos)
         << run.err;
-    EXPECT_FALSE(fs::exists(folder_.path() / "map.exr"));
+    EXPECT_FALSE(fs::exists(path("map.exr")));
 }
 
 TEST_F(CommandLightmap, LeavesNothingWhereItCannotWrite) {
-    const CommandResult run =
-        run_aphotic(folder_.path(), {"lightmap", "rig.toml", "-o", "no-such-folder/map.exr"});
+    const CommandResult run = aphotic("lightmap rig.toml -o no-such-folder/map.exr");
     EXPECT_EQ(run.status, kRunFailed);
     EXPECT_NE(run.err.find("no-such-folder/map.exr"), std::string::npos) << run.err;
 }
@@ -182,8 +176,7 @@ TEST_F(CommandLightmap, LeavesNothingWhereItCannotWrite) {
 TEST_F(CommandLightmap, OfSeveralAltitudesIsAMapEach) {
     const auto maps = [&](const std::string& altitudes) {
         const CommandResult run =
-            run_aphotic(folder_.path(),
-                        {"lightmap", "rig.toml", "-o", "maps", "--altitude", altitudes, "--json"});
+            aphotic(fmt::format("lightmap rig.toml -o maps --altitude {} --json", altitudes));
         EXPECT_EQ(run.status, 0) << run.err;
         return nlohmann::json::parse(run.out)["maps"];
     };
@@ -197,81 +190,54 @@ TEST_F(CommandLightmap, OfSeveralAltitudesIsAMapEach) {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const auto& [altitude, file] = wanted[i];
         EXPECT_EQ(said[i]["file"], file);
-        EXPECT_EQ(ExrReader(folder_.path() / file).attribute("aphotic:altitude_m"), altitude);
-        ASSERT_EQ(lightmap({"--altitude", altitude}).status, 0);
-        EXPECT_TRUE(read_text_file(folder_.path() / file) ==
-                    read_text_file(folder_.path() / "map.exr"))
-            << file;
+        EXPECT_EQ(ExrReader(path(file)).attribute("aphotic:altitude_m"), altitude);
+        ASSERT_EQ(lightmap(fmt::format("--altitude {}", altitude)).status, 0);
+        EXPECT_TRUE(text_of(file) == text_of("map.exr")) << file;
     }
     // Names tell altitudes apart; maps of another run go, what is not ours stays.
-    write_file(folder_.path() / "maps/notes.txt", "the user's own");
+    write_file(path("maps/notes.txt"), "the user's own");
     EXPECT_EQ(maps("1.5,1.504")[1]["file"], "maps/altitude_1.504m.exr");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path() / "maps"), {}), 3);
+    EXPECT_EQ(std::distance(fs::directory_iterator(path("maps")), {}), 3);
 }
 
 TEST_F(CommandLightmap, ExportsForOplab) {
-    const CommandResult run = run_aphotic(folder_.path(),
-                                          {"lightmap",
-                                           "rig.toml",
-                                           "-o",
-                                           "oplab",
-                                           "--altitude",
-                                           "1.8:2.2:0.1",
-                                           "--export",
-                                           "oplab",
-                                           "--json"});
+    const CommandResult run =
+        aphotic("lightmap rig.toml -o oplab --altitude 1.8:2.2:0.1 --export oplab --json");
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_GT(nlohmann::json::parse(run.out)["oplab"]["rms"], 0.0);
     for (const char* file : {"attenuation_parameters.npy",
                              "correction_gains.npy",
                              "image_corrected_mean.npy",
                              "image_corrected_std.npy"})
-        EXPECT_TRUE(fs::exists(folder_.path() / "oplab" / file)) << file;
+        EXPECT_TRUE(fs::exists(path("oplab") / file)) << file;
 }
 
 TEST_F(CommandLightmap, RefusesWhatIsByAltitudeBeforeItBegins) {
-    const auto refused = [&](const std::vector<std::string>& options) {
-        std::vector<std::string> arguments{"lightmap", "rig.toml"};
-        arguments.insert(arguments.end(), options.begin(), options.end());
-        const CommandResult run = run_aphotic(folder_.path(), arguments);
+    const auto refused = [&](const Arguments& options) {
+        const CommandResult run = aphotic("lightmap rig.toml" + options);
         EXPECT_EQ(run.status, kBadInput) << testing::PrintToString(options);
-        EXPECT_FALSE(fs::exists(folder_.path() / "out")) << testing::PrintToString(options);
-        EXPECT_FALSE(fs::exists(folder_.path() / "out.exr")) << testing::PrintToString(options);
+        EXPECT_FALSE(fs::exists(path("out"))) << testing::PrintToString(options);
+        EXPECT_FALSE(fs::exists(path("out.exr"))) << testing::PrintToString(options);
         return run.err;
     };
-    for (const char* altitudes : {"4:1:0.1",
-                                  "1:4",
-                                  "1:4:0.7",
-                                  "1:4:0",
-                                  "1:4:-1",
-                                  "one",
-                                  "1:4:0.1x",
-                                  "0:4:1",
-                                  "2,1",
-                                  "1,1",
-                                  "1,,2",
-                                  ",",
-                                  "",
-                                  "1:20000:1",
-                                  "nan"}) {
+    for (const std::string& altitudes :
+         Arguments(
+             "4:1:0.1 1:4 1:4:0.7 1:4:0 1:4:-1 one 1:4:0.1x 0:4:1 2,1 1,1 1,,2 , 1:20000:1 nan") +
+             Arguments{""}) {
         EXPECT_NE(refused({"-o", "out", "--altitude", altitudes}).find("--altitude: "),
                   std::string::npos)
             << altitudes;
     }
-    const auto expect = [&](const std::string& words, const std::vector<std::string>& options) {
+    const auto expect = [&](const std::string& words, const Arguments& options) {
         const std::string said = refused(options);
         EXPECT_NE(said.find(words), std::string::npos) << said;
     };
-    expect("--output: found out.exr; allowed: a folder",
-           {"-o", "out.exr", "--altitude", "1:2:0.5"});
-    expect("--output: found out; allowed: a name that ends in .exr",
-           {"-o", "out", "--altitude", "2"});
-    expect("--preview: found with 3 altitudes",
-           {"-o", "out", "--altitude", "1:2:0.5", "--preview", "map.png"});
-    expect("found 3 altitudes; allowed: 4 or more",
-           {"-o", "out", "--altitude", "1:3:1", "--export", "oplab"});
+    expect("--output: found out.exr; allowed: a folder", "-o out.exr --altitude 1:2:0.5");
+    expect("--output: found out; allowed: a name that ends in .exr", "-o out --altitude 2");
+    expect("--preview: found with 3 altitudes", "-o out --altitude 1:2:0.5 --preview map.png");
+    expect("found 3 altitudes; allowed: 4 or more", "-o out --altitude 1:3:1 --export oplab");
     expect("strobe 'aft' stands 0.2327 m under the sea floor",
-           {"-o", "out", "--altitude", "0.02:0.1:0.04", "--pitch", "30"});
+           "-o out --altitude 0.02:0.1:0.04 --pitch 30");
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 // The model error estimate, as the commands tell it.
 #include "base/atomic_file.h"
 #include "image/exr.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kBadInput = 2;
 
-class CommandModelError : public testing::Test {
+class CommandModelError : public CommandTest {
   protected:
     void SetUp() override {
         std::string text =
@@ -33,30 +33,24 @@ class CommandModelError : public testing::Test {
     }
 
     void water_is(const std::string& keys) const {
-        write_file(folder_.path() / "rig.toml",
+        write_file(path("rig.toml"),
                    std::regex_replace(
                        clear_, std::regex(R"(\nabsorption = "pope-fry-1997")"), "\n" + keys));
     }
 
-    [[nodiscard]] CommandResult run(const std::vector<std::string>& arguments) const {
-        return run_aphotic(folder_.path(), arguments);
-    }
-
-    TempFolder folder_;
     std::string clear_;
 };
 
 TEST_F(CommandModelError, IsToldBesideThePromiseAndNotedInTheMap) {
-    const CommandResult plan = run({"plan", "rig.toml", "--json"});
+    const CommandResult plan = aphotic("plan rig.toml --json");
     ASSERT_EQ(plan.status, 0) << plan.err;
     const auto json = nlohmann::json::parse(plan.out);
-    const CommandResult map = run({"lightmap", "rig.toml", "-o", "map.exr"});
+    const CommandResult map = aphotic("lightmap rig.toml -o map.exr");
     ASSERT_EQ(map.status, 0) << map.err;
     EXPECT_NE(map.out.find("what the model of scattering leaves out is estimated at 0.0"),
               std::string::npos)
         << map.out;
-    const std::string noted =
-        ExrReader(folder_.path() / "map.exr").attribute("aphotic:model_error");
+    const std::string noted = ExrReader(path("map.exr")).attribute("aphotic:model_error");
     double red = 0.0;
     double green = 0.0;
     double blue = 0.0;
@@ -68,44 +62,40 @@ TEST_F(CommandModelError, IsToldBesideThePromiseAndNotedInTheMap) {
 }
 
 TEST_F(CommandModelError, IsRefusedOverTheTolerance) {
-    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
-             {"plan", "rig.toml"},
-             {"trace", "rig.toml", "-o", "out"},
-             {"lightmap", "rig.toml", "-o", "map.exr"},
-             {"lightmap", "rig.toml", "-o", "out", "--altitude", "1:2:1"}}) {
-        std::vector<std::string> arguments = command;
-        arguments.insert(arguments.end(), {"--model-tolerance", "1e-9"});
-        const CommandResult refused = run(arguments);
+    for (const Arguments& command :
+         std::vector<Arguments>{"plan rig.toml",
+                                "trace rig.toml -o out",
+                                "lightmap rig.toml -o map.exr",
+                                "lightmap rig.toml -o out --altitude 1:2:1"}) {
+        const CommandResult refused = aphotic(command + "--model-tolerance 1e-9");
         EXPECT_EQ(refused.status, kBadInput) << command.front();
         EXPECT_NE(refused.err.find("in what the model of water that scatters leaves out: light "
                                    "that is turned more than once, and blur; allowed: "
                                    "--model-tolerance 1e-09"),
                   std::string::npos)
             << refused.err;
-        EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out")) << command.front();
-        EXPECT_FALSE(std::filesystem::exists(folder_.path() / "map.exr")) << command.front();
+        EXPECT_FALSE(std::filesystem::exists(path("out"))) << command.front();
+        EXPECT_FALSE(std::filesystem::exists(path("map.exr"))) << command.front();
     }
 }
 
 TEST_F(CommandModelError, IsOfEachMapByAltitude) {
-    const auto json_of = [&](const std::vector<std::string>& options) {
-        std::vector<std::string> arguments{"lightmap", "rig.toml", "--json"};
-        arguments.insert(arguments.end(), options.begin(), options.end());
-        const CommandResult made = run(arguments);
+    const auto json_of = [&](const Arguments& options) {
+        const CommandResult made = aphotic("lightmap rig.toml --json" + options);
         EXPECT_EQ(made.status, 0) << made.err;
         return nlohmann::json::parse(made.out);
     };
-    const auto maps = json_of({"-o", "out", "--altitude", "1,3"})["maps"];
+    const auto maps = json_of("-o out --altitude 1,3")["maps"];
     ASSERT_EQ(maps.size(), 2U);
-    EXPECT_EQ(maps[1]["model_error"], json_of({"-o", "map.exr", "--altitude", "3"})["model_error"]);
+    EXPECT_EQ(maps[1]["model_error"], json_of("-o map.exr --altitude 3")["model_error"]);
     EXPECT_NE(maps[0]["model_error"], maps[1]["model_error"]);
 }
 
 TEST_F(CommandModelError, IsNoneOfWaterThatDoesNotScatterNorWithoutItsVeil) {
-    EXPECT_EQ(run({"lightmap", "rig.toml", "-o", "map.exr", "--no-veil"}).out.find("leaves out"),
+    EXPECT_EQ(aphotic("lightmap rig.toml -o map.exr --no-veil").out.find("leaves out"),
               std::string::npos);
     water_is(R"(absorption = "pope-fry-1997")");
-    const CommandResult plan = run({"plan", "rig.toml", "--json", "--model-tolerance", "1e-9"});
+    const CommandResult plan = aphotic("plan rig.toml --json --model-tolerance 1e-9");
     ASSERT_EQ(plan.status, 0) << plan.err;
     EXPECT_FALSE(nlohmann::json::parse(plan.out).contains("model_error"));
 }

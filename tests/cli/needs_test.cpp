@@ -7,7 +7,7 @@
 #include "image/exr.h"
 #include "rig/file/rig_reader.h"
 #include "spectral/manifest.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ struct Measured {
     std::uint64_t peak_bytes = 0;
 };
 
-Measured measured(const fs::path& folder, std::vector<std::string> arguments) {
+Measured measured(const fs::path& folder, Arguments arguments) {
     arguments.insert(arguments.begin(), APHOTIC_COMMAND);
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -94,9 +94,11 @@ void write_frames_of_noise(const fs::path& folder, const Manifest& manifest) {
     }
 }
 
+using MemoryOfIntegrate = CommandTest;
+
 // Rows come and go in blocks: what a higher image takes more are its signals and its preview, 25
 // bytes a pixel (image/row_blocks.h). All of its radiance would be 120 bytes a pixel.
-TEST(MemoryOfIntegrate, GrowsWithTheHeightByTheSignalsAlone) {
+TEST_F(MemoryOfIntegrate, GrowsWithTheHeightByTheSignalsAlone) {
     if (kIsSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
     constexpr int kWidth_px = 512;
     constexpr int kLow_px = 128;
@@ -104,13 +106,11 @@ TEST(MemoryOfIntegrate, GrowsWithTheHeightByTheSignalsAlone) {
     constexpr std::uint64_t kPixel_bytes = 25;
     constexpr std::uint64_t kNoise_bytes = 8ULL << 20U;  // from run to run
     const auto peak_bytes = [](int height_px) {
-        const TempFolder folder;
-        rig_of(folder.path(), kWidth_px, height_px);
-        const CommandResult made =
-            run_aphotic(folder.path(), {"generate", "rig.toml", "-o", "out", "--bands", "30"});
+        rig_of(folder_.path(), kWidth_px, height_px);
+        const CommandResult made = aphotic("generate rig.toml -o out --bands 30");
         EXPECT_EQ(made.status, 0) << made.err;
-        write_frames_of_noise(folder.path() / "out", read_manifest(folder.path() / "out"));
-        const Measured found = measured(folder.path(), {"integrate", "out", "--json"});
+        write_frames_of_noise(path("out"), read_manifest(path("out")));
+        const Measured found = measured(folder_.path(), "integrate out --json");
         EXPECT_EQ(found.status, 0);
         return found.peak_bytes;
     };
@@ -118,11 +118,12 @@ TEST(MemoryOfIntegrate, GrowsWithTheHeightByTheSignalsAlone) {
     EXPECT_LE(peak_bytes(kHigh_px), peak_bytes(kLow_px) + kPixel_bytes * kMore_px + kNoise_bytes);
 }
 
-Measured traced(const fs::path& folder, const std::vector<std::string>& wavelengths) {
-    std::vector<std::string> arguments{
-        "trace", "rig.toml", "-o", "out", "--threads", std::to_string(kThreads), "--json"};
-    arguments.insert(arguments.end(), wavelengths.begin(), wavelengths.end());
-    return measured(folder, arguments);
+Measured traced(const fs::path& folder, const Arguments& wavelengths) {
+    return measured(
+        folder,
+        Arguments{
+            "trace", "rig.toml", "-o", "out", "--threads", std::to_string(kThreads), "--json"} +
+            wavelengths);
 }
 
 // A hundred times as many may take a block of rows, of kTracedSamples, and rows under compression
@@ -135,27 +136,24 @@ TEST(MemoryOfTrace, DoesNotGrowWithTheWavelengths) {
     constexpr std::uint64_t kMostMore_bytes = 40ULL << 20U;
     const TempFolder folder;
     rig_of(folder.path(), kWidth_px, kHeight_px);
-    const Measured few = traced(folder.path(), {"--bands", "3"});
-    const Measured many = traced(folder.path(), {"--bands", "300"});
+    const Measured few = traced(folder.path(), "--bands 3");
+    const Measured many = traced(folder.path(), "--bands 300");
     EXPECT_EQ(few.status, 0);
     EXPECT_EQ(many.status, 0);
     EXPECT_LE(many.peak_bytes, few.peak_bytes + kMostMore_bytes);
 }
 
-TEST(NeedsOfMapsByAltitude, AreForetold) {
+using NeedsOfMapsByAltitude = CommandTest;
+
+TEST_F(NeedsOfMapsByAltitude, AreForetold) {
     constexpr int kSide_px = 64;
-    const TempFolder folder;
-    rig_of(folder.path(), kSide_px, kSide_px);
-    const auto written_by = [&](const std::vector<std::string>& options) {
-        std::vector<std::string> arguments{
-            "lightmap", "rig.toml", "-o", "out", "--altitude", "1:4:1"};
-        arguments.insert(arguments.end(), options.begin(), options.end());
-        fs::remove_all(folder.path() / "out");
-        const CommandResult made = run_aphotic(folder.path(), arguments);
+    rig_of(folder_.path(), kSide_px, kSide_px);
+    const auto written_by = [&](const Arguments& options) {
+        fs::remove_all(path("out"));
+        const CommandResult made = aphotic("lightmap rig.toml -o out --altitude 1:4:1" + options);
         EXPECT_EQ(made.status, 0) << made.err;
         std::uint64_t bytes = 0;
-        for (const auto& entry : fs::directory_iterator(folder.path() / "out"))
-            bytes += entry.file_size();
+        for (const auto& entry : fs::directory_iterator(path("out"))) bytes += entry.file_size();
         return bytes;
     };
     const std::uint64_t maps_bytes =
@@ -164,7 +162,7 @@ TEST(NeedsOfMapsByAltitude, AreForetold) {
     EXPECT_LE(maps, maps_bytes);
     EXPECT_GE(maps, maps_bytes / 4);  // smooth, and floats all the same
     const std::uint64_t oplab_bytes = oplab_needs(kSide_px, kSide_px).folder_bytes;
-    const std::uint64_t oplab = written_by({"--export", "oplab"});
+    const std::uint64_t oplab = written_by("--export oplab");
     EXPECT_LE(oplab, oplab_bytes);
     EXPECT_GE(oplab, oplab_bytes / 2);
 }
@@ -198,7 +196,9 @@ OnSmallDisk on_small_disk(const fs::path& folder,
     return {.is_possible = is_possible, .status = end.exit_code, .said = said};
 }
 
-TEST(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
+using Needs = CommandTest;
+
+TEST_F(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
     const TempFolder folder;
     rig_of(folder.path(), 640, 480);
     for (const char* command : {"trace rig.toml -o disk/out",
@@ -221,7 +221,7 @@ TEST(Needs, ATinyDiskIsRefusedBeforeAnythingIsWritten) {
 }
 
 // Scenes that fit, whose frames do not.
-TEST(Needs, AShareOfFramesIsRefusedBeforeItBegins) {
+TEST_F(Needs, AShareOfFramesIsRefusedBeforeItBegins) {
     const TempFolder folder;
     rig_of(folder.path(), 640, 480);
     const OnSmallDisk run = on_small_disk(
@@ -234,7 +234,7 @@ TEST(Needs, AShareOfFramesIsRefusedBeforeItBegins) {
     EXPECT_NE(run.said.find("Nothing was begun"), std::string::npos) << run.said;
 }
 
-TEST(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
+TEST_F(Needs, ADiskOfTheirSizeIsEnoughAndTheyMayBeIgnored) {
     const TempFolder folder;
     rig_of(folder.path(), 64, 48);
     const DiskNeeds needs = images_needs({.width_px = 64, .height_px = 48, .wavelengths = 3});
@@ -280,7 +280,7 @@ TEST(Memory, ThatDoesNotDoIsSaid) {
 // 12 bands take 7.8 MB at most, of which the images are 5.9 MB; 13 bands take 8.5 MB; 7.2 MB are
 // left. The same render finds its frames there and needs no room for them, another must make its
 // own.
-TEST(Needs, FramesThatAreKeptNeedNone) {
+TEST_F(Needs, FramesThatAreKeptNeedNone) {
     const TempFolder folder;
     rig_of(folder.path(), 320, 240);
     const std::string fill = " && dd if=/dev/zero of=disk/fill bs=1k count=300";
@@ -303,11 +303,9 @@ TEST(Needs, FramesThatAreKeptNeedNone) {
 }
 
 // Sixteen thousand pixels each way, which no test could render.
-TEST(Needs, OfTheLargestImageArePlannedWithoutMakingIt) {
-    const TempFolder folder;
-    rig_of(folder.path(), 16384, 16384);
-    const CommandResult plan =
-        run_aphotic(folder.path(), {"plan", "rig.toml", "--fitted", "9", "--json"});
+TEST_F(Needs, OfTheLargestImageArePlannedWithoutMakingIt) {
+    rig_of(folder_.path(), 16384, 16384);
+    const CommandResult plan = aphotic("plan rig.toml --fitted 9 --json");
     ASSERT_EQ(plan.status, 0) << plan.err;
     const auto needs = nlohmann::json::parse(plan.out).at("needs");
     constexpr double kPixels = 16384.0 * 16384.0;

@@ -43,8 +43,7 @@ class Objects : public testing::TestWithParam<bool> {};
 TEST_P(Objects, ValidateInWaterTilted) {
     const TempFolder folder;
     put_rig(folder.path(), GetParam());
-    const CommandResult run =
-        run_aphotic(folder.path(), {"validate", "rig.toml", "-o", "out", "--json"});
+    const CommandResult run = run_aphotic(folder.path(), "validate rig.toml -o out --json");
     ASSERT_EQ(run.status, 0) << run.out << run.err;
     const auto json = nlohmann::json::parse(run.out);
     for (const auto& wavelength : json.at("wavelengths")) {

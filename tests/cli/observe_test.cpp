@@ -3,11 +3,12 @@
 // aphotic observe and aphotic baseline on small surveys, as a user runs them.
 #include "image/exr.h"
 #include "support/absurd_images.h"
+#include "support/command_test.h"
 #include "support/has.h"
-#include "support/run_command.h"
 #include "support/tiff.h"
 #include "survey/images/raw_image.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -43,10 +44,8 @@ float light(std::size_t pixel, std::size_t channel) {
     return static_cast<float>(100.0 * (1.0 - (0.4 + 0.1 * static_cast<double>(channel)) * x));
 }
 
-class Survey : public testing::Test {
+class Survey : public CommandTest {
   protected:
-    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
-
     static void write_exr(const fs::path& file,
                           const std::vector<std::string>& channels,
                           const Plane& samples,
@@ -77,19 +76,12 @@ class Survey : public testing::Test {
                    "image,altitude_m,pitch_deg,roll_deg\n"
                    "a.exr,1.9,1,0\nb.exr,2.0,2,0\nc.exr,2.1,6,0\nhigh.exr,3.5,0,0\n");
     }
-
-    CommandResult run(const std::vector<std::string>& arguments) {
-        return run_aphotic(folder_.path(), arguments);
+    CommandResult observe(const Arguments& options) {
+        Arguments arguments("observe raw --nav nav.csv -o map.exr");
+        if (std::ranges::find(options, "--altitude") == options.end()) arguments += "--altitude 2";
+        arguments += options;
+        return aphotic(arguments);
     }
-    CommandResult observe(const std::vector<std::string>& options) {
-        std::vector<std::string> arguments{"observe", "raw", "--nav", "nav.csv", "-o", "map.exr"};
-        if (std::ranges::find(options, "--altitude") == options.end())
-            arguments.insert(arguments.end(), {"--altitude", "2"});
-        arguments.insert(arguments.end(), options.begin(), options.end());
-        return run(arguments);
-    }
-
-    TempFolder folder_;
 };
 using CommandObserve = Survey;
 using CommandBaseline = Survey;
@@ -101,12 +93,13 @@ TEST_F(CommandObserve, AnAttitudeThatNobodyToldIsUnknown) {
     const CommandResult words = observe({});
     EXPECT_EQ(words.status, 0) << words.err;
     EXPECT_TRUE(has(words.out, "pitch unknown, roll 2.00 deg"));
-    const nlohmann::json json = nlohmann::json::parse(observe({"--json"}).out);
+    const nlohmann::json json = nlohmann::json::parse(observe("--json").out);
     EXPECT_TRUE(json["pitch_deg"].is_null());
     EXPECT_NEAR(json["roll_deg"].get<double>(), 2.0, kFloat);
     // HabCam's own pitch.
     const std::string rig = std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml";
-    const nlohmann::json known = nlohmann::json::parse(observe({"--rig", rig, "--json"}).out);
+    const nlohmann::json known =
+        nlohmann::json::parse(observe(fmt::format("--rig {} --json", rig)).out);
     EXPECT_NEAR(known["pitch_deg"].get<double>(), 5.0, 100.0 * kFloat);
 }
 
@@ -123,16 +116,16 @@ TEST_F(CommandObserve, TakesWhatAltitudesAreAndTheMountingFromARig) {
                 9,
                 "[camera]\nposition_m = [0, 0, 1]\norientation_deg = [0, -30, 0]\n");
     write_file(path("mounted.toml"), rig);
-    const auto observed = [&](const std::vector<std::string>& options) {
+    const auto observed = [&](const Arguments& options) {
         const CommandResult result = observe(options);
         EXPECT_EQ(result.status, 0) << result.err;
         return nlohmann::json::parse(result.out);
     };
-    const auto plumb = observed({"--rig", "plumb.toml", "--altitude", "4", "--json"});
+    const auto plumb = observed("--rig plumb.toml --altitude 4 --json");
     EXPECT_NEAR(plumb["altitude_m"].get<double>(), 4.0, kFloat);
     EXPECT_EQ(plumb["navigation"]["altitude_is"], "plumb");
     // A metre along the vehicle's z is half a metre down; 1.5 m at the 30 degrees that are left.
-    const auto mounted = observed({"--rig", "mounted.toml", "--altitude", "1.73", "--json"});
+    const auto mounted = observed("--rig mounted.toml --altitude 1.73 --json");
     EXPECT_NEAR(mounted["altitude_m"].get<double>(), 1.5 / std::cos(std::numbers::pi / 6), kFloat);
     EXPECT_NEAR(mounted["pitch_deg"].get<double>(), 30.0, 100.0 * kFloat);
     EXPECT_EQ(mounted["navigation"]["orientation_deg"].size(), 3U);
@@ -143,7 +136,9 @@ TEST_F(CommandObserve, MedianAndTrimmedMeanOfBandsAreThoseOfTheWhole) {
     for (const std::string method : {"median", "trimmed"}) {
         // A few hundred bytes: bands of 83 samples, which end within rows and channels.
         for (const std::string memory : {"1000", "0.001"}) {
-            ASSERT_EQ(observe({"--method", method, "--trim", "0.4", "--memory", memory}).status, 0);
+            ASSERT_EQ(
+                observe(fmt::format("--method {} --trim 0.4 --memory {}", method, memory)).status,
+                0);
             const Plane red = channel_of(path("map.exr"), "R");
             for (std::size_t i = 0; i < kPixels; ++i)
                 ASSERT_NEAR(red[i], light(i, 0), 100.0 * kFloat) << method << memory;
@@ -154,7 +149,7 @@ TEST_F(CommandObserve, MedianAndTrimmedMeanOfBandsAreThoseOfTheWhole) {
 // One pattern under three exposures: with each divided by its mean they are one image.
 TEST_F(CommandObserve, NormalisedImagesAreTheirPatternAlone) {
     write_survey();
-    ASSERT_EQ(observe({"--normalise"}).status, 0);
+    ASSERT_EQ(observe("--normalise").status, 0);
     const Plane error = channel_of(path("map.exr"), "stderr.G");
     for (const float e : error) ASSERT_NEAR(e, 0.0, kFloat);
     double sum = 0.0;
@@ -172,7 +167,7 @@ TEST_F(CommandObserve, SitesOfAMosaicHoldTheirOwnChannel) {
     write_exr(path("raw/one.exr"), {"Y"}, mosaic);
     write_exr(path("raw/two.exr"), {"Y"}, mosaic);
     write_file(path("nav.csv"), "one 2.0 0 0\ntwo 2.05 0 0\n");
-    ASSERT_EQ(observe({"--bayer", "RGGB", "--black-level", "5"}).status, 0);
+    ASSERT_EQ(observe("--bayer RGGB --black-level 5").status, 0);
     const Plane green = channel_of(path("map.exr"), "G");
     const Plane count = channel_of(path("map.exr"), "count.G");
     EXPECT_TRUE(std::isnan(green[0]));
@@ -180,7 +175,7 @@ TEST_F(CommandObserve, SitesOfAMosaicHoldTheirOwnChannel) {
     EXPECT_EQ(green[1], 1.0F);
     EXPECT_EQ(green[kWidth_px], 2.0F);
     EXPECT_EQ(count[1], 2.0F);
-    ASSERT_EQ(observe({"--bayer", "RGGB", "--demosaic"}).status, 0);
+    ASSERT_EQ(observe("--bayer RGGB --demosaic").status, 0);
     EXPECT_FALSE(std::isnan(channel_of(path("map.exr"), "G")[0]));
     EXPECT_EQ(channel_of(path("map.exr"), "count.G")[0], 0.0F) << "filled in, not observed";
     EXPECT_EQ(observe({}).status, 2) << "one channel, and no mosaic named";
@@ -190,11 +185,11 @@ TEST_F(CommandObserve, SitesOfAMosaicHoldTheirOwnChannel) {
 TEST_F(Survey, BadImagesAreSaidSkippedAndCostNoOther) {
     write_survey();
     write_image("stray", 1.0F);
-    ASSERT_EQ(observe({"--allow-skipped", "1"}).status, 0);
+    ASSERT_EQ(observe("--allow-skipped 1").status, 0);
     fs::rename(path("map.exr"), path("light.exr"));
     std::map<std::string, std::string> bad = absurd_images(kWidth_px, kHeight_px);
     bad["broken.png"] = "no picture";
-    std::string lines = read_text_file(path("nav.csv")) + "small.exr,2,0,0\n";
+    std::string lines = text_of("nav.csv") + "small.exr,2,0,0\n";
     for (const auto& [name, bytes] : bad) {
         write_file(path("raw/" + name), bytes);
         lines += name + ",2,0,0\n";
@@ -202,31 +197,18 @@ TEST_F(Survey, BadImagesAreSaidSkippedAndCostNoOther) {
     write_exr(path("raw/small.exr"), kRgb, Plane(3 * 16, 1.0F), 4);
     write_file(path("nav.csv"), lines);
     struct Case {
-        std::vector<std::string> command;
+        Arguments command;
         std::string count;
         int good;
     };
     for (auto& [command, count, good] : std::vector<Case>{
-             {{"observe", "raw", "--altitude", "2", "-o", "map.exr", "--nav", "nav.csv"},
-              "images",
-              3},
-             {{"observe",
-               "raw",
-               "--altitude",
-               "2",
-               "-o",
-               "map.exr",
-               "--nav",
-               "nav.csv",
-               "--method",
-               "median"},
-              "images",
-              3},
-             {{"baseline", "homomorphic", "raw", "-o", "out"}, "corrected", 5},
-             {{"baseline", "log-polynomial", "raw", "-o", "out"}, "corrected", 5},
-             {{"correct", "raw", "--map", "light.exr", "-o", "done"}, "corrected", 5}}) {
-        command.emplace_back("--json");
-        const CommandResult result = run(command);
+             {"observe raw --altitude 2 -o map.exr --nav nav.csv", "images", 3},
+             {"observe raw --altitude 2 -o map.exr --nav nav.csv --method median", "images", 3},
+             {"baseline homomorphic raw -o out", "corrected", 5},
+             {"baseline log-polynomial raw -o out", "corrected", 5},
+             {"correct raw --map light.exr -o done", "corrected", 5}}) {
+        command += "--json";
+        const CommandResult result = aphotic(command);
         const std::string about = testing::PrintToString(command) + result.err;
         EXPECT_EQ(result.status, 1) << about;
         const nlohmann::json json = nlohmann::json::parse(result.out);
@@ -257,15 +239,14 @@ TEST_F(CommandObserve, AnImageThatWasCutShortIsInNoMapAndNoResult) {
     write_file(path("raw/cut.tif"), whole.substr(0, whole.size() / 2));
     write_file(path("nav.csv"), "image,altitude_m\na,2\nb,2\ncut,2\n");
     constexpr const char* kWhy = "raw/cut.tif: cannot be read: it is cut short: found ";
-    const CommandResult observed = observe({"--bayer", "RGGB"});
+    const CommandResult observed = observe("--bayer RGGB");
     EXPECT_EQ(observed.status, 1) << observed.out;
     EXPECT_TRUE(has(observed.err, "it is cut short: found "));
     EXPECT_EQ(channel_of(path("map.exr"), "count.R")[0], 2.0F);
-    const CommandResult baseline =
-        run({"baseline", "homomorphic", "raw", "-o", "out", "--bayer", "RGGB"});
+    const CommandResult baseline = aphotic("baseline homomorphic raw -o out --bayer RGGB");
     EXPECT_EQ(baseline.status, 1) << baseline.out;
     EXPECT_FALSE(fs::exists(path("out/cut.exr")));
-    const CommandResult compared = run({"compare", "raw/cut.tif", "raw/a.tif"});
+    const CommandResult compared = aphotic("compare raw/cut.tif raw/a.tif");
     EXPECT_EQ(compared.status, 2) << compared.out;
     EXPECT_TRUE(has(compared.err, kWhy));
 }
@@ -283,20 +264,10 @@ TEST_F(CommandObserve, WhatLooksWrongIsToldAndByStrictAnEnd) {
     write_file(path("nav.csv"), "image,altitude_m\na,2\n");
     for (const std::string command : {"observe", "baseline"}) {
         const auto told = [&](const std::string& pattern, bool is_strict) {
-            std::vector<std::string> arguments{"raw", "--bayer", pattern, "--json"};
-            const std::vector<std::string> own =
-                command == "observe"
-                    ? std::vector<std::string>{command,
-                                               "--nav",
-                                               "nav.csv",
-                                               "-o",
-                                               "map.exr",
-                                               "--altitude",
-                                               "2"}
-                    : std::vector<std::string>{command, "homomorphic", "-o", "out"};
-            arguments.insert(arguments.begin(), own.begin(), own.end());
-            if (is_strict) arguments.emplace_back("--strict");
-            return run(arguments);
+            const std::string own = command == "observe"
+                                        ? "observe raw --nav nav.csv -o map.exr --altitude 2"
+                                        : "baseline homomorphic raw -o out";
+            return aphotic(own + " --json --bayer " + pattern + (is_strict ? " --strict" : ""));
         };
         const CommandResult strict = told("GBRG", true);
         EXPECT_EQ(strict.status, 2) << strict.out;
@@ -318,8 +289,7 @@ TEST_F(CommandObserve, WhatLooksWrongIsToldAndByStrictAnEnd) {
 
 TEST_F(CommandObserve, WritesNoMapOfNoImage) {
     write_survey();
-    const CommandResult result =
-        run({"observe", "raw", "--nav", "nav.csv", "-o", "map.exr", "--altitude", "2.8"});
+    const CommandResult result = aphotic("observe raw --nav nav.csv -o map.exr --altitude 2.8");
     EXPECT_EQ(result.status, 2);
     EXPECT_TRUE(has(result.err, "the nearest is 0.7 m off"));
     EXPECT_FALSE(fs::exists(path("map.exr")));
@@ -342,8 +312,7 @@ TEST_F(CommandObserve, ItsMapComparesWithAModelUpToOneScale) {
     }
     write_exr(path("model.exr"), kRgb, model);
     ASSERT_EQ(observe({}).status, 0);
-    const CommandResult result =
-        run({"compare", "map.exr", "model.exr", "--scale", "--bound", "1e-5", "--json"});
+    const CommandResult result = aphotic("compare map.exr model.exr --scale --bound 1e-5 --json");
     ASSERT_EQ(result.status, 0) << result.out << result.err;
     const nlohmann::json json = nlohmann::json::parse(result.out);
     EXPECT_NEAR(json["channels"][0]["scale"].get<double>(), 150.0, 150.0 * kFloat);
@@ -353,7 +322,7 @@ TEST_F(CommandBaseline, PolynomialsLearnTheSurveyAndFlattenIt) {
     write_survey();
     for (const std::string name : {"log-polynomial", "binned-polynomial"}) {
         const CommandResult result =
-            run({"baseline", name, "raw", "-o", "out", "--nav", "nav.csv", "--json"});
+            aphotic(fmt::format("baseline {} raw -o out --nav nav.csv --json", name));
         ASSERT_EQ(result.status, 0) << result.err;
         EXPECT_EQ(nlohmann::json::parse(result.out)["corrected"], 4);
         const Plane flat = channel_of(path("out/b.exr"), "B");
@@ -365,13 +334,13 @@ TEST_F(CommandBaseline, PolynomialsLearnTheSurveyAndFlattenIt) {
 
 TEST_F(CommandBaseline, RefusesWhatItCannotDo) {
     write_survey();
-    EXPECT_EQ(run({"baseline", "magic", "raw", "-o", "out"}).status, 2);
+    EXPECT_EQ(aphotic("baseline magic raw -o out").status, 2);
     for (const char* name : {"binned-polynomial", "altitude-exponential"}) {
-        const CommandResult blind = run({"baseline", name, "raw", "-o", "out"});
+        const CommandResult blind = aphotic(fmt::format("baseline {} raw -o out", name));
         EXPECT_EQ(blind.status, 2);
         EXPECT_TRUE(has(blind.err, "--nav"));
     }
-    EXPECT_EQ(run({"baseline", "homomorphic", "nowhere", "-o", "out"}).status, 2);
+    EXPECT_EQ(aphotic("baseline homomorphic nowhere -o out").status, 2);
     EXPECT_FALSE(fs::exists(path("out")));
 }
 
@@ -385,23 +354,14 @@ TEST_F(CommandBaseline, EveryOptionCountsAndIsNoted) {
                           {"order", 3},
                           {"bin_m", 0.5},
                           {"black_level", 0.25}};
-    std::vector<std::string> arguments{"baseline",
-                                       "homomorphic",
-                                       "raw",
-                                       "-o",
-                                       "out",
-                                       "--bin",
-                                       "0.5",
-                                       "--black-level",
-                                       "0.25",
-                                       "--json"};
+    Arguments arguments("baseline homomorphic raw -o out --bin 0.5 --black-level 0.25 --json");
     for (const char* name : {"sigma", "low", "high", "tiles", "clip", "order"}) {
         arguments.push_back("--" + std::string(name));
         arguments.push_back(wanted[name].dump());
     }
-    const CommandResult result = run(arguments);
+    const CommandResult result = aphotic(arguments);
     ASSERT_EQ(result.status, 0) << result.err;
-    const nlohmann::json notes = nlohmann::json::parse(read_text_file(path("out/baseline.json")));
+    const nlohmann::json notes = nlohmann::json::parse(text_of("out/baseline.json"));
     EXPECT_EQ(notes, nlohmann::json::parse(result.out));
     for (const auto& [key, value] : wanted.items()) EXPECT_EQ(notes["settings"][key], value) << key;
 }
@@ -414,27 +374,16 @@ TEST_F(CommandBaseline, WritesTheFormatsOfCorrectAndGoesOnWhereItStopped) {
         write_file(path(name), tiff_of(mosaic, kWidth_px, kHeight_px, "lat=41.5"));
     }
     const auto baseline = [&](const std::string& format) {
-        const CommandResult result = run({"baseline",
-                                          "homomorphic",
-                                          "raw",
-                                          "-o",
-                                          "out",
-                                          "--bayer",
-                                          "RGGB",
-                                          "--white-level",
-                                          "4095",
-                                          "--format",
-                                          format,
-                                          "--mask",
-                                          "--compression",
-                                          "none",
-                                          "--json"});
+        const CommandResult result =
+            aphotic(fmt::format("baseline homomorphic raw -o out --bayer RGGB --white-level 4095 "
+                                "--format {} --mask --compression none --json",
+                                format));
         EXPECT_EQ(result.status, 0) << result.err;
         return nlohmann::json::parse(result.out);
     };
     EXPECT_EQ(baseline("tiff")["corrected"], 2);
     EXPECT_GE(fs::file_size(path("out/a.tif")), 3 * 2 * kPixels) << "not compressed";
-    EXPECT_TRUE(has(read_text_file(path("out/a.tif")), "lat=41.5"));
+    EXPECT_TRUE(has(text_of("out/a.tif"), "lat=41.5"));
     EXPECT_TRUE(fs::exists(path("out/a.mask.png")));
     fs::remove(path("out/b.mask.png"));
     const nlohmann::json again = baseline("tiff");
@@ -447,20 +396,16 @@ TEST_F(CommandBaseline, WritesTheFormatsOfCorrectAndGoesOnWhereItStopped) {
 // Nor are they lost when the folder is named itself.
 TEST_F(CommandBaseline, ItsResultsAreNoRawImages) {
     write_survey();
-    ASSERT_EQ(run({"baseline", "homomorphic", "raw", "-o", "raw/flat"}).status, 0);
-    const auto images_of = [&](std::vector<std::string> arguments) {
-        arguments.emplace_back("--json");
-        const CommandResult result = run(arguments);
+    ASSERT_EQ(aphotic("baseline homomorphic raw -o raw/flat").status, 0);
+    const auto images_of = [&](const Arguments& arguments) {
+        const CommandResult result = aphotic(arguments + "--json");
         EXPECT_EQ(result.status, 0) << result.err;
         return nlohmann::json::parse(result.out);
     };
-    EXPECT_EQ(images_of({"baseline", "log-polynomial", "raw", "-o", "again"})["corrected"], 4);
-    EXPECT_EQ(images_of({"baseline", "log-polynomial", "raw/flat", "-o", "twice"})["corrected"], 4);
-    EXPECT_EQ(
-        images_of(
-            {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "map.exr"})["images"],
-        3);
-    EXPECT_EQ(images_of({"correct", "raw", "--map", "map.exr", "-o", "done"})["corrected"], 4);
+    EXPECT_EQ(images_of("baseline log-polynomial raw -o again")["corrected"], 4);
+    EXPECT_EQ(images_of("baseline log-polynomial raw/flat -o twice")["corrected"], 4);
+    EXPECT_EQ(images_of("observe raw --nav nav.csv --altitude 2 -o map.exr")["images"], 3);
+    EXPECT_EQ(images_of("correct raw --map map.exr -o done")["corrected"], 4);
 }
 
 }  // namespace

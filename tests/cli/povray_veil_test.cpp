@@ -4,9 +4,10 @@
 // scenes of the user's own. tests/plugin/povray_veil_test.cpp holds its numbers.
 #include "image/output_images.h"
 #include "spectral/manifest.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "support/small_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,7 @@
 namespace aphotic::povray_veil_command_test {
 namespace {
 
-class PovrayVeilCommand : public testing::Test {
+class PovrayVeilCommand : public CommandTest {
   protected:
     PovrayVeilCommand() {
         // Smooth beams, in water that scatters; 17 x 12 pixels.
@@ -31,78 +32,70 @@ class PovrayVeilCommand : public testing::Test {
         rig = std::regex_replace(rig, std::regex(R"(\[400, 720\])"), "[400, 700]");
         const std::size_t beam = rig.find("weights = \"flux\"");
         rig = rig.substr(0, beam) + "fwhm_deg = 80\n\n" + rig.substr(rig.find("[[strobe]]"));
-        write_file(folder_.path() / "rig.toml", rig);
+        write_file(path("rig.toml"), rig);
     }
-    CommandResult aphotic(const std::vector<std::string>& arguments) {
-        return run_aphotic(folder_.path(), arguments);
-    }
-    nlohmann::json rendered(const std::string& folder, std::vector<std::string> more) {
-        more.insert(more.begin(), {"render", "rig.toml", "-o", folder, "--json"});
+    nlohmann::json rendered(const std::string& folder, Arguments more) {
+        more = fmt::format("render rig.toml -o {} --json", folder) + more;
         const CommandResult run = aphotic(more);
         EXPECT_EQ(run.status, 0) << run.err;
         return run.status == 0 ? nlohmann::json::parse(run.out) : nlohmann::json();
     }
     [[nodiscard]] std::vector<float> signals(const std::string& folder) const {
-        return read_signals(folder_.path() / folder / "image.exr").samples;
+        return read_signals(path(folder) / "image.exr").samples;
     }
     // Of each sample, what POV-Ray's veil makes of the quadrature's.
     std::vector<double> ratios(const std::string& scene) {
-        write_file(folder_.path() / "reef.pov",
-                   "#version 3.7;\n#include \"aphotic.inc\"\n" + scene);
-        rendered("quadrature", {"--scene", "reef.pov"});
-        rendered("povray", {"--scene", "reef.pov", "--veil", "povray"});
+        write_file(path("reef.pov"), "#version 3.7;\n#include \"aphotic.inc\"\n" + scene);
+        rendered("quadrature", "--scene reef.pov");
+        rendered("povray", "--scene reef.pov --veil povray");
         std::vector<double> found;
         const std::vector<float> a = signals("povray");
         const std::vector<float> b = signals("quadrature");
         for (std::size_t i = 0; i < a.size(); ++i) found.push_back(a[i] / b[i]);
         return found;
     }
-
-    TempFolder folder_;
 };
 
 TEST_F(PovrayVeilCommand, KeepsItsFramesAndIntegratesThem) {
-    const auto first = rendered("out", {"--veil", "povray"});
+    const auto first = rendered("out", "--veil povray");
     EXPECT_EQ(first.at("veil").at("by"), "povray");
     EXPECT_EQ(first.at("veil").at("samples"), 50);
     EXPECT_LE(first.at("veil").at("error").get<double>(), 1e-3);
     const std::vector<float> image = signals("out");
-    const auto again = rendered("out", {"--veil", "povray"});
+    const auto again = rendered("out", "--veil povray");
     EXPECT_EQ(again.at("frames_rendered"), 0);
-    const CommandResult integrated = aphotic({"integrate", "out"});
+    const CommandResult integrated = aphotic("integrate out");
     EXPECT_EQ(integrated.status, 0) << integrated.err;
     EXPECT_NE(integrated.out.find("which is no bound"), std::string::npos) << integrated.out;
     EXPECT_EQ(signals("out"), image);
     // Other samples make other frames, and only of the veil.
-    const auto finer = rendered("out", {"--veil", "povray", "--veil-samples", "60"});
-    EXPECT_EQ(finer.at("frames_kept"), read_manifest(folder_.path() / "out").direct_frames());
+    const auto finer = rendered("out", "--veil povray --veil-samples 60");
+    EXPECT_EQ(finer.at("frames_kept"), read_manifest(path("out")).direct_frames());
     // A frame that is another is refused.
-    const Manifest manifest = read_manifest(folder_.path() / "out");
-    write_file(image_path(folder_.path() / "out", manifest.frames.back()), "no image");
-    EXPECT_NE(aphotic({"integrate", "out"}).status, 0);
+    const Manifest manifest = read_manifest(path("out"));
+    write_file(image_path(path("out"), manifest.frames.back()), "no image");
+    EXPECT_NE(aphotic("integrate out").status, 0);
 }
 
 TEST_F(PovrayVeilCommand, IsValidatedOverTheBareFloor) {
-    const CommandResult run = aphotic({"validate", "rig.toml", "--veil", "povray", "-o", "out"});
+    const CommandResult run = aphotic("validate rig.toml --veil povray -o out");
     EXPECT_EQ(run.status, 0) << run.out << run.err;
     // A veil that is 5 % too bright does not pass.
-    Manifest manifest = read_manifest(folder_.path() / "out");
+    Manifest manifest = read_manifest(path("out"));
     for (PlannedWavelength& w : manifest.wavelengths)
         for (double& weight : w.veil->weight) weight *= 1.05;
-    write_manifest(folder_.path() / "out", manifest);
-    ASSERT_EQ(aphotic({"integrate", "out"}).status, 0);
-    EXPECT_EQ(aphotic({"validate", "rig.toml", "--veil", "povray", "--rendered", "out", "-o", "v"})
-                  .status,
-              1);
+    write_manifest(path("out"), manifest);
+    ASSERT_EQ(aphotic("integrate out").status, 0);
+    EXPECT_EQ(aphotic("validate rig.toml --veil povray --rendered out -o v").status, 1);
 }
 
 // The reference leaves out the shadows, and nothing bounds what samples find of them.
 TEST_F(PovrayVeilCommand, IsNotValidatedWithObjects) {
-    write_file(folder_.path() / "ball.toml",
-               read_text_file(folder_.path() / "rig.toml") +
+    write_file(path("ball.toml"),
+               text_of("rig.toml") +
                    "\n[[object]]\nname = \"ball\"\nshape = \"sphere\"\n"
                    "centre_m = [0.3, 0.2, 1.2]\nradius_m = 0.25\nreflectance = \"sand\"\n");
-    const CommandResult run = aphotic({"validate", "ball.toml", "--veil", "povray", "-o", "out"});
+    const CommandResult run = aphotic("validate ball.toml --veil povray -o out");
     EXPECT_EQ(run.status, 2) << run.out << run.err;
     EXPECT_NE(run.err.find("shadows"), std::string::npos) << run.err;
 }

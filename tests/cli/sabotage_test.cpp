@@ -8,9 +8,10 @@
 #include "rig/file/rig_reader.h"
 #include "scene_gen/veil_planes.h"
 #include "spectral/manifest.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "support/small_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -26,7 +27,7 @@ namespace {
 
 constexpr int kAnswerIsNo = 1;
 // A floor and lamps without symmetry, few pixels; each entry changes one line of it.
-const std::vector<std::string> kWavelengths{"--wavelengths", "470,550,620"};
+const Arguments kWavelengths("--wavelengths 470,550,620");
 
 // What the command must name as the worst. What the water takes is most where it absorbs most.
 // Tables of the sensor touch no radiance. Geometry and weights of cones have no wavelength of their
@@ -93,17 +94,16 @@ constexpr double kFarOut = 0.01;
 
 // Sharp cones in water that scatters are far from what light of all orders does. Both renderers
 // have the same model.
-const std::vector<std::string> kAnyModel{"--model-tolerance", "1"};
+const Arguments kAnyModel("--model-tolerance 1");
 
-class Sabotage : public testing::Test {
+class Sabotage : public CommandTest {
   protected:
     void expect_no(const std::string& worst, const CommandResult& run) {
         EXPECT_EQ(run.status, kAnswerIsNo) << run.out << run.err;
         EXPECT_NE(run.out.find("DISAGREE"), std::string::npos) << run.out;
         const std::regex named("worst against its bound: (" + worst + ") at column");
         EXPECT_TRUE(std::regex_search(run.out, named)) << "not " << worst << ": " << run.out;
-        const auto json =
-            nlohmann::json::parse(read_text_file(folder_.path() / "out" / "validation.json"));
+        const auto json = nlohmann::json::parse(read_text_file(path("out") / "validation.json"));
         EXPECT_FALSE(json.at("holds").get<bool>());
         for (const char* list : {"wavelengths", "channels"}) {
             for (const auto& one : json.at(list)) {
@@ -118,17 +118,16 @@ class Sabotage : public testing::Test {
     }
 
     double worst_error() {
-        const auto json =
-            nlohmann::json::parse(read_text_file(folder_.path() / "out" / "validation.json"));
+        const auto json = nlohmann::json::parse(read_text_file(path("out") / "validation.json"));
         return json.at("worst").at("max_error").get<double>();
     }
 
-    CommandResult validate(const std::vector<std::string>& more,
+    CommandResult validate(const Arguments& more,
                            const std::map<std::string, std::string>& environment = {}) {
-        std::vector<std::string> arguments{"validate", "rig.toml", "-o", "out"};
-        arguments.insert(arguments.end(), kAnyModel.begin(), kAnyModel.end());
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run_aphotic(folder_.path(), arguments, environment);
+        Arguments arguments("validate rig.toml -o out");
+        arguments += kAnyModel;
+        arguments += more;
+        return aphotic(arguments, environment);
     }
 
     // Several tests spoil the same rig, whose honest render need pass but once.
@@ -141,13 +140,13 @@ class Sabotage : public testing::Test {
     void expect_no_when_scenes_are(const std::string& worst,
                                    const std::string& sed_program,
                                    const std::string& rig = honest_rig()) {
-        write_file(folder_.path() / "rig.toml", rig);
+        write_file(path("rig.toml"), rig);
         if (is_first("validate", rig)) {
             EXPECT_EQ(validate(kWavelengths).status, 0) << "the honest render must pass";
-            std::filesystem::remove_all(folder_.path() / "out");
+            std::filesystem::remove_all(path("out"));
         }
         // The first of several at once edits, the others wait.
-        write_script(folder_.path() / "povray",
+        write_script(path("povray"),
                      "if [ -f aphotic.inc ]; then\n"
                      "  if mkdir editing 2>/dev/null; then\n"
                      "    cat *.pov *.inc > before && sed -i '" +
@@ -159,48 +158,43 @@ class Sabotage : public testing::Test {
                          "  while [ ! -f edited ]; do sleep 0.05; done\n"
                          "fi\n"
                          "exec povray \"$@\"\n");
-        expect_no(
-            worst,
-            validate(kWavelengths, {{"APHOTIC_POVRAY", (folder_.path() / "povray").string()}}));
+        expect_no(worst, validate(kWavelengths, {{"APHOTIC_POVRAY", (path("povray")).string()}}));
     }
 
     // The render is of another rig than the one it is held against.
     void expect_no_when_rendered_from(const std::string& worst,
                                       const std::string& spoilt,
                                       const std::string& honest,
-                                      const std::vector<std::string>& wavelengths = kWavelengths) {
-        write_file(folder_.path() / "rig.toml", honest);
-        write_file(folder_.path() / "spoilt.toml", spoilt);
+                                      const Arguments& wavelengths = kWavelengths) {
+        write_file(path("rig.toml"), honest);
+        write_file(path("spoilt.toml"), spoilt);
         if (is_first("render", honest)) {
             render("rig.toml", "honest", wavelengths);
-            EXPECT_EQ(validate({"--rendered", "honest"}).status, 0)
-                << "the honest render must pass";
+            EXPECT_EQ(validate("--rendered honest").status, 0) << "the honest render must pass";
         }
         render("spoilt.toml", "spoilt", wavelengths);
-        expect_no(worst, validate({"--rendered", "spoilt"}));
+        expect_no(worst, validate("--rendered spoilt"));
     }
 
-    void render(const std::string& rig,
-                const std::string& to,
-                const std::vector<std::string>& wavelengths) {
-        std::vector<std::string> arguments{"render", rig, "-o", to};
-        arguments.insert(arguments.end(), kAnyModel.begin(), kAnyModel.end());
-        arguments.insert(arguments.end(), wavelengths.begin(), wavelengths.end());
-        const CommandResult run = run_aphotic(folder_.path(), arguments);
+    void render(const std::string& rig, const std::string& to, const Arguments& wavelengths) {
+        Arguments arguments(fmt::format("render {} -o {}", rig, to));
+        arguments += kAnyModel;
+        arguments += wavelengths;
+        const CommandResult run = aphotic(arguments);
         ASSERT_EQ(run.status, 0) << run.err;
     }
 
     // The frames are right, the manifest by which they are put together is not.
     void expect_no_when_integrated_with(const std::string& worst,
                                         const std::function<void(Manifest&)>& spoil) {
-        write_file(folder_.path() / "rig.toml", honest_rig());
+        write_file(path("rig.toml"), honest_rig());
         render("rig.toml", "spoilt", kWavelengths);
-        EXPECT_EQ(validate({"--rendered", "spoilt"}).status, 0) << "the honest render must pass";
-        Manifest manifest = read_manifest(folder_.path() / "spoilt");
+        EXPECT_EQ(validate("--rendered spoilt").status, 0) << "the honest render must pass";
+        Manifest manifest = read_manifest(path("spoilt"));
         spoil(manifest);
-        write_manifest(folder_.path() / "spoilt", manifest);
-        ASSERT_EQ(run_aphotic(folder_.path(), {"integrate", "spoilt"}).status, 0);
-        expect_no(worst, validate({"--rendered", "spoilt"}));
+        write_manifest(path("spoilt"), manifest);
+        ASSERT_EQ(aphotic("integrate spoilt").status, 0);
+        expect_no(worst, validate("--rendered spoilt"));
     }
 
     // The frames are right; the veil beside them is another. redo: the honest veil, made anew by
@@ -213,21 +207,21 @@ class Sabotage : public testing::Test {
         return write_veil(folder, rig, manifest, 1);
     }
     void expect_no_when_the_veil_is(const VeilMaker& spoil, const VeilMaker& redo = honest_veil) {
-        write_file(folder_.path() / "b.csv", "wavelength_nm,scattering_per_m\n400,0.3\n720,0.3\n");
-        write_file(folder_.path() / "rig.toml", rig_in_scattering_water());
+        write_file(path("b.csv"), "wavelength_nm,scattering_per_m\n400,0.3\n720,0.3\n");
+        write_file(path("rig.toml"), rig_in_scattering_water());
         render("rig.toml", "spoilt", kWavelengths);
         take_veil(redo);
-        EXPECT_EQ(validate({"--rendered", "spoilt"}).status, 0) << "the honest render must pass";
+        EXPECT_EQ(validate("--rendered spoilt").status, 0) << "the honest render must pass";
         take_veil(spoil);
-        expect_no(kAllOfThem, validate({"--rendered", "spoilt"}));
+        expect_no(kAllOfThem, validate("--rendered spoilt"));
     }
 
     void take_veil(const VeilMaker& make) {
-        const std::filesystem::path folder = folder_.path() / "spoilt";
+        const std::filesystem::path folder = path("spoilt");
         Manifest manifest = read_manifest(folder);
-        manifest.veil = make(folder, read_rig(folder_.path() / "rig.toml"), manifest);
+        manifest.veil = make(folder, read_rig(path("rig.toml")), manifest);
         write_manifest(folder, manifest);
-        const CommandResult run = run_aphotic(folder_.path(), {"integrate", "spoilt"});
+        const CommandResult run = aphotic("integrate spoilt");
         ASSERT_EQ(run.status, 0) << run.err;
     }
 
@@ -242,10 +236,8 @@ class Sabotage : public testing::Test {
     // scenes/objects.toml, in a folder that has its mesh.
     std::string rig_with_objects() {
         put_small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/objects.toml", folder_.path());
-        return read_text_file(folder_.path() / "rig.toml");
+        return text_of("rig.toml");
     }
-
-    TempFolder folder_;
 };
 
 TEST_F(Sabotage, WaterAsAContainersMedia) {
@@ -312,19 +304,16 @@ TEST_F(Sabotage, EmitterTurnedBy90Degrees) {
 
 // A whole number is the centre of OpenCV's pixels, and the edge of COLMAP's.
 TEST_F(Sabotage, LensHalfAPixelOff) {
-    write_file(folder_.path() / "cameras.txt",
-               "1 OPENCV 34 26 47 46 17.5 12.5 -0.2 0.05 0.002 -0.001\n");
-    write_file(folder_.path() / "half.txt", "1 OPENCV 34 26 47 46 17 12 -0.2 0.05 0.002 -0.001\n");
+    write_file(path("cameras.txt"), "1 OPENCV 34 26 47 46 17.5 12.5 -0.2 0.05 0.002 -0.001\n");
+    write_file(path("half.txt"), "1 OPENCV 34 26 47 46 17 12 -0.2 0.05 0.002 -0.001\n");
     const std::string honest =
         replaced(honest_rig(), "focal_length_mm = 12.0", "calibration = \"cameras.txt\"");
     expect_no_when_rendered_from(kAllOfThem, replaced(honest, "cameras", "half"), honest);
 }
 
 TEST_F(Sabotage, TangentialTermsSwapped) {
-    write_file(folder_.path() / "cameras.txt",
-               "1 OPENCV 34 26 47 46 17.5 12.5 -0.2 0.05 0.002 -0.001\n");
-    write_file(folder_.path() / "swapped.txt",
-               "1 OPENCV 34 26 47 46 17.5 12.5 -0.2 0.05 -0.001 0.002\n");
+    write_file(path("cameras.txt"), "1 OPENCV 34 26 47 46 17.5 12.5 -0.2 0.05 0.002 -0.001\n");
+    write_file(path("swapped.txt"), "1 OPENCV 34 26 47 46 17.5 12.5 -0.2 0.05 -0.001 0.002\n");
     const std::string honest =
         replaced(honest_rig(), "focal_length_mm = 12.0", "calibration = \"cameras.txt\"");
     expect_no_when_rendered_from(kAllOfThem, replaced(honest, "cameras", "swapped"), honest);
@@ -352,16 +341,15 @@ TEST_F(Sabotage, DomeAMillimetreOffItsPlace) {
 
 // The tables are the built-in ones, given as the user's own.
 TEST_F(Sabotage, QuantumEfficiencyTakenForEnergyResponse) {
-    write_file(folder_.path() / "rgb.csv",
-               run_aphotic(folder_.path(), {"data", "nikon-d5100", "--csv"}).out);
+    write_file(path("rgb.csv"), aphotic("data nikon-d5100 --csv").out);
     const std::string honest =
         replaced(honest_rig(), "\"nikon-d5100\"", "{ table = \"rgb.csv\", kind = \"quantum\" }");
     expect_no_when_rendered_from(
-        kAnyChannel, replaced(honest, "\"quantum\"", "\"energy\""), honest, {"--bands", "36"});
+        kAnyChannel, replaced(honest, "\"quantum\"", "\"energy\""), honest, "--bands 36");
 }
 
 TEST_F(Sabotage, TableShiftedByOneKnot) {
-    const std::string csv = run_aphotic(folder_.path(), {"data", "pope-fry-1997", "--csv"}).out;
+    const std::string csv = aphotic("data pope-fry-1997 --csv").out;
     // Every value one row later than its wavelength; the first stands twice.
     std::istringstream lines(csv);
     std::string line;
@@ -375,8 +363,8 @@ TEST_F(Sabotage, TableShiftedByOneKnot) {
         before = value;
     }
     // From one knot to the next the absorption differs most in the red.
-    write_file(folder_.path() / "water.csv", csv);
-    write_file(folder_.path() / "shifted.csv", shifted);
+    write_file(path("water.csv"), csv);
+    write_file(path("shifted.csv"), shifted);
     const std::string honest = replaced(honest_rig(), "\"pope-fry-1997\"", "\"water.csv\"");
     expect_no_when_rendered_from("620 nm|R", replaced(honest, "water.csv", "shifted.csv"), honest);
 }
@@ -419,14 +407,14 @@ TEST_F(Sabotage, AWindowWithoutTheSquareOfTheIndex) {
 }
 
 TEST_F(Sabotage, AShellTooSmall) {
-    write_file(folder_.path() / "lamp.csv", "theta_deg,intensity\n0,4\n20,3\n50,1\n90,0\n");
+    write_file(path("lamp.csv"), "theta_deg,intensity\n0,4\n20,3\n50,1\n90,0\n");
     expect_no_when_scenes_are(kAllOfThem,
                               "s/Aphotic_Shell_Radius = 0.0011/Aphotic_Shell_Radius = 0.0005/",
                               rig_with_beam("table = \"lamp.csv\""));
 }
 
 TEST_F(Sabotage, APatternOverOne) {
-    write_file(folder_.path() / "lamp.csv", "theta_deg,intensity\n0,4\n20,3\n50,1\n90,0\n");
+    write_file(path("lamp.csv"), "theta_deg,intensity\n0,4\n20,3\n50,1\n90,0\n");
     expect_no_when_scenes_are(
         kAllOfThem,
         "s/min(1, max(0, Intensity \\(.*\\) . Most))/1.5 * Intensity \\1 \\/ Most/",
@@ -434,15 +422,15 @@ TEST_F(Sabotage, APatternOverOne) {
 }
 
 TEST_F(Sabotage, ATableTurnedTheOtherWay) {
-    write_file(folder_.path() / "lamp.ies", ies_of_type(2));
+    write_file(path("lamp.ies"), ies_of_type(2));
     const std::string honest = rig_with_beam("table = \"lamp.ies\"\nturn_deg = 30");
     expect_no_when_rendered_from(
         kAllOfThem, replaced(honest, "turn_deg = 30", "turn_deg = -30"), honest);
 }
 
 TEST_F(Sabotage, TypeBReadAsC) {
-    write_file(folder_.path() / "b.ies", ies_of_type(2));
-    write_file(folder_.path() / "c.ies", ies_of_type(1));
+    write_file(path("b.ies"), ies_of_type(2));
+    write_file(path("c.ies"), ies_of_type(1));
     const std::string honest = rig_with_beam("table = \"b.ies\"");
     expect_no_when_rendered_from(kAllOfThem, replaced(honest, "b.ies", "c.ies"), honest);
 }
@@ -576,7 +564,7 @@ TEST_F(Sabotage, TheVeilGoesOnBehindTheFloor) {
 // rig's word for it, so nothing but another rig can tell; what calls itself K_d is refused by the
 // reader (CurvesOf.RefusesDaylightsAttenuation).
 TEST_F(Sabotage, DaylightsAttenuationTakenForAbsorption) {
-    write_file(folder_.path() / "kd.csv",
+    write_file(path("kd.csv"),
                "wavelength_nm,absorption_per_m\n400,0.78\n425,0.54\n450,0.39\n475,0.29\n500,0.22\n"
                "525,0.2\n550,0.19\n575,0.21\n600,0.33\n625,0.4\n650,0.46\n675,0.56\n700,0.71\n");
     const std::string range = replaced(honest_rig(), "[400, 720]", "[400, 700]");

@@ -5,9 +5,10 @@
 #include "image/output_images.h"
 #include "plugin/povray.h"
 #include "spectral/manifest.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "support/small_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -21,9 +22,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFloor = "Aphotic_Rig ()\nAphotic_Rig_Seafloor ()\n";
 
-class UserScenes : public testing::Test {
+class UserScenes : public CommandTest {
   protected:
-    UserScenes() : home_(folder_.path() / "my scenes") {
+    UserScenes() : home_(path("my scenes")) {
         fs::create_directory(home_);
         put("rig.toml", small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
     }
@@ -31,13 +32,10 @@ class UserScenes : public testing::Test {
     void put_scene(const std::string& text, const std::string& name = "reef.pov") {
         put(name, "#version 3.7;\n#include \"aphotic.inc\"\n" + text);
     }
-    CommandResult aphotic(const std::vector<std::string>& arguments) {
-        return run_aphotic(home_, arguments);
-    }
-    nlohmann::json rendered(const std::string& folder, std::vector<std::string> more = {}) {
-        more.insert(more.begin(),
-                    {"render", "rig.toml", "--scene", "reef.pov", "-o", folder, "--json"});
-        const CommandResult run = aphotic(more);
+    CommandResult aphotic(const Arguments& arguments) { return run_aphotic(home_, arguments); }
+    nlohmann::json rendered(const std::string& folder, const Arguments& more = {}) {
+        const CommandResult run =
+            aphotic(fmt::format("render rig.toml --scene reef.pov -o {} --json", folder) + more);
         EXPECT_EQ(run.status, 0) << run.err;
         return run.status == 0 ? nlohmann::json::parse(run.out) : nlohmann::json();
     }
@@ -45,13 +43,12 @@ class UserScenes : public testing::Test {
         return read_signals(home_ / folder / "image.exr").samples;
     }
 
-    TempFolder folder_;
     fs::path home_;
 };
 
 TEST_F(UserScenes, ValidateLikeAnyOther) {
     put_scene(kFloor);
-    const CommandResult run = aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"});
+    const CommandResult run = aphotic("validate rig.toml --scene reef.pov -o out");
     EXPECT_EQ(run.status, 0) << run.out << run.err;
     const std::string page = read_text_file(home_ / "out" / "report.html");
     EXPECT_NE(page.find("reef.pov\u2069, a scene of the user’s own"), std::string::npos)
@@ -60,7 +57,7 @@ TEST_F(UserScenes, ValidateLikeAnyOther) {
     EXPECT_TRUE(json.at("rig").at("scene").get<std::string>().ends_with("reef.pov"));
     // A floor that is farther than the rig says must not pass.
     put_scene("Aphotic_Rig ()\nAphotic_Seafloor (2.05, 5, 0, \"sand\")\n");
-    EXPECT_EQ(aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "out"}).status, 1);
+    EXPECT_EQ(aphotic("validate rig.toml --scene reef.pov -o out").status, 1);
 }
 
 // Up to where what the scene shows stands.
@@ -75,8 +72,7 @@ TEST_F(UserScenes, HaveTheVeilOfWaterThatScatters) {
     replace("[400, 720]", "[400, 700]");
     put("rig.toml", rig);
     put_scene(kFloor);
-    const std::vector<std::string> validate{
-        "validate", "rig.toml", "--scene", "reef.pov", "-o", "out", "--model-tolerance", "1"};
+    const Arguments validate("validate rig.toml --scene reef.pov -o out --model-tolerance 1");
     const CommandResult run = aphotic(validate);
     EXPECT_EQ(run.status, 0) << run.out << run.err;
     // A floor that stands nearer has less before it, and the reference's has not.
@@ -88,13 +84,11 @@ TEST_F(UserScenes, ARigMayNameItsScene) {
     put_scene(kFloor);
     const std::string rig = read_text_file(home_ / "rig.toml");
     put("rig.toml", "scene = \"reef.pov\"\n" + rig);
-    const CommandResult plan = aphotic({"plan", "rig.toml"});
+    const CommandResult plan = aphotic("plan rig.toml");
     EXPECT_EQ(plan.status, 0) << plan.err;
     EXPECT_NE(plan.out.find("reef.pov uses sand"), std::string::npos) << plan.out;
     // The reference knows no scene, and needs no POV-Ray.
-    EXPECT_EQ(
-        run_aphotic(home_, {"trace", "rig.toml", "-o", "t"}, {{"APHOTIC_POVRAY", "none"}}).status,
-        0);
+    EXPECT_EQ(run_aphotic(home_, "trace rig.toml -o t", {{"APHOTIC_POVRAY", "none"}}).status, 0);
 }
 
 TEST_F(UserScenes, AreRenderedAgainWhenWhatTheyIncludeChanges) {
@@ -120,8 +114,7 @@ TEST_F(UserScenes, GeneratedFramesRenderInPlainPovray) {
               "#include \"colors.inc\"\n"
               "sphere { <0, 0, 1.9>, 0.2 pigment { Aphotic_Pigment (\"red-algae\") } }\n");
     rendered("out");
-    const CommandResult generated =
-        aphotic({"generate", "rig.toml", "--scene", "reef.pov", "-o", "gen"});
+    const CommandResult generated = aphotic("generate rig.toml --scene reef.pov -o gen");
     ASSERT_EQ(generated.status, 0) << generated.err;
     for (const ManifestFrame& frame : read_manifest(home_ / "gen").frames) {
         const ProcessEnd end = run_process(
@@ -129,11 +122,11 @@ TEST_F(UserScenes, GeneratedFramesRenderInPlainPovray) {
              .arguments = {"gen/povray/render.ini", "+Igen/povray/" + frame.name + ".pov"},
              .folder = home_,
              .environment = {},
-             .log = folder_.path() / "log"},
+             .log = path("log")},
             60.0);
-        ASSERT_TRUE(end.succeeded()) << read_text_file(folder_.path() / "log");
+        ASSERT_TRUE(end.succeeded()) << text_of("log");
     }
-    ASSERT_EQ(aphotic({"integrate", "gen"}).status, 0);
+    ASSERT_EQ(aphotic("integrate gen").status, 0);
     EXPECT_EQ(signals("gen"), signals("out"));
 }
 
@@ -143,10 +136,10 @@ TEST_F(UserScenes, FramesOutliveTheRig) {
               "sphere { <0, 0, 1.9>, 0.2 pigment { Aphotic_Pigment (\"red-algae\") } }\n");
     const std::string rig = read_text_file(home_ / "rig.toml");
     put("murky.toml", std::regex_replace(rig, std::regex("multiple   = 1.0"), "multiple = 1.1"));
-    rendered("out", {"--fitted", "12"});
-    const CommandResult run = aphotic({"integrate", "out", "--rig", "murky.toml", "--json"});
+    rendered("out", "--fitted 12");
+    const CommandResult run = aphotic("integrate out --rig murky.toml --json");
     ASSERT_EQ(run.status, 0) << run.err;
-    ASSERT_EQ(aphotic({"render", "murky.toml", "--scene", "reef.pov", "-o", "murky"}).status, 0);
+    ASSERT_EQ(aphotic("render murky.toml --scene reef.pov -o murky").status, 0);
     const std::vector<float> integrated = signals("out/as-murky");
     const std::vector<float> direct = signals("murky");
     constexpr double kTwoTolerances = 2e-3;
@@ -158,18 +151,16 @@ TEST_F(UserScenes, FramesOutliveTheRig) {
 // Where colours are numbers nobody knows how far the image is off: nothing says otherwise.
 TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
     put_scene(std::string(kFloor) + "sphere { <0, 0, 1.9>, 0.2 pigment { rgb <1, 0.5, 0> } }\n");
-    const std::vector<std::string> scene{"rig.toml", "--scene", "reef.pov", "--fitted", "3"};
-    const auto with = [&](std::vector<std::string> words) {
-        words.insert(words.begin() + 1, scene.begin(), scene.end());
-        const CommandResult run = aphotic(words);
+    const auto with = [&](const Arguments& words) {
+        const CommandResult run = aphotic(words + "rig.toml --scene reef.pov --fitted 3");
         EXPECT_EQ(run.status, 0) << run.err;
         return run;
     };
-    const CommandResult words = with({"render", "-o", "out"});
+    const CommandResult words = with("render -o out");
     EXPECT_NE(words.err.find("reef.pov: no promise: numeric colours"), std::string::npos);
     EXPECT_NE(words.out.find("no bound on the error"), std::string::npos) << words.out;
     EXPECT_EQ(words.out.find("at most"), std::string::npos) << words.out;
-    const CommandResult planned = with({"plan"});
+    const CommandResult planned = with("plan");
     EXPECT_NE(planned.out.find("no bound on the error"), std::string::npos) << planned.out;
     EXPECT_EQ(planned.out.find("No pixel's signal"), std::string::npos) << planned.out;
 
@@ -177,10 +168,9 @@ TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
         EXPECT_TRUE(json.at("promise").is_null());
         EXPECT_EQ(json.at("no_promise").size(), 1U);
     };
-    expect_none(nlohmann::json::parse(with({"plan", "--json"}).out));
-    expect_none(nlohmann::json::parse(with({"render", "-o", "out", "--json"}).out));
-    const CommandResult integrated =
-        aphotic({"integrate", "out", "--rig", "rig.toml", "--tolerance", "0.9", "--json"});
+    expect_none(nlohmann::json::parse(with("plan --json").out));
+    expect_none(nlohmann::json::parse(with("render -o out --json").out));
+    const CommandResult integrated = aphotic("integrate out --rig rig.toml --tolerance 0.9 --json");
     ASSERT_EQ(integrated.status, 0) << integrated.err;
     expect_none(nlohmann::json::parse(integrated.out));
     expect_none(
@@ -193,8 +183,7 @@ TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
         const std::string promise = ExrReader(home_ / "out" / image).attribute("aphotic:promise");
         EXPECT_TRUE(promise.starts_with("none: numeric colours")) << image << ": " << promise;
     }
-    const CommandResult validated =
-        aphotic({"validate", "rig.toml", "--scene", "reef.pov", "-o", "check"});
+    const CommandResult validated = aphotic("validate rig.toml --scene reef.pov -o check");
     EXPECT_EQ(validated.status, 2);
     EXPECT_NE(validated.err.find("has no error bound to validate against"), std::string::npos)
         << validated.err;
@@ -202,16 +191,15 @@ TEST_F(UserScenes, PromiseNothingOfColoursByNumbers) {
 
 TEST_F(UserScenes, HaveAClockForAnimations) {
     const std::string ball = "sphere { <0, 0, 1.5>, 0.2 pigment { rgb 0.5 } }\n";
-    const std::vector<std::string> wavelengths{"--wavelengths", "470,550,620"};
+    const Arguments wavelengths("--wavelengths 470,550,620");
     put_scene(kFloor + ball);
     rendered("still", wavelengths);
     put_scene(std::string(kFloor) + "#if (clock > 0.5) " + ball + "#end\n");
     rendered("out", wavelengths);
     EXPECT_NE(signals("out"), signals("still"));
-    EXPECT_EQ(rendered("out", {"--clock", "0.75", "--wavelengths", "470,550,620"})["frames_kept"],
-              0);
+    EXPECT_EQ(rendered("out", "--clock 0.75 --wavelengths 470,550,620")["frames_kept"], 0);
     EXPECT_EQ(signals("out"), signals("still"));
-    const CommandResult none = aphotic({"plan", "rig.toml", "--clock", "1"});
+    const CommandResult none = aphotic("plan rig.toml --clock 1");
     EXPECT_EQ(none.status, 2);
     EXPECT_NE(none.err.find("--clock: found 1 without a scene"), std::string::npos) << none.err;
 }
@@ -221,11 +209,11 @@ TEST_F(UserScenes, ThatReadWhatTheyWriteRenderOneAtATime) {
               "#fopen Out \"ball.inc\" write\n#write (Out, \"sphere { <0, 0, 1.9>, \")\n"
               "#for (I, 0, 20000) #end\n#write (Out, \"0.1 pigment { rgb 0.5 } }\\n\")\n"
               "#fclose Out\n#include \"ball.inc\"\n");
-    const auto made = rendered("out", {"--fitted", "6", "--jobs", "2"});
+    const auto made = rendered("out", "--fitted 6 --jobs 2");
     EXPECT_EQ(made["frames_rendered"], 2);
     EXPECT_EQ(made["jobs"], 1);
     EXPECT_GT(made["probe_s"], 0.0);
-    EXPECT_EQ(rendered("out", {"--fitted", "6", "--jobs", "2"})["frames_kept"], 2);
+    EXPECT_EQ(rendered("out", "--fitted 6 --jobs 2")["frames_kept"], 2);
 }
 
 // POV-Ray cannot write there; a study is of what the reference knows.
@@ -236,12 +224,11 @@ TEST_F(UserScenes, AreRefusedWhereTheyCannotServe) {
     EXPECT_EQ(folder.status, 2);
     EXPECT_NE(folder.err.find("letters beyond ASCII"), std::string::npos) << folder.err;
     put("own.toml", "scene = \"reef.pov\"\n" + read_text_file(home_ / "rig.toml"));
-    const CommandResult study = aphotic({"study", "own.toml", "-o", "study"});
+    const CommandResult study = aphotic("study own.toml -o study");
     EXPECT_EQ(study.status, 2);
     EXPECT_NE(study.err.find("own.toml: scene: found"), std::string::npos) << study.err;
     // Nor can it be given one beside the rig: what has no promise enters no study.
-    const CommandResult option =
-        aphotic({"study", "rig.toml", "--scene", "reef.pov", "-o", "study"});
+    const CommandResult option = aphotic("study rig.toml --scene reef.pov -o study");
     EXPECT_EQ(option.status, 2);
     EXPECT_NE(option.err.find("--scene"), std::string::npos) << option.err;
     EXPECT_FALSE(fs::exists(home_ / "study"));
@@ -249,13 +236,13 @@ TEST_F(UserScenes, AreRefusedWhereTheyCannotServe) {
 
 TEST_F(UserScenes, PassOnOnlyWhatChangesSpeed) {
     put_scene(kFloor);
-    rendered("out", {"--povray-ini", "Bounding_Method=2"});
+    rendered("out", "--povray-ini Bounding_Method=2");
     EXPECT_NE(read_text_file(home_ / "out" / "povray" / "render.ini").find("Bounding_Method=2\n"),
               std::string::npos);
     for (const char* setting :
          {"Quality=8", "File_Gamma=2.2", "Bounding", "Bounding=on\nQuality=1"}) {
-        const CommandResult run = aphotic(
-            {"render", "rig.toml", "--scene", "reef.pov", "-o", "out", "--povray-ini", setting});
+        const CommandResult run =
+            aphotic("render rig.toml --scene reef.pov -o out" + Arguments{"--povray-ini", setting});
         EXPECT_EQ(run.status, 2) << setting;
         EXPECT_NE(run.err.find("--povray-ini: found"), std::string::npos) << run.err;
     }
@@ -265,7 +252,7 @@ TEST_F(UserScenes, PassOnOnlyWhatChangesSpeed) {
 TEST_F(UserScenes, AntialiasingSmoothsEdgesAlone) {
     put_scene(kFloor);
     rendered("plain");
-    rendered("smooth", {"--antialias", "3"});
+    rendered("smooth", "--antialias 3");
     const std::vector<float> plain = signals("plain");
     const std::vector<float> smooth = signals("smooth");
     constexpr double kSmoothLight = 5e-3;  // the light's own curvature over pixels of 25 mm
@@ -287,8 +274,7 @@ TEST_P(ShippedUserScenes, RenderSmallAndInAQuickLook) {
     fs::copy(GetParam().parent_path(), home, fs::copy_options::recursive);
     const std::string rig = small_scene(GetParam());
     write_file(home / "rig.toml", rig);
-    const CommandResult run =
-        run_aphotic(home, {"render", "rig.toml", "-o", "out", "--fitted", "3", "--json"});
+    const CommandResult run = run_aphotic(home, "render rig.toml -o out --fitted 3 --json");
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_GT(nlohmann::json::parse(run.out)["signal"]["G"]["mean"], 0.0);
 

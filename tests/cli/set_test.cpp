@@ -4,6 +4,7 @@
 #include "support/run_command.h"
 #include "support/small_rig.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -15,7 +16,6 @@ namespace aphotic::set_test {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
 
 constexpr int kBadInput = 2;
 
@@ -26,9 +26,7 @@ class CommandSet : public testing::Test {
     }
 
     [[nodiscard]] nlohmann::json plan(const Arguments& settings) const {
-        Arguments arguments{"plan", "rig.toml", "--json"};
-        arguments.insert(arguments.end(), settings.begin(), settings.end());
-        const CommandResult planned = run(arguments);
+        const CommandResult planned = run("plan rig.toml --json" + settings);
         EXPECT_EQ(planned.status, 0) << planned.err;
         return planned.status == 0 ? nlohmann::json::parse(planned.out) : nlohmann::json{};
     }
@@ -53,21 +51,14 @@ class CommandSet : public testing::Test {
 
 // Bit for bit, digest and all: comments and layout stay as they are.
 TEST_F(CommandSet, IsTheRigThatItsFileWouldBe) {
-    ASSERT_EQ(run({"lightmap",
-                   "rig.toml",
-                   "--set",
-                   "sled.altitude_m=1.5",
-                   "--set",
-                   "water.multiple=2",
-                   "-o",
-                   "set.exr"})
-                  .status,
-              0);
-    const auto planned = plan({"--set", "sled.altitude_m=1.5", "--set", "water.multiple=2"});
+    ASSERT_EQ(
+        run("lightmap rig.toml --set sled.altitude_m=1.5 --set water.multiple=2 -o set.exr").status,
+        0);
+    const auto planned = plan("--set sled.altitude_m=1.5 --set water.multiple=2");
     EXPECT_EQ(planned["rig_settings"], nlohmann::json({"sled.altitude_m=1.5", "water.multiple=2"}));
     edit(R"((\n\s*altitude_m\s*=\s*)[0-9.]+)", "$011.5");
     edit(R"((\n\s*multiple\s*=\s*)[0-9.]+)", "$012");
-    ASSERT_EQ(run({"lightmap", "rig.toml", "-o", "edited.exr"}).status, 0);
+    ASSERT_EQ(run("lightmap rig.toml -o edited.exr").status, 0);
     EXPECT_TRUE(read_text_file(small_.folder() / "set.exr") ==
                 read_text_file(small_.folder() / "edited.exr"));
     auto edited = plan({});
@@ -78,38 +69,36 @@ TEST_F(CommandSet, IsTheRigThatItsFileWouldBe) {
 
 TEST_F(CommandSet, TakesWordsTextsAndListsAndTheLastOfAKey) {
     const auto digest = [&](const std::string& setting) {
-        return plan({"--set", setting})["rig_sha256"].get<std::string>();
+        return plan(fmt::format("--set {}", setting))["rig_sha256"].get<std::string>();
     };
     EXPECT_EQ(digest("strobe.fore.spectrum=xenon-flash"),
               digest("strobe.fore.spectrum=\"xenon-flash\""));
     EXPECT_NE(digest("strobe.fore.spectrum=xenon-flash"), plan({})["rig_sha256"]);
     EXPECT_EQ(plan({"--set", "camera.resolution=[8, 6]"})["width_px"], 8);
-    EXPECT_EQ(plan({"--set", "sled.altitude_m=3", "--set", "sled.altitude_m=2.5"})["rig_sha256"],
+    EXPECT_EQ(plan("--set sled.altitude_m=3 --set sled.altitude_m=2.5")["rig_sha256"],
               digest("sled.altitude_m=2.5"));
 }
 
 // So that frames of one are not taken for another's.
 TEST_F(CommandSet, StandsInTheManifest) {
     const auto manifest = [&](const Arguments& settings) {
-        Arguments arguments{"generate", "rig.toml", "-o", "out"};
-        arguments.insert(arguments.end(), settings.begin(), settings.end());
-        const CommandResult made = run(arguments);
+        const CommandResult made = run("generate rig.toml -o out" + settings);
         EXPECT_EQ(made.status, 0) << made.err;
         return nlohmann::json::parse(read_text_file(small_.folder() / "out/manifest.json"));
     };
     const auto plain = manifest({});
-    const auto set = manifest({"--set", "sled.altitude_m=3"});
+    const auto set = manifest("--set sled.altitude_m=3");
     EXPECT_FALSE(plain.contains("rig_settings"));
     EXPECT_EQ(set["rig_settings"]["keys"], nlohmann::json({"sled.altitude_m=3"}));
     EXPECT_NE(set["rig_sha256"], plain["rig_sha256"]);
     EXPECT_NE(set["frames"][0]["scene_sha256"], plain["frames"][0]["scene_sha256"]);
-    EXPECT_EQ(run({"render", "out", "--frames", "1/2", "--set", "sled.altitude_m=2"}).err,
+    EXPECT_EQ(run("render out --frames 1/2 --set sled.altitude_m=2").err,
               "aphotic: --set: found with --frames; allowed: with a rig\n");
 }
 
 TEST_F(CommandSet, RefusesWhatTheReaderRefuses) {
     const auto trace = [](const std::string& setting) {
-        return Arguments{"trace", "rig.toml", "-o", "out", "--set", setting};
+        return Arguments(fmt::format("trace rig.toml -o out --set {}", setting));
     };
     expect_refused("--set sled.altitud_m=2: rig.toml:", trace("sled.altitud_m=2"));
     expect_refused("sled.altitud_m: ", trace("sled.altitud_m=2"));
@@ -121,31 +110,21 @@ TEST_F(CommandSet, RefusesWhatTheReaderRefuses) {
     expect_refused("--set: found =2; allowed: KEY=VALUE", trace("=2"));
     write_file(small_.folder() / "beam.csv", "angle_deg,intensity\n0,1\n90,0\n");
     expect_refused("--set: found with beam.csv; allowed: with a rig",
-                   {"beam", "beam.csv", "--set", "sled.altitude_m=2"});
+                   "beam beam.csv --set sled.altitude_m=2");
     fs::create_directory(small_.folder() / "raw");
-    expect_refused("--rig", {"correct", "raw", "--map", "m.exr", "-o", "out", "--set", "title=x"});
+    expect_refused("--rig", "correct raw --map m.exr -o out --set title=x");
 }
 
 TEST_F(CommandSet, IsOfEveryCommandThatReadsARig) {
-    for (const char* command : {"render",
-                                "plan",
-                                "generate",
-                                "integrate",
-                                "trace",
-                                "lightmap",
-                                "design",
-                                "correct",
-                                "observe",
-                                "fit",
-                                "baseline",
-                                "survey",
-                                "validate",
-                                "study",
-                                "beam"})
-        EXPECT_NE(run({command, "--help"}).out.find("\n  --set KEY=VALUE "), std::string::npos)
+    for (const std::string& command :
+         Arguments("render plan generate integrate trace lightmap design correct observe fit "
+                   "baseline survey validate study beam"))
+        EXPECT_NE(run(fmt::format("{} --help", command)).out.find("\n  --set KEY=VALUE "),
+                  std::string::npos)
             << command;
     for (const char* command : {"compare", "data", "help"})
-        EXPECT_EQ(run({command, "--help"}).out.find("--set"), std::string::npos) << command;
+        EXPECT_EQ(run(fmt::format("{} --help", command)).out.find("--set"), std::string::npos)
+            << command;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "support/run_command.h"
 #include "support/small_rig.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -20,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr auto kLongest = std::chrono::minutes(15);  // for what hangs
-using Arguments = std::vector<std::string>;
 
 class Shares : public testing::Test {
   protected:
@@ -44,9 +44,8 @@ class Shares : public testing::Test {
         for (int number = 1; number <= of; ++number) {
             const fs::path lane = streams.path() / std::to_string(number);
             fs::create_directories(lane);
-            Arguments all = arguments;
-            all.insert(all.end(), {option, std::to_string(number) + "/" + std::to_string(of)});
-            commands.push_back(std::make_unique<Command>(lane, all, no_locks));
+            commands.push_back(std::make_unique<Command>(
+                lane, arguments + fmt::format("{} {}/{}", option, number, of), no_locks));
         }
         for (std::size_t i = 0; i < commands.size(); ++i)
             EXPECT_EQ(commands[i]->wait(kLongest), 0)
@@ -77,74 +76,61 @@ class Shares : public testing::Test {
 };
 
 TEST_F(Shares, OfARendersFrames) {
-    run_well({"render", "rig.toml", "--bands", "13", "-o", "one"});
-    run_well({"generate", "rig.toml", "--bands", "13", "-o", "many"});
+    run_well("render rig.toml --bands 13 -o one");
+    run_well("generate rig.toml --bands 13 -o many");
     run_shares({"render", path("many").string()}, "--frames", 2);
     EXPECT_FALSE(fs::exists(path("many/image.exr")));
-    run_well({"integrate", "many"});
+    run_well("integrate many");
     expect_same_files("one", "many");
     // Joined frames are noted as rendered: nothing is left to do.
-    const CommandResult again =
-        run({"render", "rig.toml", "--bands", "13", "-o", "many", "--json"});
+    const CommandResult again = run("render rig.toml --bands 13 -o many --json");
     EXPECT_EQ(nlohmann::json::parse(again.out).at("frames_rendered"), 0) << again.out;
 }
 
 TEST_F(Shares, OneOfOneIsRenderedInPlace) {
-    run_well({"render", "rig.toml", "--bands", "13", "-o", "one"});
-    run_well({"generate", "rig.toml", "--bands", "13", "-o", "many"});
-    run_well({"render", "many", "--frames", "1/1"});
-    run_well({"integrate", "many"});
+    run_well("render rig.toml --bands 13 -o one");
+    run_well("generate rig.toml --bands 13 -o many");
+    run_well("render many --frames 1/1");
+    run_well("integrate many");
     expect_same_files("one", "many");
 }
 
 TEST_F(Shares, OfFramesGoOnWhereTheyStopped) {
-    run_well({"generate", "rig.toml", "--bands", "13", "-o", "many"});
-    run_well({"render", "many", "--frames", "1/2"});
-    const auto second =
-        nlohmann::json::parse(run({"render", "many", "--frames", "1/2", "--json"}).out);
+    run_well("generate rig.toml --bands 13 -o many");
+    run_well("render many --frames 1/2");
+    const auto second = nlohmann::json::parse(run("render many --frames 1/2 --json").out);
     EXPECT_EQ(second.at("frames_rendered"), 0);
     EXPECT_EQ(second.at("frames_kept"), 3);
     // What no share has rendered is missed by name, and rendered by render.
-    const CommandResult missing = run({"integrate", "many"});
+    const CommandResult missing = run("integrate many");
     EXPECT_EQ(missing.status, 3) << missing.err;
-    run_well({"render", "rig.toml", "--bands", "13", "-o", "many"});
-    run_well({"render", "rig.toml", "--bands", "13", "-o", "one"});
+    run_well("render rig.toml --bands 13 -o many");
+    run_well("render rig.toml --bands 13 -o one");
     expect_same_files("one", "many");
 }
 
 class SurveyShares : public Shares {
   protected:
-    void SetUp() override { run_well({"survey", "rig.toml", "--images", "9", "-o", "survey"}); }
+    void SetUp() override { run_well("survey rig.toml --images 9 -o survey"); }
 
     [[nodiscard]] Arguments correct(const std::string& folder,
-                                    const Arguments& command = {"correct"}) const {
-        Arguments all = command;
-        for (const auto& argument : Arguments{path("survey/raw").string(),
-                                              "--rig",
-                                              path("rig.toml").string(),
-                                              "--nav",
-                                              path("survey/navigation-measured.txt").string(),
-                                              "--bayer",
-                                              "RGGB",
-                                              "--black-level",
-                                              "64",
-                                              "--white-level",
-                                              "4095",
-                                              "--format",
-                                              "exr",
-                                              "-o",
-                                              path(folder).string()})
-            all.push_back(argument);
-        return all;
+                                    const Arguments& command = "correct") const {
+        return command +
+               Arguments{path("survey/raw").string(),
+                         "--rig",
+                         path("rig.toml").string(),
+                         "--nav",
+                         path("survey/navigation-measured.txt").string(),
+                         "-o",
+                         path(folder).string()} +
+               "--bayer RGGB --black-level 64 --white-level 4095 --format exr";
     }
 };
 
 TEST_F(SurveyShares, OfASurveysImages) {
     run_well(correct("one"));
     run_shares(correct("many"), "--share", 2);
-    Arguments join = correct("many");
-    join.push_back("--json");
-    const CommandResult joined = run(join);
+    const CommandResult joined = run(correct("many") + "--json");
     ASSERT_EQ(joined.status, 0) << joined.err;
     const auto json = nlohmann::json::parse(joined.out);
     EXPECT_EQ(json.at("corrected"), 0);
@@ -157,12 +143,10 @@ TEST_F(SurveyShares, OfASurveysImages) {
 
 // Each learns the pattern of the whole survey.
 TEST_F(SurveyShares, OfABaseline) {
-    const Arguments baseline{"baseline", "log-polynomial"};
+    const Arguments baseline("baseline log-polynomial");
     run_well(correct("one", baseline));
     run_shares(correct("many", baseline), "--share", 2);
-    Arguments join = correct("many", baseline);
-    join.push_back("--json");
-    const auto json = nlohmann::json::parse(run(join).out);
+    const auto json = nlohmann::json::parse(run(correct("many", baseline) + "--json").out);
     EXPECT_EQ(json.at("corrected"), 0);
     EXPECT_EQ(json.at("kept"), 9);
     expect_same_files("one", "many");
@@ -170,12 +154,8 @@ TEST_F(SurveyShares, OfABaseline) {
 
 TEST_F(SurveyShares, WhatNoShareHasDoneIsDoneWhenTheyAreJoined) {
     run_well(correct("one"));
-    Arguments share = correct("many");
-    share.insert(share.end(), {"--share", "2/3"});
-    run_well(share);
-    Arguments join = correct("many");
-    join.push_back("--json");
-    const auto json = nlohmann::json::parse(run(join).out);
+    run_well(correct("many") + "--share 2/3");
+    const auto json = nlohmann::json::parse(run(correct("many") + "--json").out);
     EXPECT_EQ(json.at("corrected"), 6);
     EXPECT_EQ(json.at("kept"), 3);
     expect_same_files("one", "many");
@@ -187,12 +167,12 @@ TEST_F(Shares, SayWhatIsWrong) {
         EXPECT_EQ(result.status, 2) << result.err;
         EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
     };
-    expect({"render", "rig.toml"}, "--output: is missing");
-    expect({"render", "rig.toml", "--frames", "1/2"}, "found no manifest.json");
-    expect({"render", "lamps", "--frames", "3/2"}, "found 3/2; allowed: I/N");
-    expect({"render", "lamps", "--frames", "1/2", "--bands", "3"},
+    expect("render rig.toml", "--output: is missing");
+    expect("render rig.toml --frames 1/2", "found no manifest.json");
+    expect("render lamps --frames 3/2", "found 3/2; allowed: I/N");
+    expect("render lamps --frames 1/2 --bands 3",
            "--bands: found with --frames; allowed: with a rig");
-    expect({"correct", "survey", "-o", "out", "--share", "x"}, "allowed: I/N");
+    expect("correct survey -o out --share x", "allowed: I/N");
 }
 
 }  // namespace

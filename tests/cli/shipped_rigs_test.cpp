@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "support/small_scene.h"
 #include "support/temp_folder.h"
 
@@ -8,12 +8,13 @@
 namespace aphotic::shipped_rigs_test {
 namespace {
 
+using ShippedRigs = CommandTest;
+
 // Scenes of the users' own are in scene_test.cpp.
-TEST(ShippedRigs, AllHaveAPlan) {
-    const TempFolder folder;
+TEST_F(ShippedRigs, AllHaveAPlan) {
     ASSERT_FALSE(all_scenes().empty());
     for (const std::filesystem::path& scene : all_scenes()) {
-        const CommandResult plan = run_aphotic(folder.path(), {"plan", scene.string()});
+        const CommandResult plan = aphotic({"plan", scene.string()});
         EXPECT_EQ(plan.status, 0) << plan.err;
     }
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // aphotic study and aphotic plan --plot, as a user runs them, on a small HabCam.
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "support/small_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -14,31 +15,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Study : public testing::Test {
+class Study : public CommandTest {
   protected:
     Study() {
-        write_file(folder_.path() / "rig.toml",
+        write_file(path("rig.toml"),
                    small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
     }
-
-    CommandResult run(const std::vector<std::string>& arguments) {
-        return run_aphotic(folder_.path(), arguments);
-    }
-
-    TempFolder folder_;
 };
 
 TEST_F(Study, MeasuresRecommendsAndGoesOnWhereItStopped) {
-    const std::vector<std::string> study{"study", "rig.toml", "-o", "out", "--quick", "--json"};
-    const CommandResult first = run(study);
+    const Arguments study("study rig.toml -o out --quick --json");
+    const CommandResult first = aphotic(study);
     ASSERT_EQ(first.status, 0) << first.err;
     const auto json = nlohmann::json::parse(first.out);
     EXPECT_GE(json.at("measures").size(), 5U);
     for (const char* file : {"study.html", "study.csv", "study.json"}) {
-        EXPECT_TRUE(fs::exists(folder_.path() / "out" / file)) << file;
+        EXPECT_TRUE(fs::exists(path("out") / file)) << file;
     }
     // Nothing is measured twice: the times are the same to the last digit.
-    const CommandResult again = run(study);
+    const CommandResult again = aphotic(study);
     ASSERT_EQ(again.status, 0) << again.err;
     EXPECT_EQ(again.out, first.out);
     EXPECT_EQ(again.err, "");
@@ -48,51 +43,43 @@ TEST_F(Study, MeasuresRecommendsAndGoesOnWhereItStopped) {
     for (std::size_t i = 0; i < measures.size(); ++i) {
         if (measures[i].at("name") == "bands-6") measures.erase(i);
     }
-    write_file(folder_.path() / "out" / "study.json", without.dump());
-    const CommandResult resumed = run(study);
+    write_file(path("out") / "study.json", without.dump());
+    const CommandResult resumed = aphotic(study);
     ASSERT_EQ(resumed.status, 0) << resumed.err;
     EXPECT_NE(resumed.err.find("6 equal bands"), std::string::npos) << resumed.err;
     EXPECT_EQ(resumed.err.find("fitted"), std::string::npos) << resumed.err;
     EXPECT_EQ(nlohmann::json::parse(resumed.out).at("measures").size(), measures.size() + 1);
     // A reference that is none is traced again.
-    const fs::path reference = folder_.path() / "out" / "reference" / "image.exr";
+    const fs::path reference = path("out") / "reference" / "image.exr";
     for (const std::string& half : {read_text_file(reference).substr(0, 700), std::string()}) {
         write_file(reference, half);
-        const CommandResult traced = run(study);
+        const CommandResult traced = aphotic(study);
         EXPECT_EQ(traced.status, 0) << traced.err;
         EXPECT_NE(read_text_file(reference), half);
     }
 }
 
 TEST_F(Study, TriesWhatIsAskedFor) {
-    const CommandResult asked = run({"study",
-                                     "--fitted",
-                                     "3,3",
-                                     "--bands",
-                                     "4",
-                                     "--tolerance",
-                                     "0.01",
-                                     "rig.toml",
-                                     "-o",
-                                     "out"});
+    const CommandResult asked =
+        aphotic("study --fitted 3,3 --bands 4 --tolerance 0.01 rig.toml -o out");
     ASSERT_EQ(asked.status, 0) << asked.err;
     EXPECT_NE(asked.out.find("3 settings"), std::string::npos) << asked.out;
     for (const char* words : {"tolerance 0.01", "3 fitted wavelengths", "4 equal bands"})
         EXPECT_NE(asked.out.find(words), std::string::npos) << asked.out;
-    const CommandResult beyond = run({"study", "rig.toml", "--tolerance", "1e-9", "-o", "beyond"});
+    const CommandResult beyond = aphotic("study rig.toml --tolerance 1e-9 -o beyond");
     EXPECT_EQ(beyond.status, 2) << beyond.out;
-    EXPECT_FALSE(fs::exists(folder_.path() / "beyond"));
+    EXPECT_FALSE(fs::exists(path("beyond")));
 }
 
 // Errors are of the sum of floor and veil, settings' and the reference's alike: half floats' and
 // the veil's own for fitted wavelengths.
 TEST_F(Study, KnowsTheVeil) {
-    std::string rig = read_text_file(folder_.path() / "rig.toml");
+    std::string rig = text_of("rig.toml");
     rig.replace(rig.find("[400, 720]"), 10, "[400, 700]");
     const std::string clear = "absorption = \"pope-fry-1997\"";
     rig.replace(rig.find(clear), clear.size(), "type = \"jerlov-1C\"");
-    write_file(folder_.path() / "rig.toml", rig);
-    const CommandResult run_of_it = run({"study", "rig.toml", "-o", "out", "--quick", "--json"});
+    write_file(path("rig.toml"), rig);
+    const CommandResult run_of_it = aphotic("study rig.toml -o out --quick --json");
     ASSERT_EQ(run_of_it.status, 0) << run_of_it.err;
     for (const auto& measure : nlohmann::json::parse(run_of_it.out).at("measures")) {
         const auto name = measure.at("name").get<std::string>();
@@ -104,21 +91,21 @@ TEST_F(Study, KnowsTheVeil) {
 // Before objects a frame of fog tells where the veil ends; where the sky is in view, it is white.
 TEST_F(Study, KnowsTheVeilBeforeObjectsAndTheSky) {
     put_small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/objects.toml", folder_.path());
-    std::string rig = read_text_file(folder_.path() / "rig.toml");
+    std::string rig = text_of("rig.toml");
     rig = std::regex_replace(rig, std::regex(R"(\npitch_deg\s*=[^\n]*)"), "\npitch_deg = 75.0");
     rig = std::regex_replace(
         rig, std::regex(R"(\n\[water\][^\[]*)"), "\n[water]\nscattering = \"sea-water\"\n\n");
-    write_file(folder_.path() / "rig.toml", rig);
-    const CommandResult run_of_it = run({"study", "rig.toml", "-o", "out", "--quick"});
+    write_file(path("rig.toml"), rig);
+    const CommandResult run_of_it = aphotic("study rig.toml -o out --quick");
     EXPECT_EQ(run_of_it.status, 0) << run_of_it.err;
 }
 
 TEST_F(Study, APlanIsAPictureToo) {
-    const CommandResult plan = run({"plan", "rig.toml", "--plot", "plan.svg"});
+    const CommandResult plan = aphotic("plan rig.toml --plot plan.svg");
     ASSERT_EQ(plan.status, 0) << plan.err;
-    EXPECT_GT(fs::file_size(folder_.path() / "plan.svg"), 10'000U);
+    EXPECT_GT(fs::file_size(path("plan.svg")), 10'000U);
     for (const char* file : {"plan.gif", "plan.png"})
-        EXPECT_EQ(run({"plan", "rig.toml", "--plot", file}).status, 2) << file;
+        EXPECT_EQ(aphotic(fmt::format("plan rig.toml --plot {}", file)).status, 2) << file;
 }
 
 }  // namespace

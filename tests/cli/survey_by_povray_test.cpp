@@ -6,6 +6,7 @@
 #include "support/small_scene.h"
 #include "support/small_survey.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,15 +52,14 @@ TEST(SurveyByPovray, IsWhatTheReferenceSeesOfTheBareCard) {
 TEST(SurveyByPovray, OfABareFloorIsThatOfLightmaps) {
     const TempFolder folder;
     put_small_scene(fs::path(APHOTIC_SOURCE_DIR) / "scenes/survey/smooth.toml", folder.path());
-    const auto make = [&](const std::string& name, const std::vector<std::string>& more) {
-        std::vector<std::string> all{
-            "survey", "rig.toml", "--images", "2", "--texture", "0", "-o", name};
-        all.insert(all.end(), more.begin(), more.end());
-        const CommandResult made = run_aphotic(folder.path(), all);
+    const auto make = [&](const std::string& name, const Arguments& more) {
+        const CommandResult made =
+            run_aphotic(folder.path(),
+                        fmt::format("survey rig.toml --images 2 --texture 0 -o {}", name) + more);
         EXPECT_EQ(made.status, 0) << made.err;
     };
     make("maps", {});
-    make("rendered", {"--by-povray"});
+    make("rendered", "--by-povray");
     for (const char* image : {"000001.exr", "000002.exr"}) {
         EXPECT_EQ(off_reference(folder.path() / "rendered/truth" / image,
                                 folder.path() / "maps/truth" / image),
@@ -70,14 +70,14 @@ TEST(SurveyByPovray, OfABareFloorIsThatOfLightmaps) {
 
 TEST(SurveyByPovray, GoesOnWhereItStoppedAndRefusesAnotherSurvey) {
     const SmallSurvey survey;
-    const CommandResult made = survey.make({"--images", "1"});
+    const CommandResult made = survey.make("--images 1");
     ASSERT_EQ(made.status, 0) << made.err;
     const fs::path first = survey.folder() / "out/truth/000001.exr";
     const std::string bytes = read_text_file(first);
     const auto time = fs::last_write_time(first);
     fs::remove(survey.folder() / "out/raw/000001.tif");
 
-    const CommandResult more = survey.make({"--images", "2"});
+    const CommandResult more = survey.make("--images 2");
     ASSERT_EQ(more.status, 0) << more.err;
     EXPECT_EQ(fs::last_write_time(first), time);
     EXPECT_TRUE(fs::exists(survey.folder() / "out/raw/000001.tif"));
@@ -85,7 +85,7 @@ TEST(SurveyByPovray, GoesOnWhereItStoppedAndRefusesAnotherSurvey) {
     EXPECT_EQ(read_text_file(survey.folder() / "out/navigation.txt"),
               navigation_text(flight({}, 1, 2), ".tif"));
 
-    const CommandResult other = survey.make({"--images", "2", "--seed", "2"});
+    const CommandResult other = survey.make("--images 2 --seed 2");
     EXPECT_EQ(other.status, 2);
     EXPECT_TRUE(has(other.err, "another folder"));
     EXPECT_EQ(read_text_file(first), bytes);
@@ -105,12 +105,11 @@ TEST(SurveyByPovray, OfObjectsInMurkyWaterIsTheReferences) {
     write_file(folder.path() / "rig.toml", toml);
     write_file(folder.path() / "flown.csv",
                "image,altitude_m,pitch_deg,roll_deg\nthe only.jpg,2.25,3,-2\n");
-    const CommandResult made = run_aphotic(
-        folder.path(),
-        {"survey", "rig.toml", "--flight", "flown.csv", "--model-tolerance", "1", "-o", "out"});
+    const CommandResult made =
+        run_aphotic(folder.path(), "survey rig.toml --flight flown.csv --model-tolerance 1 -o out");
     ASSERT_EQ(made.status, 0) << made.err;
-    const CommandResult trace = run_aphotic(
-        folder.path(), {"trace", "rig.toml", "--model-tolerance", "1", "-o", "reference"});
+    const CommandResult trace =
+        run_aphotic(folder.path(), "trace rig.toml --model-tolerance 1 -o reference");
     ASSERT_EQ(trace.status, 0) << trace.err;
     EXPECT_TRUE(fs::exists(folder.path() / "out/raw/the only.tif"));
     EXPECT_LT(off_reference(folder.path() / "out/truth/the only.exr",

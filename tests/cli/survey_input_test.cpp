@@ -4,10 +4,10 @@
 // files, mono cameras, raw files, exposures, tags, and rigs of another scale.
 #include "base/atomic_file.h"
 #include "image/exr.h"
+#include "support/command_test.h"
 #include "support/dng.h"
 #include "support/exiftool.h"
 #include "support/has.h"
-#include "support/run_command.h"
 #include "support/tiff.h"
 #include "survey/images/raw_image.h"
 
@@ -43,11 +43,9 @@ constexpr double kShareOf16Bits = 65535.0 * 0x1p-23;
 
 using Numbers = std::vector<std::uint16_t>;
 
-class SurveyInput : public testing::Test {
+class SurveyInput : public CommandTest {
   protected:
     void SetUp() override { fs::create_directories(path("raw")); }
-
-    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
 
     // Falls off to the right, in each channel from another height.
     static float light(std::size_t channel, int column, int row) {
@@ -113,18 +111,16 @@ class SurveyInput : public testing::Test {
         write_file(path("raw/" + name), DngWriter::bytes(dng));
     }
 
-    [[nodiscard]] CommandResult run(std::vector<std::string> arguments,
-                                    const std::vector<std::string>& more) const {
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run_aphotic(folder_.path(), arguments);
+    [[nodiscard]] CommandResult run(Arguments arguments, const Arguments& more) const {
+        arguments += more;
+        return aphotic(arguments);
     }
     // By the map, into floats.
-    [[nodiscard]] CommandResult correct(const std::string& output,
-                                        const std::vector<std::string>& more) const {
-        return run({"correct", "raw", "--map", "map.exr", "-o", output, "--format", "exr"}, more);
+    [[nodiscard]] CommandResult correct(const std::string& output, const Arguments& more) const {
+        return run(fmt::format("correct raw --map map.exr -o {} --format exr", output), more);
     }
-    static std::vector<std::string> levels(std::vector<std::string> more) {
-        more.insert(more.end(), {"--black-level", "64", "--white-level", "4095"});
+    static Arguments levels(Arguments more) {
+        more += "--black-level 64 --white-level 4095";
         return more;
     }
 
@@ -132,8 +128,6 @@ class SurveyInput : public testing::Test {
                                              const std::vector<std::string>& channels) const {
         return ExrReader(path(file)).planes(channels);
     }
-
-    TempFolder folder_;
 };
 
 // Bytes of a result: the same image gives the same.
@@ -141,29 +135,28 @@ TEST_F(SurveyInput, AHalfOrACropIsTreatedAsAFileOfItsOwn) {
     write_map(false);
     write_file(path("nav.csv"), "image,altitude_m\na,2\n");
     const Numbers image = mosaic(Mosaic::Rggb, 1000.0);
-    const auto results = [&](const std::string& output, std::vector<std::string> more) {
-        more.insert(more.end(), {"--black-level", "64"});
+    const auto results = [&](const std::string& output, Arguments more) {
+        more += "--black-level 64";
         EXPECT_EQ(correct(output, more).status, 0);
         const CommandResult baseline =
-            run({"baseline", "illumination-reflectance", "raw", "-o", output + "-baseline"}, more);
+            run(fmt::format("baseline illumination-reflectance raw -o {}-baseline", output), more);
         EXPECT_EQ(baseline.status, 0) << baseline.err;
-        const CommandResult observed = run(
-            {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", output + ".exr"}, more);
+        const CommandResult observed =
+            run(fmt::format("observe raw --nav nav.csv --altitude 2 -o {}.exr", output), more);
         EXPECT_EQ(observed.status, 0) << observed.err;
-        return read_text_file(path(output + "/a.exr")) +
-               read_text_file(path(output + "-baseline/a.exr")) +
-               read_text_file(path(output + ".exr"));
+        return text_of(output + "/a.exr") + text_of(output + "-baseline/a.exr") +
+               text_of(output + ".exr");
     };
     write_tiff("a.tif", image, kWidth, kHeight);
-    const std::string whole = results("whole", {"--bayer", "RGGB"});
+    const std::string whole = results("whole", "--bayer RGGB");
     write_tiff("a.tif", placed(image, kWidth, 0, 2 * kWidth, kHeight), 2 * kWidth, kHeight);
-    EXPECT_EQ(results("right", {"--bayer", "RGGB", "--half", "right"}), whole);
-    EXPECT_NE(results("left", {"--bayer", "RGGB", "--half", "left"}), whole);
+    EXPECT_EQ(results("right", "--bayer RGGB --half right"), whole);
+    EXPECT_NE(results("left", "--bayer RGGB --half left"), whole);
     // At an odd column and row the pattern begins with another site.
     write_tiff("a.tif", placed(image, 3, 1, kWidth + 5, kHeight + 2), kWidth + 5, kHeight + 2);
-    EXPECT_EQ(results("odd", {"--bayer", "BGGR", "--crop", "3,1,64,48"}), whole);
-    EXPECT_NE(results("wrong", {"--bayer", "RGGB", "--crop", "3,1,64,48"}), whole);
-    const Json notes = Json::parse(read_text_file(path("odd/correction.json")));
+    EXPECT_EQ(results("odd", "--bayer BGGR --crop 3,1,64,48"), whole);
+    EXPECT_NE(results("wrong", "--bayer RGGB --crop 3,1,64,48"), whole);
+    const Json notes = Json::parse(text_of("odd/correction.json"));
     EXPECT_EQ(notes["settings"]["crop"], "3,1,64,48");
     EXPECT_EQ(notes["settings"]["bayer"], "BGGR");
 }
@@ -173,19 +166,17 @@ TEST_F(SurveyInput, AHalfOrACropIsTreatedAsAFileOfItsOwn) {
 TEST_F(SurveyInput, LevelsBeyondTheFilesNumbersAreRefused) {
     write_map(false);
     write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
-    const auto refusal = [&](const std::vector<std::string>& levels) {
-        std::vector<std::string> options{"--bayer", "RGGB"};
-        options.insert(options.end(), levels.begin(), levels.end());
-        const CommandResult result = correct("out", options);
+    const auto refusal = [&](const Arguments& levels) {
+        const CommandResult result = correct("out", "--bayer RGGB" + levels);
         EXPECT_EQ(result.status, kBadInput);
         EXPECT_FALSE(fs::exists(path("out")));
         return result.err;
     };
-    EXPECT_TRUE(has(refusal({"--white-level", "65536"}),
+    EXPECT_TRUE(has(refusal("--white-level 65536"),
                     "white level: found 65536; allowed: up to 65535, the file's largest number"));
-    EXPECT_TRUE(has(refusal({"--black-level", "4095", "--white-level", "4095"}),
+    EXPECT_TRUE(has(refusal("--black-level 4095 --white-level 4095"),
                     "black level: found 4095; allowed: less than the white level, 4095"));
-    EXPECT_EQ(correct("out", {"--bayer", "RGGB", "--white-level", "65535"}).status, 0);
+    EXPECT_EQ(correct("out", "--bayer RGGB --white-level 65535").status, 0);
 }
 
 TEST_F(SurveyInput, ACropIsPartOfWhatIsKept) {
@@ -196,7 +187,7 @@ TEST_F(SurveyInput, ACropIsPartOfWhatIsKept) {
                kHeight);
     const auto kept = [&](const std::string& crop) {
         const CommandResult result =
-            correct("out", {"--bayer", "RGGB", "--crop", crop, "--gain", "1", "--json"});
+            correct("out", fmt::format("--bayer RGGB --crop {} --gain 1 --json", crop));
         EXPECT_EQ(result.status, 0) << result.err;
         return Json::parse(result.out)["kept"].get<int>();
     };
@@ -210,11 +201,11 @@ TEST_F(SurveyInput, PartsThatAreNotThereAreOneMistake) {
     write_file(path("nav.csv"), "image,altitude_m\na,2\nb,2\n");
     for (const char* name : {"a.tif", "b.tif"})
         write_tiff(name, Numbers((kWidth + 1) * kHeight, 100), kWidth + 1, kHeight);
-    const auto refused = [&](const std::vector<std::string>& options, const std::string& words) {
-        for (const std::vector<std::string>& command :
-             {std::vector<std::string>{"correct", "raw", "--map", "map.exr", "-o", "out"},
-              {"baseline", "homomorphic", "raw", "-o", "out"},
-              {"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "out.exr"}}) {
+    const auto refused = [&](const Arguments& options, const std::string& words) {
+        for (const Arguments& command :
+             std::vector<Arguments>{"correct raw --map map.exr -o out",
+                                    "baseline homomorphic raw -o out",
+                                    "observe raw --nav nav.csv --altitude 2 -o out.exr"}) {
             const CommandResult result = run(command, options);
             EXPECT_EQ(result.status, kBadInput) << command[0] << " " << words;
             EXPECT_TRUE(has(result.err, words));
@@ -222,20 +213,20 @@ TEST_F(SurveyInput, PartsThatAreNotThereAreOneMistake) {
             EXPECT_FALSE(fs::exists(path("out")) || fs::exists(path("out.exr")));
         }
     };
-    refused({"--bayer", "RGGB", "--crop", "2,0,64,48"},
+    refused("--bayer RGGB --crop 2,0,64,48",
             "--crop 2,0,64,48: reaches beyond the image; allowed: within 65 x 48 pixels");
-    refused({"--bayer", "RGGB", "--crop", "0,1,64,48"}, "within 65 x 48 pixels");
-    refused({"--bayer", "RGGB", "--crop", "0,0,2147483647,48"}, "within 65 x 48 pixels");
-    refused({"--bayer", "RGGB", "--half", "left"},
+    refused("--bayer RGGB --crop 0,1,64,48", "within 65 x 48 pixels");
+    refused("--bayer RGGB --crop 0,0,2147483647,48", "within 65 x 48 pixels");
+    refused("--bayer RGGB --half left",
             "--half: found an image of 65 x 48 pixels; allowed: an even width");
     for (const char* wrong :
          {"1,2,3", "1,2,3,4,5", "-1,0,5,5", "0,0,0,5", "a,0,5,5", "0;0;5;5", ""})
         refused({"--crop", wrong}, fmt::format("--crop: found '{}'; allowed: X,Y,WIDTH", wrong));
-    refused({"--half", "upper"}, "--half");
-    refused({"--exposure", "auto"}, "--exposure: found auto; allowed: exif, flash, none");
-    refused({"--half", "left", "--crop", "0,0,5,5"}, "--half excludes --crop");
-    refused({"--bayer", "gray"}, "found 'gray'; allowed: RGGB, BGGR, GRBG, GBRG, mono");
-    refused({"--bayer", "RGGB", "--exposure", "exif"}, "no image's Exif has ExposureTime");
+    refused("--half upper", "--half");
+    refused("--exposure auto", "--exposure: found auto; allowed: exif, flash, none");
+    refused("--half left --crop 0,0,5,5", "--half excludes --crop");
+    refused("--bayer gray", "found 'gray'; allowed: RGGB, BGGR, GRBG, GBRG, mono");
+    refused("--bayer RGGB --exposure exif", "no image's Exif has ExposureTime");
 }
 
 TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
@@ -246,7 +237,7 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
             std::lround(kBlack + 2000.0 * light(0, i % kWidth, i / kWidth))));
     }
     write_tiff("a.tif", numbers, kWidth, kHeight);
-    const CommandResult result = correct("out", levels({"--bayer", "mono", "--middle", "0.25"}));
+    const CommandResult result = correct("out", levels("--bayer mono --middle 0.25"));
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_TRUE(std::regex_search(result.out, std::regex("gain 0\\.000125[0-9]*, taken")))
         << result.out;
@@ -255,14 +246,13 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
     for (const float sample : samples("out/a.exr", {"Y"}))
         EXPECT_NEAR(sample / 0.25, 1.0, 2.0 * kStep);
 
-    const CommandResult three = correct("three", levels({"--bayer", "mono", "--gain", "1,2,3"}));
+    const CommandResult three = correct("three", levels("--bayer mono --gain 1,2,3"));
     EXPECT_EQ(three.status, kBadInput);
     EXPECT_TRUE(has(three.err, "--gain: found 3 numbers; allowed: 1, of a mono camera"));
 
     write_file(path("nav.csv"), "image,altitude_m\na,2\n");
     const CommandResult observed =
-        run({"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "seen.exr"},
-            {"--bayer", "mono", "--black-level", "64"});
+        run("observe raw --nav nav.csv --altitude 2 -o seen.exr", "--bayer mono --black-level 64");
     ASSERT_EQ(observed.status, 0) << observed.err;
     const std::vector<float> green = samples("seen.exr", {"G"});
     for (std::size_t i = 0; i < kPixels; ++i)
@@ -273,13 +263,12 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
         return all;
     }());
 
-    const CommandResult baseline =
-        run({"baseline", "homomorphic", "raw", "-o", "even"}, {"--bayer", "mono"});
+    const CommandResult baseline = run("baseline homomorphic raw -o even", "--bayer mono");
     ASSERT_EQ(baseline.status, 0) << baseline.err;
     EXPECT_EQ(ExrReader(path("even/a.exr")).channels(), std::vector<std::string>{"Y"});
 
     write_map(false);
-    const CommandResult colours = correct("colours", levels({"--bayer", "mono"}));
+    const CommandResult colours = correct("colours", levels("--bayer mono"));
     EXPECT_EQ(colours.status, kBadInput);
     EXPECT_TRUE(has(colours.err,
                     "found the image of a mono camera, and a map whose R, G and B "
@@ -289,7 +278,7 @@ TEST_F(SurveyInput, AMonoCamerasImagesAreOnePlaneUnderOneGain) {
 TEST_F(SurveyInput, ARawFileSaysItsPatternAndLevelsItself) {
     write_map(false);
     write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
-    ASSERT_EQ(correct("tiff", levels({"--bayer", "RGGB"})).status, 0);
+    ASSERT_EQ(correct("tiff", levels("--bayer RGGB")).status, 0);
     fs::remove(path("raw/a.tif"));
     write_dng("a.dng", dng(1000.0));
     const CommandResult result = correct("dng", {});
@@ -299,13 +288,13 @@ TEST_F(SurveyInput, ARawFileSaysItsPatternAndLevelsItself) {
     constexpr double kLeast = 200.0;  // number over black
     for (std::size_t i = 0; i < raw.size(); ++i)
         EXPECT_NEAR(raw[i] / tiff[i], 1.0, 2.0 * kShareOf16Bits / kLeast) << i;
-    const CommandResult other = correct("other", {"--bayer", "GRBG"});
+    const CommandResult other = correct("other", "--bayer GRBG");
     EXPECT_EQ(other.status, kBadInput);
     EXPECT_TRUE(
         has(other.err, "--bayer, or the rig's: found GRBG; allowed: RGGB, as the raw file says"));
-    const std::string bytes = read_text_file(path("raw/a.dng"));
+    const std::string bytes = text_of("raw/a.dng");
     write_file(path("raw/cut.dng"), bytes.substr(0, bytes.size() / 2));
-    const CommandResult cut = correct("cut", {"--gain", "1"});
+    const CommandResult cut = correct("cut", "--gain 1");
     EXPECT_EQ(cut.status, kSkipped);
     EXPECT_TRUE(has(cut.err, "raw/cut.dng: cannot be read: "));
 }
@@ -333,28 +322,27 @@ TEST_F(SurveyInput, ImagesAreBroughtToOneExposureByTheirExif) {
     constexpr double kRounding = 2e-3;  // half a step of some 500
     ASSERT_EQ(correct("raw-out", {}).status, 0);
     EXPECT_NEAR(ratio("raw-out", "b.exr"), 2.0, 2.0 * kRounding);
-    const CommandResult result = correct("exif", {"--exposure", "exif"});
+    const CommandResult result = correct("exif", "--exposure exif");
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_TRUE(has(result.out, "brought to 4 ms, ISO 100"));
     EXPECT_NEAR(ratio("exif", "b.exr"), 1.0, kRounding);
     EXPECT_NEAR(ratio("exif", "c.exr"), 1.0, kRounding);
     // A flash is as bright however long the shutter is open.
-    ASSERT_EQ(correct("flash", {"--exposure", "flash"}).status, 0);
+    ASSERT_EQ(correct("flash", "--exposure flash").status, 0);
     EXPECT_NEAR(ratio("flash", "b.exr"), 2.0, 2.0 * kRounding);
     EXPECT_NEAR(ratio("flash", "c.exr"), 1.0, kRounding);
-    const std::string journal = read_text_file(path("exif/corrected.jsonl"));
+    const std::string journal = text_of("exif/corrected.jsonl");
     EXPECT_TRUE(has(journal, "\"relative_exposure\":2.0"));
-    const Json notes = Json::parse(read_text_file(path("exif/correction.json")));
+    const Json notes = Json::parse(text_of("exif/correction.json"));
     EXPECT_EQ(notes["settings"]["exposure"]["time_s"], 0.004);
 
     const CommandResult baseline =
-        run({"baseline", "local-equalisation", "raw", "-o", "even", "--clip", "1"},
-            {"--exposure", "exif"});
+        run("baseline local-equalisation raw -o even --clip 1", "--exposure exif");
     ASSERT_EQ(baseline.status, 0) << baseline.err;
     EXPECT_NEAR(ratio("even", "b.exr"), 1.0, kRounding);
 
     write_dng("d.dng", dng(700.0));
-    const CommandResult untold = correct("untold", {"--exposure", "exif"});
+    const CommandResult untold = correct("untold", "--exposure exif");
     EXPECT_EQ(untold.status, kSkipped);
     EXPECT_TRUE(has(untold.err, "raw/d.dng: --exposure: its Exif has no ExposureTime; skipped"));
 }
@@ -371,8 +359,8 @@ TEST_F(SurveyInput, ResultsKeepTheTagsOfTheirSource) {
                      "-SerialNumber=AB123",
                      "-XMP-dc:Creator=Jane Doe"});
     for (const std::string format : {"tiff", "png"}) {
-        ASSERT_EQ(run({"correct", "raw", "--map", "map.exr", "-o", format, "--format", format},
-                      levels({"--bayer", "RGGB", "--mask"}))
+        ASSERT_EQ(run(fmt::format("correct raw --map map.exr -o {0} --format {0}", format),
+                      levels("--bayer RGGB --mask"))
                       .status,
                   0);
         const Json found =
@@ -384,9 +372,8 @@ TEST_F(SurveyInput, ResultsKeepTheTagsOfTheirSource) {
         EXPECT_EQ(found["XMP-dc:Creator"], "Jane Doe") << format;
     }
     // Compared to what is written without them, pixel by pixel.
-    ASSERT_EQ(correct("exr", levels({"--bayer", "RGGB"})).status, 0);
-    const CommandResult same =
-        run_aphotic(folder_.path(), {"compare", "tiff/a.tif", "exr/a.exr", "--bound", "1e-4"});
+    ASSERT_EQ(correct("exr", levels("--bayer RGGB")).status, 0);
+    const CommandResult same = aphotic("compare tiff/a.tif exr/a.exr --bound 1e-4");
     EXPECT_EQ(same.status, 0) << same.out << same.err;
     const ExrReader exr(path("exr/a.exr"));
     EXPECT_EQ(exr.attribute("Exif.GPSInfo.GPSLatitude"), "41/1 30/1 0/1");
@@ -412,18 +399,10 @@ class RigOfSurvey : public SurveyInput {
     }
 
     [[nodiscard]] CommandResult correct_by_rig(const std::string& output,
-                                               const std::vector<std::string>& more) const {
-        return run({"correct",
-                    "raw",
-                    "--rig",
-                    "rig.toml",
-                    "--nav",
-                    "nav.csv",
-                    "-o",
-                    output,
-                    "--format",
-                    "exr"},
-                   more);
+                                               const Arguments& more) const {
+        return run(
+            fmt::format("correct raw --rig rig.toml --nav nav.csv -o {} --format exr", output),
+            more);
     }
 };
 
@@ -439,19 +418,17 @@ TEST_F(RigOfSurvey, TellsItsCamerasNumbersAndOptionsWin) {
     const CommandResult by_rig = correct_by_rig("rig", {});
     ASSERT_EQ(by_rig.status, 0) << by_rig.err;
     EXPECT_TRUE(has(by_rig.out, "camera: RGGB, black level 64, white level 4095\n"));
-    ASSERT_EQ(correct_by_rig("options", levels({"--bayer", "RGGB"})).status, 0);
-    EXPECT_EQ(read_text_file(path("rig/a.exr")), read_text_file(path("options/a.exr")));
-    const CommandResult other = correct_by_rig("other", {"--black-level", "60", "--json"});
+    ASSERT_EQ(correct_by_rig("options", levels("--bayer RGGB")).status, 0);
+    EXPECT_EQ(text_of("rig/a.exr"), text_of("options/a.exr"));
+    const CommandResult other = correct_by_rig("other", "--black-level 60 --json");
     ASSERT_EQ(other.status, 0) << other.err;
     EXPECT_EQ(Json::parse(other.out)["settings"]["black_level"], 60.0);
     EXPECT_EQ(Json::parse(other.out)["settings"]["white_level"], 4095.0);
-    const CommandResult baseline =
-        run({"baseline", "homomorphic", "raw", "-o", "even", "--json"}, {"--rig", "rig.toml"});
+    const CommandResult baseline = run("baseline homomorphic raw -o even --json", "--rig rig.toml");
     ASSERT_EQ(baseline.status, 0) << baseline.err;
     EXPECT_EQ(Json::parse(baseline.out)["settings"]["bayer"], "RGGB");
     const CommandResult observed =
-        run({"observe", "raw", "--nav", "nav.csv", "--altitude", "2", "-o", "seen.exr", "--json"},
-            {"--rig", "rig.toml"});
+        run("observe raw --nav nav.csv --altitude 2 -o seen.exr --json", "--rig rig.toml");
     ASSERT_EQ(observed.status, 0) << observed.err;
     EXPECT_EQ(Json::parse(observed.out)["camera"]["black_level"], 64.0);
 }
@@ -464,8 +441,8 @@ TEST_F(RigOfSurvey, TellsTheExposureThatImagesAreBroughtTo) {
     image.exposure_ms = 8;
     image.iso = 100;
     write_dng("a.dng", image);
-    ASSERT_EQ(correct_by_rig("plain", {"--gain", "1"}).status, 0);
-    ASSERT_EQ(correct_by_rig("exif", {"--gain", "1", "--exposure", "exif"}).status, 0);
+    ASSERT_EQ(correct_by_rig("plain", "--gain 1").status, 0);
+    ASSERT_EQ(correct_by_rig("exif", "--gain 1 --exposure exif").status, 0);
     const std::vector<float> plain = samples("plain/a.exr", {"R", "G", "B"});
     const std::vector<float> exif = samples("exif/a.exr", {"R", "G", "B"});
     for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_FLOAT_EQ(exif[i], plain[i] / 4.0F) << i;
@@ -476,27 +453,26 @@ TEST_F(RigOfSurvey, OfAnotherScaleIsScaledToTheImages) {
     write_file(path("nav.csv"), "image,altitude_m,pitch_deg\na,2,5\n");
     write_tiff("a.tif", mosaic(Mosaic::Rggb, 1000.0), kWidth, kHeight);
     write_rig("[64, 48]", kPitch_um);
-    ASSERT_EQ(correct_by_rig("own", levels({"--bayer", "RGGB"})).status, 0);
+    ASSERT_EQ(correct_by_rig("own", levels("--bayer RGGB")).status, 0);
     write_rig("[128, 96]", "68.53125");
-    const CommandResult scaled = correct_by_rig("scaled", levels({"--bayer", "RGGB"}));
+    const CommandResult scaled = correct_by_rig("scaled", levels("--bayer RGGB"));
     ASSERT_EQ(scaled.status, 0) << scaled.err;
     EXPECT_TRUE(has(scaled.out, "rig of 128 x 96 pixels scaled to 64 x 48\n"));
-    EXPECT_EQ(read_text_file(path("own/a.exr")), read_text_file(path("scaled/a.exr")));
-    const Json notes = Json::parse(read_text_file(path("scaled/correction.json")));
+    EXPECT_EQ(text_of("own/a.exr"), text_of("scaled/a.exr"));
+    const Json notes = Json::parse(text_of("scaled/correction.json"));
     EXPECT_EQ(notes["settings"]["rig_scale"], 0.5);
     // A part of the rig's own image is not its whole one, smaller.
     write_rig("[64, 48]", kPitch_um);
-    const CommandResult part =
-        correct_by_rig("part", levels({"--bayer", "RGGB", "--crop", "0,0,32,24"}));
+    const CommandResult part = correct_by_rig("part", levels("--bayer RGGB --crop 0,0,32,24"));
     EXPECT_EQ(part.status, kBadInput);
     EXPECT_TRUE(has(part.err, "--crop: found 32 x 24 of files that have the rig's 64 x 48 pixels"));
     write_rig("[32, 48]", kPitch_um);
-    const CommandResult stereo = correct_by_rig("stereo", levels({"--bayer", "RGGB"}));
+    const CommandResult stereo = correct_by_rig("stereo", levels("--bayer RGGB"));
     EXPECT_TRUE(has(stereo.err,
                     "found 64 x 48 pixels; allowed: 32 x 48, as the map has; if two "
                     "cameras' images are side by side, --half"));
     write_rig("[128, 95]", "68.53125");
-    const CommandResult other = correct_by_rig("other", levels({"--bayer", "RGGB"}));
+    const CommandResult other = correct_by_rig("other", levels("--bayer RGGB"));
     EXPECT_EQ(other.status, kBadInput);
     EXPECT_TRUE(has(other.err, "found 64 x 48 pixels; allowed: 128 x 95, as the map has"));
 }
@@ -505,8 +481,7 @@ TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
     write_file(path("qe.csv"), "wavelength_nm,quantum_efficiency\n400,0.3\n550,0.6\n720,0.2\n");
     write_rig("[64, 48]", kPitch_um, "", "{ quantum_efficiency = \"qe.csv\" }");
     write_file(path("nav.csv"), "image,altitude_m\na,2\n");
-    const CommandResult made =
-        run_aphotic(folder_.path(), {"lightmap", "rig.toml", "-o", "light.exr", "--altitude", "2"});
+    const CommandResult made = aphotic("lightmap rig.toml -o light.exr --altitude 2");
     ASSERT_EQ(made.status, 0) << made.err;
     const std::vector<float> red = samples("light.exr", {"R"});
     EXPECT_EQ(samples("light.exr", {"G"}), red);
@@ -518,7 +493,7 @@ TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
     }
     write_tiff("a.tif", numbers, kWidth, kHeight);
     const CommandResult result =
-        correct_by_rig("out", {"--black-level", "64", "--white-level", "4095", "--middle", "0.5"});
+        correct_by_rig("out", "--black-level 64 --white-level 4095 --middle 0.5");
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_TRUE(has(result.out, "camera: mono, "));
     const std::vector<float> image = samples("out/a.exr", {"Y"});
@@ -528,12 +503,12 @@ TEST_F(RigOfSurvey, OfAMonoCameraCorrectsOnePlane) {
         if (number < 100.0) continue;       // held where it is dark
         EXPECT_NEAR(image[i], 0.5, 0.5 * (0.5 / number + kMapError)) << i;
     }
-    const CommandResult colours = correct_by_rig("colours", {"--bayer", "RGGB"});
+    const CommandResult colours = correct_by_rig("colours", "--bayer RGGB");
     EXPECT_EQ(colours.status, kBadInput);
     EXPECT_TRUE(has(colours.err,
                     "--bayer: found RGGB, and the rig's camera has one response; allowed: mono"));
     write_rig("[64, 48]", kPitch_um);
-    const CommandResult mono = correct_by_rig("mono", {"--bayer", "mono"});
+    const CommandResult mono = correct_by_rig("mono", "--bayer mono");
     EXPECT_EQ(mono.status, kBadInput);
     EXPECT_TRUE(has(mono.err, "the rig's camera has responses of red, green and blue"));
 }

@@ -4,7 +4,7 @@
 // through every command that reads: what is printed of them is plain, and has an end.
 #include "base/printable.h"
 #include "image/exr.h"
-#include "support/run_command.h"
+#include "support/command_test.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace aphotic::terminal_test {
 namespace {
 
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
+using Words = Arguments;
 
 constexpr int kDone = 0;
 constexpr int kAnswerIsNo = 1;
@@ -41,7 +41,7 @@ void expect_plain(const std::string& said, const std::string& what) {
     EXPECT_EQ(said.find("\naphotic: done"), std::string::npos) << what;
 }
 
-class Terminal : public testing::Test {
+class Terminal : public CommandTest {
   protected:
     Terminal() {
         const std::string habcam =
@@ -54,11 +54,9 @@ class Terminal : public testing::Test {
         write_file(path("nav.csv"), "image,altitude_m,pitch_deg,roll_deg\na.exr,2,0,0\n");
     }
 
-    [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
-
     // One message, of some kind of refusal.
     void expect_refused(const Words& arguments, const std::string& shown = "") {
-        const CommandResult run = run_aphotic(folder_.path(), arguments);
+        const CommandResult run = aphotic(arguments);
         const std::string what = arguments.front() + " said: " + printable(run.err.substr(0, 300));
         EXPECT_TRUE(run.status == kBadInput || run.status == kAnswerIsNo) << what;
         EXPECT_LT(run.err.size(), kMostPrinted_bytes) << what;
@@ -67,8 +65,6 @@ class Terminal : public testing::Test {
         expect_plain(run.err, what);
         expect_plain(run.out, what);
     }
-
-    TempFolder folder_;
 };
 
 TEST_F(Terminal, IsNotSteeredByTheNameOfAFileThatIsNotThere) {
@@ -110,15 +106,14 @@ TEST_F(Terminal, IsNotSteeredByTheNameOfAFileThatIsThere) {
         {"observe", evil + ".exr", "a.exr", "--nav", "nav.csv", "--altitude", "2", "-o", "m.exr"},
         {"observe", "a.exr", "--nav", "nav.csv", "--altitude", "2", "-o", evil + ".map.exr"}};
     for (const Words& command : commands) {
-        const CommandResult run = run_aphotic(folder_.path(), command);
+        const CommandResult run = aphotic(command);
         const std::string what = printable(fmt::format("{}", fmt::join(command, " ")));
         EXPECT_TRUE(run.status == kDone || run.status == kAnswerIsNo || run.status == kBadInput)
             << what << run.err;
         expect_plain(run.out + run.err, what + ": " + printable(run.out + run.err));
     }
     // JSON is still JSON, and the name in it the file's.
-    const CommandResult run =
-        run_aphotic(folder_.path(), {"compare", evil + ".exr", "a.exr", "--json"});
+    const CommandResult run = aphotic({"compare", evil + ".exr", "a.exr", "--json"});
     expect_plain(run.out, run.out);
     EXPECT_EQ(nlohmann::json::parse(run.out).at("image"), evil + ".exr");
 }
@@ -126,7 +121,7 @@ TEST_F(Terminal, IsNotSteeredByTheNameOfAFileThatIsThere) {
 TEST_F(Terminal, IsNotFloodedOrSteeredByACell) {
     const std::string nav = "image,altitude_m,pitch_deg,roll_deg\n";
     const std::string csv = "wavelength_nm,reflectance\n300,0.5\n";
-    const std::string habcam = read_text_file(path("rig.toml"));
+    const std::string habcam = text_of("rig.toml");
     const auto rig_with = [&](const std::string& key, const std::string& value) {
         return fmt::format("{} = \"{}\"\n{}", key, value, habcam);
     };

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Every scene of the project, small, through both renderers.
-#include "support/run_command.h"
+#include "support/command_test.h"
 #include "support/small_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -18,8 +19,7 @@ TEST_P(EveryScene, Validates) {
     const TempFolder folder;
     put_small_scene(GetParam(), folder.path());
     const CommandResult run =
-        run_aphotic(folder.path(),
-                    {"validate", "rig.toml", "-o", "out", "--wavelengths", "410,470,550,620,700"});
+        run_aphotic(folder.path(), "validate rig.toml -o out --wavelengths 410,470,550,620,700");
     EXPECT_EQ(run.status, 0) << run.out << run.err;
     const auto json =
         nlohmann::json::parse(read_text_file(folder.path() / "out" / "validation.json"));
@@ -37,48 +37,37 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
+using Validate = CommandTest;
+
 // The reference's share of veil is the lightmap's, and stands on the page.
-TEST(Validate, TellsHowMuchIsVeil) {
+TEST_F(Validate, TellsHowMuchIsVeil) {
     constexpr double kOfBoth = 1e-3;  // of the share: both know the veil to 1e-4
-    const TempFolder folder;
     std::string rig = small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml");
     rig.replace(rig.find("[400, 720]"), 10, "[400, 700]");
     const std::string clear = "absorption = \"pope-fry-1997\"";
     rig.replace(rig.find(clear), clear.size(), "type = \"jerlov-1C\"");
-    write_file(folder.path() / "rig.toml", rig);
-    const CommandResult run = run_aphotic(
-        folder.path(), {"validate", "rig.toml", "-o", "out", "--json", "--model-tolerance", "1"});
+    write_file(path("rig.toml"), rig);
+    const CommandResult run = aphotic("validate rig.toml -o out --json --model-tolerance 1");
     ASSERT_EQ(run.status, 0) << run.out << run.err;
     const auto traced = nlohmann::json::parse(run.out).at("veil_in_the_middle");
-    const CommandResult map =
-        run_aphotic(folder.path(),
-                    {"lightmap", "rig.toml", "-o", "map.exr", "--json", "--model-tolerance", "1"});
+    const CommandResult map = aphotic("lightmap rig.toml -o map.exr --json --model-tolerance 1");
     const auto mapped = nlohmann::json::parse(map.out).at("veil_in_the_middle");
     for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_GT(mapped[c].get<double>(), 0.1);
         EXPECT_NEAR(traced[c].get<double>() / mapped[c].get<double>(), 1.0, kOfBoth) << c;
     }
-    EXPECT_NE(read_text_file(folder.path() / "out" / "report.html").find("Veil in the middle"),
+    EXPECT_NE(read_text_file(path("out") / "report.html").find("Veil in the middle"),
               std::string::npos);
 }
 
 // Wavelengths that share a frame behind a port may be shifted, and their bound is the wider for it.
 // Each in a frame of its own has none of that.
-TEST(Validate, APortWithoutSharedFramesIsHeldToTheHalfFloatsAlone) {
+TEST_F(Validate, APortWithoutSharedFramesIsHeldToTheHalfFloatsAlone) {
     constexpr double kHalfFloatBound = 6e-4;
-    const TempFolder folder;
-    write_file(folder.path() / "rig.toml",
+    write_file(path("rig.toml"),
                small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/port.toml"));
-    const CommandResult run = run_aphotic(folder.path(),
-                                          {"validate",
-                                           "rig.toml",
-                                           "-o",
-                                           "out",
-                                           "--per-frame",
-                                           "1",
-                                           "--wavelengths",
-                                           "410,470,550,620,700",
-                                           "--json"});
+    const CommandResult run =
+        aphotic("validate rig.toml -o out --per-frame 1 --wavelengths 410,470,550,620,700 --json");
     ASSERT_EQ(run.status, 0) << run.out << run.err;
     const auto json = nlohmann::json::parse(run.out);
     EXPECT_EQ(json.at("frames"), 5);
@@ -90,12 +79,10 @@ TEST(Validate, APortWithoutSharedFramesIsHeldToTheHalfFloatsAlone) {
 }
 
 // Equal bands: their error is most of the promise, and nearly reached.
-TEST(Validate, PromiseOfBandsHoldsAndIsNoMoreThanFiveTimesTheErrorFound) {
-    const TempFolder folder;
-    write_file(folder.path() / "rig.toml",
+TEST_F(Validate, PromiseOfBandsHoldsAndIsNoMoreThanFiveTimesTheErrorFound) {
+    write_file(path("rig.toml"),
                small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
-    const CommandResult run =
-        run_aphotic(folder.path(), {"validate", "rig.toml", "-o", "out", "--bands", "9", "--json"});
+    const CommandResult run = aphotic("validate rig.toml -o out --bands 9 --json");
     ASSERT_EQ(run.status, 0) << run.err;
     const auto json = nlohmann::json::parse(run.out);
     for (const auto& channel : json.at("channels")) {
@@ -105,37 +92,33 @@ TEST(Validate, PromiseOfBandsHoldsAndIsNoMoreThanFiveTimesTheErrorFound) {
     }
 }
 
-TEST(Trace, LeavesImagesWithoutPovRayAndThreadsChangeNoBit) {
-    const TempFolder folder;
-    write_file(folder.path() / "rig.toml",
+using Trace = CommandTest;
+
+TEST_F(Trace, LeavesImagesWithoutPovRayAndThreadsChangeNoBit) {
+    write_file(path("rig.toml"),
                small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/port.toml"));
     const std::map<std::string, std::string> no_povray{{"APHOTIC_POVRAY", "/no/povray"}};
     for (const std::string threads : {"1", "3"}) {
-        const CommandResult run = run_aphotic(
-            folder.path(),
-            {"trace", "rig.toml", "-o", threads, "--threads", threads, "--wavelengths", "470,550"},
+        const CommandResult run = aphotic(
+            fmt::format("trace rig.toml -o {0} --threads {0} --wavelengths 470,550", threads),
             no_povray);
         ASSERT_EQ(run.status, 0) << run.err;
     }
     for (const char* file : {"image.exr", "spectral.exr", "preview.png"}) {
-        EXPECT_EQ(read_text_file(folder.path() / "1" / file),
-                  read_text_file(folder.path() / "3" / file))
-            << file;
+        EXPECT_EQ(read_text_file(path("1") / file), read_text_file(path("3") / file)) << file;
     }
 }
 
 // What it is exact to, and where not: 40 % of HabCam's pixels are in penumbrae; a port takes edges
 // across some.
-TEST(Trace, SaysWhereItsErrorsDoNotHold) {
+TEST_F(Trace, SaysWhereItsErrorsDoNotHold) {
     for (const std::string scene : {"habcam", "habcam-emitters", "port"}) {
-        const TempFolder folder;
-        write_file(folder.path() / "rig.toml",
+        write_file(path("rig.toml"),
                    small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/" + scene + ".toml"));
-        const CommandResult run = run_aphotic(folder.path(), {"trace", "rig.toml", "-o", "out"});
+        const CommandResult run = aphotic("trace rig.toml -o out");
         ASSERT_EQ(run.status, 0) << run.err;
         EXPECT_NE(run.out.find("of a signal off the edges"), std::string::npos) << run.out;
-        const auto json =
-            nlohmann::json::parse(read_text_file(folder.path() / "out" / "trace.json"));
+        const auto json = nlohmann::json::parse(read_text_file(path("out") / "trace.json"));
         const bool has_emitters = scene == "habcam-emitters";
         EXPECT_EQ(run.out.find("pixels on the edge of") != std::string::npos, scene != "habcam")
             << run.out;
@@ -152,21 +135,21 @@ TEST(Trace, SaysWhereItsErrorsDoNotHold) {
     }
 }
 
+using Compare = CommandTest;
+
 // `compare` reads any format: here a PNG against itself, and two EXRs that differ.
-TEST(Compare, SaysYesAndNo) {
-    const TempFolder folder;
-    write_file(folder.path() / "rig.toml",
+TEST_F(Compare, SaysYesAndNo) {
+    write_file(path("rig.toml"),
                small_scene(std::string(APHOTIC_SOURCE_DIR) + "/scenes/habcam.toml"));
-    ASSERT_EQ(run_aphotic(folder.path(), {"trace", "rig.toml", "-o", "a"}).status, 0);
-    std::string brighter = read_text_file(folder.path() / "rig.toml");
+    ASSERT_EQ(aphotic("trace rig.toml -o a").status, 0);
+    std::string brighter = text_of("rig.toml");
     // One strobe of four brighter by a thousandth: up to 1e-3 in its cone, and nowhere more.
     brighter += "power = 1.001\n";
-    write_file(folder.path() / "brighter.toml", brighter);
-    ASSERT_EQ(run_aphotic(folder.path(), {"trace", "brighter.toml", "-o", "b"}).status, 0);
+    write_file(path("brighter.toml"), brighter);
+    ASSERT_EQ(aphotic("trace brighter.toml -o b").status, 0);
 
-    EXPECT_EQ(run_aphotic(folder.path(), {"compare", "a/preview.png", "a/preview.png"}).status, 0);
-    const CommandResult no = run_aphotic(
-        folder.path(), {"compare", "b/image.exr", "a/image.exr", "--bound", "1e-4", "--json"});
+    EXPECT_EQ(aphotic("compare a/preview.png a/preview.png").status, 0);
+    const CommandResult no = aphotic("compare b/image.exr a/image.exr --bound 1e-4 --json");
     EXPECT_EQ(no.status, 1) << no.err;
     const auto told = nlohmann::json::parse(no.out);
     for (const auto& channel : told.at("channels")) {
@@ -174,11 +157,8 @@ TEST(Compare, SaysYesAndNo) {
         EXPECT_GT(channel.at("max_error").get<double>(), 5e-4);
         EXPECT_GT(channel.at("mean_error").get<double>(), 0.0) << "the sign of e";
     }
-    EXPECT_EQ(
-        run_aphotic(folder.path(), {"compare", "b/image.exr", "a/image.exr", "--bound", "1.1e-3"})
-            .status,
-        0);
-    EXPECT_EQ(run_aphotic(folder.path(), {"compare", "a/image.exr", "no.exr"}).status, 2);
+    EXPECT_EQ(aphotic("compare b/image.exr a/image.exr --bound 1.1e-3").status, 0);
+    EXPECT_EQ(aphotic("compare a/image.exr no.exr").status, 2);
 }
 
 }  // namespace

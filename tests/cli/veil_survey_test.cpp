@@ -77,7 +77,7 @@ class VeilSurvey : public testing::Test {
             std::string navigation = "image,altitude_m\n";
             for (const char* altitude_m : kAltitudes) {
                 write_file(folder() / "rig.toml", rig_over(percent, altitude_m));
-                expect_done({"trace", "rig.toml", "-o", "traced"});
+                expect_done("trace rig.toml -o traced");
                 fs::rename(folder() / "traced" / "image.exr",
                            images / fmt::format("at-{}.exr", altitude_m));
                 fs::remove_all(folder() / "traced");
@@ -94,26 +94,20 @@ class VeilSurvey : public testing::Test {
 
     static const fs::path& folder() { return survey_->path(); }
 
-    static void expect_done(const std::vector<std::string>& arguments) {
+    static void expect_done(const Arguments& arguments) {
         const CommandResult run = run_aphotic(folder(), arguments);
         ASSERT_EQ(run.status, 0) << run.err;
     }
 
+    static Arguments correction(int percent) {
+        return fmt::format(
+            "correct {} --rig rig.toml --nav nav.csv --format exr -o {}", percent, result(percent));
+    }
+
     // The survey over the rig's own floor has the gain, the charts take it.
-    static void correct(int percent, std::vector<std::string> more) {
-        std::vector<std::string> arguments{"correct",
-                                           std::to_string(percent),
-                                           "--rig",
-                                           "rig.toml",
-                                           "--nav",
-                                           "nav.csv",
-                                           "--format",
-                                           "exr",
-                                           "-o",
-                                           result(percent)};
-        if (percent != 30) more.insert(more.end(), {"--gain-from", result(30)});
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        expect_done(arguments);
+    static void correct(int percent, const Arguments& more) {
+        expect_done(correction(percent) + (percent == 30 ? "" : "--gain-from " + result(30)) +
+                    more);
     }
 
     static std::string result(int percent) { return fmt::format("corrected-{}", percent); }
@@ -161,7 +155,7 @@ TEST_F(VeilSurvey, ChartsAreFlatAndOfTheirReflectance) {
 
 TEST_F(VeilSurvey, WithTheVeilLeftInTheyAreNot) {
     for (const int percent : {30, 18, 45}) {
-        correct(percent, {"--no-veil"});
+        correct(percent, "--no-veil");
         const Off off = judge(percent);
         EXPECT_GT(off.uneven, kFlat) << percent;
         EXPECT_GT(off.level, kFlat) << percent;
@@ -170,18 +164,8 @@ TEST_F(VeilSurvey, WithTheVeilLeftInTheyAreNot) {
 
 // Results of one kind are not continued as the other.
 TEST_F(VeilSurvey, ARunWithoutIsAnother) {
-    correct(30, {"--no-veil"});
-    const CommandResult again = run_aphotic(folder(),
-                                            {"correct",
-                                             "30",
-                                             "--rig",
-                                             "rig.toml",
-                                             "--nav",
-                                             "nav.csv",
-                                             "--format",
-                                             "exr",
-                                             "-o",
-                                             result(30)});
+    correct(30, "--no-veil");
+    const CommandResult again = run_aphotic(folder(), correction(30));
     EXPECT_TRUE(has(again.out, "3 images corrected")) << again.err;
 }
 

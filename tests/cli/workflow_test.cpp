@@ -9,6 +9,7 @@
 #include "support/run_command.h"
 #include "support/small_rig.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -69,15 +70,11 @@ class Workflow : public testing::Test {
                          const std::string& multiple,
                          const fs::path& image) const {
         fs::remove_all(path("alone"));
-        const CommandResult alone = run_aphotic(small_.folder(),
-                                                {"trace",
-                                                 "rig.toml",
-                                                 "-o",
-                                                 "alone",
-                                                 "--set",
-                                                 "sled.altitude_m=" + altitude,
-                                                 "--set",
-                                                 "water.multiple=" + multiple});
+        const CommandResult alone = run_aphotic(
+            small_.folder(),
+            fmt::format("trace rig.toml -o alone --set sled.altitude_m={} --set water.multiple={}",
+                        altitude,
+                        multiple));
         ASSERT_EQ(alone.status, 0) << alone.err;
         EXPECT_TRUE(read_text_file(path("alone/image.exr")) == read_text_file(image)) << image;
     }
@@ -99,9 +96,7 @@ TEST_F(Workflow, BySnakemake) {
     if (!has_program("snakemake")) GTEST_SKIP() << "Snakemake is not installed";
     fs::copy(
         fs::path(APHOTIC_SOURCE_DIR) / "workflow", path("workflow"), fs::copy_options::recursive);
-    ASSERT_EQ(
-        run_aphotic(small_.folder(), {"survey", "rig.toml", "--images", "5", "-o", "dive"}).status,
-        0);
+    ASSERT_EQ(run_aphotic(small_.folder(), "survey rig.toml --images 5 -o dive").status, 0);
     const std::string numbers = "--bayer RGGB --black-level 64 --white-level 4095";
     const std::string navigation = "--nav dive/navigation-measured.txt";
     fs::create_directory(path("config"));

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "support/absurd_images.h"
 #include "support/file_limit.h"
+#include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
 #include <ImfArray.h>
@@ -21,16 +22,6 @@ namespace aphotic::exr_test {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <typename Action>
-std::string run_error(const Action& action) {
-    try {
-        action();
-    } catch (const RunError& error) {
-        return error.what();
-    }
-    return "no error";
-}
 
 // A value that tells channel, row and column apart, and that no half float could hold.
 float sample_at(int channel, int row, int column) {
@@ -148,7 +139,7 @@ TEST(Exr, ThatCannotBeReadIsARunErrorThatNamesIt) {
     const TempFolder folder;
     const fs::path file = folder.path() / "image.exr";
     write_file(file, "PNG");
-    EXPECT_TRUE(run_error([&] {
+    EXPECT_TRUE(run_error_of([&] {
                     const ExrReader in(file);
                 }).starts_with(file.string() + ": is no readable OpenEXR image: "));
 }
@@ -157,14 +148,11 @@ TEST(Exr, ThatIsNotThereIsARunErrorThatNamesIt) {
     const TempFolder folder;
     const fs::path file = folder.path() / "image.exr";
     const std::string why = file.string() + ": cannot be read: No such file or directory";
-    EXPECT_EQ(run_error([&] { const ExrReader in(file); }), why);
+    EXPECT_EQ(run_error_of([&] { const ExrReader in(file); }), why);
     // Whoever names it has mistyped it.
-    try {
-        from_named_exr(file, [](ExrReader& reader) { return reader.width_px(); });
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_EQ(error.what(), why);
-    }
+    const std::string said = refusal_of(
+        [&] { from_named_exr(file, [](ExrReader& reader) { return reader.width_px(); }); });
+    EXPECT_EQ(said, why);
 }
 
 // A part of the image, or more than it, as compositors write them.
@@ -173,7 +161,7 @@ TEST(Exr, WhoseWindowsDifferIsRefusedWithBoth) {
     const fs::path file = folder.path() / "image.exr";
     const auto fault = [&](const ExrSides& data, const ExrSides& display) {
         write_file(file, exr_of_windows(data, display));
-        return run_error([&] { const ExrReader in(file); });
+        return run_error_of([&] { const ExrReader in(file); });
     };
     const std::string begin = file.string() + ": is no readable OpenEXR image: its data window, ";
     EXPECT_EQ(fault({2, 1, 4, 3}, {0, 0, 8, 6}),
@@ -196,7 +184,7 @@ TEST(Exr, OfAbsurdSizeIsRefusedByItsHeader) {
     for (const auto& [name, bytes] : absurd_images(kWidth, kHeight)) {
         if (!name.ends_with(".exr")) continue;
         write_file(file, bytes);
-        const std::string why = run_error([&] { const ExrReader in(file); });
+        const std::string why = run_error_of([&] { const ExrReader in(file); });
         EXPECT_TRUE(why.starts_with(file.string() + ": ")) << name << ": " << why;
         for (const char* words : {"alloc", "memory", "vector"})
             EXPECT_EQ(why.find(words), std::string::npos) << name << ": " << why;
@@ -212,7 +200,7 @@ TEST(Exr, ThatDoesNotFitOnTheDiskIsSaidByItsOwnName) {
     fs::remove(file);
     for (const std::uintmax_t most_bytes : {std::uintmax_t{0}, all_bytes / 2, all_bytes - 1}) {
         const FileLimit limit(most_bytes);
-        EXPECT_EQ(run_error([&] {
+        EXPECT_EQ(run_error_of([&] {
                       write_image(file, {16, 16, kHeight - 32});
                   }),
                   file.string() + ": cannot be written: File too large")
@@ -228,7 +216,7 @@ TEST(Exr, WithoutTheChannelIsARunErrorThatNamesBoth) {
     ExrReader in(file);
     const std::vector<std::string> names{"A", "Z"};
     std::vector<float> samples = room_for(1);
-    EXPECT_EQ(run_error([&] { in.read_rows(0, 1, names, samples); }),
+    EXPECT_EQ(run_error_of([&] { in.read_rows(0, 1, names, samples); }),
               file.string() + ": has no channel Z");
 }
 
@@ -236,7 +224,7 @@ TEST(Exr, ThatCannotBeWrittenIsARunErrorThatNamesIt) {
     const TempFolder folder;
     const fs::path file = folder.path() / "missing" / "image.exr";
     const std::string message =
-        run_error([&] { const ExrWriter out(file, kWidth, kHeight, {"A"}, {}); });
+        run_error_of([&] { const ExrWriter out(file, kWidth, kHeight, {"A"}, {}); });
     EXPECT_TRUE(message.starts_with(file.string() + ": cannot be written: ")) << message;
 }
 

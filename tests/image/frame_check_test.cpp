@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "image/exr.h"
+#include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -18,16 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
-
-template <typename Action>
-std::string run_error(const Action& action) {
-    try {
-        action();
-    } catch (const RunError& error) {
-        return error.what();
-    }
-    return "no error";
-}
 
 constexpr int kWidth = 5;
 constexpr int kHeight = 150;  // more than any block of rows, and no multiple of 16 or 64
@@ -69,7 +60,7 @@ TEST(CheckSamples, NamesTheFileTheChannelAndThePixel) {
     for (const BadSample& bad : kBadSamples) {
         std::vector<float> samples(12, 1.0F);
         samples[6] = bad.value;  // of rows of four: row 1, column 2
-        EXPECT_EQ(run_error([&] { check_samples("f.exr", "G", samples, 4, 10); }),
+        EXPECT_EQ(run_error_of([&] { check_samples("f.exr", "G", samples, 4, 10); }),
                   std::string("f.exr: channel G is ") + bad.words +
                       " at column 2, row 11; allowed: 0 to below 65504");
     }
@@ -77,15 +68,15 @@ TEST(CheckSamples, NamesTheFileTheChannelAndThePixel) {
 
 TEST(CheckSamples, NamesTheFirstBadPixel) {
     const std::vector samples{1.0F, kInf, kNan};
-    EXPECT_EQ(run_error([&] { check_samples("f.exr", "R", samples, 3, 0); }),
+    EXPECT_EQ(run_error_of([&] { check_samples("f.exr", "R", samples, 3, 0); }),
               "f.exr: channel R is inf at column 1, row 0; allowed: 0 to below 65504");
 }
 
 TEST(CheckSize, SaysWhatWasFoundAndWhatIsWanted) {
     EXPECT_NO_THROW(check_size("f.exr", 4, 3, 4, 3));
-    EXPECT_EQ(run_error([] { check_size("f.exr", 4, 3, 3, 4); }),
+    EXPECT_EQ(run_error_of([] { check_size("f.exr", 4, 3, 3, 4); }),
               "f.exr: found 4 x 3 pixels; wanted 3 x 4");
-    EXPECT_EQ(run_error([] { check_size("f.exr", 4, 3, 4, 5); }),
+    EXPECT_EQ(run_error_of([] { check_size("f.exr", 4, 3, 4, 5); }),
               "f.exr: found 4 x 3 pixels; wanted 4 x 5");
 }
 
@@ -96,7 +87,7 @@ TEST(CheckFrame, FindsABadSampleAnywhere) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
         for (const std::size_t row : {0U, 63U, 64U, 128U, 149U}) {
             write_frame(file, c, row, kWidth - 1, kNan);
-            EXPECT_EQ(run_error([&] { check_frame(file, kWidth, kHeight); }),
+            EXPECT_EQ(run_error_of([&] { check_frame(file, kWidth, kHeight); }),
                       file.string() + ": channel " + channels[c] + " is nan at column 4, row " +
                           std::to_string(row) + "; allowed: 0 to below 65504");
         }
@@ -109,10 +100,10 @@ TEST(CheckFrame, WantsItsSizeAndItsChannels) {
     const TempFolder folder;
     const fs::path file = folder.path() / "frame.exr";
     write_frame(file, 0, 0, 0, 1.0F);
-    EXPECT_EQ(run_error([&] { check_frame(file, kHeight, kWidth); }),
+    EXPECT_EQ(run_error_of([&] { check_frame(file, kHeight, kWidth); }),
               file.string() + ": found 5 x 150 pixels; wanted 150 x 5");
     write_frame(file, 0, 0, 0, 1.0F, {"R", "G"});
-    EXPECT_EQ(run_error([&] { check_frame(file, kWidth, kHeight); }),
+    EXPECT_EQ(run_error_of([&] { check_frame(file, kWidth, kHeight); }),
               file.string() + ": has no channel B");
 }
 

@@ -2,6 +2,7 @@
 #include "image/preview.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 #include "tests/support/temp_folder.h"
 
 #include <cairo.h>
@@ -214,13 +215,10 @@ TEST(PreviewPng, OfSamplesThatAreNotFiniteKeepsTheOthers) {
 TEST(Preview, ThatCannotBeWrittenIsARunErrorThatNamesIt) {
     const TempFolder folder;
     const fs::path file = folder.path() / "missing" / "preview.png";
-    try {
+    const std::string said = run_error_of([&] {
         write_preview(one_row({1.0F, 1.0F, 1.0F}), kNoLamp, {}, file);
-        FAIL() << "no error";
-    } catch (const RunError& error) {
-        EXPECT_TRUE(std::string(error.what()).starts_with(file.string() + ": cannot be written: "))
-            << error.what();
-    }
+    });
+    EXPECT_TRUE(said.starts_with(file.string() + ": cannot be written: ")) << said;
 }
 
 }  // namespace

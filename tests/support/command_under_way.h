@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/atomic_file.h"
+#include "support/arguments.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -72,7 +73,7 @@ inline void expect_no_leftovers(const std::filesystem::path& folder, const std::
 class Command {
   public:
     Command(const std::filesystem::path& lane,
-            const std::vector<std::string>& arguments,
+            const Arguments& arguments,
             const std::map<std::string, std::string>& environment) {
         std::vector<std::string> words{"/usr/bin/env", "--chdir=" + lane.string()};
         for (const auto& [name, value] : environment) words.push_back(name + "=" + value);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is said of input that is refused.
+// What is said of input that is refused, and of what the file system refuses; kAccepted of what is
+// done.
 #pragma once
 
 #include "base/error.h"
@@ -9,15 +10,26 @@
 
 namespace aphotic {
 
-// "nothing was said" where the work accepts its input.
-template <typename Work>
-std::string refusal_of(const Work& work) {
+inline constexpr const char* kAccepted = "nothing was said";
+
+template <typename Error, typename Work>
+std::string error_of(const Work& work) {
     try {
         work();
-    } catch (const InputError& error) {
+    } catch (const Error& error) {
         return error.what();
     }
-    return "nothing was said";
+    return kAccepted;
+}
+
+template <typename Work>
+std::string refusal_of(const Work& work) {
+    return error_of<InputError>(work);
+}
+
+template <typename Work>
+std::string run_error_of(const Work& work) {
+    return error_of<RunError>(work);
 }
 
 }  // namespace aphotic

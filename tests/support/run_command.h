@@ -5,6 +5,7 @@
 
 #include "base/atomic_file.h"
 #include "plugin/process.h"
+#include "support/arguments.h"
 #include "support/temp_folder.h"
 
 #include <fstream>
@@ -22,7 +23,7 @@ struct CommandResult {
 
 // folder: where it runs, and where relative paths start. environment: on top of ours.
 inline CommandResult run_aphotic(const std::filesystem::path& folder,
-                                 const std::vector<std::string>& arguments,
+                                 const Arguments& arguments,
                                  const std::map<std::string, std::string>& environment = {}) {
     constexpr double kTimeoutS = 1150.0;  // for what hangs: CTest's own limits end sooner
     const TempFolder streams;

@@ -50,18 +50,12 @@ class SmallSurvey {
     }
 
     // Into folder()/output, by the plan of docs/accuracy.md.
-    [[nodiscard]] CommandResult make(const std::vector<std::string>& arguments,
+    [[nodiscard]] CommandResult make(const Arguments& arguments,
                                      const std::string& output = "out") const {
-        std::vector<std::string> all{"survey", rig().string(), "-o", output};
-        all.insert(all.end(),
-                   {"--scene",
-                    (rig().parent_path() / "survey.pov").string(),
-                    "--paths-m",
-                    "2.4,7.7",
-                    "--fitted",
-                    "9"});
-        all.insert(all.end(), arguments.begin(), arguments.end());
-        return run_aphotic(folder(), all);
+        const std::string scene = (rig().parent_path() / "survey.pov").string();
+        return run_aphotic(folder(),
+                           Arguments{"survey", rig().string(), "-o", output, "--scene", scene} +
+                               "--paths-m 2.4,7.7 --fitted 9" + arguments);
     }
 
   private:

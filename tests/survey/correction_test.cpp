@@ -345,7 +345,7 @@ TEST(Correction, ABlackMapGivesBlackAndNoFault) {
 TEST(Correction, WhatCannotBeCorrectedIsRefused) {
     const Lightmap map = light_of_a_lamp();
     const auto fault_of = [&](const RawImage& raw, const Correction& correction) -> std::string {
-        return refusal_of([&] { static_cast<void>(corrected(raw, map, correction)); });
+        return refusal_of([&] { return corrected(raw, map, correction); });
     };
     RawImage raw = seen(map, random_reflectance(9), Mosaic::None);
     Correction wild = plain();

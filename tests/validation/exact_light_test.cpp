@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "rig/file/rig_reader.h"
 #include "support/closed_form.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -237,16 +238,11 @@ TEST(ExactLight, LongDoubleIsGoodForThirteenDigitsOfTheVeil) {
 // It would take a dome and a tilted port for a flat one, and a lens for a pinhole.
 TEST(ExactLight, RefusesWhatItDoesNotKnow) {
     const auto error_of = [](const Rig& rig) {
-        try {
-            static_cast<void>(ExactLight<long double>(rig));
-        } catch (const InputError& error) {
-            return std::string(error.what());
-        }
-        return std::string("none");
+        return refusal_of([&] { return ExactLight<long double>(rig); });
     };
     const auto expect_refused = [&](const std::string& what, const auto& change) {
         Rig rig = habcam();
-        EXPECT_EQ(error_of(rig), "none");
+        EXPECT_EQ(error_of(rig), kAccepted);
         change(rig);
         EXPECT_TRUE(error_of(rig).starts_with("found " + what + "; allowed in the exact light"))
             << error_of(rig);
@@ -254,7 +250,7 @@ TEST(ExactLight, RefusesWhatItDoesNotKnow) {
     const PortWindow flat{.distance_m = 0.05, .thickness_m = 0.01, .glass = builtin_glass("bk7")};
     Rig behind_a_port = habcam();
     behind_a_port.camera.port = flat;
-    EXPECT_EQ(error_of(behind_a_port), "none");
+    EXPECT_EQ(error_of(behind_a_port), kAccepted);
     expect_refused("a dome", [&](Rig& rig) {
         rig.camera.port = flat;
         rig.camera.port->dome = Dome{.radius_m = 0.08};

@@ -2,6 +2,7 @@
 #include "validation/patch_file.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +10,7 @@ namespace aphotic::patch_file_test {
 namespace {
 
 std::string fault_of(const std::string& text) {
-    try {
-        (void)parse_patches("p.csv", text);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return refusal_of([&] { return parse_patches("p.csv", text); });
 }
 
 TEST(PatchFile, HasColumnsInAnyOrderAndReferencesOfEveryKind) {

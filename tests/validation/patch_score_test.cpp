@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "image/exr.h"
+#include "support/refusal.h"
 #include "support/temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -93,26 +94,17 @@ TEST_F(PatchScoring, TakesColoursThatLackAChannel) {
     EXPECT_EQ(scores.patches[0].signal[0], 0.0);
     EXPECT_TRUE(std::isfinite(*scores.patches[0].difference));
     EXPECT_EQ(scores.unevenness, 0.0);
-    try {
-        score("grey,0,0,4,4,0.5\n");
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_EQ(error.what(),
-                  path("a.exr") +
-                      ": the patch 'grey' has a mean R of 0; allowed: above 0, of a "
-                      "grey patch");
-    }
+    const std::string said = refusal_of([&] { score("grey,0,0,4,4,0.5\n"); });
+    EXPECT_EQ(said,
+              path("a.exr") +
+                  ": the patch 'grey' has a mean R of 0; allowed: above 0, of a "
+                  "grey patch");
 }
 
 TEST_F(PatchScoring, RefusesPatchesBeyondTheImage) {
-    try {
-        score("a,0,0,4,4,\nb,6,1,3,3,\n");
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_EQ(
-            std::string(error.what()),
-            path("p.csv") + ":3: found a patch up to 9, 4; allowed: the image's 8 x 4 pixels");
-    }
+    const std::string said = refusal_of([&] { score("a,0,0,4,4,\nb,6,1,3,3,\n"); });
+    EXPECT_EQ(said,
+              path("p.csv") + ":3: found a patch up to 9, 4; allowed: the image's 8 x 4 pixels");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "support/page.h"
 #include "support/png.h"
+#include "support/refusal.h"
 #include "support/small_report.h"
 #include "support/temp_folder.h"
 #include "validation/report_pictures.h"
@@ -503,12 +504,8 @@ TEST(Report, ThatCannotBeWrittenIsARunErrorThatNamesTheFile) {
     const TempFolder folder;
     for (const auto write : {write_validation_json, write_validation_html}) {
         const fs::path file = folder.path() / "missing" / "report";
-        try {
-            write(small_report(), file);
-            FAIL() << "no error";
-        } catch (const RunError& error) {
-            EXPECT_TRUE(std::string(error.what()).starts_with(file.string())) << error.what();
-        }
+        const std::string said = run_error_of([&] { write(small_report(), file); });
+        EXPECT_TRUE(said.starts_with(file.string())) << said;
     }
 }
 

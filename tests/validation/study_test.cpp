@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "rig/file/rig_reader.h"
 #include "support/page.h"
+#include "support/refusal.h"
 #include "support/small_scene.h"
 #include "support/temp_folder.h"
 
@@ -368,12 +369,8 @@ TEST(StudyPage, HoldsAnyNumbersAndNames) {
 TEST(Study, ThatCannotBeWrittenIsARunErrorThatNamesTheFile) {
     const TempFolder folder;
     fs::create_directory(folder.path() / "study.csv");
-    try {
-        write_study(small_study(), folder.path());
-        ADD_FAILURE() << "written over a folder";
-    } catch (const RunError& error) {
-        EXPECT_TRUE(contains(error.what(), (folder.path() / "study.csv").string())) << error.what();
-    }
+    const std::string said = run_error_of([&] { write_study(small_study(), folder.path()); });
+    EXPECT_TRUE(contains(said, (folder.path() / "study.csv").string())) << said;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "survey/images/camera_numbers.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -15,15 +16,6 @@
 namespace aphotic::camera_numbers_test {
 namespace {
 
-std::string fault_of(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
-
 // HabCam's two cameras in one file.
 constexpr PlaneSize kPair{2720, 1024};
 
@@ -31,7 +23,7 @@ TEST(CameraNumbers, HalvesAreEqualPartsSideBySide) {
     EXPECT_EQ(crop_of({}, kPair), (Crop{0, 0, 2720, 1024}));
     EXPECT_EQ(crop_of({.half = Half::Left}, kPair), (Crop{0, 0, 1360, 1024}));
     EXPECT_EQ(crop_of({.half = Half::Right}, kPair), (Crop{1360, 0, 1360, 1024}));
-    EXPECT_EQ(fault_of([] {
+    EXPECT_EQ(refusal_of([] {
                   (void)crop_of({.half = Half::Right}, {2721, 1024});
               }),
               "--half: found an image of 2721 x 1024 pixels; allowed: an even width");
@@ -39,14 +31,14 @@ TEST(CameraNumbers, HalvesAreEqualPartsSideBySide) {
 
 TEST(CameraNumbers, ACropLiesWithinTheFile) {
     const auto fault = [](const Crop& crop) {
-        return fault_of([&] { EXPECT_EQ(crop_of({.crop = crop}, kPair), crop); });
+        return refusal_of([&] { EXPECT_EQ(crop_of({.crop = crop}, kPair), crop); });
     };
-    EXPECT_EQ(fault({1360, 0, 1360, 1024}), "");
+    EXPECT_EQ(fault({1360, 0, 1360, 1024}), kAccepted);
     EXPECT_EQ(fault({1361, 0, 1360, 1024}),
               "--crop 1361,0,1360,1024: reaches beyond the image; allowed: within 2720 x 1024 "
               "pixels");
-    EXPECT_NE(fault({0, 1, 1, 1024}), "");
-    EXPECT_NE(fault({2147483647, 0, 2147483647, 1}), "");
+    EXPECT_NE(fault({0, 1, 1, 1024}), kAccepted);
+    EXPECT_NE(fault({2147483647, 0, 2147483647, 1}), kAccepted);
 }
 
 TEST(CameraNumbers, ACropIsFourWholeNumbers) {
@@ -83,7 +75,7 @@ TEST(CameraNumbers, AStopMoreOfAnyIsTwiceTheExposure) {
 TEST(CameraNumbers, OnlyWhatTheReferenceTellsCounts) {
     const CameraNumbers camera{.exposure_by = ExposureBy::Flash, .reference = {.iso = 100.0}};
     EXPECT_EQ(relative_exposure({.time_s = 8.0, .iso = 400.0, .f_number = 2.0}, camera), 4.0);
-    EXPECT_EQ(fault_of([&] { (void)relative_exposure({.time_s = 8.0}, camera); }),
+    EXPECT_EQ(refusal_of([&] { (void)relative_exposure({.time_s = 8.0}, camera); }),
               "--exposure: its Exif has no ISO number");
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "support/has.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -32,12 +33,7 @@ image-set-items:
 )";
 
 std::string fault_of(const std::string& text) {
-    try {
-        (void)parse_ifdo("set.yaml", text);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return refusal_of([&] { return parse_ifdo("set.yaml", text); });
 }
 
 TEST(Ifdo, OfYamlHasTheTypesOfItsScalars) {
@@ -94,7 +90,7 @@ TEST(Ifdo, RefusesWhatIsNone) {
         fault_of("image-set-header: {}\nimage-set-items: []\n"),
         "set.yaml: image-set-items: found array; allowed: an object, as in an iFDO of version "
         "2");
-    EXPECT_EQ(fault_of("image-set-header: {}\nimage-set-items: {}\n"), "none");
+    EXPECT_EQ(fault_of("image-set-header: {}\nimage-set-items: {}\n"), kAccepted);
     EXPECT_EQ(fault_of("").find("set.yaml: image-set-header: found none"), 0U);
     EXPECT_EQ(fault_of("a: [1\nb: 2").find("set.yaml:"), 0U);
     EXPECT_EQ(fault_of("{\"image-set-header\": ").find("set.yaml"), 0U);
@@ -106,7 +102,7 @@ TEST(Ifdo, RefusesWhatIsNone) {
         return fault_of("image-set-header: {image-set-ifdo-version: " + version +
                         "}\nimage-set-items: {}\n");
     };
-    EXPECT_EQ(of_version("v2.2.1"), "none");
+    EXPECT_EQ(of_version("v2.2.1"), kAccepted);
     EXPECT_EQ(
         of_version("v1.1.0"),
         "set.yaml: image-set-ifdo-version: found v1.1.0; allowed: v2.0.0 and later, below v3");
@@ -125,7 +121,8 @@ TEST(Ifdo, RefusesAliasesThatStandForTooMuch) {
     const std::string fault = fault_of(bomb + "image-set-items: {}\n");
     EXPECT_EQ(fault.find("set.yaml:"), 0U);
     EXPECT_TRUE(has(fault, "its aliases stand for more than the file could hold"));
-    EXPECT_NE(fault_of("image-set-header: &a {b: *a}\nimage-set-items: {}\n"), "none") << "itself";
+    EXPECT_NE(fault_of("image-set-header: &a {b: *a}\nimage-set-items: {}\n"), kAccepted)
+        << "itself";
 }
 
 // A text of 110 MB took 8.5 GB.

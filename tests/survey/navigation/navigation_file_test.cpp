@@ -39,7 +39,7 @@ Navigation parsed(std::string_view text,
 }
 
 std::string refusal(std::string_view text, const NavigationOptions& options = {}) {
-    return refusal_of([&] { static_cast<void>(parsed(text, options)); });
+    return refusal_of([&] { return parsed(text, options); });
 }
 
 void expect_sled(const Sled& found, double altitude_m, double pitch_deg, double roll_deg) {
@@ -49,7 +49,7 @@ void expect_sled(const Sled& found, double altitude_m, double pitch_deg, double 
 }
 
 std::string fault_of_image(const Navigation& navigation, const std::string& image) {
-    return refusal_of([&] { static_cast<void>(navigation.pose_of(image)); });
+    return refusal_of([&] { return navigation.pose_of(image); });
 }
 
 constexpr std::string_view kOplab =
@@ -348,7 +348,7 @@ TEST_F(TagsOfImages, HabCamsAreReadFromTiffPngAndJpeg) {
     const Navigation other = read({.columns = {{"altitude_m", "alt1"}}});
     expect_sled(other.pose_of(path("a.tif")).sled, 2.11, -4.8, 0.3);
     EXPECT_EQ(refusal_of([&] {
-                  static_cast<void>(read({.columns = {{"image", "c"}}}));
+                  return read({.columns = {{"image", "c"}}});
               }),
               "--columns: found 'image'; allowed with --nav tags: altitude_m, pitch_deg, roll_deg");
 }
@@ -407,17 +407,16 @@ TEST(NavigationFile, TheRigsMountingCountsAndOptionsComeBeforeIt) {
               "+0.5 m; camera at [0, 0, 0.5] m, turned by [0, 60, 0] degrees");
     const NavigationOptions options{.source = "nav", .altitude_offset_m = 0.0};
     expect_sled(parse_navigation(text, options, {}, &rig).pose_of("a").sled, 3.0, 60.0, 0.0);
-    EXPECT_EQ(refusal_of([&] {
-                  static_cast<void>(parse_navigation("image,altitude_m\na,2\n", options, {}, &rig));
-              }),
-              "nav: has no pitch and roll; needed, for the rig's position_m and orientation_deg "
-              "place the camera on the vehicle");
+    EXPECT_EQ(
+        refusal_of([&] { return parse_navigation("image,altitude_m\na,2\n", options, {}, &rig); }),
+        "nav: has no pitch and roll; needed, for the rig's position_m and orientation_deg "
+        "place the camera on the vehicle");
 }
 
 TEST(NavigationFile, WithoutAttitudesHeightsNeedARig) {
     const std::string text = "image,altitude_m,roll_deg\na,2,0\n";
     const NavigationOptions options{.source = "nav", .altitude_is = AltitudeIs::Nearest};
-    EXPECT_EQ(refusal_of([&] { static_cast<void>(parse_navigation(text, options, {}, nullptr)); }),
+    EXPECT_EQ(refusal_of([&] { return parse_navigation(text, options, {}, nullptr); }),
               "nav: has no pitch; needed by --altitude-is nearest, or a --rig that has them");
     const Rig rig = habcam();
     const Navigation nav = parse_navigation(text, options, {}, &rig);

@@ -2,6 +2,7 @@
 #include "survey/navigation/navigation_ifdo.h"
 
 #include "base/error.h"
+#include "support/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -23,12 +24,7 @@ Navigation of(const std::string& header, const std::string& items) {
 }
 
 std::string fault_of(const Navigation& navigation, const char* image) {
-    try {
-        (void)navigation.pose_of(image);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return refusal_of([&] { return navigation.pose_of(image); });
 }
 
 // A camera 2 m over the ground that is turned by p about its beam and then r about its length sees
@@ -70,7 +66,7 @@ TEST(NavigationIfdo, SkipsImagesAndSaysWhy) {
            "steep.tif: {image-meters-above-ground: 2, image-camera-pitch-degrees: 95},"
            "under.tif: {image-meters-above-ground: -1, image-camera-pitch-degrees: 60},"
            "text.tif: nothing");
-    EXPECT_EQ(fault_of(navigation, "good.tif"), "none");
+    EXPECT_EQ(fault_of(navigation, "good.tif"), kAccepted);
     EXPECT_EQ(
         fault_of(navigation, "sea.tif"),
         "set.yaml: found no image-meters-above-ground; image-altitude-meters is over sea level, "
@@ -89,15 +85,12 @@ TEST(NavigationIfdo, SkipsImagesAndSaysWhy) {
 }
 
 TEST(NavigationIfdo, HeightsOverSeaLevelAreRefused) {
-    try {
-        (void)of("image-altitude-meters: -4000", "a.tif: {}");
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "set.yaml: found no image-meters-above-ground; image-altitude-meters is over "
-                     "sea level, not over the floor, in the header or of any image; allowed: the "
-                     "camera's height over the sea floor in metres");
-    }
+    const std::string said =
+        refusal_of([&] { return of("image-altitude-meters: -4000", "a.tif: {}"); });
+    EXPECT_EQ(said,
+              "set.yaml: found no image-meters-above-ground; image-altitude-meters is over "
+              "sea level, not over the floor, in the header or of any image; allowed: the "
+              "camera's height over the sea floor in metres");
     EXPECT_THROW((void)of("", ""), InputError);
 }
 

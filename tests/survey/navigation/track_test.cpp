@@ -23,7 +23,7 @@ const Track kTrack({{.time_s = kNoon_s + 2.0, .sled = {3.0, 0.1, -0.1}, .line = 
                    2.0);
 
 std::string fault_at(double time_s) {
-    return refusal_of([&] { static_cast<void>(kTrack.at(time_s)); });
+    return refusal_of([&] { return kTrack.at(time_s); });
 }
 
 TEST(Track, IsItsPointsAndStraightBetween) {
