@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "support/design_rig.h"
+#include "support/has.h"
 #include "support/refusal.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ std::string refusal(const DesignFreedom& freedom, const std::string& strobes = t
 }
 
 void expect_said(const std::string& said, const std::string& what) {
-    EXPECT_NE(said.find(what), std::string::npos) << said;
+    EXPECT_TRUE(has(said, what));
 }
 
 TEST(DesignSpace, BeginsWhereTheRigIs) {
@@ -105,7 +106,7 @@ TEST(DesignSpace, WritesWhatItMeans) {
                 EXPECT_LT((written.strobes[s].axis - places[s].axis).norm(), 2.0 * kRounded);
                 EXPECT_NEAR(written.strobes[s].power / places[s].power, 1.0, 1e-4);
             }
-            EXPECT_NE(text.text().find("# where fore is"), std::string::npos);
+            EXPECT_TRUE(has(text.text(), "# where fore is"));
         }
     }
 }
