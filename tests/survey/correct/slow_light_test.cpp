@@ -58,14 +58,6 @@ std::vector<Baseline> baselines() {
             {"polynomial", [](const Samples& p) { return divided_by_pattern(p, fitted(p)); }}};
 }
 
-TEST(Baselines, LeaveAConstantAsItIs) {
-    const Samples constant(static_cast<std::size_t>(kWidth_px * kHeight_px), 0.42F);
-    for (const Baseline& baseline : baselines()) {
-        for (const float sample : baseline.correct(constant))
-            ASSERT_NEAR(sample, 0.42, 0.42 * kFloat) << baseline.name;
-    }
-}
-
 TEST(Baselines, ScaleWithTheImage) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> uniform(0.01F, 1.0F);
@@ -132,37 +124,6 @@ TEST(Baselines, HomomorphicTurnsTheLogarithmsSlowPartDown) {
     for (std::size_t i = 0; i < image.size(); ++i) ASSERT_NEAR(same[i] / image[i], 1.0, kFloat);
 }
 
-// A pattern of the model's own kind goes, whatever lies on it on average: here the same texture
-// once as it is and once upside down.
-TEST(Baselines, PolynomialsTakeTheirOwnPatternsAway) {
-    const auto slow = [](double x, double y) {
-        return -1.0 - 2.0 * (x - 0.4) * (x - 0.4) - 1.5 * y * y * y * x + 0.7 * y;
-    };
-    const auto texture = [](double x, double y) {
-        return 0.2 * std::sin(90.0 * x) * std::cos(70.0 * y);
-    };
-    PolynomialSurface logs(kWidth_px, kHeight_px, 4);
-    PolynomialSurface linear(kWidth_px, kHeight_px, 4);
-    const Samples image =
-        plane_of([&](double x, double y) { return std::exp(slow(x, y) + texture(x, y)); });
-    const Samples plain =
-        plane_of([&](double x, double y) { return (3.0 + slow(x, y)) * (1.0 + texture(x, y)); });
-    logs.add(logarithms(image));
-    logs.add(logarithms(
-        plane_of([&](double x, double y) { return std::exp(slow(x, y) - texture(x, y)); })));
-    linear.add(plain);
-    linear.add(
-        plane_of([&](double x, double y) { return (3.0 + slow(x, y)) * (1.0 - texture(x, y)); }));
-    const Samples without = divided_by_pattern(image, exponentials(logs.fitted()));
-    const Samples flat = divided_by_pattern(plain, linear.fitted());
-    const Samples wanted = plane_of([&](double x, double y) { return std::exp(texture(x, y)); });
-    const Samples wanted_flat = plane_of([&](double x, double y) { return 1.0 + texture(x, y); });
-    for (std::size_t i = 0; i < image.size(); ++i) {
-        ASSERT_NEAR(without[i] / without[0], wanted[i] / wanted[0], kFloat);
-        ASSERT_NEAR(flat[i] / flat[0], wanted_flat[i] / wanted_flat[0], kFloat);
-    }
-}
-
 // With one tile and no clip: any rising curve comes to the share of pixels below, a straight ramp.
 TEST(LocalEqualisation, OfOneTileFlattensTheHistogram) {
     constexpr double kBin = 1.0 / kBins + 1.0 / kWidth_px;  // two samples of one bin; one column
@@ -210,13 +171,6 @@ namespace {
 
 constexpr double kFloat = 1e-6;  // a few roundings of a float, relative
 
-TEST(GaussianBlur, LeavesAConstant) {
-    for (const double sigma_px : {0.3, 2.0, 17.5, 400.0}) {
-        for (const float sample : gaussian_blur(std::vector<float>(30 * 20, 0.7F), 30, sigma_px))
-            ASSERT_NEAR(sample, 0.7, 0.7 * kFloat) << sigma_px;
-    }
-}
-
 // Mirrored borders send back what would leave.
 TEST(GaussianBlur, KeepsTheMean) {
     std::mt19937 random(3);
@@ -224,7 +178,7 @@ TEST(GaussianBlur, KeepsTheMean) {
     std::vector<float> plane(31 * 17);
     for (float& sample : plane) sample = uniform(random);
     const double mean = std::accumulate(plane.begin(), plane.end(), 0.0);
-    for (const double sigma_px : {0.5, 4.0, 50.0}) {
+    for (const double sigma_px : {0.3, 4.0, 50.0, 400.0}) {
         const std::vector<float> smooth = gaussian_blur(plane, 31, sigma_px);
         EXPECT_NEAR(std::accumulate(smooth.begin(), smooth.end(), 0.0), mean, mean * kFloat);
     }
